@@ -1,0 +1,2 @@
+//! The mimique command.
+fn main() {}

@@ -1,0 +1,1 @@
+//! The server: pages, packs, answers kept in SQLite or PostgreSQL, export.

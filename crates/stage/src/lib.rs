@@ -1,0 +1,1 @@
+//! Renders heads with wgpu: WebGPU, WebGL2 and offscreen.

@@ -1,0 +1,1 @@
+//! Statistical tests, tables, figures and the report of a perceptual study.

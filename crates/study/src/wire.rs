@@ -1,0 +1,181 @@
+//! What passes between the participant's page and the server, as JSON.
+//!
+//! | request | body | answer |
+//! |---|---|---|
+//! | `GET  /api/studies` | | list of [`StudySummary`] |
+//! | `GET  /api/studies/{study}` | | [`Bundle`] |
+//! | `POST /api/studies/{study}/sessions` | [`StartSession`] | [`SessionStarted`] |
+//! | `GET  /api/sessions/{session}` | | [`Resume`] |
+//! | `POST /api/sessions/{session}/events` | [`AppendEvents`] | [`Acknowledged`] |
+//! | `POST /api/sessions/{session}/complete` | [`Complete`] | [`Receipt`] |
+//! | `POST /api/sessions/{session}/withdraw` | [`Withdraw`] | [`Withdrawn`] |
+//! | `GET  /packs/{sha256}` | | bytes of a stimulus pack, cacheable for ever |
+//!
+//! Every refusal is a [`Refusal`] with a 4xx status. An append is idempotent: an event is known by
+//! (session, sequence), and sending it again changes nothing.
+
+use std::collections::BTreeMap;
+
+use mimique_solver::MethodSpec;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// One study on this server.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StudySummary {
+    /// Identifier used in addresses.
+    pub id: String,
+    /// Title a language.
+    pub title: Value,
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub config_hash: String,
+}
+
+/// Everything the participant's page needs: the study and where its clips are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Bundle {
+    /// Identifier used in addresses.
+    pub study_id: String,
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub config_hash: String,
+    /// The study file (the page parses it with [`crate::Study`]'s reader).
+    pub study: Value,
+    /// Every clip, by its identifier in the study.
+    pub clips: BTreeMap<String, ClipSource>,
+}
+
+/// Where a clip's parts are, and how it is solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClipSource {
+    /// Hash of the avatar pack (what the stage draws).
+    pub avatar: String,
+    /// Hash of the operators pack (what the solver needs of avatar and marker map).
+    pub operators: String,
+    /// Hash of the take pack (the markers of this clip, or recorded weights).
+    pub take: String,
+    /// The method and its parameters.
+    pub method: MethodSpec,
+    /// Duration as played, milliseconds.
+    pub duration_ms: f64,
+    /// Bytes to load if nothing is cached.
+    pub bytes: u64,
+    /// Provenance: SHA-256 over avatar, capture, map, method, parameters and solver version.
+    pub provenance: String,
+    /// SHA-256 of the weights as the server solved them (f64, little-endian, frame-major).
+    pub weights_hash: String,
+}
+
+/// A participant arrives.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct StartSession {
+    /// Made by the page (128 random bits, hexadecimal), so that a repeated request starts one session.
+    pub nonce: String,
+    /// Recruitment parameters of the address (`PROLIFIC_PID`...), stored apart.
+    #[serde(default)]
+    pub recruitment: BTreeMap<String, String>,
+    /// Language of the pages.
+    pub language: String,
+    /// Browser name, its major version, platform class: nothing finer.
+    #[serde(default)]
+    pub client: BTreeMap<String, String>,
+}
+
+/// The server's answer to [`StartSession`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SessionStarted {
+    /// Secret token of the session, 128 bits, hexadecimal.
+    pub session: String,
+    /// Public participant identifier of the export, e.g. `p0007`.
+    pub participant_id: String,
+    /// Participant number, never given twice within a study: decides the order.
+    pub participant: u64,
+    /// Seed of the study's random streams.
+    pub seed: u64,
+    /// `pilot` or `live`.
+    pub stage: String,
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub config_hash: String,
+    /// Code with which the participant can have the answers deleted.
+    pub withdrawal_code: String,
+}
+
+/// One thing that happened, numbered from 0 without gaps by the page.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// 0, 1, 2... within the session.
+    pub sequence: u64,
+    /// The page's clock, milliseconds since 1970.
+    pub at_ms: f64,
+    /// What happened ([`crate::EventKind`], tagged by `type`).
+    pub body: Value,
+}
+
+/// Events to append.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AppendEvents {
+    /// In ascending order of sequence.
+    pub events: Vec<Event>,
+}
+
+/// Sent only after the events are committed to disk.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Acknowledged {
+    /// Number of events stored without a gap: every sequence below it is on disk.
+    pub stored: u64,
+    /// Sequences below the highest stored one that are missing.
+    pub gaps: Vec<u64>,
+}
+
+/// What a page needs to go on after a reload.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Resume {
+    /// As at the start.
+    pub started: SessionStarted,
+    /// Every event stored, by sequence.
+    pub events: Vec<Event>,
+}
+
+/// The page says that it is at the end and has sent everything.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Complete {
+    /// How many events the page has sent.
+    pub events: u64,
+}
+
+/// The server has everything: only now is the completion code shown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Receipt {
+    /// Keyed hash over the stored events, hexadecimal.
+    pub receipt: String,
+    /// How many events are stored.
+    pub stored: u64,
+    /// Completion code of the recruitment, if the study has one.
+    pub completion_code: Option<String>,
+    /// Address to return to, if the study has one.
+    pub redirect: Option<String>,
+}
+
+/// A participant withdraws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Withdraw {
+    /// The code given at the start.
+    pub withdrawal_code: String,
+}
+
+/// The answers are deleted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Withdrawn {
+    /// How many events were deleted.
+    pub deleted: u64,
+}
+
+/// A refused request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refusal {
+    /// Stable word, e.g. `unknown-session`, `study-closed`, `bad-request`.
+    pub code: String,
+    /// What is wrong, for a person.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
+}

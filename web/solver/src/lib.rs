@@ -1,0 +1,1 @@
+//! The solver's worker: operators and a take in, weights out.

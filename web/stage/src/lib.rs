@@ -1,0 +1,1 @@
+//! The canvas module: heads in the browser, built once for WebGPU and once for WebGL2.
