@@ -1,2 +1,90 @@
-//! The mimique command.
-fn main() {}
+//! The `mimique` command: one file a command; this one reads the command line and reports errors.
+//!
+//! Errors go to stderr as `error: FILE: PLACE: what, value, remedy` with exit code 2; results go to
+//! stdout, as text or, with `--json`, as JSON.
+
+mod analyze;
+mod check;
+mod export;
+mod inspect;
+mod order;
+mod serve;
+mod solve;
+mod test_command;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// What do people see in an avatar's face? Solve, show, ask, keep, compute.
+#[derive(Parser)]
+#[command(name = "mimique", version, max_term_width = 100)]
+struct Cli {
+    /// Print results as JSON
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Host a study: questionnaire, preview and researcher's pages
+    Serve(serve::Args),
+    /// List every problem of a study file
+    Check(check::Args),
+    /// Print the exact trial order that a participant gets
+    Order(order::Args),
+    /// Tell what an avatar, a capture, a weight file, a pack or a study holds
+    Inspect(inspect::Args),
+    /// Turn marker trajectories into blendshape weights
+    Solve(solve::Args),
+    /// Write the responses of a study to a file
+    Export(export::Args),
+    /// Run one statistical test on a data file
+    Test(test_command::Args),
+    /// Compute every table and figure of a study
+    Analyze(analyze::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(usage) => {
+            let _ = usage.print();
+            return ExitCode::from(if usage.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let json = cli.json;
+    let outcome = match cli.command {
+        Command::Serve(args) => serve::run(args, json),
+        Command::Check(args) => check::run(args, json),
+        Command::Order(args) => order::run(args, json),
+        Command::Inspect(args) => inspect::run(args, json),
+        Command::Solve(args) => solve::run(args, json),
+        Command::Export(args) => export::run(args, json),
+        Command::Test(args) => test_command::run(args, json),
+        Command::Analyze(args) => analyze::run(args, json),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // An empty message means that the command has already said everything.
+            let text = format!("{error:#}");
+            if !text.is_empty() {
+                eprintln!("error: {text}");
+            }
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The reader of our output has gone (`mimique … | head`): that is no mistake of anybody's.
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause
+            .downcast_ref::<std::io::Error>()
+            .is_some_and(|io| io.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}

@@ -1,0 +1,10 @@
+//! `mimique check`.
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {}
+
+/// Runs the command.
+pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
+    anyhow::bail!("this command is being written")
+}
