@@ -1,2 +1,39 @@
-//! Builds, tests and demonstrates.
-fn main() {}
+//! One command for each thing that people do with the repository:
+//!
+//! - `cargo xtask demo`: install what is missing, build everything, start the built-in study;
+//! - `cargo xtask test`: install what tests need, then every check and test there is;
+//! - `cargo xtask web`: build the wasm modules and the pages alone.
+
+mod demo;
+mod install;
+mod process;
+mod tally;
+mod test;
+mod web;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Install what is missing, build all, and start the built-in study
+    Demo(demo::Args),
+    /// Install what tests need, then run every check and test
+    Test(test::Args),
+    /// Build the wasm modules and the pages into target/web-dist
+    Web(web::Args),
+}
+
+fn main() -> anyhow::Result<()> {
+    match Cli::parse().command {
+        Command::Demo(args) => demo::run(&args),
+        Command::Test(args) => test::run(&args),
+        Command::Web(args) => web::run(&args),
+    }
+}

@@ -1,0 +1,53 @@
+//! `cargo xtask demo`: from a fresh clone to a running study.
+
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::install::{self, Found};
+use crate::process::{cargo, root, run as run_program, say, target};
+use crate::web;
+
+/// Options of `cargo xtask demo`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Stop before starting the server
+    #[arg(long)]
+    no_serve: bool,
+    /// Address to listen on
+    #[arg(long, default_value = "127.0.0.1:8080")]
+    listen: String,
+    /// Study files to host
+    #[arg(default_value = "study-config/demo.json")]
+    studies: Vec<String>,
+}
+
+/// Installs, builds, starts.
+pub fn run(args: &Args) -> Result<()> {
+    if let Found::No(remedy) = install::C_COMPILER.ensure() {
+        say(&format!("no C compiler, the build may fail: {remedy}"));
+    }
+    web::all()?;
+    binary()?;
+    let binary = binary_path();
+    if args.no_serve {
+        say(&format!("built: {}", binary.strip_prefix(root()).unwrap_or(&binary).display()));
+        say("start the study with: cargo xtask demo");
+        return Ok(());
+    }
+    let mut serve = Command::new(&binary);
+    serve.current_dir(root()).arg("serve").args(&args.studies).args(["--listen", &args.listen]);
+    serve.status().with_context(|| binary.display().to_string())?;
+    Ok(())
+}
+
+/// Builds the release binary.
+pub fn binary() -> Result<()> {
+    say("building mimique");
+    run_program(cargo().args(["build", "--locked", "--release", "--package", "mimique"]))
+}
+
+/// Where the release binary is.
+pub fn binary_path() -> std::path::PathBuf {
+    target().join("release").join(if cfg!(windows) { "mimique.exe" } else { "mimique" })
+}

@@ -1,0 +1,205 @@
+//! What the machine lacks is installed here, each step printed, each skipped when it is there.
+//!
+//! Debian-like systems with root or sudo are served by apt. Elsewhere the step says what to install
+//! by hand and the command goes on with what it can.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result, bail};
+
+use crate::process::{cargo, has, output, root, run, say, target};
+
+/// Whether something asked for is there (perhaps since now), or not and why.
+pub enum Found {
+    /// It is there.
+    Yes,
+    /// It is not; what to do.
+    No(String),
+}
+
+/// The compilation target of the web modules.
+pub fn wasm_target() -> Result<()> {
+    let installed =
+        output(Command::new("rustup").args(["target", "list", "--installed"]).current_dir(root()));
+    match installed {
+        Some(list) if list.lines().any(|l| l.trim() == "wasm32-unknown-unknown") => Ok(()),
+        Some(_) => {
+            say("adding the wasm32-unknown-unknown target");
+            run(Command::new("rustup")
+                .args(["target", "add", "wasm32-unknown-unknown"])
+                .current_dir(root()))
+        }
+        None => {
+            say(
+                "rustup not found: if the wasm build fails, install the wasm32-unknown-unknown target",
+            );
+            Ok(())
+        }
+    }
+}
+
+/// A Debian package, known to be there by a file or a program.
+pub struct Package {
+    /// Name for apt.
+    pub name: &'static str,
+    /// What shows that it is there.
+    pub sign: Sign,
+    /// What it is for, and its name elsewhere.
+    pub elsewhere: &'static str,
+}
+
+/// What shows that a package is there.
+pub enum Sign {
+    /// A program on the path.
+    Program(&'static str),
+    /// A file at one of these places.
+    File(&'static [&'static str]),
+}
+
+/// The C compiler, for SQLite.
+pub const C_COMPILER: Package = Package {
+    name: "gcc libc6-dev",
+    sign: Sign::Program("cc"),
+    elsewhere: "a C compiler (macOS: xcode-select --install; Windows: Visual Studio Build Tools)",
+};
+/// The browser of the browser tests.
+pub const CHROMIUM: Package = Package {
+    name: "chromium",
+    sign: Sign::Program("chromium"),
+    elsewhere: "Chromium on the path as `chromium`",
+};
+/// A Vulkan driver on the processor, for pictures without a graphics card.
+pub const LAVAPIPE: Package = Package {
+    name: "mesa-vulkan-drivers",
+    sign: Sign::File(&[
+        "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json",
+        "/usr/share/vulkan/icd.d/lvp_icd.aarch64.json",
+        "/usr/share/vulkan/icd.d/lvp_icd.json",
+    ]),
+    elsewhere: "a Vulkan driver (Mesa's lavapipe)",
+};
+/// The database server of the storage tests.
+pub const POSTGRESQL: Package = Package {
+    name: "postgresql",
+    sign: Sign::File(&[
+        "/usr/lib/postgresql/14/bin/initdb",
+        "/usr/lib/postgresql/15/bin/initdb",
+        "/usr/lib/postgresql/16/bin/initdb",
+        "/usr/lib/postgresql/17/bin/initdb",
+        "/usr/lib/postgresql/18/bin/initdb",
+    ]),
+    elsewhere: "PostgreSQL 14 or newer",
+};
+/// Virtual environments of Python.
+pub const PYTHON_VENV: Package = Package {
+    name: "python3-venv",
+    sign: Sign::Program("python3"),
+    elsewhere: "Python 3.10 or newer with venv",
+};
+
+impl Package {
+    fn present(&self) -> bool {
+        match self.sign {
+            Sign::Program(program) => has(program),
+            Sign::File(places) => places.iter().any(|p| Path::new(p).exists()),
+        }
+    }
+
+    /// Installs the package unless it is there.
+    pub fn ensure(&self) -> Found {
+        if self.present() {
+            return Found::Yes;
+        }
+        let remedy = format!("install {}", self.elsewhere);
+        let (Some(mut update), Some(mut install)) = (apt(), apt()) else {
+            return Found::No(remedy);
+        };
+        say(&format!("installing {}", self.name));
+        static LISTS_FRESH: AtomicBool = AtomicBool::new(false);
+        if !LISTS_FRESH.swap(true, Ordering::Relaxed) {
+            // A stale list is not fatal: the install below says whether it matters.
+            let _ = update.args(["-qq", "update"]).stdin(Stdio::null()).status();
+        }
+        install
+            .args(["-qq", "-y", "install", "--no-install-recommends"])
+            .args(self.name.split(' '));
+        match run(install.stdin(Stdio::null()).stdout(Stdio::null())) {
+            Ok(()) if self.present() => Found::Yes,
+            _ => Found::No(remedy),
+        }
+    }
+}
+
+/// `apt-get` with the rights to install, or nothing.
+fn apt() -> Option<Command> {
+    if !has("apt-get") {
+        return None;
+    }
+    let root_user = output(Command::new("id").arg("-u"))?.trim() == "0";
+    let mut command = if root_user {
+        Command::new("apt-get")
+    } else {
+        output(Command::new("sudo").args(["-n", "true"]))?;
+        let mut sudo = Command::new("sudo");
+        sudo.args(["-n", "DEBIAN_FRONTEND=noninteractive", "apt-get"]);
+        sudo
+    };
+    command.env("DEBIAN_FRONTEND", "noninteractive");
+    Some(command)
+}
+
+/// The test runner.
+pub fn nextest() -> Result<()> {
+    if output(cargo().args(["nextest", "--version"])).is_some() {
+        return Ok(());
+    }
+    say("installing cargo-nextest (some minutes, once)");
+    run(cargo().args(["install", "--locked", "cargo-nextest"]))
+}
+
+/// The packages of `folder/package.json`, at the versions of its lock file.
+pub fn npm(folder: &Path) -> Result<Found> {
+    if !has("npm") {
+        return Ok(Found::No("install Node.js 20 or newer with npm".into()));
+    }
+    let lock = folder.join("package-lock.json");
+    let wanted = std::fs::read(&lock).with_context(|| lock.display().to_string())?;
+    let stamp = folder.join("node_modules/.installed-lock");
+    if std::fs::read(&stamp).ok().as_deref() == Some(&wanted) {
+        return Ok(Found::Yes);
+    }
+    say(&format!(
+        "installing the npm packages of {}",
+        folder.strip_prefix(root()).unwrap_or(folder).display()
+    ));
+    run(Command::new("npm")
+        .args(["ci", "--no-audit", "--no-fund", "--ignore-scripts", "--loglevel=error"])
+        .current_dir(folder))?;
+    std::fs::write(&stamp, wanted)?;
+    Ok(Found::Yes)
+}
+
+/// A Python environment with the pinned packages of `requirements`; its interpreter.
+pub fn python(requirements: &Path) -> Result<PathBuf> {
+    if let Found::No(remedy) = PYTHON_VENV.ensure() {
+        bail!("no python3: {remedy}");
+    }
+    let venv = target().join("tools/venv");
+    let interpreter = venv.join("bin/python");
+    let wanted = std::fs::read(requirements).with_context(|| requirements.display().to_string())?;
+    let stamp = venv.join(".installed-requirements");
+    if std::fs::read(&stamp).ok().as_deref() == Some(&wanted) {
+        return Ok(interpreter);
+    }
+    say("installing the Python packages of the tests");
+    if !interpreter.exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
+    }
+    run(Command::new(&interpreter)
+        .args(["-m", "pip", "install", "-q", "--disable-pip-version-check", "-r"])
+        .arg(requirements))?;
+    std::fs::write(&stamp, wanted)?;
+    Ok(interpreter)
+}

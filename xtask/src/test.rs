@@ -1,0 +1,126 @@
+//! `cargo xtask test`: every check and test there is, and one closing line.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Result, bail};
+
+use crate::install::{self, Found, Package};
+use crate::process::{cargo, root, say};
+use crate::tally::Tally;
+use crate::{demo, web};
+
+/// Options of `cargo xtask test`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Leave out the browser tests
+    #[arg(long)]
+    no_browser: bool,
+}
+
+/// The crates that run in the browser alone; what runs there too is checked for it with them.
+const WEB: [&str; 3] = ["mimique-app", "mimique-web-stage", "mimique-web-solver"];
+
+/// Runs everything; an error when a test failed (or was skipped under `MIMIQUE_NO_SKIP`).
+pub fn run(args: &Args) -> Result<()> {
+    let no_skip = std::env::var_os("MIMIQUE_NO_SKIP").is_some_and(|v| v == "1");
+    let mut tally = Tally::default();
+    say(&format!("real data are looked for in {}", data().display()));
+
+    install::nextest()?;
+    need(&install::C_COMPILER);
+    need(&install::LAVAPIPE);
+    need(&install::POSTGRESQL);
+
+    tally.check("format", cargo().args(["fmt", "--all", "--check"]));
+    // The server embeds the pages, so they come before everything that compiles it.
+    match web::all() {
+        Ok(()) => tally.passed += 1,
+        Err(error) => tally.fail(format!("pages: {error:#}")),
+    }
+
+    let mut lint = cargo();
+    lint.args(["clippy", "--locked", "--release", "--workspace", "--all-targets"]);
+    exclude_web(&mut lint);
+    tally.check("clippy, native", lint.args(["--", "-D", "warnings"]));
+    for (name, features) in [
+        ("mimique-app", None),
+        ("mimique-web-solver", None),
+        ("mimique-web-stage", Some("webgpu")),
+        ("mimique-web-stage", Some("webgl")),
+    ] {
+        let mut lint = cargo();
+        lint.args(["clippy", "--locked", "--release", "--target", "wasm32-unknown-unknown"]);
+        lint.args(["--package", name]);
+        if let Some(features) = features {
+            lint.args(["--no-default-features", "--features", features]);
+        }
+        let title = format!("clippy, wasm32, {name} {}", features.unwrap_or_default());
+        tally.check(title.trim_end(), lint.args(["--", "-D", "warnings"]));
+    }
+
+    let mut tests = cargo();
+    tests.args(["nextest", "run", "--locked", "--release", "--workspace", "--no-fail-fast"]);
+    // Passed tests are shown too: one that skips says so there.
+    tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
+    exclude_web(&mut tests);
+    tally.tests("unit, property, golden and http tests", tests.env("MIMIQUE_DATA", data()))?;
+
+    let mut doc_tests = cargo();
+    doc_tests.args(["test", "--locked", "--release", "--doc", "--workspace"]);
+    exclude_web(&mut doc_tests);
+    tally.check("doc tests", &mut doc_tests);
+
+    let mut docs = cargo();
+    docs.args(["doc", "--locked", "--workspace", "--no-deps", "--release"]);
+    exclude_web(&mut docs);
+    tally.check("documentation", docs.env("RUSTDOCFLAGS", "-D warnings"));
+
+    if !args.no_browser {
+        browser(&mut tally)?;
+    }
+    if !tally.close(!no_skip) {
+        bail!("not all is well");
+    }
+    Ok(())
+}
+
+/// Pages are used as a person uses them: by click, by keyboard, on both graphics back ends.
+fn browser(tally: &mut Tally) -> Result<()> {
+    need(&install::CHROMIUM);
+    let folder = root().join("tests/browser");
+    if let Found::No(remedy) = install::npm(&folder)? {
+        say(&format!("browser tests cannot run: {remedy}"));
+    }
+    demo::binary()?;
+    let mut tests = Command::new("node");
+    tests.args(["--test", "--test-concurrency=1", "--test-reporter=tap"]).current_dir(&folder);
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)?
+        .filter_map(|e| Some(e.ok()?.path()))
+        .filter(|p| p.to_string_lossy().ends_with(".test.mjs"))
+        .collect();
+    files.sort();
+    tests.args(files);
+    tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_BINARY", demo::binary_path());
+    tests.env("MIMIQUE_WEB_DIST", web::dist());
+    tally.tests("browser tests", &mut tests)
+}
+
+fn need(package: &Package) {
+    if let Found::No(remedy) = package.ensure() {
+        say(&format!("{} not found; the tests that need it will skip: {remedy}", package.name));
+    }
+}
+
+fn exclude_web(command: &mut Command) {
+    for name in WEB {
+        command.args(["--exclude", name]);
+    }
+}
+
+/// Where real data are looked for.
+fn data() -> PathBuf {
+    let given = std::env::var_os("MIMIQUE_DATA").unwrap_or_else(|| "../shared/data".into());
+    let path = root().join(given);
+    path.canonicalize().unwrap_or(path)
+}

@@ -1,0 +1,246 @@
+//! The pages: wasm modules and static files, gathered in `target/web-dist`, ready to be embedded.
+//!
+//! | module | crate | profile | what for |
+//! |---|---|---|---|
+//! | `app` | `web/app` | `web` | the participant's pages |
+//! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
+//! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
+//! | `solver` | `web/solver` | `web-solver` | the solver's worker |
+//!
+//! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
+//! binaryen) makes the files smaller where node is there.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+use sha2::{Digest, Sha256};
+
+use crate::install::{self, Found};
+use crate::process::{cargo, root, run as run_program, say, target};
+
+/// Options of `cargo xtask web`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Build only these modules (app, stage_webgpu, stage_webgl, solver); static files always
+    #[arg(long, value_delimiter = ',')]
+    only: Vec<String>,
+    /// Leave out wasm-opt: a quicker build of larger files
+    #[arg(long)]
+    no_opt: bool,
+}
+
+struct Module {
+    name: &'static str,
+    package: &'static str,
+    library: &'static str,
+    features: Option<&'static str>,
+    profile: &'static str,
+    opt_level: &'static str,
+}
+
+const MODULES: [Module; 4] = [
+    Module {
+        name: "app",
+        package: "mimique-app",
+        library: "mimique_app",
+        features: None,
+        profile: "web",
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "solver",
+        package: "mimique-web-solver",
+        library: "mimique_web_solver",
+        features: None,
+        profile: "web-solver",
+        opt_level: "-O3",
+    },
+    Module {
+        name: "stage_webgpu",
+        package: "mimique-web-stage",
+        library: "mimique_web_stage",
+        features: Some("webgpu"),
+        profile: "web",
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "stage_webgl",
+        package: "mimique-web-stage",
+        library: "mimique_web_stage",
+        features: Some("webgl"),
+        profile: "web",
+        opt_level: "-Oz",
+    },
+];
+
+/// Where the pages are gathered.
+pub fn dist() -> PathBuf {
+    target().join("web-dist")
+}
+
+/// Builds the modules asked for and gathers everything.
+pub fn run(args: &Args) -> Result<()> {
+    for name in &args.only {
+        if !MODULES.iter().any(|m| m.name == name) {
+            bail!("no module is called {name}; there are: app, solver, stage_webgpu, stage_webgl");
+        }
+    }
+    build(|name| args.only.is_empty() || args.only.iter().any(|n| n == name), !args.no_opt)
+}
+
+/// Builds every module.
+pub fn all() -> Result<()> {
+    build(|_| true, true)
+}
+
+fn build(wanted: impl Fn(&str) -> bool, optimise: bool) -> Result<()> {
+    install::wasm_target()?;
+    let optimiser = if optimise { wasm_opt()? } else { None };
+    for module in MODULES.iter().filter(|m| wanted(m.name)) {
+        module.build(optimiser.as_deref())?;
+    }
+    gather()
+}
+
+/// The script that is wasm-opt, or nothing where node is not.
+fn wasm_opt() -> Result<Option<PathBuf>> {
+    let folder = root().join("xtask/npm");
+    match install::npm(&folder)? {
+        Found::Yes => Ok(Some(folder.join("node_modules/binaryen/bin/wasm-opt"))),
+        Found::No(remedy) => {
+            say(&format!("wasm-opt left out, the pages will be larger: {remedy}"));
+            Ok(None)
+        }
+    }
+}
+
+impl Module {
+    /// Where the finished module lies until it is gathered.
+    fn out(&self) -> PathBuf {
+        target().join("web-modules").join(self.name)
+    }
+
+    fn build(&self, optimiser: Option<&Path>) -> Result<()> {
+        say(&format!("building {}", self.name));
+        let mut command = cargo();
+        command.args(["build", "--locked", "--target", "wasm32-unknown-unknown", "--lib"]);
+        command.args(["--package", self.package, "--profile", self.profile]);
+        if let Some(features) = self.features {
+            command.args(["--no-default-features", "--features", features]);
+        }
+        run_program(&mut command)?;
+        let raw = target()
+            .join("wasm32-unknown-unknown")
+            .join(self.profile)
+            .join(format!("{}.wasm", self.library));
+
+        let out = self.out();
+        let stamp = out.join("stamp");
+        let mark = self.mark(&raw, optimiser)?;
+        if fs::read_to_string(&stamp).ok().as_deref() == Some(&mark) {
+            return Ok(());
+        }
+        if out.exists() {
+            fs::remove_dir_all(&out)?;
+        }
+        fs::create_dir_all(&out)?;
+        wasm_bindgen_cli_support::Bindgen::new()
+            .input_path(&raw)
+            .out_name(self.name)
+            .web(true)?
+            .typescript(false)
+            .omit_default_module_path(false)
+            .generate(&out)
+            .with_context(|| format!("wasm-bindgen of {}", self.name))?;
+        if let Some(script) = optimiser {
+            let wasm = out.join(format!("{}_bg.wasm", self.name));
+            run_program(
+                Command::new("node")
+                    .arg(script)
+                    .arg(self.opt_level)
+                    .args(["--all-features", "--disable-gc", "--disable-custom-descriptors"])
+                    .arg(&wasm)
+                    .arg("-o")
+                    .arg(&wasm),
+            )?;
+        }
+        fs::write(&stamp, mark)?;
+        Ok(())
+    }
+
+    /// What the finished files depend on.
+    fn mark(&self, raw: &Path, optimiser: Option<&Path>) -> Result<String> {
+        let mut hash = Sha256::new();
+        hash.update(fs::read(raw).with_context(|| raw.display().to_string())?);
+        hash.update([u8::from(optimiser.is_some())]);
+        hash.update(wasm_bindgen_cli_support_version());
+        hash.update(self.opt_level);
+        Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
+    }
+}
+
+fn wasm_bindgen_cli_support_version() -> String {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).unwrap_or_default();
+    lock.lines()
+        .skip_while(|l| *l != "name = \"wasm-bindgen-cli-support\"")
+        .nth(1)
+        .unwrap_or_default()
+        .to_owned()
+}
+
+/// Copies modules and static files into [`dist`], unchanged files untouched, so that a build that
+/// changed nothing embeds nothing anew; then prints the sizes.
+fn gather() -> Result<()> {
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    for module in &MODULES {
+        for suffix in [".js", "_bg.wasm"] {
+            let name = format!("{}{suffix}", module.name);
+            if let Ok(bytes) = fs::read(module.out().join(&name)) {
+                files.push((name, bytes));
+            }
+        }
+        collect(&module.out().join("snippets"), "snippets", &mut files)?;
+    }
+    collect(&root().join("static"), "", &mut files)?;
+    files.sort();
+
+    let dist = dist();
+    fs::create_dir_all(&dist)?;
+    let mut stale = Vec::new();
+    collect(&dist, "", &mut stale)?;
+    for (name, _) in stale.iter().filter(|(n, _)| !files.iter().any(|(f, _)| f == n)) {
+        fs::remove_file(dist.join(name))?;
+    }
+    say("the pages, in bytes and gzipped:");
+    for (name, bytes) in &files {
+        let path = dist.join(name);
+        if fs::read(&path).ok().as_deref() != Some(bytes) {
+            if let Some(folder) = path.parent() {
+                fs::create_dir_all(folder)?;
+            }
+            fs::write(&path, bytes)?;
+        }
+        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        gzip.write_all(bytes)?;
+        say(&format!("  {name:32} {:>9} {:>9}", bytes.len(), gzip.finish()?.len()));
+    }
+    Ok(())
+}
+
+fn collect(folder: &Path, prefix: &str, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for entry in entries {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let name = if prefix.is_empty() { name } else { format!("{prefix}/{name}") };
+        if entry.file_type()?.is_dir() {
+            collect(&entry.path(), &name, files)?;
+        } else {
+            files.push((name, fs::read(entry.path())?));
+        }
+    }
+    Ok(())
+}
