@@ -5,7 +5,7 @@ use std::process::Command;
 use anyhow::{Context, Result};
 
 use crate::install::{self, Found};
-use crate::process::{cargo, root, run as run_program, say, target};
+use crate::process::{cargo, locked, root, run as run_program, say, target};
 use crate::web;
 
 /// Options of `cargo xtask demo`.
@@ -44,7 +44,7 @@ pub fn run(args: &Args) -> Result<()> {
 /// Builds the release binary.
 pub fn binary() -> Result<()> {
     say("building mimique");
-    run_program(cargo().args(["build", "--locked", "--release", "--package", "mimique"]))
+    run_program(cargo().arg("build").args(locked()).args(["--release", "--package", "mimique"]))
 }
 
 /// Where the release binary is.

@@ -32,6 +32,11 @@ pub fn cargo() -> Command {
     command
 }
 
+/// In CI the lock file must be right as it is; at work it follows the manifests.
+pub fn locked() -> &'static [&'static str] {
+    if std::env::var_os("CI").is_some() { &["--locked"] } else { &[] }
+}
+
 /// One printed step.
 #[expect(clippy::print_stdout, reason = "xtask talks to the person at the terminal")]
 pub fn say(text: &str) {

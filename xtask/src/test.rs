@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 
 use crate::install::{self, Found, Package};
-use crate::process::{cargo, root, say};
+use crate::process::{cargo, locked, root, say};
 use crate::tally::Tally;
 use crate::{demo, web};
 
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
 
     let mut lint = cargo();
-    lint.args(["clippy", "--locked", "--release", "--workspace", "--all-targets"]);
+    lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
     exclude_web(&mut lint);
     tally.check("clippy, native", lint.args(["--", "-D", "warnings"]));
     for (name, features) in [
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> Result<()> {
         ("mimique-web-stage", Some("webgl")),
     ] {
         let mut lint = cargo();
-        lint.args(["clippy", "--locked", "--release", "--target", "wasm32-unknown-unknown"]);
+        lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
         lint.args(["--package", name]);
         if let Some(features) = features {
             lint.args(["--no-default-features", "--features", features]);
@@ -60,19 +60,23 @@ pub fn run(args: &Args) -> Result<()> {
     }
 
     let mut tests = cargo();
-    tests.args(["nextest", "run", "--locked", "--release", "--workspace", "--no-fail-fast"]);
+    tests.args(["nextest", "run"]).args(locked()).args([
+        "--release",
+        "--workspace",
+        "--no-fail-fast",
+    ]);
     // Passed tests are shown too: one that skips says so there.
     tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
     exclude_web(&mut tests);
     tally.tests("unit, property, golden and http tests", tests.env("MIMIQUE_DATA", data()))?;
 
     let mut doc_tests = cargo();
-    doc_tests.args(["test", "--locked", "--release", "--doc", "--workspace"]);
+    doc_tests.arg("test").args(locked()).args(["--release", "--doc", "--workspace"]);
     exclude_web(&mut doc_tests);
     tally.check("doc tests", &mut doc_tests);
 
     let mut docs = cargo();
-    docs.args(["doc", "--locked", "--workspace", "--no-deps", "--release"]);
+    docs.arg("doc").args(locked()).args(["--workspace", "--no-deps", "--release"]);
     exclude_web(&mut docs);
     tally.check("documentation", docs.env("RUSTDOCFLAGS", "-D warnings"));
 

@@ -19,7 +19,7 @@ use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
-use crate::process::{cargo, root, run as run_program, say, target};
+use crate::process::{cargo, locked, root, run as run_program, say, target};
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
@@ -126,7 +126,7 @@ impl Module {
     fn build(&self, optimiser: Option<&Path>) -> Result<()> {
         say(&format!("building {}", self.name));
         let mut command = cargo();
-        command.args(["build", "--locked", "--target", "wasm32-unknown-unknown", "--lib"]);
+        command.arg("build").args(locked()).args(["--target", "wasm32-unknown-unknown", "--lib"]);
         command.args(["--package", self.package, "--profile", self.profile]);
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
