@@ -1,0 +1,173 @@
+//! What happens in a session, as it is stored: the body of [`crate::wire::Event`].
+//!
+//! All times are the page's clock: milliseconds since 1970, from `performance.timeOrigin +
+//! performance.now()`, so that within one load of the page they never run backwards.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Answers by question identifier.
+pub type Answers = BTreeMap<String, Value>;
+
+/// What happened, tagged by `type`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum EventKind {
+    /// The page is open for the first time. Always sequence 0.
+    Opened {
+        /// The display and the page.
+        client: Client,
+        /// Language of the pages.
+        language: String,
+    },
+    /// The language of the pages was changed.
+    LanguageChosen {
+        /// Language of the pages.
+        language: String,
+    },
+    /// The participant agrees.
+    Consented {
+        /// Version of the text.
+        version: String,
+        /// Language it was read in.
+        language: String,
+    },
+    /// The participant does not agree. The session ends.
+    Declined,
+    /// A page stands on the screen.
+    PageShown {
+        /// Identifier of the step.
+        step: String,
+    },
+    /// An answer was given or changed.
+    Answered {
+        /// Identifier of the step.
+        step: String,
+        /// Identifier of the question.
+        question: String,
+        /// The answer; null where it was taken back.
+        value: Value,
+    },
+    /// A page was left by its button.
+    PageFinished {
+        /// Identifier of the step.
+        step: String,
+        /// Its answers, if it asked something.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        answers: Answers,
+    },
+    /// The first play of a trial was asked for.
+    TrialStarted {
+        /// Identifier of the step.
+        step: String,
+        /// Which clip.
+        clip: String,
+    },
+    /// The clip was played, wholly or not.
+    TrialPlayed {
+        /// Identifier of the step.
+        step: String,
+        /// What the stage measured.
+        log: PlayLog,
+    },
+    /// The questions of a trial were sent.
+    TrialFinished {
+        /// Identifier of the step.
+        step: String,
+        /// Which clip.
+        clip: String,
+        /// The answers.
+        answers: Answers,
+        /// From the first frame of the first whole play to now, milliseconds.
+        rt_ms: f64,
+        /// Whole plays after the first.
+        replays: u32,
+    },
+    /// A clip could not be loaded, solved or shown.
+    ClipFailed {
+        /// Which clip.
+        clip: String,
+        /// What the stage says.
+        message: String,
+    },
+    /// The page lost the focus or was hidden.
+    FocusLost,
+    /// The page has the focus again.
+    FocusGained,
+    /// The page fills the screen, or no longer does.
+    Fullscreen {
+        /// Whether it does.
+        on: bool,
+    },
+    /// The page was opened again; a trial that had begun starts anew.
+    Resumed {
+        /// The display and the page.
+        client: Client,
+    },
+    /// Every step is done.
+    Finished,
+    /// The participant takes everything back.
+    Withdrawn,
+    /// Something came that does not fit the state; it changed nothing.
+    Unexpected {
+        /// What came.
+        input: String,
+        /// The step that stood on the screen.
+        step: String,
+    },
+}
+
+/// The display and the page, no finer than the analysis needs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Client {
+    /// Width and height of the window, CSS pixels.
+    #[serde(default)]
+    pub viewport: [u32; 2],
+    /// Device pixels per CSS pixel.
+    #[serde(default)]
+    pub device_pixel_ratio: f64,
+    /// Browser name, its major version, platform class.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub about: BTreeMap<String, String>,
+}
+
+/// What the stage measured while a clip was played once (`static/stage-host.js`, `stage.play`).
+/// Fields that this version does not know are left out, those that are missing are zero.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PlayLog {
+    /// `webgpu` or `webgl2`.
+    pub backend: String,
+    /// When the first frame was presented, page clock.
+    pub onset_ms: f64,
+    /// When the last frame was presented, page clock.
+    pub end_ms: f64,
+    /// The display's rate as measured, Hz.
+    pub refresh_hz: f64,
+    /// A frame each: when it was presented (ms after the onset), clip time (ms), 1 if late.
+    pub frames: Vec<(f64, f64, f64)>,
+    /// Number of late frames.
+    pub late: u32,
+    /// The longest time between two frames, milliseconds.
+    pub longest_ms: f64,
+    /// Width of the canvas, CSS pixels.
+    pub width: f64,
+    /// Height of the canvas, CSS pixels.
+    pub height: f64,
+    /// Device pixels per CSS pixel.
+    pub device_pixel_ratio: f64,
+    /// SHA-256 of the weights as the browser solved them, hexadecimal.
+    pub weights_hash: String,
+    /// Why the play ended early; null for a whole play.
+    pub aborted: Option<String>,
+}
+
+impl PlayLog {
+    /// Whether the clip was shown to its end.
+    pub fn is_whole(&self) -> bool {
+        self.aborted.is_none()
+    }
+}

@@ -1,0 +1,31 @@
+//! What the page has to do.
+
+use crate::wire;
+
+/// What the page has to do; each is carried out once, in the order given.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Effect {
+    /// Put this event into the outbox (it is numbered already), to be sent and sent again until the
+    /// server acknowledges it.
+    Store(wire::Event),
+    /// Load and solve these clips, the first one first. Report by `ClipProgress`, `ClipPrepared`,
+    /// `ClipFailed`. Clips that are prepared already may be named again.
+    PrepareClips(Vec<String>),
+    /// Play this clip once from its start; report by `Played`.
+    PlayClip(String),
+    /// Abort the play in progress, if there is one.
+    StopClip,
+    /// Send the outbox now.
+    Flush,
+    /// Everything is acknowledged: `POST complete` with this number of events; report by
+    /// `ReceiptArrived`.
+    Complete {
+        /// How many events the session has.
+        events: u64,
+    },
+    /// Send the outbox, then `POST withdraw`; report by `WithdrawalConfirmed`.
+    Withdraw,
+    /// A new page stands there: move the focus to its heading.
+    FocusHeading,
+}

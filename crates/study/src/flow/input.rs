@@ -1,0 +1,111 @@
+//! What comes in: acts of the participant, reports of the page.
+
+use serde_json::Value;
+
+use crate::event::{Client, PlayLog};
+use crate::wire::Receipt;
+
+/// What comes in: acts of the participant, reports of the page.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Input {
+    /// The page is open for the first time in this session.
+    Opened(Client),
+    /// The page was opened again, after [`crate::flow::State::replay`].
+    Resumed(Client),
+    /// The participant chooses a language.
+    ChooseLanguage(String),
+    /// The participant agrees.
+    Consent,
+    /// The participant does not agree.
+    Decline,
+    /// The page of this step stands on the screen (send it after the first paint).
+    Shown {
+        /// Identifier of the step.
+        step: String,
+    },
+    /// A question was answered; `Value::Null` takes the answer back. Send it when the answer is
+    /// whole (a choice clicked, a field left), not at every key.
+    Answer {
+        /// Identifier of the question.
+        question: String,
+        /// The answer, as JSON (see [`crate::QuestionKind`]).
+        value: Value,
+    },
+    /// The button that leads on.
+    Next,
+    /// The button that plays, or plays again.
+    Play,
+    /// The stage has played the clip, wholly or not. Its times are on the page's clock.
+    Played(PlayLog),
+    /// A clip is being loaded and solved.
+    ClipProgress {
+        /// Which clip.
+        clip: String,
+        /// 0..1.
+        fraction: f64,
+    },
+    /// A clip can be played.
+    ClipPrepared {
+        /// Which clip.
+        clip: String,
+    },
+    /// A clip could not be loaded, solved or shown.
+    ClipFailed {
+        /// Which clip.
+        clip: String,
+        /// What the stage says.
+        message: String,
+    },
+    /// The button that tries a failed clip again.
+    Retry,
+    /// The page lost the focus or was hidden.
+    FocusLost,
+    /// The page has the focus again.
+    FocusGained,
+    /// The page fills the screen, or no longer does.
+    Fullscreen(bool),
+    /// Time has passed (a break waits for it). About once a second is enough.
+    Tick,
+    /// The participant takes everything back (the page has asked whether that is meant).
+    Withdraw,
+    /// The server has every event below this number.
+    Acknowledged {
+        /// Number of events stored without a gap.
+        stored: u64,
+    },
+    /// The server's receipt.
+    ReceiptArrived(Receipt),
+    /// The server has deleted everything.
+    WithdrawalConfirmed,
+}
+
+impl Input {
+    /// Its name in the record of unexpected inputs.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Opened(_) => "opened",
+            Self::Resumed(_) => "resumed",
+            Self::ChooseLanguage(_) => "choose_language",
+            Self::Consent => "consent",
+            Self::Decline => "decline",
+            Self::Shown { .. } => "shown",
+            Self::Answer { .. } => "answer",
+            Self::Next => "next",
+            Self::Play => "play",
+            Self::Played(_) => "played",
+            Self::ClipProgress { .. } => "clip_progress",
+            Self::ClipPrepared { .. } => "clip_prepared",
+            Self::ClipFailed { .. } => "clip_failed",
+            Self::Retry => "retry",
+            Self::FocusLost => "focus_lost",
+            Self::FocusGained => "focus_gained",
+            Self::Fullscreen(_) => "fullscreen",
+            Self::Tick => "tick",
+            Self::Withdraw => "withdraw",
+            Self::Acknowledged { .. } => "acknowledged",
+            Self::ReceiptArrived(_) => "receipt_arrived",
+            Self::WithdrawalConfirmed => "withdrawal_confirmed",
+        }
+    }
+}

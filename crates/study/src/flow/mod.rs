@@ -1,0 +1,30 @@
+//! The flow of a session as a state machine: `update(plan, state, input, now) -> (state, effects)`.
+//!
+//! The page holds a [`Plan`] and a [`State`], renders what [`view`] says, hands every act of the
+//! participant and every report of its own machinery to [`update`] as an [`Input`], and carries out
+//! the [`Effect`]s that come back. What must not be forgotten becomes an event
+//! ([`crate::EventKind`]); a state is a fold of its events, so [`State::replay`] of the stored
+//! events is how a session goes on after a reload.
+//!
+//! ```text
+//! first load:  POST sessions -> Plan::new -> State::new -> update(Opened)
+//! reload:      GET session   -> Plan::new -> State::replay(events) -> update(Resumed)
+//! then:        render view(plan, state); wait; update(input); carry out effects; again
+//! ```
+
+mod effect;
+mod input;
+mod plan;
+mod state;
+mod update;
+mod view;
+
+pub use effect::Effect;
+pub use input::Input;
+pub use plan::{Plan, Step, StepKind, TrialStep};
+pub use state::{Live, Play, Progress as Place, Record, State, Status};
+pub use update::update;
+pub use view::{
+    ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,
+    QuestionView, SectionView, TrialView, View, view,
+};

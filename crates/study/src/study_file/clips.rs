@@ -1,0 +1,193 @@
+//! The clips that the rules make, each with its factors.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{ClipEntry, Study};
+
+/// Free key -> value pairs that the analysis groups by.
+pub type Factors = BTreeMap<String, FactorValue>;
+
+/// The value of a factor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum FactorValue {
+    /// `true`, `false`.
+    Truth(bool),
+    /// A number.
+    Number(f64),
+    /// A word.
+    Text(String),
+}
+
+impl FactorValue {
+    /// As the export writes it: whole numbers without a point.
+    pub fn to_value(&self) -> serde_json::Value {
+        match self {
+            Self::Truth(truth) => (*truth).into(),
+            Self::Number(number) if number.fract() == 0.0 && number.abs() < 9e15 => {
+                (*number as i64).into()
+            }
+            Self::Number(number) => (*number).into(),
+            Self::Text(text) => text.as_str().into(),
+        }
+    }
+}
+
+impl std::fmt::Display for FactorValue {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Truth(truth) => write!(formatter, "{truth}"),
+            Self::Number(number) => write!(formatter, "{number}"),
+            Self::Text(text) => formatter.write_str(text),
+        }
+    }
+}
+
+/// The emotions of the built-in performances.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "camelCase")]
+pub enum BuiltinExpression {
+    /// Anger.
+    Anger,
+    /// Disgust.
+    Disgust,
+    /// Fear.
+    Fear,
+    /// Joy.
+    Joy,
+    /// Sadness.
+    Sadness,
+    /// Surprise.
+    Surprise,
+}
+
+impl BuiltinExpression {
+    /// All six, in alphabetical order.
+    pub const ALL: [Self; 6] =
+        [Self::Anger, Self::Disgust, Self::Fear, Self::Joy, Self::Sadness, Self::Surprise];
+
+    /// The word of the file and of the export.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Anger => "anger",
+            Self::Disgust => "disgust",
+            Self::Fear => "fear",
+            Self::Joy => "joy",
+            Self::Sadness => "sadness",
+            Self::Surprise => "surprise",
+        }
+    }
+}
+
+/// One stimulus: an avatar, a segment, a method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clip {
+    /// `joy2.lsts30`; with several avatars `joy2.lsts30.ada`.
+    pub id: String,
+    /// Key of `stimuli.avatars`.
+    pub avatar: String,
+    /// Identifier of a segment.
+    pub segment: String,
+    /// Key of `stimuli.methods`.
+    pub method: String,
+    /// Factors of avatar, segment and method together.
+    pub factors: Factors,
+}
+
+impl Clip {
+    /// The value of a factor as text; `clip`, `avatar` and `segment` can be named too.
+    pub fn factor_text(&self, factor: &str) -> Option<String> {
+        match (self.factors.get(factor), factor) {
+            (Some(value), _) => Some(value.to_string()),
+            (None, "clip") => Some(self.id.clone()),
+            (None, "avatar") => Some(self.avatar.clone()),
+            (None, "segment") => Some(self.segment.clone()),
+            (None, _) => None,
+        }
+    }
+}
+
+impl Study {
+    /// Every clip, in the order of the file: the cross product (segment by segment, method by
+    /// method, avatar by avatar), then the list. Combinations whose parts do not exist are left out
+    /// (the check reports them), and so is the second of two that are alike.
+    pub fn clips(&self) -> Vec<Clip> {
+        let stimuli = &self.stimuli;
+        let mut entries = Vec::new();
+        let rules = &stimuli.clips;
+        let everything = rules.cross.is_none() && rules.list.is_empty();
+        let cross = rules.cross.clone().unwrap_or_default();
+        if everything || rules.cross.is_some() {
+            let or_all = |given: &[String], all: Vec<&String>| -> Vec<String> {
+                if given.is_empty() { all.into_iter().cloned().collect() } else { given.to_vec() }
+            };
+            let avatars = or_all(&cross.avatars, stimuli.avatars.keys().collect());
+            let segments =
+                or_all(&cross.segments, stimuli.segments.iter().map(|each| &each.id).collect());
+            let methods = or_all(&cross.methods, stimuli.methods.keys().collect());
+            for segment in &segments {
+                for method in &methods {
+                    for avatar in &avatars {
+                        entries.push(ClipEntry {
+                            avatar: avatar.clone(),
+                            segment: segment.clone(),
+                            method: method.clone(),
+                        });
+                    }
+                }
+            }
+        }
+        entries.extend(rules.list.iter().cloned());
+        let avatars: BTreeSet<&str> = entries.iter().map(|entry| entry.avatar.as_str()).collect();
+        let several_avatars = avatars.len() > 1;
+        let mut seen = BTreeSet::new();
+        entries
+            .iter()
+            .filter_map(|entry| self.clip(entry, several_avatars))
+            .filter(|clip| seen.insert(clip.id.clone()))
+            .collect()
+    }
+
+    fn clip(&self, entry: &ClipEntry, several_avatars: bool) -> Option<Clip> {
+        let avatar = self.stimuli.avatars.get(&entry.avatar)?;
+        let segment = self.stimuli.segments.iter().find(|each| each.id == entry.segment)?;
+        let method = self.stimuli.methods.get(&entry.method)?;
+        let mut factors = Factors::new();
+        if let Some(performance) = segment.performance {
+            let word = performance.expression.word().to_owned();
+            factors.insert("expression".to_owned(), FactorValue::Text(word));
+            let intensity = f64::from(performance.intensity);
+            factors.insert("intensity".to_owned(), FactorValue::Number(intensity));
+        }
+        factors.insert("method".to_owned(), FactorValue::Text(method.word()));
+        if let Some(alpha) = method.spec.alpha {
+            factors.insert("alpha".to_owned(), FactorValue::Number(alpha));
+        }
+        for given in [&avatar.factors, &segment.factors, &method.factors] {
+            factors.extend(given.iter().map(|(key, value)| (key.clone(), value.clone())));
+        }
+        let mut id = format!("{}.{}", entry.segment, entry.method);
+        if several_avatars {
+            id = format!("{id}.{}", entry.avatar);
+        }
+        Some(Clip {
+            id,
+            avatar: entry.avatar.clone(),
+            segment: entry.segment.clone(),
+            method: entry.method.clone(),
+            factors,
+        })
+    }
+
+    /// Every factor that some clip has, in alphabetical order.
+    pub fn factor_names(&self) -> Vec<String> {
+        let names: BTreeSet<String> =
+            self.clips().into_iter().flat_map(|clip| clip.factors.into_keys()).collect();
+        names.into_iter().collect()
+    }
+}

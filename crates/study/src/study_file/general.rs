@@ -1,0 +1,119 @@
+//! Who asks, whom, under which agreement: metadata, contact, recruitment, consent.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::LocalText;
+
+/// Title, version, authors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Metadata {
+    /// Title as participants see it.
+    pub title: LocalText,
+    /// Version of the study file, for people: `1.0.0`.
+    pub version: String,
+    /// Who made it.
+    #[serde(default)]
+    pub authors: Vec<String>,
+    /// `YYYY-MM-DD`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    /// One or two sentences.
+    #[serde(default)]
+    pub description: LocalText,
+    /// Where it is made.
+    #[serde(default)]
+    pub organizations: Vec<String>,
+}
+
+/// Whom a participant can write to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Contact {
+    /// Who leads the study.
+    pub investigator: ContactPerson,
+    /// The board that approved it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ethics_board: Option<ContactPerson>,
+}
+
+/// A person or a board with an address.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct ContactPerson {
+    /// Name.
+    pub name: LocalText,
+    /// Electronic mail address.
+    pub email: String,
+    /// File number of the approval.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
+}
+
+/// Where participants come from and go back to.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Recruitment {
+    /// Shown at the end, once every answer is stored.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub completion_code: Option<String>,
+    /// For those whom the study cannot take.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub screened_out_code: Option<String>,
+    /// For those who failed the attention checks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_checks_code: Option<String>,
+    /// Address to go back to; `{code}` stands for the completion code and `{NAME}` for a URL
+    /// parameter of the arrival.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub redirect: Option<String>,
+    /// Parameters of the address that are kept, apart from the answers: `PROLIFIC_PID`...
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub url_parameters: Vec<String>,
+    /// How a second participation of one person is recognised.
+    #[serde(default)]
+    pub repeat_prevention: RepeatPrevention,
+    /// How many participants the study wants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub participants: Option<u64>,
+}
+
+/// How a second participation of one person is recognised.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum RepeatPrevention {
+    /// Anybody may take part again.
+    #[default]
+    None,
+    /// This browser has taken part.
+    Browser,
+    /// The recruitment identifier has taken part (the first of `urlParameters`).
+    RecruitmentIdentifier,
+}
+
+/// What a participant agrees to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Consent {
+    /// Version of the text; in every row of the export.
+    pub version: String,
+    /// Youngest age that may take part, in years.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minimum_age: Option<u32>,
+    /// How long the answers are kept, and what then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub retention: Option<LocalText>,
+    /// The text.
+    pub sections: Vec<Section>,
+}
+
+/// A heading and its paragraphs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Section {
+    /// Heading.
+    pub heading: LocalText,
+    /// Text; an empty line parts paragraphs.
+    pub text: LocalText,
+}

@@ -1,0 +1,84 @@
+//! What is tested, and which rules leave trials out: read by the statistics.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::LocalText;
+
+/// One hypothesis and its test.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Hypothesis {
+    /// Short name: `H1`.
+    pub id: String,
+    /// What is supposed, as a sentence.
+    pub statement: LocalText,
+    /// The test, by its name in `mimique test`.
+    pub test: TestName,
+    /// Identifier of a question.
+    pub response: String,
+    /// What of the response is tested.
+    #[serde(default)]
+    pub measure: Measure,
+    /// The factors: one for most tests, two for an interaction.
+    pub factors: Vec<String>,
+    /// The levels of the first factor that are compared, in the order of signs; all if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<super::FactorValue>,
+}
+
+/// A test, by its name in `mimique test`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestName {
+    /// k independent groups.
+    KruskalWallis,
+    /// Two paired samples.
+    Wilcoxon,
+    /// Two independent samples.
+    MannWhitney,
+    /// Two factors on ranks.
+    ScheirerRayHare,
+    /// A contingency table.
+    ChiSquare,
+    /// A monotone relation.
+    Spearman,
+    /// k related samples.
+    Friedman,
+    /// Factors and their interaction on aligned ranks.
+    AlignedRankTransform,
+}
+
+/// What of a response is tested.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum Measure {
+    /// The answer itself.
+    #[default]
+    Answer,
+    /// Whether it is right.
+    Correct,
+    /// The response time.
+    Rt,
+}
+
+/// Rules, fixed beforehand, that leave trials or people out.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Exclusions {
+    /// Leave out a trial with more than this share of late frames (0..1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub late_frame_share: Option<f64>,
+    /// Leave out a trial with a frame longer than this, milliseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_frame_ms: Option<f64>,
+    /// Leave out a trial answered sooner than this after the onset, milliseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shortest_rt_ms: Option<f64>,
+    /// Leave out a participant who failed more attention checks than this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_attention_checks: Option<u32>,
+    /// Leave out a participant who did not finish.
+    #[serde(default)]
+    pub incomplete: bool,
+}

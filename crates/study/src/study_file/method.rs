@@ -1,0 +1,111 @@
+//! A method of the study file: the solver's parameters with factors beside them.
+
+use mimique_solver::MethodSpec;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use super::{Factors, LocalText};
+
+/// A method, its parameters, and what the analysis calls it.
+///
+/// In JSON the solver's parameters, `factors` and `label` stand side by side:
+/// `{"method": "lsts", "alpha": 0.3, "factors": {"method": "lsts30"}}`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodEntry {
+    /// Method and parameters.
+    pub spec: MethodSpec,
+    /// Factors of the clips made with it. `method` (its word) and `alpha` are there of themselves.
+    pub factors: Factors,
+    /// Name for people.
+    pub label: Option<LocalText>,
+}
+
+impl MethodEntry {
+    /// The word of the method: `lsts-norm`.
+    pub fn word(&self) -> String {
+        match serde_json::to_value(self.spec.method) {
+            Ok(Value::String(word)) => word,
+            _ => String::new(),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for MethodEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut map = Map::deserialize(deserializer)?;
+        let factors = match map.remove("factors") {
+            Some(value) => serde_json::from_value(value).map_err(D::Error::custom)?,
+            None => Factors::default(),
+        };
+        let label = match map.remove("label") {
+            Some(value) => Some(serde_json::from_value(value).map_err(D::Error::custom)?),
+            None => None,
+        };
+        let spec = serde_json::from_value(Value::Object(map)).map_err(D::Error::custom)?;
+        Ok(Self { spec, factors, label })
+    }
+}
+
+impl Serialize for MethodEntry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::Error as _;
+        let mut value = serde_json::to_value(&self.spec).map_err(S::Error::custom)?;
+        if let Value::Object(map) = &mut value {
+            if !self.factors.is_empty() {
+                let factors = serde_json::to_value(&self.factors).map_err(S::Error::custom)?;
+                map.insert("factors".to_owned(), factors);
+            }
+            if let Some(label) = &self.label {
+                let label = serde_json::to_value(label).map_err(S::Error::custom)?;
+                map.insert("label".to_owned(), label);
+            }
+        }
+        value.serialize(serializer)
+    }
+}
+
+/// The keys that a method's parameters may have, as the solver itself lists them.
+pub fn method_keys() -> Vec<String> {
+    listed_by(&serde_json::json!({ "method": "box", "?": 0 }))
+}
+
+/// The words that `method` may be, as the solver itself lists them.
+pub(crate) fn method_words() -> Vec<String> {
+    listed_by(&serde_json::json!({ "method": "?" }))
+}
+
+/// The names in back quotes after "expected" in the reader's complaint about `value`.
+fn listed_by(value: &Value) -> Vec<String> {
+    let Err(error) = MethodSpec::deserialize(value) else { return Vec::new() };
+    let text = error.to_string();
+    let Some((_, expected)) = text.split_once("expected") else { return Vec::new() };
+    expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+impl JsonSchema for MethodEntry {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Method".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut properties = Map::new();
+        for key in method_keys() {
+            properties.insert(key, Value::Bool(true));
+        }
+        properties.insert(
+            "method".to_owned(),
+            serde_json::json!({ "type": "string", "enum": method_words() }),
+        );
+        properties.insert("factors".to_owned(), generator.subschema_for::<Factors>().into());
+        properties.insert("label".to_owned(), generator.subschema_for::<LocalText>().into());
+        json_schema!({
+            "type": "object",
+            "description": "A method, its parameters, and the factors of the clips made with it",
+            "properties": properties,
+            "required": ["method"],
+            "additionalProperties": false,
+        })
+    }
+}

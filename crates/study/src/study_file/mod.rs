@@ -1,0 +1,150 @@
+//! The study file: its types, as they stand in JSON (comments allowed).
+//!
+//! These are the raw types: what the file says, after [`crate::check`] has found it free of errors.
+//! The words are reVISit's where they fit (`studyMetadata`, `components`, `sequence`,
+//! `interruptions`, `likert` with `numItems`). Derived things, such as the clips that a rule makes,
+//! are methods.
+
+mod clips;
+mod general;
+mod hypotheses;
+mod local_text;
+mod method;
+mod questions;
+mod sequence;
+mod stimuli;
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
+pub use general::{
+    Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
+};
+pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
+pub use local_text::LocalText;
+pub use method::{MethodEntry, method_keys};
+pub use questions::{
+    AttentionCheck, Choice, Condition, Grid, Likert, Matrix, MultipleChoice, NumberField,
+    OptionOrder, Question, QuestionKind, Ranking, SingleChoice, Slider, TextField,
+};
+pub use sequence::{
+    BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule, PageComponent,
+    Questionnaire, Sequence, SequenceItem, Training, TrialsComponent,
+};
+pub use stimuli::{
+    Avatar, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource, ClipCross,
+    ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
+};
+
+/// A whole study file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+#[schemars(title = "Mimique study")]
+pub struct Study {
+    /// Where the JSON Schema is, for editors.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// Identifier used in addresses and file names: lower-case letters, digits, `-`.
+    pub id: String,
+    /// Title, version, authors.
+    pub study_metadata: Metadata,
+    /// Languages of the pages, the first being the default: `en`, `fr`.
+    pub languages: Vec<String>,
+    /// Seed of every random stream (below 2^53).
+    #[serde(default)]
+    pub seed: u64,
+    /// Whom a participant can write to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
+    /// Where participants come from and go back to.
+    #[serde(default)]
+    pub recruitment: Recruitment,
+    /// What a participant agrees to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub consent: Option<Consent>,
+    /// Questions about the participant, asked after consent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub demographics: Option<Questionnaire>,
+    /// Pages read before the first trial.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instructions: Vec<Section>,
+    /// Trials for practice; their answers are marked `training`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub training: Option<Training>,
+    /// Questions that several components ask, by identifier.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub questions: Vec<Question>,
+    /// What the sequence is made of, by name.
+    pub components: BTreeMap<String, Component>,
+    /// The order of components and trials.
+    pub sequence: Sequence,
+    /// Shown after the last answer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub debriefing: Vec<Section>,
+    /// Avatars, captures, segments, methods and the clips made of them.
+    pub stimuli: Stimuli,
+    /// What is tested, and how; read by `mimique analyze`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hypotheses: Vec<Hypothesis>,
+    /// Rules, fixed beforehand, that leave trials or people out of the analysis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exclusions: Option<Exclusions>,
+}
+
+/// The file is not a study: what a reader says that stops at the first mistake.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StudyFileError {
+    /// Not JSON, nor JSON with comments.
+    #[error("{place}: {message}; write JSON (comments and trailing commas are allowed)")]
+    Syntax {
+        /// Line and column, or `study file`.
+        place: String,
+        /// What the parser says.
+        message: String,
+    },
+    /// JSON, but not a study.
+    #[error("study file: {0}; run `mimique check` on it for every problem and its place")]
+    Shape(String),
+}
+
+impl Study {
+    /// Reads a study from a JSON value, stopping at the first mistake.
+    pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
+        Self::deserialize(value).map_err(|error| StudyFileError::Shape(error.to_string()))
+    }
+
+    /// Reads a study from text: JSON, comments allowed. Stops at the first mistake.
+    pub fn from_text(text: &str) -> Result<Self, StudyFileError> {
+        Self::from_value(&parse(text)?)
+    }
+
+    /// The default language: the first one, `en` if none is given.
+    pub fn default_language(&self) -> &str {
+        self.languages.first().map_or("en", String::as_str)
+    }
+
+    /// The language that a participant gets who asks for `wanted` (`fr-CA` gets `fr`).
+    pub fn language_for(&self, wanted: &str) -> &str {
+        let short = wanted.split(['-', '_']).next().unwrap_or(wanted);
+        self.languages
+            .iter()
+            .find(|known| known.eq_ignore_ascii_case(wanted))
+            .or_else(|| self.languages.iter().find(|known| known.eq_ignore_ascii_case(short)))
+            .map_or_else(|| self.default_language(), String::as_str)
+    }
+}
+
+/// Parses the text of a study file: JSON, comments and trailing commas allowed.
+pub fn parse(text: &str) -> Result<serde_json::Value, StudyFileError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    json5::from_str(text).map_err(|error| StudyFileError::Syntax {
+        place: error.position().map_or_else(
+            || "study file".to_owned(),
+            |position| format!("line {}, column {}", position.line + 1, position.column + 1),
+        ),
+        message: error.to_string(),
+    })
+}

@@ -1,0 +1,183 @@
+//! What is shown in which order: components, blocks of trials, sequences.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{FactorValue, LocalText, Question};
+
+/// A part of the study that a sequence names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "type", rename_all = "camelCase")]
+#[non_exhaustive]
+pub enum Component {
+    /// A block: one trial a clip.
+    Trials(TrialsComponent),
+    /// A page of questions.
+    Questionnaire(Questionnaire),
+    /// A page to read.
+    Page(PageComponent),
+    /// A rest.
+    Break(BreakComponent),
+}
+
+/// A block of trials, one a clip. In a sequence it stands for its trials: they take their places
+/// by that sequence's order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct TrialsComponent {
+    /// Which clips; all of them if not given.
+    #[serde(default)]
+    pub clips: ClipSelection,
+    /// A line above the clip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instruction: Option<LocalText>,
+    /// Identifiers of the study's `questions`, in the order they are asked.
+    pub questions: Vec<String>,
+    /// Most replays after the first whole play; without limit if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_replays: Option<u32>,
+    /// How many times each clip is shown.
+    #[serde(default = "once")]
+    pub repetitions: u32,
+}
+
+fn once() -> u32 {
+    1
+}
+
+/// Which clips a block shows. With both parts, a clip must be in the list and have the factors.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct ClipSelection {
+    /// Clip identifiers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ids: Vec<String>,
+    /// Factor -> the values that are taken.
+    #[serde(default, rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
+    pub factors: BTreeMap<String, Vec<FactorValue>>,
+}
+
+/// A page of questions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Questionnaire {
+    /// Heading.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<LocalText>,
+    /// A line below it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<LocalText>,
+    /// The questions.
+    pub questions: Vec<Question>,
+}
+
+/// A page to read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct PageComponent {
+    /// Heading.
+    pub heading: LocalText,
+    /// Text; an empty line parts paragraphs.
+    pub text: LocalText,
+}
+
+/// A rest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct BreakComponent {
+    /// Heading.
+    pub heading: LocalText,
+    /// Text.
+    pub text: LocalText,
+    /// Shortest rest in seconds.
+    #[serde(default)]
+    pub minimum_seconds: f64,
+}
+
+/// Trials for practice, shown in this order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Training {
+    /// Clip identifiers.
+    pub clips: Vec<String>,
+    /// Identifiers of the study's `questions`.
+    pub questions: Vec<String>,
+    /// A line above the clip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instruction: Option<LocalText>,
+}
+
+/// Components, or further sequences, in an order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Sequence {
+    /// Name of a nested sequence, for the export's column `condition`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
+    /// How the parts are ordered.
+    pub order: OrderRule,
+    /// Names of components, or sequences that stay together.
+    pub components: Vec<SequenceItem>,
+    /// Components put in after every so many trials of this sequence.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub interruptions: Vec<Interruption>,
+    /// What a random order must keep to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<Constraint>,
+    /// Show only so many of the parts to each participant, each part equally often over
+    /// participants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub num_samples: Option<usize>,
+}
+
+/// A part of a sequence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SequenceItem {
+    /// Name of a component.
+    Component(String),
+    /// A sequence that stays together.
+    Sequence(Box<Sequence>),
+}
+
+/// How the parts of a sequence are ordered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum OrderRule {
+    /// As in the file.
+    Fixed,
+    /// Every order that the constraints allow.
+    Random,
+    /// A Williams square: over participants, each part stands at each place, and follows each other
+    /// part, equally often.
+    LatinSquare,
+}
+
+/// A component put in after every so many trials.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Interruption {
+    /// Name of a component: a break, a page or a questionnaire.
+    pub component: String,
+    /// Number of trials between two of them. None is put after the last trial.
+    pub spacing: usize,
+    /// Number of trials before the first one; `spacing` if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_location: Option<usize>,
+}
+
+/// What a random order must keep to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Constraint {
+    /// A factor; `segment`, `avatar` and `clip` can be named too.
+    pub factor: String,
+    /// Most trials in a row with the same value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most_alike: Option<usize>,
+    /// Fewest trials from one with a value to the next with the same value (1: next to each other).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minimum_distance: Option<usize>,
+}

@@ -1,0 +1,267 @@
+//! Avatars, captures, segments, methods, and the rule that makes clips of them.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
+
+/// A path that starts with this is resolved by the native loader in the folder that the
+/// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
+/// Other paths are relative to the study file.
+pub const DATA_PREFIX: &str = "${MIMIQUE_DATA}/";
+
+/// What is shown, and what it is made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Stimuli {
+    /// Heads, by identifier.
+    pub avatars: BTreeMap<String, Avatar>,
+    /// Recorded or built-in performances, by identifier.
+    pub captures: BTreeMap<String, Capture>,
+    /// Cuts of the captures.
+    pub segments: Vec<Segment>,
+    /// Methods with parameters, by identifier.
+    pub methods: BTreeMap<String, MethodEntry>,
+    /// Which avatar performs which segment by which method; every combination if not given.
+    #[serde(default)]
+    pub clips: ClipRules,
+    /// The same look for every clip.
+    #[serde(default)]
+    pub look: Look,
+}
+
+/// A head: exactly one of `builtin` and `file`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Avatar {
+    /// A person of the built-in head.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub builtin: Option<BuiltinAvatar>,
+    /// A GLB file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Factors of the clips shown with it.
+    #[serde(default, skip_serializing_if = "Factors::is_empty")]
+    pub factors: Factors,
+    /// Name for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<LocalText>,
+}
+
+/// A person of the built-in head.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct BuiltinAvatar {
+    /// Which person: the same seed is the same face.
+    #[serde(default)]
+    pub seed: u64,
+    /// About how many vertices the skin has; the head's own default if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<u32>,
+}
+
+/// Where an avatar comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AvatarSource<'a> {
+    /// The built-in head.
+    Builtin(&'a BuiltinAvatar),
+    /// A GLB file: relative to the study file, or behind [`DATA_PREFIX`].
+    File(&'a str),
+}
+
+impl Avatar {
+    /// Where it comes from; `None` unless exactly one source is given.
+    pub fn source(&self) -> Option<AvatarSource<'_>> {
+        match (&self.builtin, &self.file) {
+            (Some(builtin), None) => Some(AvatarSource::Builtin(builtin)),
+            (None, Some(file)) => Some(AvatarSource::File(file)),
+            _ => None,
+        }
+    }
+}
+
+/// A performance as markers: exactly one of `builtin` and `file`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Capture {
+    /// A built-in actor's performances.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub builtin: Option<BuiltinCapture>,
+    /// A C3D, TRC or CSV file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Unit of the file's coordinates where the file does not say: `m`, `cm`, `mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Marker map: a JSON or CSV file that says where each marker sits on the avatar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub markers: Option<String>,
+    /// Labels of the near-rigid markers that head stabilisation takes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub head: Vec<String>,
+    /// Frames of the neutral face: first and end (not included), counted from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neutral: Option<[usize; 2]>,
+    /// Cut-off of the low-pass filter on the head's motion, Hz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub head_lowpass_hz: Option<f64>,
+}
+
+/// A built-in actor.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct BuiltinCapture {
+    /// Which actor: seed of the identity and of the performance's small differences.
+    #[serde(default)]
+    pub actor: u64,
+    /// Standard deviation of the sensor's noise, millimetres; the generator's default if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_mm: Option<f64>,
+}
+
+/// Where a capture comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CaptureSource<'a> {
+    /// A built-in actor.
+    Builtin(&'a BuiltinCapture),
+    /// A file: relative to the study file, or behind [`DATA_PREFIX`].
+    File(&'a str),
+}
+
+impl Capture {
+    /// Where it comes from; `None` unless exactly one source is given.
+    pub fn source(&self) -> Option<CaptureSource<'_>> {
+        match (&self.builtin, &self.file) {
+            (Some(builtin), None) => Some(CaptureSource::Builtin(builtin)),
+            (None, Some(file)) => Some(CaptureSource::File(file)),
+            _ => None,
+        }
+    }
+}
+
+/// A cut of a capture: `first` and `end` of a file, or `performance` of a built-in actor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Segment {
+    /// Identifier: `joy2`.
+    pub id: String,
+    /// Which capture.
+    pub capture: String,
+    /// First frame, counted from 0 at the capture's own rate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first: Option<usize>,
+    /// Frame after the last one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end: Option<usize>,
+    /// What a built-in actor performs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub performance: Option<Performance>,
+    /// Factors of its clips. A performance's `expression` and `intensity` are there of themselves.
+    #[serde(default, skip_serializing_if = "Factors::is_empty")]
+    pub factors: Factors,
+}
+
+/// What a built-in actor performs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Performance {
+    /// Which emotion.
+    pub expression: BuiltinExpression,
+    /// How strongly: 1 weak, 2 marked, 3 exaggerated.
+    pub intensity: u8,
+}
+
+/// What a segment takes of its capture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Span {
+    /// Frames `first..end` of a file.
+    Frames {
+        /// First frame.
+        first: usize,
+        /// Frame after the last one.
+        end: usize,
+    },
+    /// A performance of a built-in actor.
+    Performance(Performance),
+}
+
+impl Segment {
+    /// What it takes; `None` unless frames alone or a performance alone are given.
+    pub fn span(&self) -> Option<Span> {
+        match (self.first, self.end, self.performance) {
+            (Some(first), Some(end), None) if first < end => Some(Span::Frames { first, end }),
+            (None, None, Some(performance)) => Some(Span::Performance(performance)),
+            _ => None,
+        }
+    }
+}
+
+/// Which clips there are.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct ClipRules {
+    /// Every combination of these; all avatars, segments and methods where a part is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cross: Option<ClipCross>,
+    /// Clips one by one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub list: Vec<ClipEntry>,
+}
+
+/// Every combination.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct ClipCross {
+    /// Avatars; all if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub avatars: Vec<String>,
+    /// Segments; all if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<String>,
+    /// Methods; all if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub methods: Vec<String>,
+}
+
+/// One clip of a list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct ClipEntry {
+    /// Which avatar.
+    pub avatar: String,
+    /// Which segment.
+    pub segment: String,
+    /// Which method.
+    pub method: String,
+}
+
+/// The same look for every clip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Look {
+    /// Background, `#rrggbb`.
+    #[serde(default = "grey")]
+    pub background: String,
+    /// Width in CSS pixels; narrower screens shrink it.
+    #[serde(default = "size")]
+    pub width: u32,
+    /// Height in CSS pixels.
+    #[serde(default = "size")]
+    pub height: u32,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self { background: grey(), width: size(), height: size() }
+    }
+}
+
+fn grey() -> String {
+    "#808080".to_owned()
+}
+
+fn size() -> u32 {
+    480
+}
