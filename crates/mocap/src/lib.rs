@@ -1,5 +1,22 @@
 //! Marker trajectories: the capture vocabulary, readers and writers, repair and filters.
+//!
+//! A file of any known system comes in through [`read`] or [`read_bytes`]; what comes out is a
+//! [`Capture`]: labels, rate, unit and positions, a missing marker NaN in all three coordinates.
+//! The format is recognised by content; the name of a file only helps to word an error.
 
+mod c3d;
 mod capture;
+mod error;
+mod format;
+mod plausibility;
+mod read;
+mod recording;
+mod text;
+mod unit;
 
+pub use c3d::Processor;
 pub use capture::{Capture, LengthUnit};
+pub use error::ReadError;
+pub use format::Format;
+pub use read::{ReadOptions, read, read_bytes, read_recording};
+pub use recording::{Event, Recording};

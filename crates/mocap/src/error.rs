@@ -1,0 +1,81 @@
+//! What can go wrong while a file is read: place, what, value and remedy in one sentence.
+
+use std::path::PathBuf;
+
+/// Why a file could not be read. The text is `PLACE: what is wrong, the value; remedy`, without
+/// the file's name, which the caller knows.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file could not be opened or read to its end.
+    #[error("open: {source}; check the path ({path}) and the permissions")]
+    Open {
+        /// The path as given.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// No known format starts like this.
+    #[error(
+        "byte 0: not a capture in a known format, {found}; \
+         give C3D, TRC, QTM TSV, Motive CSV, Vicon CSV, BVH, or CSV with columns LABEL_x, LABEL_y, LABEL_z"
+    )]
+    Unrecognised {
+        /// What the file starts with.
+        found: String,
+    },
+    /// The file holds blendshape weights where markers are asked for.
+    #[error(
+        "line 1, header: a Live Link Face export, {columns} weight columns and no marker; \
+         give it as weights, not as a capture"
+    )]
+    WeightsNotMarkers {
+        /// Number of weight columns.
+        columns: usize,
+    },
+    /// A binary file is wrong at a byte.
+    #[error("byte {offset}, {section}: {what}; {remedy}")]
+    Binary {
+        /// Offset from the start of the file.
+        offset: usize,
+        /// Part of the file, e.g. `parameter section`.
+        section: &'static str,
+        /// What is wrong, with the value.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// A text file is wrong at a line.
+    #[error("line {line}, {section}: {what}; {remedy}")]
+    Text {
+        /// Line, 1 = the first.
+        line: usize,
+        /// Part of the line or of the file, e.g. `header` or `column 7`.
+        section: String,
+        /// What is wrong, with the value.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+}
+
+impl ReadError {
+    /// An error at a byte of a binary file.
+    pub(crate) fn at_byte(
+        offset: usize,
+        section: &'static str,
+        what: impl Into<String>,
+        remedy: &'static str,
+    ) -> Self {
+        Self::Binary { offset, section, what: what.into(), remedy }
+    }
+
+    /// An error at a line of a text file.
+    pub(crate) fn at_line(
+        line: usize,
+        section: impl Into<String>,
+        what: impl Into<String>,
+        remedy: &'static str,
+    ) -> Self {
+        Self::Text { line, section: section.into(), what: what.into(), remedy }
+    }
+}

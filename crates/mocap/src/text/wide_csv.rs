@@ -1,0 +1,330 @@
+//! Plain CSV, a row a frame and a column a coordinate: `frame,time,LABEL_x,LABEL_y,LABEL_z,...`.
+//!
+//! Separated by commas, semicolons (decimal commas allowed) or tabs. Axes end the column's name
+//! after `_`, `.`, `:`, `-` or a blank, in either case, in any order; a unit may follow in
+//! brackets (`LABEL_x [mm]`). `time` is in seconds, `time_ms` in milliseconds. Lines that start
+//! with `#` are comments; `# unit: mm` and `# rate_hz: 200` are read.
+
+use super::{Delimiter, Document, Table, coordinate, split_fields};
+use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording, plausibility};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    Frame,
+    /// Time, and how many seconds one of its units is.
+    Time(f64),
+    Coordinate {
+        marker: usize,
+        axis: usize,
+    },
+    Ignored,
+}
+
+/// Whether a line is the header of such a file: it names at least one marker in x, y and z.
+pub(crate) fn is_header(line: &str, delimiter: Delimiter) -> bool {
+    let mut names = Vec::new();
+    split_fields(line, delimiter, &mut names);
+    columns(&names).map_or(true, |(labels, _, _)| !labels.is_empty())
+}
+
+/// Read the document.
+pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let mut table = Table::default();
+    let mut lines = document.lines();
+    let (header_line, header) = loop {
+        match lines.next() {
+            Some((_, line)) if line.starts_with('#') => comment(line, &mut table),
+            Some((_, line)) if line.trim().is_empty() => {}
+            Some(found) => break found,
+            None => {
+                return Err(ReadError::at_line(
+                    1,
+                    "header",
+                    "no header",
+                    "name the columns frame,time,LABEL_x,LABEL_y,LABEL_z",
+                ));
+            }
+        }
+    };
+    let delimiter = Delimiter::of(header);
+    let mut names = Vec::new();
+    split_fields(header, delimiter, &mut names);
+    let (labels, columns, unit) = columns(&names).map_err(|name| {
+        ReadError::at_line(
+            header_line,
+            "header",
+            format!("two columns are {name}"),
+            "give every column its own name",
+        )
+    })?;
+    table.labels = labels;
+    table.declared_unit = table.declared_unit.or(unit);
+    let ignored: Vec<String> = names
+        .iter()
+        .zip(&columns)
+        .filter(|(name, column)| **column == Column::Ignored && !name.is_empty())
+        .map(|(name, _)| name.to_string())
+        .collect();
+    if !ignored.is_empty() {
+        table.notes.push(format!("columns ignored: {}", plausibility::shortened(&ignored)));
+    }
+
+    let markers = table.labels.len();
+    let mut fields = Vec::with_capacity(columns.len());
+    for (line_number, line) in lines {
+        if line.trim().is_empty() || line.starts_with('#') {
+            continue;
+        }
+        split_fields(line, delimiter, &mut fields);
+        row_width(&fields, columns.len(), line_number)?;
+        let row = table.positions.len();
+        table.positions.resize(row + markers, [f64::NAN; 3]);
+        for (index, (field, column)) in fields.iter().zip(&columns).enumerate() {
+            let value = match column {
+                Column::Ignored => continue,
+                _ => coordinate(field, delimiter).ok_or_else(|| {
+                    ReadError::at_line(
+                        line_number,
+                        format!("column {} ({})", index + 1, names[index]),
+                        format!("\"{field}\" is not a number"),
+                        "write numbers with a decimal point, a missing one as blank or NaN",
+                    )
+                })?,
+            };
+            match *column {
+                Column::Frame => table.frame_numbers.push(frame_number(value, field, line_number)?),
+                Column::Time(seconds) => table.times.push(value * seconds),
+                Column::Coordinate { marker, axis } => table.positions[row + marker][axis] = value,
+                Column::Ignored => {}
+            }
+        }
+        table.lines.push(line_number);
+    }
+    table.finish(Format::WideCsv, options)
+}
+
+/// Refuse a row that is shorter than the header or has values beyond it.
+fn row_width(fields: &[Cow<'_, str>], columns: usize, line: usize) -> Result<(), ReadError> {
+    let surplus = fields.iter().skip(columns).any(|f| !f.is_empty());
+    if fields.len() < columns || surplus {
+        return Err(ReadError::at_line(
+            line,
+            "row",
+            format!("{} columns where the header has {columns}", fields.len()),
+            "complete the row or remove it; the file may have been cut short",
+        ));
+    }
+    Ok(())
+}
+
+/// A whole, not negative frame number.
+pub(crate) fn frame_number(value: f64, field: &str, line: usize) -> Result<u64, ReadError> {
+    // 2^53: beyond it a float no longer counts frames.
+    if value >= 0.0 && value.fract() == 0.0 && value < 9_007_199_254_740_992.0 {
+        return Ok(value as u64);
+    }
+    Err(ReadError::at_line(
+        line,
+        "frame",
+        format!("\"{field}\" is not a frame number"),
+        "number the frames with whole numbers from 0 up",
+    ))
+}
+
+/// Read `# unit: mm` and `# rate_hz: 200`.
+fn comment(line: &str, table: &mut Table) {
+    for part in line.trim_start_matches('#').split([',', ';']) {
+        let Some((key, value)) = part.split_once([':', '=']) else { continue };
+        match key.trim().to_ascii_lowercase().as_str() {
+            "unit" | "units" => table.declared_unit = LengthUnit::from_name(value),
+            "rate_hz" | "rate" => table.declared_rate = value.trim().parse().ok(),
+            "system" => table.system = Some(value.trim().to_owned()),
+            _ => {}
+        }
+    }
+}
+
+/// Labels, meaning of every column, and the unit named in the columns. `Err` is a name that
+/// occurs twice.
+#[allow(clippy::type_complexity)] // three results of one pass, used once
+fn columns(
+    names: &[Cow<'_, str>],
+) -> Result<(Vec<String>, Vec<Column>, Option<LengthUnit>), String> {
+    let mut labels: Vec<String> = Vec::new();
+    let mut places: Vec<[Option<usize>; 3]> = Vec::new();
+    let mut by_label: HashMap<String, usize> = HashMap::new();
+    let mut columns = vec![Column::Ignored; names.len()];
+    let mut unit = None;
+    let (mut frame_seen, mut time_seen) = (false, false);
+    for (index, name) in names.iter().enumerate() {
+        let (name, in_brackets) = without_unit(name);
+        if index <= 3 || !(frame_seen && time_seen) {
+            match meaning(name) {
+                Some(Column::Frame) if !frame_seen => {
+                    frame_seen = true;
+                    columns[index] = Column::Frame;
+                    continue;
+                }
+                Some(Column::Time(_)) if !time_seen => {
+                    time_seen = true;
+                    let seconds = if in_brackets == Some("ms") { 1e-3 } else { 1.0 };
+                    columns[index] = match meaning(name) {
+                        Some(Column::Time(s)) => Column::Time(s.min(seconds)),
+                        _ => Column::Ignored,
+                    };
+                    continue;
+                }
+                _ => {}
+            }
+        }
+        let Some((label, axis)) = label_and_axis(name) else { continue };
+        let marker = *by_label.entry(label.to_owned()).or_insert_with(|| {
+            labels.push(label.to_owned());
+            places.push([None; 3]);
+            labels.len() - 1
+        });
+        if places[marker][axis].replace(index).is_some() {
+            return Err(name.to_owned());
+        }
+        unit = unit.or(in_brackets.and_then(LengthUnit::from_name));
+    }
+    // Keep whole triples only.
+    let mut kept = Vec::new();
+    for (label, place) in labels.into_iter().zip(places) {
+        if let [Some(x), Some(y), Some(z)] = place {
+            for (axis, column) in [x, y, z].into_iter().enumerate() {
+                columns[column] = Column::Coordinate { marker: kept.len(), axis };
+            }
+            kept.push(label);
+        }
+    }
+    Ok((kept, columns, unit))
+}
+
+/// Split `NAME [mm]` or `NAME (mm)` into name and unit.
+fn without_unit(name: &str) -> (&str, Option<&str>) {
+    let name = name.trim();
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some(inside) = name.strip_suffix(close)
+            && let Some((before, unit)) = inside.rsplit_once(open)
+        {
+            return (before.trim_end(), Some(unit.trim()));
+        }
+    }
+    (name, None)
+}
+
+/// Whether a column is the frame number or the time.
+fn meaning(name: &str) -> Option<Column> {
+    match name.to_ascii_lowercase().as_str() {
+        "frame" | "frames" | "frame#" | "frame #" | "frame_number" | "framenumber" | "index" => {
+            Some(Column::Frame)
+        }
+        "time" | "time_s" | "times" | "seconds" | "timestamp" | "t" => Some(Column::Time(1.0)),
+        "time_ms" | "timestamp_ms" | "milliseconds" => Some(Column::Time(1e-3)),
+        _ => None,
+    }
+}
+
+/// Split `LABEL_x` into label and axis.
+fn label_and_axis(name: &str) -> Option<(&str, usize)> {
+    let axis = match name.chars().next_back()? {
+        'x' | 'X' => 0,
+        'y' | 'Y' => 1,
+        'z' | 'Z' => 2,
+        _ => return None,
+    };
+    let stem = &name[..name.len() - 1];
+    let label = stem.strip_suffix(['_', '.', ':', '-', ' '])?.trim_end();
+    (!label.is_empty()).then_some((label, axis))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read_bytes;
+
+    #[test]
+    fn reads_labels_rate_unit_and_missing_markers() {
+        let text = "frame,time,A_x,A_y,A_z,B b.X,B b.Y,B b.Z\n\
+                    7,0.000,0,0,100,50,1,2\n8,0.010,1,2,103,,,\n9,0.020,1,NaN,3,51,1,2\n";
+        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        assert_eq!(capture.labels, ["A", "B b"]);
+        assert_eq!((capture.rate_hz, capture.first_frame, capture.frames()), (100.0, 7, 3));
+        assert_eq!(capture.unit, LengthUnit::Millimetre);
+        assert_eq!(capture.frame(0), [[0.0, 0.0, 100.0], [50.0, 1.0, 2.0]]);
+        assert!(capture.frame(1)[1].iter().all(|v| v.is_nan()));
+        assert!(capture.frame(2)[0].iter().all(|v| v.is_nan()), "one coordinate is no position");
+    }
+
+    #[test]
+    fn semicolons_decimal_commas_units_in_brackets_and_columns_in_any_order() {
+        let text = "Time (ms);n_z [cm];n_x [cm];n_y [cm];quality\n0;3,5;1,5;2,5;a\n20;3;1;2;b\n";
+        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        assert_eq!((capture.rate_hz, capture.unit), (50.0, LengthUnit::Centimetre));
+        assert_eq!(capture.positions, [[1.5, 2.5, 3.5], [1.0, 2.0, 3.0]]);
+        assert_eq!(capture.notes, ["columns ignored: quality"]);
+    }
+
+    #[test]
+    fn dropped_rows_become_missing_frames() {
+        let text = "frame,time_s,a_x,a_y,a_z\n0,0,1,2,3\n1,0.01,1,2,3\n4,0.04,1,2,4\n";
+        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        assert_eq!((capture.frames(), capture.rate_hz), (5, 100.0));
+        assert!(capture.frame(2)[0][0].is_nan() && capture.frame(3)[0][0].is_nan());
+        assert_eq!(capture.frame(4), [[1.0, 2.0, 4.0]]);
+        assert!(capture.notes.iter().any(|n| n == "2 dropped frames filled in as missing"));
+    }
+
+    #[test]
+    fn every_second_frame_halves_the_rate() {
+        let text = "frame,time_s,a_x,a_y,a_z\n10,0,1,2,3\n12,0.02,1,2,3\n16,0.06,1,2,4\n";
+        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        assert_eq!((capture.frames(), capture.rate_hz, capture.first_frame), (4, 50.0, 10));
+    }
+
+    #[test]
+    fn errors_name_line_value_and_remedy() {
+        let message = |text: &str| read_bytes("t.csv", text.as_bytes()).unwrap_err().to_string();
+        let head = "frame,time,a_x,a_y,a_z\n";
+        assert_eq!(
+            message(&format!("{head}0,0,1,2,3\n1,0.01,1,2 mm,3\n")),
+            "line 3, column 4 (a_y): \"2 mm\" is not a number; \
+             write numbers with a decimal point, a missing one as blank or NaN"
+        );
+        assert_eq!(
+            message(&format!("{head}0,0,1,2,3\n1,0.01,1\n")),
+            "line 3, row: 3 columns where the header has 5; \
+             complete the row or remove it; the file may have been cut short"
+        );
+        assert_eq!(
+            message(&format!("{head}5,0,1,2,3\n4,0.01,1,2,3\n")),
+            "line 3, frame: frame 4 after frame 5; give one take a file, frames in order"
+        );
+        assert_eq!(
+            message("frame,a_x,a_y,a_z\n0,1,2,3\n"),
+            "line 1, header: no rate and no time column; give the rate of the recording (--rate)"
+        );
+        assert_eq!(
+            message(&format!("{head}0,0,1,2,3\n900719925474099,0.01,1,2,3\n")),
+            "line 3, frame: 2 rows for 900719925474100 frames, more than half of them not in the \
+             file; check the frame or time column and the rate, or give one take a file"
+        );
+        assert_eq!(
+            message("frame,time,a_x,a_y,a_z,a_x\n0,0,1,2,3,4\n"),
+            "line 1, header: two columns are a_x; give every column its own name"
+        );
+    }
+
+    #[test]
+    fn zeros_are_gaps_unless_the_marker_is_near_the_origin() {
+        let text = "# unit: mm; rate_hz: 100\nframe,a_x,a_y,a_z,b_x,b_y,b_z\n\
+                    0,100,2,3,1,1,1\n1,0,0,0,0,0,0\n2,100,2,3,1,0,0\n";
+        let capture = read_bytes("t.csv", text.as_bytes()).unwrap();
+        assert!(capture.frame(1)[0][0].is_nan());
+        assert_eq!(capture.frame(1)[1], [0.0; 3]);
+    }
+}

@@ -1,0 +1,97 @@
+//! The readers on files of real systems, found in `MIMIQUE_DATA` (default `../shared/data`).
+
+use mimique_mocap::{Capture, LengthUnit, ReadOptions, Recording, read, read_recording};
+use std::path::PathBuf;
+
+/// The data folder, or `None` after saying that the test is skipped.
+fn data(test: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("MIMIQUE_DATA").map_or_else(
+        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
+        PathBuf::from,
+    );
+    if path.is_dir() {
+        return Some(path);
+    }
+    let message =
+        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", path.display());
+    assert!(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"), "{message}");
+    eprintln!("{message}");
+    None
+}
+
+fn recording(path: PathBuf) -> Recording {
+    let bytes = std::fs::read(&path).unwrap();
+    read_recording(&path.to_string_lossy(), &bytes, &ReadOptions::default()).unwrap()
+}
+
+/// Largest distance between the same markers of two captures, in metres; missing must match.
+fn largest_difference(a: &Capture, b: &Capture) -> f64 {
+    assert_eq!((&a.labels, a.frames()), (&b.labels, b.frames()));
+    a.positions
+        .iter()
+        .zip(&b.positions)
+        .map(|(p, q)| {
+            assert_eq!(p[0].is_nan(), q[0].is_nan());
+            (0..3)
+                .map(|k| (p[k] * a.unit.metres() - q[k] * b.unit.metres()).abs())
+                .fold(0.0, f64::max)
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn lsts_take_is_the_same_from_csv_and_c3d() {
+    let Some(data) = data("lsts_take_is_the_same_from_csv_and_c3d") else { return };
+    let csv = read(&data.join("lsts/take_n01.csv")).unwrap();
+    let c3d = read(&data.join("lsts/take_n01.c3d")).unwrap();
+    for capture in [&csv, &c3d] {
+        assert_eq!((capture.labels.len(), capture.frames()), (46, 5660));
+        assert_eq!((capture.rate_hz, capture.unit), (200.0, LengthUnit::Millimetre));
+    }
+    assert_eq!((csv.first_frame, c3d.first_frame), (0, 1));
+    assert_eq!(csv.positions[0], [50.1730, 1611.3685, 268.8729]);
+    // Floats of 32 bits hold 1.6 m to 0.1 micrometre; the CSV has four decimals of a millimetre.
+    let difference = largest_difference(&csv, &c3d);
+    assert!(difference < 1.2e-7, "{difference} m");
+}
+
+#[test]
+fn animface_takes_are_the_same_in_centimetres_and_millimetres() {
+    let Some(data) = data("animface_takes_are_the_same_in_centimetres_and_millimetres") else {
+        return;
+    };
+    for (take, frames) in [("Cheeks", 1499), ("Jaw", 1590)] {
+        let csv = read(&data.join(format!("animface/{take}MoCap.csv"))).unwrap();
+        let c3d = read(&data.join(format!("animface/{take}MoCap.c3d"))).unwrap();
+        assert_eq!((csv.unit, c3d.unit), (LengthUnit::Centimetre, LengthUnit::Millimetre));
+        assert_eq!((csv.rate_hz, c3d.rate_hz), (60.0, 60.0));
+        assert_eq!((csv.labels.len(), csv.frames()), (41, frames));
+        assert_eq!(csv.labels[0], "ForeHead_M");
+        let difference = largest_difference(&csv, &c3d);
+        assert!(difference < 1e-7, "{take}: {difference} m");
+    }
+}
+
+#[test]
+fn qualisys_vicon_and_motive_files_are_read() {
+    let Some(data) = data("qualisys_vicon_and_motive_files_are_read") else { return };
+    let qualisys = recording(data.join("c3d/Qualisys.c3d"));
+    assert_eq!(qualisys.system.as_deref(), Some("Qualisys Track Manager 2.17.3720"));
+    assert_eq!((qualisys.analog_channels, qualisys.events.len()), (69, 7));
+    assert_eq!(qualisys.events[1].label, "RTO");
+    assert!((qualisys.events[1].time_s - 3.685).abs() < 1e-6);
+    let capture = &qualisys.capture;
+    assert_eq!((capture.labels.len(), capture.frames(), capture.first_frame), (55, 340, 705));
+    assert_eq!((capture.rate_hz, capture.labels[0].as_str()), (200.0, "L_IAS"));
+
+    let vicon = recording(data.join("c3d/Vicon.c3d"));
+    assert_eq!(vicon.system.as_deref(), Some("Vicon Nexus 2.4.0.91647h"));
+    assert_eq!((vicon.capture.labels.len(), vicon.capture.frames()), (51, 580));
+    assert_eq!((vicon.analog_channels, vicon.capture.first_frame), (38, 1));
+
+    let motive = recording(data.join("c3d/kinematics_tennis_serve.c3d"));
+    assert_eq!(motive.system.as_deref(), Some("OptiTrack Motive 2.2.0 Final"));
+    assert_eq!((motive.capture.labels.len(), motive.capture.frames()), (39, 1092));
+    assert_eq!(motive.capture.unit, LengthUnit::Metre);
+    assert_eq!(motive.capture.labels[0], "Derrick:C7");
+}
