@@ -104,6 +104,17 @@ impl Avatar {
     }
 }
 
+impl SparseShape {
+    /// Keeps the displacements that are not zero.
+    pub fn from_dense(deltas: &[[f32; 3]]) -> Self {
+        let moved = || deltas.iter().enumerate().filter(|(_, d)| **d != [0.0; 3]);
+        Self {
+            vertices: moved().map(|(v, _)| v as u32).collect(),
+            deltas: moved().map(|(_, d)| *d).collect(),
+        }
+    }
+}
+
 impl Mesh {
     /// Positions of the mesh at the given weights (N of them), metres: neutral + sum of w times delta.
     ///

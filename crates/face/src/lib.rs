@@ -1,5 +1,23 @@
 //! Meshes, blendshapes and avatars: vocabulary, readers, the built-in head, the avatar pack.
 
 mod avatar;
+#[cfg(feature = "readers")]
+mod glb;
+pub mod pack;
+#[cfg_attr(not(feature = "readers"), allow(dead_code))]
+mod parts;
+#[cfg(feature = "readers")]
+mod read;
+#[cfg(feature = "readers")]
+mod read_error;
+mod weld;
 
 pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
+#[cfg(feature = "readers")]
+pub use glb::read_gltf;
+pub use parts::find_eyeballs;
+#[cfg(feature = "readers")]
+pub use read::{ReadAvatar, read_avatar};
+#[cfg(feature = "readers")]
+pub use read_error::ReadError;
+pub use weld::Skin;

@@ -1,0 +1,160 @@
+//! The outer layer of a glTF file: GLB chunks or plain JSON in, document and buffers out.
+
+use std::path::{Component, Path};
+
+use base64::Engine as _;
+use gltf::json::Root;
+
+use crate::ReadError;
+
+/// The document, and the bytes of each of its buffers.
+pub(super) struct Container {
+    /// The JSON part. Its indices are unchecked: follow them with `get`.
+    pub root: Root,
+    /// Bytes of buffer 0, 1...; each at least as long as it declares.
+    pub buffers: Vec<Vec<u8>>,
+}
+
+/// Splits a file into document and buffers.
+///
+/// `folder` is where buffers in files of their own are looked for; without it they are refused.
+pub(super) fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Container, ReadError> {
+    let (json, binary) = if bytes.starts_with(b"glTF") {
+        split_chunks(bytes)?
+    } else if bytes.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'{') {
+        (bytes, None)
+    } else {
+        return Err(ReadError::broken(
+            "byte 0",
+            "neither the letters glTF of a GLB file nor the { of a glTF file",
+            "give a .glb or .gltf file",
+        ));
+    };
+    let root = parse(json)?;
+    let buffers = root
+        .buffers
+        .iter()
+        .enumerate()
+        .map(|(i, buffer)| {
+            let place = format!("buffers[{i}]");
+            let data = match (&buffer.uri, binary) {
+                (Some(uri), _) => load_uri(uri, folder, &place)?,
+                (None, Some(chunk)) if i == 0 => chunk.to_vec(),
+                (None, _) => {
+                    return Err(ReadError::damaged(place, "no uri and no binary chunk to take"));
+                }
+            };
+            let declared = buffer.byte_length.0;
+            if (data.len() as u64) < declared {
+                return Err(ReadError::damaged(
+                    place,
+                    format!("{declared} bytes declared, {} there", data.len()),
+                ));
+            }
+            Ok(data)
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(Container { root, buffers })
+}
+
+/// GLB: a 12-byte header, the JSON chunk, then perhaps the binary chunk.
+fn split_chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
+    let word = |at: usize| -> Option<u32> {
+        bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    };
+    let truncated = |place: &str| {
+        ReadError::damaged(place, format!("the file ends there, after {} bytes", bytes.len()))
+    };
+    let version = word(4).ok_or_else(|| truncated("GLB header"))?;
+    if version != 2 {
+        return Err(ReadError::broken(
+            "GLB header",
+            format!("version {version}"),
+            "export the file as glTF 2.0",
+        ));
+    }
+    let declared = word(8).ok_or_else(|| truncated("GLB header"))? as usize;
+    if declared > bytes.len() {
+        return Err(ReadError::damaged(
+            "GLB header",
+            format!("{declared} bytes declared, {} there", bytes.len()),
+        ));
+    }
+    let chunk = |at: usize, kind: &[u8; 4], name: &str| -> Result<&[u8], ReadError> {
+        let length = word(at).ok_or_else(|| truncated(name))? as usize;
+        let found = bytes.get(at + 4..at + 8).ok_or_else(|| truncated(name))?;
+        if found != kind {
+            return Err(ReadError::damaged(
+                format!("byte {at}, {name}"),
+                format!("chunk type {:?}", String::from_utf8_lossy(found)),
+            ));
+        }
+        let end = (at + 8).checked_add(length).filter(|end| *end <= bytes.len());
+        let end = end.ok_or_else(|| {
+            ReadError::damaged(
+                format!("byte {at}, {name}"),
+                format!("{length} bytes declared, {} there", bytes.len() - at - 8),
+            )
+        })?;
+        Ok(&bytes[at + 8..end])
+    };
+    let json = chunk(12, b"JSON", "JSON chunk")?;
+    let next = 20 + json.len().next_multiple_of(4);
+    let binary =
+        if next + 8 <= bytes.len() { Some(chunk(next, b"BIN\0", "binary chunk")?) } else { None };
+    Ok((json, binary))
+}
+
+/// JSON to a document that asks for no extension. References are checked where they are followed.
+fn parse(json: &[u8]) -> Result<Root, ReadError> {
+    let root: Root = gltf::json::deserialize::from_slice(json)
+        .map_err(|e| ReadError::damaged("JSON chunk", e.to_string()))?;
+    if let Some(extension) = root.extensions_required.first() {
+        return Err(ReadError::broken(
+            "extensionsRequired",
+            format!("the file needs the extension {extension}, which is not read"),
+            "export without compression and extensions",
+        ));
+    }
+    Ok(root)
+}
+
+fn load_uri(uri: &str, folder: Option<&Path>, place: &str) -> Result<Vec<u8>, ReadError> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
+        let encoded =
+            encoded.ok_or_else(|| ReadError::damaged(place, "a data URI that is not base64"))?;
+        return base64::engine::general_purpose::STANDARD
+            .decode(encoded)
+            .map_err(|e| ReadError::damaged(place, format!("data URI: {e}")));
+    }
+    let name = percent_decoded(uri);
+    let relative = Path::new(&name);
+    let inside =
+        relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    let folder = folder.filter(|_| inside).ok_or_else(|| {
+        ReadError::broken(
+            place,
+            format!("buffer file {name:?} is not in the folder of the avatar"),
+            "export as one .glb file",
+        )
+    })?;
+    std::fs::read(folder.join(relative)).map_err(|source| ReadError::Io { place: name, source })
+}
+
+/// `%20` and its like; anything malformed stays as it is.
+fn percent_decoded(uri: &str) -> String {
+    let bytes = uri.as_bytes();
+    let mut out = Vec::with_capacity(bytes.len());
+    let mut i = 0;
+    while i < bytes.len() {
+        let code = bytes
+            .get(i + 1..i + 3)
+            .filter(|_| bytes[i] == b'%')
+            .and_then(|hex| std::str::from_utf8(hex).ok())
+            .and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        out.push(code.unwrap_or(bytes[i]));
+        i += if code.is_some() { 3 } else { 1 };
+    }
+    String::from_utf8_lossy(&out).into_owned()
+}

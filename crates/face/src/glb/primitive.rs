@@ -1,0 +1,219 @@
+//! One glTF mesh in: a surface a primitive out, in world coordinates, with sparse named shapes.
+
+use std::collections::HashMap;
+
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use serde::Deserialize;
+
+use super::container::Container;
+use super::transform::Transform;
+use crate::{ReadError, SparseShape};
+
+/// A primitive, placed.
+pub(super) struct Surface {
+    /// Index of its node.
+    pub node: usize,
+    pub node_name: String,
+    pub mesh_name: String,
+    pub material_name: String,
+    pub positions: Vec<[f32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
+    pub base_colour: [f32; 3],
+    /// As many as `shapes`.
+    pub shape_names: Vec<String>,
+    pub shapes: Vec<SparseShape>,
+}
+
+/// Colour of a surface without material, as the glTF specification has it: white would glare.
+const NO_MATERIAL: [f32; 3] = [0.8, 0.8, 0.8];
+
+/// The surfaces of mesh `index`, which hangs on node `node`. Primitives that share their vertices
+/// become one surface.
+pub(super) fn surfaces(
+    container: &Container,
+    node: usize,
+    index: usize,
+    world_from_node: &Transform,
+) -> Result<Vec<Surface>, ReadError> {
+    let root = &container.root;
+    let place = format!("meshes[{index}]");
+    let mesh = root.meshes.get(index).ok_or_else(|| {
+        ReadError::damaged(format!("nodes[{node}]"), format!("mesh {index} does not exist"))
+    })?;
+    let node_name = root.nodes[node].name.clone().unwrap_or_default();
+    let mesh_name = mesh.name.clone().unwrap_or_else(|| match node_name.as_str() {
+        "" => format!("mesh{index}"),
+        name => name.to_owned(),
+    });
+    let targets = mesh.primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len));
+    let shape_names = target_names(mesh, targets.max().unwrap_or(0), &place)?;
+
+    let mut out: Vec<Surface> = Vec::new();
+    let mut by_vertices: HashMap<(usize, Option<usize>), usize> = HashMap::new();
+    for (k, primitive) in mesh.primitives.iter().enumerate() {
+        let place = format!("{place}.primitives[{k}]");
+        let attributes = &primitive.attributes;
+        let Some(vertices) = attributes.get(&Checked::Valid(Semantic::Positions)) else {
+            return Err(ReadError::damaged(place, "no POSITION"));
+        };
+        let material = primitive.material.and_then(|m| root.materials.get(m.value()));
+        let key = (vertices.value(), primitive.material.map(|m| m.value()));
+        if let Some(&earlier) = by_vertices.get(&key) {
+            let count = out[earlier].positions.len();
+            let more = triangles(container, primitive, count, world_from_node, &place)?;
+            out[earlier].triangles.extend(more);
+            continue;
+        }
+        let local = container.floats::<3>(*vertices, &format!("{place}.attributes.POSITION"))?;
+        let shapes = shapes(container, primitive, local.len(), world_from_node, &place)?;
+        let triangles = triangles(container, primitive, local.len(), world_from_node, &place)?;
+        by_vertices.insert(key, out.len());
+        out.push(Surface {
+            node,
+            node_name: node_name.clone(),
+            mesh_name: mesh_name.clone(),
+            material_name: material.and_then(|m| m.name.clone()).unwrap_or_default(),
+            positions: moved(local, world_from_node, Transform::point, &place)?,
+            triangles,
+            base_colour: material.map_or(NO_MATERIAL, |m| {
+                let [r, g, b, _] = m.pbr_metallic_roughness.base_color_factor.0;
+                [r, g, b].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
+            }),
+            shape_names: shape_names[..shapes.len()].to_vec(),
+            shapes,
+        });
+    }
+    Ok(out)
+}
+
+/// The names of a mesh's morph targets: `extras.targetNames`, or `shape_0`, `shape_1`...
+fn target_names(
+    mesh: &gltf::json::Mesh,
+    count: usize,
+    place: &str,
+) -> Result<Vec<String>, ReadError> {
+    #[derive(Deserialize)]
+    struct Extras {
+        #[serde(rename = "targetNames")]
+        target_names: Option<Vec<String>>,
+    }
+    let extras = mesh.extras.iter().chain(mesh.primitives.iter().flat_map(|p| p.extras.iter()));
+    let names = extras
+        .filter_map(|raw| serde_json::from_str::<Extras>(raw.get()).ok())
+        .find_map(|extras| extras.target_names);
+    let Some(names) = names else {
+        return Ok((0..count).map(|k| format!("shape_{k}")).collect());
+    };
+    let place = format!("{place}.extras.targetNames");
+    if names.len() < count {
+        return Err(ReadError::damaged(
+            place,
+            format!("{} names for {count} morph targets", names.len()),
+        ));
+    }
+    if let Some(k) = (0..count).find(|&k| names[..k].contains(&names[k])) {
+        return Err(ReadError::broken(
+            place,
+            format!("{:?} names two morph targets", names[k]),
+            "give every shape a name of its own",
+        ));
+    }
+    Ok(names)
+}
+
+fn shapes(
+    container: &Container,
+    primitive: &Primitive,
+    vertices: usize,
+    world_from_node: &Transform,
+    place: &str,
+) -> Result<Vec<SparseShape>, ReadError> {
+    let mut out = Vec::new();
+    for (k, target) in primitive.targets.iter().flatten().enumerate() {
+        let place = format!("{place}.targets[{k}]");
+        let Some(positions) = target.positions else {
+            out.push(SparseShape::default());
+            continue;
+        };
+        let deltas = container.floats::<3>(positions, &place)?;
+        if deltas.len() != vertices {
+            return Err(ReadError::damaged(
+                place,
+                format!("{} displacements for {vertices} vertices", deltas.len()),
+            ));
+        }
+        let deltas = moved(deltas, world_from_node, Transform::direction, &place)?;
+        out.push(SparseShape::from_dense(&deltas));
+    }
+    Ok(out)
+}
+
+fn moved(
+    mut values: Vec<[f32; 3]>,
+    transform: &Transform,
+    apply: fn(&Transform, [f64; 3]) -> [f64; 3],
+    place: &str,
+) -> Result<Vec<[f32; 3]>, ReadError> {
+    if *transform == Transform::IDENTITY {
+        return Ok(values);
+    }
+    for value in &mut values {
+        *value = apply(transform, value.map(f64::from)).map(|x| x as f32);
+        if value.iter().any(|x| !x.is_finite()) {
+            return Err(ReadError::damaged(place, "leaves the number range when placed"));
+        }
+    }
+    Ok(values)
+}
+
+fn triangles(
+    container: &Container,
+    primitive: &Primitive,
+    vertices: usize,
+    world_from_node: &Transform,
+    place: &str,
+) -> Result<Vec<[u32; 3]>, ReadError> {
+    let corners = match primitive.indices {
+        Some(index) => container.indices(index, &format!("{place}.indices"))?,
+        None => (0..vertices as u32).collect(),
+    };
+    if let Some(at) = corners.iter().position(|&v| v as usize >= vertices) {
+        return Err(ReadError::damaged(
+            format!("{place}.indices, element {at}"),
+            format!("vertex {} of {vertices}", corners[at]),
+        ));
+    }
+    let mut out: Vec<[u32; 3]> = match primitive.mode {
+        Checked::Valid(Mode::Triangles) => {
+            if corners.len() % 3 != 0 {
+                return Err(ReadError::damaged(
+                    format!("{place}.indices"),
+                    format!("{} corners are not whole triangles", corners.len()),
+                ));
+            }
+            corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
+        }
+        Checked::Valid(Mode::TriangleStrip) => corners
+            .windows(3)
+            .enumerate()
+            .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
+            .collect(),
+        Checked::Valid(Mode::TriangleFan) => match corners.split_first() {
+            Some((&hub, rim)) => rim.windows(2).map(|t| [hub, t[0], t[1]]).collect(),
+            None => vec![],
+        },
+        _ => {
+            return Err(ReadError::broken(
+                place,
+                "not made of triangles",
+                "export surfaces only, without points and lines",
+            ));
+        }
+    };
+    out.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+    if world_from_node.mirrors() {
+        out.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    Ok(out)
+}

@@ -1,0 +1,266 @@
+//! What each mesh is of a face, told from its names; and how eyeballs turn.
+
+use crate::{Avatar, Eyeball, Look, Part};
+
+/// What is known of a mesh before its part is.
+pub(crate) struct PartName<'a> {
+    /// Names of node, mesh and material, the most telling first.
+    pub names: [&'a str; 3],
+    /// Its vertices, metres or not.
+    pub positions: &'a [[f32; 3]],
+    /// How many vertex displacements its shapes have.
+    pub moved: usize,
+}
+
+/// The part of each mesh. Where no name says skin, the mesh that its shapes move most is the skin.
+pub(crate) fn assign_parts(meshes: &[PartName<'_>]) -> Vec<Part> {
+    let found: Vec<Option<Part>> = meshes
+        .iter()
+        .map(|m| m.names.iter().find_map(|name| part_of_name(name, m.positions)))
+        .collect();
+    let has_skin = found.contains(&Some(Part::Skin));
+    let skin = (0..meshes.len())
+        .filter(|&i| !has_skin && found[i].is_none())
+        .max_by_key(|&i| (meshes[i].moved, std::cmp::Reverse(i)));
+    (0..meshes.len())
+        .map(|i| found[i].unwrap_or(if skin == Some(i) { Part::Skin } else { Part::Other }))
+        .collect()
+}
+
+/// What a name says, by the words that rigs use; the order matters (an eyelash is no eye).
+fn part_of_name(name: &str, positions: &[[f32; 3]]) -> Option<Part> {
+    let name = name.to_lowercase();
+    let any = |words: &[&str]| words.iter().any(|w| name.contains(w));
+    if any(&["lash"]) {
+        Some(Part::Lashes)
+    } else if any(&["lacrimal", "occlusion", "tearline", "eyewet", "eye_wet", "cornea", "caruncle"])
+    {
+        Some(Part::EyeOverlay)
+    } else if any(&["brow", "hair", "beard", "moustache", "mustache"]) {
+        Some(Part::Hair)
+    } else if any(&["socket", "mouthbag", "oralcavity", "oral_cavity", "cavity"]) {
+        Some(Part::Socket)
+    } else if any(&["tongue", "gum"]) {
+        Some(Part::Tongue)
+    } else if any(&["teeth", "tooth", "denture"]) {
+        Some(Part::Teeth)
+    } else if any(&["skin", "lid"]) {
+        Some(Part::Skin)
+    } else if any(&["eye", "sclera", "iris"]) {
+        Some(if on_the_left(&name, positions) { Part::EyeLeft } else { Part::EyeRight })
+    } else if any(&["head", "face"]) {
+        Some(Part::Skin)
+    } else {
+        None
+    }
+}
+
+/// The side in a name, or else the side on which the vertices lie (+X is the person's left).
+fn on_the_left(name: &str, positions: &[[f32; 3]]) -> bool {
+    let says = |long: &str, short: char| {
+        name.contains(long)
+            || name
+                .split(|c: char| !c.is_alphanumeric())
+                .any(|word| word.len() == 1 && word.starts_with(short))
+    };
+    match (says("left", 'l'), says("right", 'r')) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => positions.iter().map(|p| f64::from(p[0])).sum::<f64>() >= 0.0,
+    }
+}
+
+/// Angles of the four eye-look shapes at weight 1, degrees. ARKit publishes none; these are the
+/// usual ranges of rigs that carry its names, within the eye's own 25 to 35 degrees of easy gaze.
+const LOOKS: [(&str, f32); 4] =
+    [("lookup", 25.0), ("lookdown", 30.0), ("lookin", 30.0), ("lookout", 30.0)];
+
+/// The eyeballs of an avatar: each mesh that is an eye, with its centre, and the looks that turn it.
+///
+/// Looks are those shapes whose name holds `eyeLookUp`, `Down`, `In` or `Out` and the eye's side
+/// (`_L`, `Left`...); none where such a shape already moves the eye's vertices.
+pub fn find_eyeballs(avatar: &Avatar) -> Vec<Eyeball> {
+    let mut out = Vec::new();
+    for (index, mesh) in avatar.meshes.iter().enumerate() {
+        let left = match mesh.part {
+            Part::EyeLeft => true,
+            Part::EyeRight => false,
+            _ => continue,
+        };
+        let looks: Vec<(usize, Look)> = avatar
+            .shape_names
+            .iter()
+            .enumerate()
+            .filter_map(|(shape, name)| Some((shape, look_of_name(name, shape, left)?)))
+            .collect();
+        let baked = looks.iter().any(|(shape, _)| !mesh.shapes[*shape].vertices.is_empty());
+        if let Some(centre) = sphere_centre(&mesh.positions) {
+            out.push(Eyeball {
+                mesh: index,
+                centre,
+                looks: if baked { vec![] } else { looks.into_iter().map(|(_, l)| l).collect() },
+            });
+        }
+    }
+    out
+}
+
+/// The rotation that an eye-look shape's name stands for, if it is one of this side.
+fn look_of_name(name: &str, shape: usize, left: bool) -> Option<Look> {
+    let plain: String =
+        name.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == '_').collect();
+    let joined = plain.replace('_', "");
+    let (word, degrees) = LOOKS.into_iter().find(|(word, _)| joined.contains(word))?;
+    let rest = &joined[joined.find(word)? + word.len()..];
+    let side_left = match rest {
+        "l" | "left" => true,
+        "r" | "right" => false,
+        _ if joined.starts_with("left") => true,
+        _ if joined.starts_with("right") => false,
+        _ => return None,
+    };
+    if side_left != left || !joined.contains("eye") {
+        return None;
+    }
+    // Out is away from the nose: towards +X for the left eye, which is a turn about +Y.
+    let outward = if left { 1.0 } else { -1.0 };
+    let axis = match word {
+        "lookup" => [-1.0, 0.0, 0.0],
+        "lookdown" => [1.0, 0.0, 0.0],
+        "lookout" => [0.0, outward, 0.0],
+        _ => [0.0, -outward, 0.0],
+    };
+    Some(Look { shape, axis, radians: degrees.to_radians() })
+}
+
+/// Centre of the sphere that fits the points best (least squares of |p|^2 = 2 c.p + k); the middle
+/// of the bounding box where the points lie in a plane. `None` without points.
+fn sphere_centre(points: &[[f32; 3]]) -> Option<[f32; 3]> {
+    let n = points.len() as f64;
+    let (mut low, mut high) = (*points.first()?, *points.first()?);
+    let mut mean = [0f64; 3];
+    for p in points {
+        for a in 0..3 {
+            low[a] = low[a].min(p[a]);
+            high[a] = high[a].max(p[a]);
+            mean[a] += f64::from(p[a]) / n;
+        }
+    }
+    let middle: [f32; 3] = std::array::from_fn(|a| 0.5 * (low[a] + high[a]));
+    // Centred points q: covariance C c' = r / 2 with r = mean of |q|^2 q.
+    let mut cov = [[0f64; 3]; 3];
+    let mut rhs = [0f64; 3];
+    for p in points {
+        let q: [f64; 3] = std::array::from_fn(|a| f64::from(p[a]) - mean[a]);
+        let square = q.iter().map(|x| x * x).sum::<f64>();
+        for a in 0..3 {
+            rhs[a] += 0.5 * square * q[a];
+            for b in 0..3 {
+                cov[a][b] += q[a] * q[b];
+            }
+        }
+    }
+    let det3 = |m: &[[f64; 3]; 3]| {
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+            - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    };
+    let det = det3(&cov);
+    let trace = cov[0][0] + cov[1][1] + cov[2][2];
+    // Below one part in a million of a round cloud's determinant the points lie in a plane.
+    if det <= 1e-6 * (trace / 3.0).powi(3) {
+        return Some(middle);
+    }
+    let centre: [f32; 3] = std::array::from_fn(|a| {
+        let mut column = cov;
+        for row in 0..3 {
+            column[row][a] = rhs[row];
+        }
+        (mean[a] + det3(&column) / det) as f32
+    });
+    let inside = (0..3).all(|a| (low[a]..=high[a]).contains(&centre[a]));
+    Some(if inside { centre } else { middle })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(name: &str) -> Option<Part> {
+        part_of_name(name, &[[0.03, 0.0, 0.0]])
+    }
+
+    #[test]
+    fn parts_are_told_from_the_names_that_rigs_use() {
+        for (name, expected) in [
+            ("MouthSocketEyeSockets", Part::Socket),
+            ("GumsTongue", Part::Tongue),
+            ("Teeth", Part::Teeth),
+            ("EyeLeft", Part::EyeLeft),
+            ("EyeRight", Part::EyeRight),
+            ("eye_R", Part::EyeRight),
+            ("LacrimalBlendOcclusion", Part::EyeOverlay),
+            ("Lashes", Part::Lashes),
+            ("Wolf3D_Head", Part::Skin),
+            ("ict_skin", Part::Skin),
+            ("Eyebrows", Part::Hair),
+            ("Eyeball", Part::EyeLeft),
+        ] {
+            assert_eq!(part(name), Some(expected), "{name}");
+        }
+        assert_eq!(part("Shirt"), None);
+    }
+
+    #[test]
+    fn without_a_name_the_most_moved_mesh_is_the_skin() {
+        let named =
+            |name: &'static str, moved| PartName { names: [name, "", ""], positions: &[], moved };
+        let parts = assign_parts(&[named("a", 3), named("b", 90), named("Teeth", 200)]);
+        assert_eq!(parts, [Part::Other, Part::Skin, Part::Teeth]);
+    }
+
+    #[test]
+    fn looks_turn_the_gaze_where_their_name_says() {
+        for (name, left, toward) in [
+            ("eyeLookUp_L", true, [0.0, 1.0]),
+            ("eyeLookDownLeft", true, [0.0, -1.0]),
+            ("eyeLookOut_L", true, [1.0, 0.0]),
+            ("eyeLookIn_L", true, [-1.0, 0.0]),
+            ("eyeLookOutRight", false, [-1.0, 0.0]),
+            ("eyeLookIn_R", false, [1.0, 0.0]),
+        ] {
+            let look = look_of_name(name, 0, left).expect(name);
+            // axis x (0, 0, 1) is where a small turn takes the gaze.
+            let [x, y, _] = look.axis;
+            let moved = [y, -x];
+            assert!(moved[0] * toward[0] + moved[1] * toward[1] > 0.99, "{name}: {moved:?}");
+            assert!(look_of_name(name, 0, !left).is_none());
+        }
+        assert!(look_of_name("eyeBlink_L", 0, true).is_none());
+        assert!(look_of_name("jawOpen", 0, true).is_none());
+    }
+
+    #[test]
+    fn sphere_centre_is_right_from_a_part_of_the_sphere() {
+        let mut points = Vec::new();
+        for i in 0..20 {
+            for j in 0..12 {
+                let (a, b) = (i as f64 * 0.31, 0.2 + j as f64 * 0.15);
+                points.push(
+                    [
+                        0.03 + 0.012 * b.sin() * a.cos(),
+                        0.02 + 0.012 * b.sin() * a.sin(),
+                        0.08 + 0.012 * b.cos(),
+                    ]
+                    .map(|x: f64| x as f32),
+                );
+            }
+        }
+        let c = sphere_centre(&points).unwrap();
+        for (found, truth) in c.iter().zip([0.03, 0.02, 0.08]) {
+            assert!((found - truth).abs() < 1e-5, "{c:?}");
+        }
+        assert_eq!(sphere_centre(&[]), None);
+        assert_eq!(sphere_centre(&[[1.0, 2.0, 3.0]]), Some([1.0, 2.0, 3.0]));
+    }
+}
