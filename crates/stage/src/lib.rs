@@ -1,1 +1,33 @@
 //! Renders heads with wgpu: WebGPU, WebGL2 and offscreen.
+//!
+//! One WGSL path that WebGL2 can run: no compute, no storage buffers. A frame is four passes, all
+//! over tables that stay on the GPU; the CPU writes two small uniform buffers.
+//!
+//! | pass | shader | a fragment a | gives |
+//! |---|---|---|---|
+//! | 1 deform | `deform.wgsl` | vertex | position = neutral + sum of weight x delta, eyeballs turned |
+//! | 2 light | `shade.wgsl` | pixel of the key light's view | depth |
+//! | 3 surface | `surface.wgsl` | vertex | normal of the deformed surface, visibility of the key light |
+//! | 4 picture | `shade.wgsl` | pixel, 4x MSAA | colour |
+//!
+//! Colours are computed in linear light, pass a filmic response and are stored in an sRGB format,
+//! so that the resolve of the samples is linear too.
+
+mod error;
+mod framing;
+mod geometry;
+mod head;
+mod layouts;
+mod look;
+#[cfg(feature = "native")]
+pub mod offscreen;
+mod pipelines;
+mod renderer;
+mod tables;
+
+pub use error::StageError;
+pub use framing::{Landmarks, View};
+pub use head::Head;
+pub use look::Look;
+pub use renderer::Renderer;
+pub use wgpu;

@@ -1,0 +1,175 @@
+//! Where the camera stands: from the head's landmarks in the neutral pose, so that every condition
+//! of a study is framed alike and a shoulder or a hat changes nothing.
+
+use glam::camera::rh::proj::directx::{orthographic, perspective};
+use glam::camera::rh::view::look_at_mat4;
+use glam::{Mat4, Vec3};
+use mimique_face::{Avatar, Mesh, Part};
+
+/// What the camera does relative to the standard portrait.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Turn of the camera about the vertical, radians; positive shows the person's left side.
+    pub yaw: f32,
+    /// Turn of the camera about the horizontal, radians; positive looks from above.
+    pub pitch: f32,
+    /// Magnification; 1 is the standard portrait.
+    pub zoom: f32,
+}
+
+impl View {
+    /// The standard portrait, straight from the front.
+    pub const FRONT: Self = Self { yaw: 0.0, pitch: 0.0, zoom: 1.0 };
+    /// Turned by 35 degrees to the person's left side.
+    pub const THREE_QUARTER: Self = Self { yaw: 0.61, pitch: 0.0, zoom: 1.0 };
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self::FRONT
+    }
+}
+
+/// The landmarks that frame a head, metres, neutral pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landmarks {
+    /// Centre of the person's right eyeball (at smaller x).
+    pub eye_right: [f32; 3],
+    /// Centre of the person's left eyeball (at larger x).
+    pub eye_left: [f32; 3],
+    /// Lowest point of the chin, on the midline.
+    pub chin: [f32; 3],
+    /// Most forward point between the eyes' height and the chin: the tip of the nose.
+    pub nose_tip: [f32; 3],
+}
+
+/// Eye to chin in units of the distance between the eyes, where no chin can be found.
+const CHIN_DROP: f32 = 1.85;
+/// Vertical field of view of the portrait lens, radians (about 85 mm on a full frame).
+const FIELD_OF_VIEW: f32 = 0.30;
+
+impl Landmarks {
+    /// Finds them: eyes from the eyeballs (else from the upper third of the skin), chin and nose
+    /// from the skin near the midline.
+    pub fn find(avatar: &Avatar) -> Self {
+        let (right, left) = eyes(avatar);
+        let middle = (right + left) * 0.5;
+        let span = (left - right).length().max(1e-6);
+        let mut chin = middle - Vec3::new(0.0, CHIN_DROP * span, 0.0);
+        let mut nose = middle + Vec3::new(0.0, -0.6 * span, 0.6 * span);
+        let mut lowest = f32::INFINITY;
+        let mut foremost = f32::NEG_INFINITY;
+        for mesh in avatar.meshes.iter().filter(|m| m.part == Part::Skin) {
+            for p in mesh.positions.iter().map(|&p| Vec3::from(p)) {
+                let off = p - middle;
+                let on_midline = off.x.abs() < 0.25 * span;
+                if !on_midline || off.y > -0.1 * span || off.y < -2.6 * span {
+                    continue;
+                }
+                // The neck lies behind the plane of the eyes; the chin does not.
+                if off.z > -0.15 * span && off.y < -1.2 * span && p.y < lowest {
+                    lowest = p.y;
+                    chin = p;
+                }
+                if off.y > -1.2 * span && p.z > foremost {
+                    foremost = p.z;
+                    nose = p;
+                }
+            }
+        }
+        Self {
+            eye_right: right.into(),
+            eye_left: left.into(),
+            chin: chin.into(),
+            nose_tip: nose.into(),
+        }
+    }
+
+    /// Midpoint of the eyes, metres.
+    pub fn eyes_middle(&self) -> [f32; 3] {
+        ((Vec3::from(self.eye_right) + Vec3::from(self.eye_left)) * 0.5).into()
+    }
+
+    /// Distance between the eyes' centres, metres: the unit in which everything else is placed.
+    pub fn eye_span(&self) -> f32 {
+        (Vec3::from(self.eye_left) - Vec3::from(self.eye_right)).length()
+    }
+}
+
+fn eyes(avatar: &Avatar) -> (Vec3, Vec3) {
+    let centre = |part: Part| {
+        let index = avatar.meshes.iter().position(|m| m.part == part && !m.positions.is_empty())?;
+        match avatar.eyeballs.iter().find(|e| e.mesh == index) {
+            Some(eyeball) => Some(Vec3::from(eyeball.centre)),
+            None => Some(bounds_centre(&avatar.meshes[index])),
+        }
+    };
+    if let (Some(right), Some(left)) = (centre(Part::EyeRight), centre(Part::EyeLeft)) {
+        return if right.x <= left.x { (right, left) } else { (left, right) };
+    }
+    // No eyes: a face's eyes are a third below the crown, 0.42 of its width apart.
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in avatar.meshes.iter().flat_map(|m| &m.positions).map(|&p| Vec3::from(p)) {
+        low = low.min(p);
+        high = high.max(p);
+    }
+    let middle = Vec3::new(
+        (low.x + high.x) * 0.5,
+        low.y + (high.y - low.y) * 0.62,
+        low.z + (high.z - low.z) * 0.75,
+    );
+    let half = Vec3::new((high.x - low.x).max(1e-3) * 0.21, 0.0, 0.0);
+    (middle - half, middle + half)
+}
+
+/// Centre of a mesh's bounding box.
+pub(crate) fn bounds_centre(mesh: &Mesh) -> Vec3 {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in mesh.positions.iter().map(|&p| Vec3::from(p)) {
+        low = low.min(p);
+        high = high.max(p);
+    }
+    (low + high) * 0.5
+}
+
+/// Camera of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Camera {
+    pub clip_from_world: Mat4,
+    pub position: Vec3,
+}
+
+impl Camera {
+    /// The portrait: the face from above the brow to below the chin with room for an open jaw, at
+    /// any aspect ratio.
+    pub fn portrait(landmarks: &Landmarks, view: View, aspect: f32) -> Self {
+        let span = landmarks.eye_span().max(1e-4);
+        let eyes = Vec3::from(landmarks.eyes_middle());
+        let chin = Vec3::from(landmarks.chin);
+        let drop = (eyes.y - chin.y).clamp(1.3 * span, 2.6 * span);
+        let (top, bottom) = (eyes.y + 2.25 * span, eyes.y - drop - 0.75 * span);
+        let half_height = (top - bottom) * 0.5;
+        let half_width = 1.75 * span;
+        let half = half_height.max(half_width / aspect) / view.zoom.clamp(0.2, 20.0);
+        let target = Vec3::new(eyes.x, (top + bottom) * 0.5, eyes.z - 0.1 * span);
+        let distance = half / (FIELD_OF_VIEW * 0.5).tan() + 0.7 * span;
+        let pitch = view.pitch.clamp(-1.5, 1.5);
+        let (sin_yaw, cos_yaw) = view.yaw.sin_cos();
+        let (sin_pitch, cos_pitch) = pitch.sin_cos();
+        let back = Vec3::new(sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch);
+        let position = target + back * distance;
+        let view_from_world = look_at_mat4(position, target, Vec3::Y);
+        let near = (distance - 12.0 * span).max(distance * 0.05);
+        let clip_from_view = perspective(FIELD_OF_VIEW, aspect, near, distance + 12.0 * span);
+        Self { clip_from_world: clip_from_view * view_from_world, position }
+    }
+
+    /// The key light's own view of the head, orthographic, for its shadows.
+    pub fn light(landmarks: &Landmarks, towards_light: Vec3) -> Mat4 {
+        let span = landmarks.eye_span().max(1e-4);
+        let centre = Vec3::from(landmarks.eyes_middle()) - Vec3::new(0.0, 0.6 * span, 0.3 * span);
+        let radius = 3.0 * span;
+        let view = look_at_mat4(centre + towards_light * radius * 2.0, centre, Vec3::Y);
+        orthographic(-radius, radius, -radius, radius, radius * 0.5, radius * 3.5) * view
+    }
+}

@@ -1,0 +1,357 @@
+//! From an avatar to the flat tables that the shaders read. No GPU here.
+//!
+//! | table | one entry a | holds |
+//! |---|---|---|
+//! | `neutral` | vertex | position, 1 |
+//! | `vertices` | vertex | where its deltas and its ring start, how many, its eyeball |
+//! | `entries` | (vertex, blendshape) that is not zero | displacement, blendshape |
+//! | `rings` | (vertex, triangle round it) | the triangle's other two corners, in order |
+//!
+//! Vertices of a mesh that lie in one place and move alike (texture seams) share one ring, so that
+//! normals are smooth across seams; lips that merely touch do not move alike and stay apart.
+
+use std::collections::HashMap;
+
+use glam::Vec3;
+use mimique_face::{Avatar, Mesh, Part};
+
+use crate::StageError;
+use crate::framing::{Landmarks, bounds_centre};
+use crate::layouts::{MAX_EYEBALLS, MAX_SHAPES, Material};
+
+/// Everything the GPU needs of an avatar.
+#[derive(Debug, Default)]
+pub(crate) struct Geometry {
+    pub neutral: Vec<[f32; 4]>,
+    pub vertices: Vec<[u32; 4]>,
+    pub entries: Vec<[f32; 4]>,
+    pub rings: Vec<[u32; 2]>,
+    /// Square root of the base colour, 8 bits a channel; the material in the fourth.
+    pub colours: Vec<[u8; 4]>,
+    pub indices: Vec<u32>,
+    /// Ranges of `indices`, one a mesh, in the order to draw.
+    pub draws: Vec<Draw>,
+    pub eyes: Vec<Eye>,
+    pub shape_count: usize,
+}
+
+/// One mesh to draw.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Draw {
+    pub indices: std::ops::Range<u32>,
+    pub layer: Layer,
+    /// Hair-thin and transparent meshes cast none.
+    pub casts_shadow: bool,
+}
+
+/// How a mesh meets what is behind it; also the order of drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Layer {
+    /// Closed surfaces: their back is never seen.
+    Closed,
+    /// Open sheets: both sides are seen.
+    Sheet,
+    /// Wet and shading layers over the eye, blended.
+    Overlay,
+}
+
+/// An eyeball, measured.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Eye {
+    pub centre: Vec3,
+    pub radius: f32,
+    /// Direction of the pupil in the neutral pose.
+    pub forward: Vec3,
+    pub looks: Vec<mimique_face::Look>,
+}
+
+impl Geometry {
+    /// Checks the avatar and lays it out.
+    pub fn new(avatar: &Avatar, landmarks: &Landmarks) -> Result<Self, StageError> {
+        let shape_count = avatar.shape_names.len();
+        if shape_count > MAX_SHAPES {
+            return Err(StageError::TooManyShapes { found: shape_count, most: MAX_SHAPES });
+        }
+        let mut out = Self { shape_count, ..Self::default() };
+        let eye_of_mesh = out.measure_eyes(avatar)?;
+        let mut order: Vec<usize> = (0..avatar.meshes.len()).collect();
+        // Closed surfaces first and the skin first of all: it hides most of what follows.
+        order.sort_by_key(|&m| {
+            (layer(avatar.meshes[m].part), avatar.meshes[m].part != Part::Skin, m)
+        });
+        for m in order {
+            out.add_mesh(avatar, &avatar.meshes[m], eye_of_mesh[m], landmarks)?;
+        }
+        if out.indices.is_empty() {
+            return Err(StageError::NothingToDraw);
+        }
+        Ok(out)
+    }
+
+    /// Measures each eyeball; a mesh of an eye that has no [`mimique_face::Eyeball`] gets one that
+    /// stays still. Answers the eye of each mesh.
+    fn measure_eyes(&mut self, avatar: &Avatar) -> Result<Vec<Option<usize>>, StageError> {
+        let mut eye_of_mesh = vec![None; avatar.meshes.len()];
+        for (m, mesh) in avatar.meshes.iter().enumerate() {
+            let declared = avatar.eyeballs.iter().find(|e| e.mesh == m);
+            let is_eye = matches!(mesh.part, Part::EyeLeft | Part::EyeRight) || declared.is_some();
+            if !is_eye || mesh.positions.is_empty() {
+                continue;
+            }
+            let centre = declared.map_or_else(|| bounds_centre(mesh), |e| Vec3::from(e.centre));
+            let looks = declared.map_or_else(Vec::new, |e| e.looks.clone());
+            if let Some(look) = looks.iter().find(|l| l.shape >= self.shape_count) {
+                let what = format!(
+                    "eyeball look of blendshape {}, the avatar has {}",
+                    look.shape, self.shape_count
+                );
+                return Err(StageError::Malformed { mesh: mesh.name.clone(), what });
+            }
+            eye_of_mesh[m] = Some(self.eyes.len());
+            self.eyes.push(measure_eye(mesh, centre, looks));
+        }
+        match self.eyes.len() {
+            n if n > MAX_EYEBALLS => {
+                Err(StageError::TooManyEyeballs { found: n, most: MAX_EYEBALLS })
+            }
+            _ => Ok(eye_of_mesh),
+        }
+    }
+
+    fn add_mesh(
+        &mut self,
+        avatar: &Avatar,
+        mesh: &Mesh,
+        eye: Option<usize>,
+        landmarks: &Landmarks,
+    ) -> Result<(), StageError> {
+        check_mesh(avatar, mesh)?;
+        let base = self.neutral.len() as u32;
+        let count = mesh.positions.len();
+        self.neutral.extend(mesh.positions.iter().map(|p| [p[0], p[1], p[2], 1.0]));
+
+        let (starts, entries) = entries_by_vertex(mesh);
+        let first_entry = self.entries.len() as u32;
+        self.entries.extend_from_slice(&entries);
+
+        let twins = weld(mesh, &starts, &entries);
+        let first_ring = self.rings.len() as u32;
+        let ring_starts = self.add_rings(mesh, &twins, base);
+
+        let eye_code = eye.map_or(0, |e| e as u32 + 1);
+        for v in 0..count {
+            let twin = twins[v] as usize;
+            self.vertices.push([
+                first_entry + starts[v],
+                (starts[v + 1] - starts[v]) | (eye_code << 16),
+                first_ring + ring_starts[twin],
+                ring_starts[twin + 1] - ring_starts[twin],
+            ]);
+        }
+
+        let material = material_code(mesh, eye);
+        let painted = mesh.part == Part::Skin && mesh.vertex_colours.is_empty();
+        let lips = if painted { lip_distance(mesh, landmarks) } else { Vec::new() };
+        for v in 0..count {
+            let colour = mesh.vertex_colours.get(v).copied().unwrap_or(mesh.base_colour);
+            let root = colour.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
+            self.colours.push([root[0], root[1], root[2], material]);
+            if let Some(&distance) = lips.get(v) {
+                let v = base as usize + v;
+                self.neutral[v][3] = distance;
+            }
+        }
+
+        let first = self.indices.len() as u32;
+        self.indices.extend(mesh.triangles.iter().flatten().map(|&i| base + i));
+        let indices = first..self.indices.len() as u32;
+        if !indices.is_empty() {
+            let casts_shadow = !matches!(
+                mesh.part,
+                Part::Lashes | Part::EyeOverlay | Part::EyeLeft | Part::EyeRight
+            );
+            self.draws.push(Draw { indices, layer: layer(mesh.part), casts_shadow });
+        }
+        Ok(())
+    }
+
+    /// Appends the triangles round each vertex (of its twin, for vertices welded together) and
+    /// answers where each starts, relative to the first appended.
+    fn add_rings(&mut self, mesh: &Mesh, twins: &[u32], base: u32) -> Vec<u32> {
+        let mut starts = vec![0_u32; mesh.positions.len() + 1];
+        for &corner in mesh.triangles.iter().flatten() {
+            starts[twins[corner as usize] as usize + 1] += 1;
+        }
+        for v in 0..mesh.positions.len() {
+            starts[v + 1] += starts[v];
+        }
+        let first = self.rings.len();
+        self.rings.resize(first + starts[mesh.positions.len()] as usize, [0, 0]);
+        let mut next = starts.clone();
+        for t in &mesh.triangles {
+            for k in 0..3 {
+                let slot = &mut next[twins[t[k] as usize] as usize];
+                self.rings[first + *slot as usize] = [base + t[(k + 1) % 3], base + t[(k + 2) % 3]];
+                *slot += 1;
+            }
+        }
+        starts
+    }
+}
+
+/// Distance of lips, in units of the eyes' span, where there are none.
+const NO_LIPS: f32 = 9.0;
+
+fn layer(part: Part) -> Layer {
+    match part {
+        Part::Skin | Part::EyeLeft | Part::EyeRight => Layer::Closed,
+        Part::EyeOverlay => Layer::Overlay,
+        Part::Teeth | Part::Tongue | Part::Socket | Part::Lashes | Part::Hair | Part::Other => {
+            Layer::Sheet
+        }
+    }
+}
+
+fn material_code(mesh: &Mesh, eye: Option<usize>) -> u8 {
+    if let Some(eye) = eye {
+        return Material::Eye as u8 + eye as u8;
+    }
+    (match mesh.part {
+        Part::Skin if mesh.vertex_colours.is_empty() => Material::PaintedSkin,
+        Part::Skin => Material::Skin,
+        Part::Teeth => Material::Teeth,
+        Part::Tongue => Material::Tongue,
+        Part::Socket => Material::Socket,
+        Part::Lashes | Part::Hair => Material::Hair,
+        Part::EyeOverlay => Material::Wet,
+        Part::EyeLeft | Part::EyeRight | Part::Other => Material::Cloth,
+    }) as u8
+}
+
+fn check_mesh(avatar: &Avatar, mesh: &Mesh) -> Result<(), StageError> {
+    let malformed = |what: String| Err(StageError::Malformed { mesh: mesh.name.clone(), what });
+    let count = mesh.positions.len();
+    if mesh.shapes.len() != avatar.shape_names.len() {
+        return malformed(format!(
+            "{} blendshapes, the avatar has {}",
+            mesh.shapes.len(),
+            avatar.shape_names.len()
+        ));
+    }
+    if !mesh.vertex_colours.is_empty() && mesh.vertex_colours.len() != count {
+        return malformed(format!("{} colours for {count} vertices", mesh.vertex_colours.len()));
+    }
+    if let Some(i) = mesh.triangles.iter().flatten().find(|&&i| i as usize >= count) {
+        return malformed(format!("a triangle uses vertex {i}, the mesh has {count}"));
+    }
+    for (k, shape) in mesh.shapes.iter().enumerate() {
+        if shape.vertices.len() != shape.deltas.len() {
+            return malformed(format!(
+                "blendshape {k}: {} vertices, {} deltas",
+                shape.vertices.len(),
+                shape.deltas.len()
+            ));
+        }
+        if let Some(v) = shape.vertices.iter().find(|&&v| v as usize >= count) {
+            return malformed(format!("blendshape {k} moves vertex {v}, the mesh has {count}"));
+        }
+    }
+    Ok(())
+}
+
+/// Deltas sorted by vertex, then blendshape: `entries[starts[v]..starts[v + 1]]` belong to `v`.
+fn entries_by_vertex(mesh: &Mesh) -> (Vec<u32>, Vec<[f32; 4]>) {
+    let count = mesh.positions.len();
+    let mut starts = vec![0_u32; count + 1];
+    for &v in mesh.shapes.iter().flat_map(|s| &s.vertices) {
+        starts[v as usize + 1] += 1;
+    }
+    for v in 0..count {
+        starts[v + 1] += starts[v];
+    }
+    let mut entries = vec![[0.0; 4]; starts[count] as usize];
+    let mut next = starts.clone();
+    for (k, shape) in mesh.shapes.iter().enumerate() {
+        for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
+            let slot = &mut next[v as usize];
+            entries[*slot as usize] = [d[0], d[1], d[2], k as f32];
+            *slot += 1;
+        }
+    }
+    (starts, entries)
+}
+
+/// For each vertex the first one that lies in the same place and moves alike.
+fn weld(mesh: &Mesh, starts: &[u32], entries: &[[f32; 4]]) -> Vec<u32> {
+    let moves = |v: usize| &entries[starts[v] as usize..starts[v + 1] as usize];
+    let mut here: HashMap<[u32; 3], Vec<u32>> = HashMap::with_capacity(mesh.positions.len());
+    (0..mesh.positions.len())
+        .map(|v| {
+            let place = here.entry(mesh.positions[v].map(f32::to_bits)).or_default();
+            let twin = place.iter().copied().find(|&t| moves(t as usize) == moves(v));
+            twin.unwrap_or_else(|| {
+                place.push(v as u32);
+                v as u32
+            })
+        })
+        .collect()
+}
+
+fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye {
+    let mut distances: Vec<f32> =
+        mesh.positions.iter().map(|&p| (Vec3::from(p) - centre).length()).collect();
+    distances.sort_by(f32::total_cmp);
+    let radius = distances[distances.len() / 2].max(1e-5);
+    // A cornea bulges: the pupil looks towards the mean of the farthest points. A plain ball looks ahead.
+    let far = distances[distances.len() - 1 - distances.len() / 50];
+    let bulge: Vec3 = (mesh.positions.iter().map(|&p| Vec3::from(p) - centre))
+        .filter(|d| d.length() >= far)
+        .fold(Vec3::ZERO, |sum, d| sum + d.normalize_or_zero());
+    let seen = bulge.normalize_or_zero();
+    let forward = if far > 1.03 * radius && seen.z > 0.8 { seen } else { Vec3::Z };
+    Eye { centre, radius, forward, looks }
+}
+
+/// Distance of each vertex from the rim of the mouth (the open border of the skin nearest to where
+/// a mouth is), in units of the eyes' span, for painting lips. [`NO_LIPS`] without such a rim.
+fn lip_distance(mesh: &Mesh, landmarks: &Landmarks) -> Vec<f32> {
+    let span = landmarks.eye_span().max(1e-6);
+    let eyes = Vec3::from(landmarks.eyes_middle());
+    let chin = Vec3::from(landmarks.chin);
+    let mouth = Vec3::new(
+        eyes.x,
+        eyes.y + 0.60 * (chin.y - eyes.y),
+        Vec3::from(landmarks.nose_tip).z - 0.2 * span,
+    );
+    let mut sides: HashMap<[[u32; 3]; 2], u32> = HashMap::new();
+    let place = |v: u32| mesh.positions[v as usize].map(f32::to_bits);
+    for t in &mesh.triangles {
+        for k in 0..3 {
+            let (a, b) = (place(t[k]), place(t[(k + 1) % 3]));
+            *sides.entry(if a < b { [a, b] } else { [b, a] }).or_default() += 1;
+        }
+    }
+    let mut rim: Vec<Vec3> = (sides.iter().filter(|(_, n)| **n == 1))
+        .flat_map(|(ends, _)| ends.map(|p| Vec3::from(p.map(f32::from_bits))))
+        .filter(|p| {
+            (p.x - mouth.x).abs() < 0.6 * span
+                && (p.y - mouth.y).abs() < 0.35 * span
+                && (p.z - mouth.z).abs() < 0.6 * span
+        })
+        .collect();
+    // A map yields them in any order; sorted, the sums below are the same each time.
+    rim.sort_by(|a, b| {
+        a.to_array().partial_cmp(&b.to_array()).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    rim.dedup();
+    (mesh.positions.iter())
+        .map(|&p| {
+            let p = Vec3::from(p);
+            if (p - mouth).length() > span {
+                return NO_LIPS;
+            }
+            let near = rim.iter().map(|r| r.distance_squared(p)).fold(f32::INFINITY, f32::min);
+            if near.is_finite() { near.sqrt() / span } else { NO_LIPS }
+        })
+        .collect()
+}

@@ -1,0 +1,206 @@
+//! An avatar on the GPU: its tables, and what one frame needs to know of its eyes and landmarks.
+
+use glam::{Mat3, Vec3};
+use mimique_face::Avatar;
+use wgpu::util::DeviceExt;
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, Buffer, Device, Queue, TextureFormat, TextureView,
+};
+
+use crate::StageError;
+use crate::framing::Landmarks;
+use crate::geometry::{Draw, Eye, Geometry};
+use crate::layouts::{
+    EyeballPose, Gaze, LIST_TABLE_WIDTH, MAX_EYEBALLS, Pose, Scene, VERTEX_TABLE_WIDTH,
+};
+use crate::pipelines::Pipelines;
+use crate::tables;
+
+/// An avatar ready to be drawn by the renderer that loaded it.
+pub struct Head {
+    pub(crate) landmarks: Landmarks,
+    pub(crate) shape_count: usize,
+    pub(crate) eyes: Vec<Eye>,
+    pub(crate) draws: Vec<Draw>,
+    pub(crate) indices: Buffer,
+    pub(crate) colours: Buffer,
+    pub(crate) pose_buffer: Buffer,
+    pub(crate) scene_buffer: Buffer,
+    pub(crate) positions: TextureView,
+    pub(crate) surfaces: TextureView,
+    pub(crate) deform_group: BindGroup,
+    pub(crate) light_group: BindGroup,
+    pub(crate) surface_group: BindGroup,
+    pub(crate) shade_group: BindGroup,
+}
+
+impl Head {
+    /// Number of blendshapes, and of weights that a frame takes.
+    pub fn shape_count(&self) -> usize {
+        self.shape_count
+    }
+
+    /// The landmarks that frame it.
+    pub fn landmarks(&self) -> &Landmarks {
+        &self.landmarks
+    }
+
+    pub(crate) fn new(
+        device: &Device,
+        queue: &Queue,
+        pipelines: &Pipelines,
+        shadow: (&TextureView, &wgpu::Sampler),
+        avatar: &Avatar,
+    ) -> Result<Self, StageError> {
+        let landmarks = Landmarks::find(avatar);
+        let geometry = Geometry::new(avatar, &landmarks)?;
+        let wide = VERTEX_TABLE_WIDTH;
+        let float = TextureFormat::Rgba32Float;
+        let neutral = tables::upload(device, queue, "vertices", float, wide, &geometry.neutral)?;
+        let vertices = tables::upload(
+            device,
+            queue,
+            "vertices",
+            TextureFormat::Rgba32Uint,
+            wide,
+            &geometry.vertices,
+        )?;
+        let entries =
+            tables::upload(device, queue, "deltas", float, LIST_TABLE_WIDTH, &geometry.entries)?;
+        let rings = tables::upload(
+            device,
+            queue,
+            "corners",
+            TextureFormat::Rg32Uint,
+            LIST_TABLE_WIDTH,
+            &geometry.rings,
+        )?;
+        let high = tables::rows(geometry.neutral.len(), wide);
+        let positions = tables::target(device, "positions", wide, high);
+        let surfaces = tables::target(device, "surfaces", wide, high);
+        let buffer = |label, contents: &[u8], usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents,
+                usage,
+            })
+        };
+        let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let pose_buffer = buffer("pose", &vec![0; size_of::<Pose>()], uniform);
+        let scene_buffer = buffer("scene", &vec![0; size_of::<Scene>()], uniform);
+        let (pose, scene) = (pose_buffer.as_entire_binding(), scene_buffer.as_entire_binding());
+        let view = BindingResource::TextureView;
+        let deform_group = group(
+            device,
+            &pipelines.deform_layout,
+            [pose, view(&neutral), view(&vertices), view(&entries)],
+        );
+        let light_group = group(device, &pipelines.light_layout, [scene.clone(), view(&positions)]);
+        let surface_group = group(
+            device,
+            &pipelines.surface_layout,
+            [
+                scene.clone(),
+                view(&vertices),
+                view(&rings),
+                view(&positions),
+                view(shadow.0),
+                BindingResource::Sampler(shadow.1),
+            ],
+        );
+        let shade_group = group(
+            device,
+            &pipelines.shade_layout,
+            [scene, view(&positions), view(&surfaces), view(&neutral)],
+        );
+        Ok(Self {
+            landmarks,
+            shape_count: geometry.shape_count,
+            eyes: geometry.eyes,
+            draws: geometry.draws,
+            indices: buffer(
+                "indices",
+                bytemuck::cast_slice(&geometry.indices),
+                wgpu::BufferUsages::INDEX,
+            ),
+            colours: buffer(
+                "colours",
+                bytemuck::cast_slice(&geometry.colours),
+                wgpu::BufferUsages::VERTEX,
+            ),
+            pose_buffer,
+            scene_buffer,
+            positions,
+            surfaces,
+            deform_group,
+            light_group,
+            surface_group,
+            shade_group,
+        })
+    }
+
+    /// Weights and the eyeballs' turns, as `deform.wgsl` reads them. Missing weights are 0, so are
+    /// weights that are no number; surplus ones are not read.
+    pub(crate) fn pose(&self, weights: &[f32]) -> Pose {
+        let mut pose: Pose = bytemuck::Zeroable::zeroed();
+        for (k, &w) in weights.iter().take(self.shape_count).enumerate() {
+            pose.weights[k / 4][k % 4] = if w.is_finite() { w } else { 0.0 };
+        }
+        for (slot, eye) in pose.eyeballs.iter_mut().zip(&self.eyes) {
+            let turn = turn(eye, weights);
+            let column = |c: Vec3| [c.x, c.y, c.z, 0.0];
+            *slot = EyeballPose {
+                rotation: [column(turn.x_axis), column(turn.y_axis), column(turn.z_axis)],
+                centre: [eye.centre.x, eye.centre.y, eye.centre.z, 0.0],
+            };
+        }
+        pose
+    }
+
+    /// The eyes' own frames at the given weights, as `shade.wgsl` reads them.
+    pub(crate) fn gaze(&self, weights: &[f32]) -> [Gaze; MAX_EYEBALLS] {
+        let mut out: [Gaze; MAX_EYEBALLS] = bytemuck::Zeroable::zeroed();
+        for (slot, eye) in out.iter_mut().zip(&self.eyes) {
+            let head_from_eye = turn(eye, weights) * frame(eye.forward);
+            for (row, (axis, c)) in
+                [head_from_eye.x_axis, head_from_eye.y_axis, head_from_eye.z_axis]
+                    .into_iter()
+                    .zip(eye.centre.to_array())
+                    .enumerate()
+            {
+                let scaled = axis / eye.radius;
+                slot.rows[row] = [scaled.x, scaled.y, scaled.z, c];
+            }
+        }
+        out
+    }
+}
+
+/// Rotation of an eyeball: the looks' rotation vectors added, so that their order does not matter.
+fn turn(eye: &Eye, weights: &[f32]) -> Mat3 {
+    let vector = eye.looks.iter().fold(Vec3::ZERO, |sum, look| {
+        let w = weights.get(look.shape).copied().filter(|w| w.is_finite()).unwrap_or(0.0);
+        sum + Vec3::from(look.axis) * (look.radians * w)
+    });
+    let angle = vector.length();
+    if angle < 1e-7 { Mat3::IDENTITY } else { Mat3::from_axis_angle(vector / angle, angle) }
+}
+
+/// Axes with z along `forward`, x to the person's left.
+fn frame(forward: Vec3) -> Mat3 {
+    let x = Vec3::Y.cross(forward).normalize_or(Vec3::X);
+    Mat3::from_cols(x, forward.cross(x), forward)
+}
+
+fn group<const N: usize>(
+    device: &Device,
+    layout: &BindGroupLayout,
+    resources: [BindingResource<'_>; N],
+) -> BindGroup {
+    let mut binding = 0;
+    let entries = resources.map(|resource| {
+        binding += 1;
+        wgpu::BindGroupEntry { binding: binding - 1, resource }
+    });
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}

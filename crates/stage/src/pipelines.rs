@@ -1,0 +1,255 @@
+//! The four passes' pipelines and what is bound to them.
+
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutEntry, BindingType, CompareFunction, DepthBiasState,
+    DepthStencilState, Device, Face, RenderPipeline, ShaderModule, ShaderStages, TextureFormat,
+    TextureSampleType, TextureViewDimension,
+};
+
+use crate::geometry::Layer;
+
+/// Samples a pixel.
+pub(crate) const SAMPLES: u32 = 4;
+/// Depth of the picture and of the key light's view.
+pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
+
+pub(crate) struct Pipelines {
+    pub deform_layout: BindGroupLayout,
+    pub surface_layout: BindGroupLayout,
+    pub shade_layout: BindGroupLayout,
+    pub light_layout: BindGroupLayout,
+    pub deform: RenderPipeline,
+    pub light: RenderPipeline,
+    pub surface: RenderPipeline,
+    closed: RenderPipeline,
+    sheet: RenderPipeline,
+    overlay: RenderPipeline,
+}
+
+impl Pipelines {
+    /// For pictures of the given colour format.
+    pub fn new(device: &Device, format: TextureFormat) -> Self {
+        let scene = include_str!("shaders/scene.wgsl");
+        let module = |label, source| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(label),
+                source: wgpu::ShaderSource::Wgsl([scene, source].concat().into()),
+            })
+        };
+        let deform_module = module("deform.wgsl", include_str!("shaders/deform.wgsl"));
+        let surface_module = module("surface.wgsl", include_str!("shaders/surface.wgsl"));
+        let shade_module = module("shade.wgsl", include_str!("shaders/shade.wgsl"));
+
+        let (float, integer) =
+            (TextureSampleType::Float { filterable: false }, TextureSampleType::Uint);
+        let fragment = ShaderStages::FRAGMENT;
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let deform_layout = layout(
+            device,
+            "deform",
+            &[
+                uniform(0, fragment),
+                table(1, fragment, float),
+                table(2, fragment, integer),
+                table(3, fragment, float),
+            ],
+        );
+        let surface_layout = layout(
+            device,
+            "surface",
+            &[
+                uniform(0, fragment),
+                table(1, fragment, integer),
+                table(2, fragment, integer),
+                table(3, fragment, float),
+                table(4, fragment, TextureSampleType::Depth),
+                entry(5, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+            ],
+        );
+        let shade_layout = layout(
+            device,
+            "shade",
+            &[
+                uniform(0, both),
+                table(1, ShaderStages::VERTEX, float),
+                table(2, ShaderStages::VERTEX, float),
+                table(3, ShaderStages::VERTEX, float),
+            ],
+        );
+        let light_layout =
+            layout(device, "light", &[uniform(0, both), table(1, ShaderStages::VERTEX, float)]);
+
+        let cover = |name, module, layout, entries: [&'static str; 2]| {
+            table_pass(device, name, module, layout, entries)
+        };
+        Self {
+            deform: cover("deform", &deform_module, &deform_layout, ["cover_positions", "deform"]),
+            surface: cover(
+                "surface",
+                &surface_module,
+                &surface_layout,
+                ["cover_surface", "surface"],
+            ),
+            light: light_pass(device, &shade_module, &light_layout),
+            closed: picture_pass(device, &shade_module, &shade_layout, format, Layer::Closed),
+            sheet: picture_pass(device, &shade_module, &shade_layout, format, Layer::Sheet),
+            overlay: picture_pass(device, &shade_module, &shade_layout, format, Layer::Overlay),
+            deform_layout,
+            surface_layout,
+            shade_layout,
+            light_layout,
+        }
+    }
+
+    /// The picture's pipeline for a mesh of that layer.
+    pub fn picture(&self, layer: Layer) -> &RenderPipeline {
+        match layer {
+            Layer::Closed => &self.closed,
+            Layer::Sheet => &self.sheet,
+            Layer::Overlay => &self.overlay,
+        }
+    }
+}
+
+fn table_pass(
+    device: &Device,
+    name: &str,
+    module: &ShaderModule,
+    group: &BindGroupLayout,
+    entries: [&str; 2],
+) -> RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(name),
+        layout: Some(&pipeline_layout(device, group)),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(entries[0]),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entries[1]),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(TextureFormat::Rgba32Float.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn light_pass(device: &Device, module: &ShaderModule, group: &BindGroupLayout) -> RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("light"),
+        layout: Some(&pipeline_layout(device, group)),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("depth_from_light"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            // Steep surfaces would shade themselves within a texel of the map.
+            bias: DepthBiasState { constant: 0, slope_scale: 2.0, clamp: 0.0 },
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: None,
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn picture_pass(
+    device: &Device,
+    module: &ShaderModule,
+    group: &BindGroupLayout,
+    format: TextureFormat,
+    layer: Layer,
+) -> RenderPipeline {
+    let blended = layer == Layer::Overlay;
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("picture"),
+        layout: Some(&pipeline_layout(device, group)),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("project"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 4,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Unorm8x4],
+            })],
+        },
+        primitive: wgpu::PrimitiveState {
+            cull_mode: (layer == Layer::Closed).then_some(Face::Back),
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil: Some(DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(!blended),
+            depth_compare: Some(CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            bias: DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: SAMPLES, ..wgpu::MultisampleState::default() },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("shade"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format,
+                blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn pipeline_layout(device: &Device, group: &BindGroupLayout) -> wgpu::PipelineLayout {
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(group)],
+        immediate_size: 0,
+    })
+}
+
+fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+fn uniform(binding: u32, visibility: ShaderStages) -> BindGroupLayoutEntry {
+    let buffer = BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    entry(binding, visibility, buffer)
+}
+
+fn table(
+    binding: u32,
+    visibility: ShaderStages,
+    sample_type: TextureSampleType,
+) -> BindGroupLayoutEntry {
+    let texture = BindingType::Texture {
+        sample_type,
+        view_dimension: TextureViewDimension::D2,
+        multisampled: false,
+    };
+    entry(binding, visibility, texture)
+}
+
+fn entry(binding: u32, visibility: ShaderStages, ty: BindingType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}

@@ -1,0 +1,248 @@
+//! Draws one frame of a head into a texture view.
+
+use glam::Vec3;
+use mimique_face::Avatar;
+use wgpu::{Device, LoadOp, Operations, Queue, StoreOp, TextureFormat, TextureUsages, TextureView};
+
+use crate::framing::{Camera, View};
+use crate::head::Head;
+use crate::layouts::{SHADOW_SIZE, Scene};
+use crate::pipelines::{DEPTH_FORMAT, Pipelines, SAMPLES};
+use crate::tables;
+use crate::{Look, StageError};
+
+/// Towards the key light; `scene.wgsl`, constant `KEY`.
+const TOWARDS_KEY: Vec3 = Vec3::new(-0.4364, 0.5455, 0.7155);
+
+/// Pipelines, targets and the look: draws any head that it loaded.
+pub struct Renderer {
+    device: Device,
+    queue: Queue,
+    pipelines: Pipelines,
+    look: Look,
+    format: TextureFormat,
+    size: [u32; 2],
+    samples: TextureView,
+    depth: TextureView,
+    shadow: TextureView,
+    shadow_sampler: wgpu::Sampler,
+}
+
+impl Renderer {
+    /// A renderer for pictures of `format` (an sRGB one, so that light is stored as it should be)
+    /// and `size` pixels, width and height.
+    pub fn new(
+        device: &Device,
+        queue: &Queue,
+        format: TextureFormat,
+        size: [u32; 2],
+        look: Look,
+    ) -> Self {
+        let shadow_usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let shadow =
+            tables::empty(device, "shadow", DEPTH_FORMAT, SHADOW_SIZE, SHADOW_SIZE, shadow_usage)
+                .create_view(&wgpu::TextureViewDescriptor::default());
+        let shadow_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..wgpu::SamplerDescriptor::default()
+        });
+        let size = size.map(|s| s.max(1));
+        let (samples, depth) = targets(device, format, size);
+        Self {
+            pipelines: Pipelines::new(device, format),
+            device: device.clone(),
+            queue: queue.clone(),
+            look,
+            format,
+            size,
+            samples,
+            depth,
+            shadow,
+            shadow_sampler,
+        }
+    }
+
+    /// Puts an avatar on the GPU.
+    ///
+    /// # Errors
+    /// [`StageError`] when the avatar is malformed or too large for this machine.
+    pub fn load(&self, avatar: &Avatar) -> Result<Head, StageError> {
+        Head::new(
+            &self.device,
+            &self.queue,
+            &self.pipelines,
+            (&self.shadow, &self.shadow_sampler),
+            avatar,
+        )
+    }
+
+    /// Changes the size of the pictures, pixels.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        let size = size.map(|s| s.max(1));
+        if size != self.size {
+            self.size = size;
+            (self.samples, self.depth) = targets(&self.device, self.format, size);
+        }
+    }
+
+    /// Size of the pictures, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Changes the look of the frames to come.
+    pub fn set_look(&mut self, look: Look) {
+        self.look = look;
+    }
+
+    /// Draws `head` at `weights` (one a blendshape; missing ones are 0) into `target`, which has
+    /// the renderer's format and size. Nothing is allocated here; the frame is submitted.
+    pub fn render(&self, target: &TextureView, head: &Head, view: View, weights: &[f32]) {
+        self.queue.write_buffer(&head.pose_buffer, 0, bytemuck::bytes_of(&head.pose(weights)));
+        self.queue.write_buffer(
+            &head.scene_buffer,
+            0,
+            bytemuck::bytes_of(&self.scene(head, view, weights)),
+        );
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        fill_table(
+            &mut encoder,
+            "deform",
+            &head.positions,
+            &self.pipelines.deform,
+            &head.deform_group,
+        );
+        self.light_pass(&mut encoder, head);
+        fill_table(
+            &mut encoder,
+            "surface",
+            &head.surfaces,
+            &self.pipelines.surface,
+            &head.surface_group,
+        );
+        self.picture_pass(&mut encoder, head, target);
+        self.queue.submit([encoder.finish()]);
+    }
+
+    fn light_pass(&self, encoder: &mut wgpu::CommandEncoder, head: &Head) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("light"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.shadow,
+                depth_ops: Some(Operations { load: LoadOp::Clear(1.0), store: StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipelines.light);
+        pass.set_bind_group(0, &head.light_group, &[]);
+        pass.set_index_buffer(head.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for draw in head.draws.iter().filter(|d| d.casts_shadow) {
+            pass.draw_indexed(draw.indices.clone(), 0, 0..1);
+        }
+    }
+
+    fn picture_pass(&self, encoder: &mut wgpu::CommandEncoder, head: &Head, target: &TextureView) {
+        let [r, g, b] = self.look.background.map(f64::from);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.samples,
+                depth_slice: None,
+                resolve_target: Some(target),
+                ops: Operations {
+                    load: LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    store: StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(Operations { load: LoadOp::Clear(1.0), store: StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, &head.shade_group, &[]);
+        pass.set_vertex_buffer(0, head.colours.slice(..));
+        pass.set_index_buffer(head.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for draw in &head.draws {
+            pass.set_pipeline(self.pipelines.picture(draw.layer));
+            pass.draw_indexed(draw.indices.clone(), 0, 0..1);
+        }
+    }
+
+    fn scene(&self, head: &Head, view: View, weights: &[f32]) -> Scene {
+        let aspect = self.size[0] as f32 / self.size[1] as f32;
+        let camera = Camera::portrait(&head.landmarks, view, aspect);
+        let span = head.landmarks.eye_span();
+        let eyes = head.landmarks.eyes_middle();
+        let (chin, nose) = (head.landmarks.chin, head.landmarks.nose_tip);
+        let with = |v: [f32; 3], w: f32| [v[0], v[1], v[2], w];
+        Scene {
+            clip_from_world: camera.clip_from_world.to_cols_array_2d(),
+            light_from_world: Camera::light(&head.landmarks, TOWARDS_KEY).to_cols_array_2d(),
+            camera: camera.position.extend(0.0).into(),
+            eyes_middle: with(eyes, span),
+            mouth: [
+                eyes[0],
+                eyes[1] + 0.6 * (chin[1] - eyes[1]),
+                nose[2] - 0.34 * span,
+                0.55 * span,
+            ],
+            skin: with(self.look.skin_tint, self.look.skin_roughness),
+            brows: with(self.look.brows, if self.look.paint { 1.0 } else { 0.0 }),
+            iris: with(self.look.iris, self.look.exposure),
+            gaze: head.gaze(weights),
+        }
+    }
+}
+
+/// A pass over every vertex of a table.
+fn fill_table(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &str,
+    table: &TextureView,
+    pipeline: &wgpu::RenderPipeline,
+    group: &wgpu::BindGroup,
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: table,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations {
+                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: StoreOp::Store,
+            },
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.draw(0..3, 0..1);
+}
+
+/// The multisampled picture and its depth.
+fn targets(device: &Device, format: TextureFormat, size: [u32; 2]) -> (TextureView, TextureView) {
+    let view = |label, format| {
+        device
+            .create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: SAMPLES,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+            .create_view(&wgpu::TextureViewDescriptor::default())
+    };
+    (view("samples", format), view("depth", DEPTH_FORMAT))
+}
