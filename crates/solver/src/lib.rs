@@ -1,5 +1,61 @@
 //! From marker displacements to blendshape weights: operators, energies, methods. f64, no I/O, no clock.
+//!
+//! ```text
+//! SkinMesh --weld--> SkinMesh --Operators::build--> Operators --Fit::new(spec)--> Fit
+//! captured markers --FrontEnd--> displacements d --Fit::solve_take--> weights + reports
+//! ```
+//!
+//! | paper | code | size | unit |
+//! |---|---|---|---|
+//! | S, P, N (thesis 5.1.1) | `vertex_count`, `marker_count`, `shape_count` | | |
+//! | B (eq. 5.3) | [`SkinMesh::shapes`], sparse | 3S x N | m |
+//! | L, W_vert (eq. 5.11-5.12) | [`Laplacian`], the sign of eq. 5.12 | S x S, sparse | 1 (m^-2 cotangent) |
+//! | A = -k_s L + k_b L^2 (eq. 5.17) | [`apply_shell`], never formed | S x S | |
+//! | AB (eq. 5.29) | rows streamed into H, never kept | 3S x N | m |
+//! | c^T H c = Enc'_ts (eq. 5.28, 5.30) | [`OperatorParts::shell_gram`] | N x N | m^2 |
+//! | Da_c = D c (eq. 5.22) | [`OperatorParts::marker_deltas`] | 3P x N | m |
+//! | Dm (eq. 5.21) | displacements `d`, [`FrontEnd::displacements`] | 3P a frame | m |
+//! | l^2 = tr(D^T D) / N | [`Operators::data_scale`] | | m^2 |
+//! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
+//! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
+//! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
+//! | w_i, N_i, sigma (Kouadio 4.4-4.7) | [`LinkedRows`] | P x N(N+1)/2 | m^2 |
+//!
+//! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
+//! is written down, nothing is fused, `exp` and `tan` are those of `libm`.
 
+#![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
+
+mod box_qp;
+mod dense;
+mod fit;
+mod front_end;
+mod laplacian;
+mod linked;
+mod lowpass;
 mod method_spec;
+mod newton;
+mod objective;
+mod operators;
+mod problem;
+mod rbf;
+mod rigid_alignment;
+mod skin_mesh;
+mod svd;
+mod thin_shell;
 
-pub use method_spec::{Method, MethodSpec};
+pub use fit::{
+    CHUNK_FRAMES, Fit, FrameReport, FrameSolution, FrameSolver, FrameWarning, TakeSolution,
+};
+pub use front_end::{FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns, MarkerFrames};
+pub use laplacian::{Laplacian, mixed_voronoi_areas};
+pub use linked::LinkedRows;
+pub use lowpass::{Lowpass, LowpassError};
+pub use method_spec::{LaplacianKind, Method, MethodSpec, SpecError, Unit};
+pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
+pub use problem::FitError;
+pub use rbf::{Rbf, RbfError};
+pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
+pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
+pub use thin_shell::{apply_shell, shell_gram};

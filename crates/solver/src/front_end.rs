@@ -1,0 +1,394 @@
+//! From captured markers to displacements of the avatar's marker vertices (thesis 5.2.1-5.2.2):
+//! head, neutral, alignment, adaptation.
+
+use std::ops::Range;
+
+use crate::lowpass::{Lowpass, LowpassError};
+use crate::rbf::{Rbf, RbfError};
+use crate::rigid_alignment::{Pose, RigidError, RigidMotion, align, align_rigidly};
+
+/// Frames of marker positions: x, y, z of column 0, then of column 1...; NaN = not seen.
+///
+/// The caller has converted to metres: the front end knows no unit.
+#[derive(Debug, Clone, Copy)]
+pub struct MarkerFrames<'a> {
+    /// frames x 3 columns.
+    pub positions: &'a [f64],
+    /// Markers a frame.
+    pub columns: usize,
+}
+
+/// Which columns of a frame are what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MarkerColumns {
+    /// The column of each face marker, in the order of the operators' marker labels.
+    pub face: Vec<usize>,
+    /// The columns that move rigidly with the head: markers on a headband, or the face markers
+    /// that move least. None = the capture is already free of head motion.
+    pub head: Option<Vec<usize>>,
+}
+
+/// Where and why the front end cannot go on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FrontEndError {
+    /// The head's pose cannot be told in a frame.
+    #[error("frame {frame}, head markers: {cause}; name other head markers, or fill the gap")]
+    Head {
+        /// Index of the frame.
+        frame: usize,
+        /// Why.
+        cause: RigidError,
+    },
+    /// The neutral frames are not in the take.
+    #[error("neutral frames {start}:{end} of {frames}; give a range inside the take")]
+    NeutralRange {
+        /// First frame.
+        start: usize,
+        /// One past the last.
+        end: usize,
+        /// Frames of the take.
+        frames: usize,
+    },
+    /// A face marker is never seen while the face is neutral.
+    #[error(
+        "face marker {marker} is not seen in any neutral frame; give other neutral frames or leave the marker out of the map"
+    )]
+    NeutralUnseen {
+        /// Index in [`MarkerColumns::face`].
+        marker: usize,
+    },
+    /// The neutral cannot be laid onto the avatar.
+    #[error("face markers: {0}; map more markers")]
+    Alignment(RigidError),
+    /// The adaptation of shape has no solution.
+    #[error(transparent)]
+    Rbf(#[from] RbfError),
+    /// The head's low-pass does not exist.
+    #[error("headLowpassHz: {0}")]
+    Lowpass(#[from] LowpassError),
+    /// Numbers that should be equal are not.
+    #[error("{what}: {found}, {expected} expected")]
+    Size {
+        /// What was counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+}
+
+/// The front end of one take and one avatar: fitted once, then a frame at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrontEnd {
+    columns: MarkerColumns,
+    head_reference: Vec<[f64; 3]>,
+    neutral: Vec<[f64; 3]>,
+    avatar_markers: Vec<[f64; 3]>,
+    avatar_from_actor: RigidMotion,
+    rbf: Rbf,
+}
+
+/// Memory that a frame needs, kept between frames.
+#[derive(Debug, Clone, Default)]
+pub struct FrontEndScratch {
+    points: [Vec<f64>; 3],
+    adapted: [Vec<f64>; 3],
+}
+
+impl<'a> MarkerFrames<'a> {
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.positions.len() / (3 * self.columns).max(1)
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The numbers of one frame.
+    ///
+    /// # Panics
+    /// If the frame is not in the take.
+    pub fn frame(&self, frame: usize) -> &'a [f64] {
+        &self.positions[3 * self.columns * frame..3 * self.columns * (frame + 1)]
+    }
+}
+
+impl FrontEnd {
+    /// Fit to a take: head reference from its first frame, neutral M0 from the mean of the
+    /// stabilised neutral frames (60 or more), alignment and RBF from M0 to the avatar's marker
+    /// positions.
+    ///
+    /// `poses` are of [`FrontEnd::head_poses`], for the same frames.
+    ///
+    /// # Errors
+    /// [`FrontEndError`], naming the frame or marker.
+    pub fn fit(
+        take: MarkerFrames<'_>,
+        columns: &MarkerColumns,
+        poses: &[RigidMotion],
+        neutral: Range<usize>,
+        avatar_markers: &[[f64; 3]],
+    ) -> Result<FrontEnd, FrontEndError> {
+        check_columns(take, columns)?;
+        let frames = take.len();
+        equal("head poses", poses.len(), frames)?;
+        let Range { start, end } = neutral;
+        if start >= end || end > frames {
+            return Err(FrontEndError::NeutralRange { start, end, frames });
+        }
+        let mut mean = vec![[0.0; 3]; columns.face.len()];
+        for (marker, mean) in mean.iter_mut().enumerate() {
+            let column = columns.face[marker];
+            let mut seen = 0_usize;
+            for (frame, pose) in poses.iter().enumerate().take(end).skip(start) {
+                let p = point(take.frame(frame), column);
+                if is_seen(p) {
+                    seen += 1;
+                    let p = pose.apply(p);
+                    for a in 0..3 {
+                        mean[a] += p[a];
+                    }
+                }
+            }
+            if seen == 0 {
+                return Err(FrontEndError::NeutralUnseen { marker });
+            }
+            *mean = mean.map(|x| x / seen as f64);
+        }
+        let reference = head_reference(take, columns);
+        FrontEnd::from_neutral(columns.clone(), reference, mean, avatar_markers.to_vec())
+    }
+
+    /// Take up a stored head reference and neutral: what a segment of a take needs to be solved
+    /// by itself, with the same bits.
+    ///
+    /// `head_reference` has a point for each head column (empty without head), `neutral` and
+    /// `avatar_markers` one for each face column.
+    ///
+    /// # Errors
+    /// [`FrontEndError`] where sizes disagree, or the neutral cannot be laid onto the avatar.
+    pub fn from_neutral(
+        columns: MarkerColumns,
+        head_reference: Vec<[f64; 3]>,
+        neutral: Vec<[f64; 3]>,
+        avatar_markers: Vec<[f64; 3]>,
+    ) -> Result<FrontEnd, FrontEndError> {
+        let p = columns.face.len();
+        equal("neutral markers", neutral.len(), p)?;
+        equal("markers on the avatar", avatar_markers.len(), p)?;
+        let heads = columns.head.as_ref().map_or(0, Vec::len);
+        equal("head reference points", head_reference.len(), heads)?;
+        let avatar_from_actor =
+            align_rigidly(&neutral, &avatar_markers).map_err(FrontEndError::Alignment)?;
+        let aligned: Vec<[f64; 3]> = neutral.iter().map(|&p| avatar_from_actor.apply(p)).collect();
+        let rbf = Rbf::interpolate(&aligned, &avatar_markers)?;
+        Ok(FrontEnd { columns, head_reference, neutral, avatar_markers, avatar_from_actor, rbf })
+    }
+
+    /// The columns that it was fitted with.
+    pub fn columns(&self) -> &MarkerColumns {
+        &self.columns
+    }
+
+    /// The head markers in the first frame, metres.
+    pub fn head_reference(&self) -> &[[f64; 3]] {
+        &self.head_reference
+    }
+
+    /// M0: the stabilised neutral face markers, metres, in the capture's axes.
+    pub fn neutral(&self) -> &[[f64; 3]] {
+        &self.neutral
+    }
+
+    /// The rigid motion from the actor's neutral onto the avatar.
+    pub fn avatar_from_actor(&self) -> &RigidMotion {
+        &self.avatar_from_actor
+    }
+
+    /// The adaptation of shape, from aligned actor to avatar.
+    pub fn rbf(&self) -> &Rbf {
+        &self.rbf
+    }
+
+    /// For each frame the motion that takes the head back to where it was in the reference frame.
+    ///
+    /// `lowpass` smooths the pose over time (zero phase); head noise is otherwise the largest part
+    /// of the noise of the face markers.
+    ///
+    /// # Errors
+    /// [`FrontEndError::Head`] naming the first frame with fewer than three good head markers or
+    /// with all of them in a line. A good head marker is seen in the frame and in the reference.
+    pub fn head_poses(
+        take: MarkerFrames<'_>,
+        columns: &MarkerColumns,
+        lowpass: Option<&Lowpass>,
+    ) -> Result<Vec<RigidMotion>, FrontEndError> {
+        check_columns(take, columns)?;
+        head_poses(take, columns, &head_reference(take, columns), lowpass)
+    }
+
+    /// The same with this front end's own head reference, for the frames of one segment.
+    ///
+    /// # Errors
+    /// As [`FrontEnd::head_poses`].
+    pub fn segment_poses(
+        &self,
+        take: MarkerFrames<'_>,
+        lowpass: Option<&Lowpass>,
+    ) -> Result<Vec<RigidMotion>, FrontEndError> {
+        check_columns(take, &self.columns)?;
+        head_poses(take, &self.columns, &self.head_reference, lowpass)
+    }
+
+    /// d = RBF(M) - avatar markers of one frame, eq. 5.21: 3P numbers, metres; NaN for a marker
+    /// that is not seen. Allocates nothing after the first call with a scratch.
+    ///
+    /// # Panics
+    /// If `frame` or `out` is too short.
+    pub fn displacements(
+        &self,
+        pose: &RigidMotion,
+        frame: &[f64],
+        out: &mut [f64],
+        scratch: &mut FrontEndScratch,
+    ) {
+        let p = self.columns.face.len();
+        for axis in scratch.points.iter_mut().chain(&mut scratch.adapted) {
+            axis.resize(p, 0.0);
+        }
+        let motion = self.avatar_from_actor.after(pose);
+        for (marker, &column) in self.columns.face.iter().enumerate() {
+            let moved = motion.apply(point(frame, column));
+            for a in 0..3 {
+                scratch.points[a][marker] = moved[a];
+            }
+        }
+        let [px, py, pz] = &mut scratch.points;
+        let [ox, oy, oz] = &mut scratch.adapted;
+        self.rbf.apply_all([px, py, pz], [ox, oy, oz]);
+        for (marker, rest) in self.avatar_markers.iter().enumerate() {
+            for a in 0..3 {
+                out[3 * marker + a] = scratch.adapted[a][marker] - rest[a];
+            }
+        }
+    }
+
+    /// d of every frame: frames x 3P, metres.
+    ///
+    /// # Errors
+    /// [`FrontEndError::Size`] where poses and frames disagree.
+    pub fn take_displacements(
+        &self,
+        take: MarkerFrames<'_>,
+        poses: &[RigidMotion],
+    ) -> Result<Vec<f64>, FrontEndError> {
+        check_columns(take, &self.columns)?;
+        equal("head poses", poses.len(), take.len())?;
+        let width = 3 * self.columns.face.len();
+        let mut out = vec![0.0; take.len() * width];
+        let mut scratch = FrontEndScratch::default();
+        for (frame, (pose, out)) in poses.iter().zip(out.chunks_exact_mut(width)).enumerate() {
+            self.displacements(pose, take.frame(frame), out, &mut scratch);
+        }
+        Ok(out)
+    }
+}
+
+fn head_reference(take: MarkerFrames<'_>, columns: &MarkerColumns) -> Vec<[f64; 3]> {
+    let head = columns.head.as_deref().unwrap_or_default();
+    if take.is_empty() {
+        Vec::new()
+    } else {
+        head.iter().map(|&c| point(take.frame(0), c)).collect()
+    }
+}
+
+fn head_poses(
+    take: MarkerFrames<'_>,
+    columns: &MarkerColumns,
+    reference: &[[f64; 3]],
+    lowpass: Option<&Lowpass>,
+) -> Result<Vec<RigidMotion>, FrontEndError> {
+    let Some(head) = &columns.head else {
+        return Ok(vec![RigidMotion::IDENTITY; take.len()]);
+    };
+    let mut poses = Vec::with_capacity(take.len());
+    for frame in 0..take.len() {
+        let here = take.frame(frame);
+        let pairs = head.iter().map(|&c| point(here, c)).zip(reference.iter().copied());
+        poses.push(align(pairs).map_err(|cause| FrontEndError::Head { frame, cause })?);
+    }
+    if let Some(lowpass) = lowpass {
+        smooth(&mut poses, lowpass);
+    }
+    Ok(poses.iter().map(Pose::motion).collect())
+}
+
+/// Low-pass the motion of the head: its turn as a quaternion, and where it takes the reference's
+/// centroid from.
+fn smooth(poses: &mut [Pose], lowpass: &Lowpass) {
+    // Markers that come and go move the centroid of a frame; the place of one and the same point
+    // of the head does not jump.
+    let Some(anchor) = poses.first().map(|p| p.to_centroid) else { return };
+    let mut tracks: [Vec<f64>; 7] = Default::default();
+    let mut last = [1.0, 0.0, 0.0, 0.0];
+    for pose in poses.iter() {
+        let mut q = pose.quaternion;
+        if (0..4).fold(0.0, |s, k| s + q[k] * last[k]) < 0.0 {
+            q = q.map(|x| -x);
+        }
+        last = q;
+        let at = pose.motion().inverse().apply(anchor);
+        for k in 0..4 {
+            tracks[k].push(q[k]);
+        }
+        for k in 0..3 {
+            tracks[4 + k].push(at[k]);
+        }
+    }
+    for track in &mut tracks {
+        lowpass.filter(track);
+    }
+    for (i, pose) in poses.iter_mut().enumerate() {
+        let q: [f64; 4] = std::array::from_fn(|k| tracks[k][i]);
+        let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+        *pose = Pose {
+            quaternion: q.map(|x| x / length),
+            from_centroid: std::array::from_fn(|k| tracks[4 + k][i]),
+            to_centroid: anchor,
+        };
+    }
+}
+
+fn check_columns(take: MarkerFrames<'_>, columns: &MarkerColumns) -> Result<(), FrontEndError> {
+    let width = 3 * take.columns;
+    if width == 0 || !take.positions.len().is_multiple_of(width) {
+        let found = take.positions.len();
+        let expected = found.div_ceil(width.max(1)) * width;
+        return Err(FrontEndError::Size { what: "numbers of the take", found, expected });
+    }
+    let head = columns.head.as_deref().unwrap_or_default();
+    match columns.face.iter().chain(head).find(|&&c| c >= take.columns) {
+        Some(&c) => Err(FrontEndError::Size {
+            what: "columns of the take",
+            found: take.columns,
+            expected: c + 1,
+        }),
+        None => Ok(()),
+    }
+}
+
+fn equal(what: &'static str, found: usize, expected: usize) -> Result<(), FrontEndError> {
+    if found == expected { Ok(()) } else { Err(FrontEndError::Size { what, found, expected }) }
+}
+
+fn point(frame: &[f64], column: usize) -> [f64; 3] {
+    [frame[3 * column], frame[3 * column + 1], frame[3 * column + 2]]
+}
+
+fn is_seen(p: [f64; 3]) -> bool {
+    !p.iter().any(|x| x.is_nan())
+}
