@@ -58,6 +58,43 @@ pub enum ReadError {
     },
 }
 
+/// Why a capture cannot be written in a format.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WriteError {
+    /// A label the format cannot hold.
+    #[error("marker \"{label}\": {what}; rename the marker")]
+    Label {
+        /// The label.
+        label: String,
+        /// What the format cannot hold.
+        what: &'static str,
+    },
+    /// A position the format cannot hold.
+    #[error("frame {frame}, marker \"{label}\": {value} does not fit; {remedy}")]
+    Position {
+        /// Frame, 0 = the first of the capture.
+        frame: usize,
+        /// Label of the marker.
+        label: String,
+        /// The coordinate.
+        value: f64,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// More of something than the format can count.
+    #[error("{what}: {count}, the format holds {limit}; {remedy}")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How much there is.
+        count: usize,
+        /// How much the format holds.
+        limit: usize,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+}
+
 impl ReadError {
     /// An error at a byte of a binary file.
     pub(crate) fn at_byte(

@@ -14,9 +14,10 @@ mod recording;
 mod text;
 mod unit;
 
-pub use c3d::Processor;
+pub use c3d::{C3dOptions, C3dStorage, Processor, write_c3d};
 pub use capture::{Capture, LengthUnit};
-pub use error::ReadError;
+pub use error::{ReadError, WriteError};
 pub use format::Format;
 pub use read::{ReadOptions, read, read_bytes, read_recording};
 pub use recording::{Event, Recording};
+pub use text::write_csv;

@@ -10,6 +10,8 @@ mod number;
 mod parameters;
 mod points;
 mod read;
+mod write;
 
 pub use number::Processor;
 pub(crate) use read::read;
+pub use write::{C3dOptions, C3dStorage, write_c3d};
