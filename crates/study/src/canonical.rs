@@ -87,9 +87,6 @@ mod tests {
         assert_ne!(hash(r#"{"a":0.3}"#), hash(r#"{"a":0.30000000000000004}"#));
         assert_ne!(hash(r#"{"a":"1"}"#), hash(r#"{"a":1}"#));
         // SHA-256 of the two bytes `{}`, as any tool gives it.
-        assert_eq!(
-            hash("{}"),
-            "44136fa355b3678a1146ad16f7e8649e94fb4fc21fe77e8310c060f61caaff8a"
-        );
+        assert_eq!(hash("{}"), "44136fa355b3678a1146ad16f7e8649e94fb4fc21fe77e8310c060f61caaff8a");
     }
 }

@@ -1,6 +1,16 @@
 //! The study: its file, its order of trials, its flow as a state machine, its responses. Pure.
 
+mod answer;
+mod canonical;
+mod event;
+pub mod flow;
+mod order;
 mod study_file;
+pub mod text;
 pub mod wire;
 
+pub use answer::{AnswerProblem, LONG_TEXT, SHORT_TEXT};
+pub use canonical::{canonical, config_hash};
+pub use event::{Answers, Client, EventKind, PlayLog};
+pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
 pub use study_file::*;

@@ -178,4 +178,8 @@ pub struct Refusal {
     pub message: String,
     /// What to do about it.
     pub remedy: String,
+    /// Sequences concerned: those that are missing (`missing-events`) or that another event holds
+    /// (`event-conflict`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sequences: Vec<u64>,
 }

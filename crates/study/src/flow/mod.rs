@@ -22,7 +22,7 @@ mod view;
 pub use effect::Effect;
 pub use input::Input;
 pub use plan::{Plan, Step, StepKind, TrialStep};
-pub use state::{Live, Play, Progress as Place, Record, State, Status};
+pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
     ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,

@@ -148,3 +148,18 @@ pub fn parse(text: &str) -> Result<serde_json::Value, StudyFileError> {
         message: error.to_string(),
     })
 }
+
+impl Study {
+    /// Every question of the file: demographics, shared ones, those of questionnaires.
+    pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
+        let pages = self.components.values().filter_map(|component| match component {
+            Component::Questionnaire(page) => Some(page),
+            _ => None,
+        });
+        self.demographics
+            .iter()
+            .chain(pages)
+            .flat_map(|page| &page.questions)
+            .chain(&self.questions)
+    }
+}

@@ -181,3 +181,14 @@ pub struct Constraint {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minimum_distance: Option<usize>,
 }
+
+impl ClipSelection {
+    /// Whether the block shows this clip.
+    pub fn takes(&self, clip: &super::Clip) -> bool {
+        (self.ids.is_empty() || self.ids.contains(&clip.id))
+            && self.factors.iter().all(|(factor, wanted)| {
+                clip.factor_text(factor)
+                    .is_some_and(|value| wanted.iter().any(|each| each.to_string() == value))
+            })
+    }
+}

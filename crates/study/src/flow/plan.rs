@@ -1,0 +1,233 @@
+//! What one participant goes through, step by step: fixed at the start of the session.
+
+use std::collections::BTreeMap;
+
+use crate::order::{Draw, OrderError, OrderedItem, option_order, order};
+use crate::study_file::{
+    BreakComponent, Component, OptionOrder, Question, QuestionKind, Questionnaire, Section, Study,
+};
+use crate::text::{Words, words};
+use crate::wire::SessionStarted;
+
+/// What one participant goes through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The study.
+    pub study: Study,
+    /// The session: participant, seed, hash, withdrawal code.
+    pub started: SessionStarted,
+    /// The steps, from the first page to the debriefing.
+    pub steps: Vec<Step>,
+    /// Shown order of options, by question, where it is drawn.
+    pub option_orders: BTreeMap<String, Vec<usize>>,
+}
+
+/// One page or trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// `consent`, `demographics`, `instructions/1`, `faces/joy2.lsts30`...
+    pub id: String,
+    /// What it is.
+    pub kind: StepKind,
+}
+
+/// What a step is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StepKind {
+    /// The agreement.
+    Consent,
+    /// A page of questions; `demographics` is true for those about the participant.
+    Questions {
+        /// The page.
+        page: Questionnaire,
+        /// Whether it asks about the participant.
+        demographics: bool,
+    },
+    /// A page to read.
+    Page(Section),
+    /// A rest.
+    Break(BreakComponent),
+    /// A trial.
+    Trial(TrialStep),
+    /// A page after the last answer.
+    Debriefing(Section),
+}
+
+/// A clip and its questions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialStep {
+    /// Identifier of the clip.
+    pub clip: String,
+    /// The questions, in the order they are asked.
+    pub questions: Vec<Question>,
+    /// A line above the clip.
+    pub instruction: Option<crate::study_file::LocalText>,
+    /// Most replays after the first whole play.
+    pub maximum_replays: Option<u32>,
+    /// Whether it is for practice.
+    pub training: bool,
+    /// 1-based place among the trials, or among the practice trials.
+    pub number: usize,
+    /// Nearest sequence with an identifier, else the component.
+    pub condition: String,
+}
+
+impl Plan {
+    /// The plan of the participant whose session has started.
+    pub fn new(study: Study, started: SessionStarted) -> Result<Self, OrderError> {
+        let draw = Draw {
+            seed: started.seed,
+            config_hash: &started.config_hash,
+            participant: started.participant,
+        };
+        let items = order(&study, draw)?;
+        let mut steps = Vec::new();
+        let mut push = |id: String, kind: StepKind| steps.push(Step { id, kind });
+        if study.consent.is_some() {
+            push("consent".to_owned(), StepKind::Consent);
+        }
+        if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {
+            push("demographics".to_owned(), StepKind::Questions { page, demographics: true });
+        }
+        for (index, section) in study.instructions.iter().enumerate() {
+            push(format!("instructions/{}", index + 1), StepKind::Page(section.clone()));
+        }
+        if let Some(training) = &study.training {
+            for (index, clip) in training.clips.iter().enumerate() {
+                let trial = TrialStep {
+                    clip: clip.clone(),
+                    questions: questions(&study, &training.questions),
+                    instruction: training.instruction.clone(),
+                    maximum_replays: None,
+                    training: true,
+                    number: index + 1,
+                    condition: "training".to_owned(),
+                };
+                push(format!("training/{}/{clip}", index + 1), StepKind::Trial(trial));
+            }
+        }
+        let mut trials = 0;
+        let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
+        for item in &items {
+            match item {
+                OrderedItem::Trial { trial, component, clip, condition } => {
+                    let Some(Component::Trials(block)) = study.components.get(component) else {
+                        continue;
+                    };
+                    trials += 1;
+                    let step = TrialStep {
+                        clip: clip.clone(),
+                        questions: questions(&study, &block.questions),
+                        instruction: block.instruction.clone(),
+                        maximum_replays: block.maximum_replays,
+                        training: false,
+                        number: trials,
+                        condition: condition.clone(),
+                    };
+                    push(trial.clone(), StepKind::Trial(step));
+                }
+                OrderedItem::Component { component } => {
+                    let times = shown.entry(component).or_default();
+                    *times += 1;
+                    let id = match *times {
+                        1 => component.clone(),
+                        again => format!("{component}#{again}"),
+                    };
+                    let kind = match study.components.get(component) {
+                        Some(Component::Questionnaire(page)) => {
+                            StepKind::Questions { page: page.clone(), demographics: false }
+                        }
+                        Some(Component::Page(page)) => StepKind::Page(Section {
+                            heading: page.heading.clone(),
+                            text: page.text.clone(),
+                        }),
+                        Some(Component::Break(rest)) => StepKind::Break(rest.clone()),
+                        Some(Component::Trials(_)) | None => continue,
+                    };
+                    push(id, kind);
+                }
+            }
+        }
+        for (index, section) in study.debriefing.iter().enumerate() {
+            push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()));
+        }
+        let option_orders = option_orders(&study, draw);
+        Ok(Self { study, started, steps, option_orders })
+    }
+
+    /// The step at this place; `None` past the last one.
+    pub fn step(&self, index: usize) -> Option<&Step> {
+        self.steps.get(index)
+    }
+
+    /// How many trials there are, practice or not.
+    pub fn trial_count(&self, training: bool) -> usize {
+        let counts = |step: &&Step| matches!(&step.kind, StepKind::Trial(trial) if trial.training == training);
+        self.steps.iter().filter(counts).count()
+    }
+
+    /// The clips of the next `count` trials from a step on, each once.
+    pub fn clips_from(&self, index: usize, count: usize) -> Vec<String> {
+        let mut clips = Vec::new();
+        for step in self.steps.iter().skip(index) {
+            if let StepKind::Trial(trial) = &step.kind
+                && !clips.contains(&trial.clip)
+            {
+                clips.push(trial.clip.clone());
+                if clips.len() == count {
+                    break;
+                }
+            }
+        }
+        clips
+    }
+
+    /// The fixed texts in a language.
+    pub fn words(&self, language: &str) -> &'static Words {
+        words(language)
+    }
+}
+
+impl Step {
+    /// The questions it asks.
+    pub fn questions(&self) -> &[Question] {
+        match &self.kind {
+            StepKind::Questions { page, .. } => &page.questions,
+            StepKind::Trial(trial) => &trial.questions,
+            _ => &[],
+        }
+    }
+
+    /// The trial, if it is one.
+    pub fn trial(&self) -> Option<&TrialStep> {
+        match &self.kind {
+            StepKind::Trial(trial) => Some(trial),
+            _ => None,
+        }
+    }
+}
+
+fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
+    ids.iter()
+        .filter_map(|id| study.questions.iter().find(|question| question.id == *id).cloned())
+        .collect()
+}
+
+fn option_orders(study: &Study, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
+    study
+        .all_questions()
+        .filter(|question| {
+            let order = match &question.kind {
+                QuestionKind::SingleChoice(choice) => choice.option_order,
+                QuestionKind::MultipleChoice(choice) => choice.option_order,
+                QuestionKind::Ranking(ranking) => ranking.option_order,
+                _ => OptionOrder::Fixed,
+            };
+            order == OptionOrder::Random
+        })
+        .map(|question| {
+            let count = question.kind.options().len();
+            (question.id.clone(), option_order(draw, &question.id, count))
+        })
+        .collect()
+}

@@ -1,0 +1,391 @@
+//! One step of the machine: an input comes in, events and effects go out.
+
+use serde_json::Value;
+
+use super::effect::Effect;
+use super::input::Input;
+use super::plan::{Plan, Step, StepKind, TrialStep};
+use super::state::{Play, State, Status};
+use crate::event::{Answers, Client, EventKind, PlayLog};
+use crate::study_file::Question;
+use crate::wire;
+
+/// How many trials ahead clips are prepared, the one on the screen included.
+const CLIPS_AHEAD: usize = 3;
+/// How long a trial waits for the last answers to reach the server, milliseconds. Beyond that the
+/// participant goes on: the outbox keeps what is not yet sent.
+pub(super) const SAVING_GRACE_MS: f64 = 3_000.0;
+/// Unexpected inputs that are recorded; further ones are only ignored, so that a page gone wrong
+/// cannot fill the disk.
+const UNEXPECTED_RECORDED: u32 = 100;
+
+/// One step of the machine. `now_ms` is the page's clock.
+pub fn update(plan: &Plan, state: State, input: Input, now_ms: f64) -> (State, Vec<Effect>) {
+    let mut turn = Turn { plan, state, effects: Vec::new(), now_ms };
+    turn.state.live.now_ms = now_ms;
+    if !turn.take(&input) {
+        turn.unexpected(&input);
+    }
+    (turn.state, turn.effects)
+}
+
+struct Turn<'a> {
+    plan: &'a Plan,
+    state: State,
+    effects: Vec<Effect>,
+    now_ms: f64,
+}
+
+impl<'a> Turn<'a> {
+    /// Takes an input; false if it does not fit the state.
+    fn take(&mut self, input: &Input) -> bool {
+        match input {
+            Input::Tick => true,
+            Input::Acknowledged { stored } => self.acknowledged(*stored),
+            Input::ReceiptArrived(receipt) => {
+                self.state.live.receipt = Some(receipt.clone());
+                true
+            }
+            Input::WithdrawalConfirmed => {
+                self.state.live.withdrawal_confirmed = true;
+                true
+            }
+            Input::ClipProgress { clip, fraction } => {
+                self.state.live.progress.insert(clip.clone(), fraction.clamp(0.0, 1.0));
+                true
+            }
+            Input::ClipPrepared { clip } => {
+                self.state.live.progress.remove(clip);
+                self.state.live.failed.remove(clip);
+                self.state.live.prepared.insert(clip.clone());
+                true
+            }
+            Input::Withdraw => self.withdraw(),
+            // After the end nothing more is recorded.
+            Input::Resumed(_) if self.state.record.status != Status::Active => {
+                self.resumed_at_end()
+            }
+            _ if self.state.record.status != Status::Active => true,
+            Input::Opened(client) => self.opened(client),
+            // Only an opened session can go on.
+            _ if self.state.record.events == 0 => true,
+            Input::Resumed(client) => self.resumed(client),
+            Input::ChooseLanguage(language) => self.choose_language(language),
+            Input::Consent => self.consent(),
+            Input::Decline => self.decline(),
+            Input::Shown { step } => self.shown(step),
+            Input::Answer { question, value } => self.answer(question, value),
+            Input::Next => self.next(),
+            Input::Play => self.play(),
+            Input::Played(log) => self.played(log),
+            Input::ClipFailed { clip, message } => self.clip_failed(clip, message),
+            Input::Retry => self.retry(),
+            Input::FocusLost => self.focus(false),
+            Input::FocusGained => self.focus(true),
+            Input::Fullscreen(on) => {
+                self.record(EventKind::Fullscreen { on: *on });
+                true
+            }
+        }
+    }
+
+    /// Makes an event: it is applied, and stored under the next number.
+    fn record(&mut self, kind: EventKind) {
+        let body = serde_json::to_value(&kind).unwrap_or(Value::Null);
+        let sequence = self.state.record.events;
+        self.state.record.apply(self.plan, &kind, self.now_ms);
+        self.effects.push(Effect::Store(wire::Event { sequence, at_ms: self.now_ms, body }));
+    }
+
+    fn unexpected(&mut self, input: &Input) {
+        if self.state.record.unexpected < UNEXPECTED_RECORDED {
+            let step = self.step().map_or("end", |step| &step.id).to_owned();
+            self.record(EventKind::Unexpected { input: input.name().to_owned(), step });
+        }
+    }
+
+    fn step(&self) -> Option<&'a Step> {
+        self.plan.step(self.state.record.step)
+    }
+
+    fn trial(&self) -> Option<(&'a Step, &'a TrialStep)> {
+        self.step().and_then(|step| step.trial().map(|trial| (step, trial)))
+    }
+
+    fn opened(&mut self, client: &Client) -> bool {
+        if self.state.record.events > 0 {
+            return false;
+        }
+        let language = self.state.record.language.clone();
+        self.record(EventKind::Opened { client: client.clone(), language });
+        self.arrive();
+        true
+    }
+
+    fn resumed(&mut self, client: &Client) -> bool {
+        self.state.live = super::Live { now_ms: self.now_ms, ..Default::default() };
+        self.record(EventKind::Resumed { client: client.clone() });
+        self.arrive();
+        true
+    }
+
+    /// The session was over when the page was opened again: ask for the receipt anew.
+    fn resumed_at_end(&mut self) -> bool {
+        self.effects.push(Effect::Flush);
+        if self.state.record.status == Status::Withdrawn {
+            self.state.live.withdrawing = true;
+            self.effects.push(Effect::Withdraw);
+        } else if self.state.record.status == Status::Finished {
+            self.state.live.completing = true;
+            self.effects.push(Effect::Complete { events: self.state.record.events });
+        }
+        true
+    }
+
+    /// A step stands there: what it and the next trials need is prepared, what is behind is sent.
+    fn arrive(&mut self) {
+        self.state.live.show_problems = false;
+        self.state.live.play = Play::Still;
+        let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
+        if !clips.is_empty() {
+            self.effects.push(Effect::PrepareClips(clips));
+        }
+        if self.step().is_none() && self.state.record.status == Status::Active {
+            self.record(EventKind::Finished);
+        }
+        self.effects.push(Effect::Flush);
+        self.effects.push(Effect::FocusHeading);
+    }
+
+    fn choose_language(&mut self, language: &str) -> bool {
+        if !self.plan.study.languages.iter().any(|known| known == language) {
+            return false;
+        }
+        if self.state.record.language != language {
+            self.record(EventKind::LanguageChosen { language: language.to_owned() });
+        }
+        true
+    }
+
+    fn consent(&mut self) -> bool {
+        let Some(consent) = self.plan.study.consent.as_ref().filter(|_| self.is_at_consent())
+        else {
+            return false;
+        };
+        let language = self.state.record.language.clone();
+        self.record(EventKind::Consented { version: consent.version.clone(), language });
+        self.arrive();
+        true
+    }
+
+    fn decline(&mut self) -> bool {
+        if !self.is_at_consent() {
+            return false;
+        }
+        self.record(EventKind::Declined);
+        self.effects.push(Effect::Flush);
+        self.effects.push(Effect::FocusHeading);
+        true
+    }
+
+    fn is_at_consent(&self) -> bool {
+        self.step().is_some_and(|step| step.kind == StepKind::Consent)
+    }
+
+    fn shown(&mut self, step: &str) -> bool {
+        if self.step().is_none_or(|here| here.id != step) {
+            return false;
+        }
+        self.record(EventKind::PageShown { step: step.to_owned() });
+        true
+    }
+
+    fn answer(&mut self, question: &str, value: &Value) -> bool {
+        let Some(step) = self.step() else { return false };
+        let asked = shown_questions(step, &self.state).any(|each| each.id == question);
+        let too_soon = step.trial().is_some() && self.state.record.trial.plays == 0;
+        if !asked || too_soon {
+            return false;
+        }
+        if self.state.record.draft(question).unwrap_or(&Value::Null) != value {
+            self.record(EventKind::Answered {
+                step: step.id.clone(),
+                question: question.to_owned(),
+                value: value.clone(),
+            });
+        }
+        true
+    }
+
+    fn next(&mut self) -> bool {
+        let Some(step) = self.step() else { return false };
+        if step.kind == StepKind::Consent {
+            return false;
+        }
+        if !can_submit(self.plan, &self.state) {
+            let watched = step.trial().is_none() || self.state.record.trial.plays > 0;
+            let may_answer = watched && self.state.live.play == Play::Still;
+            self.state.live.show_problems = may_answer && !step.questions().is_empty();
+            // A break that has not lasted long enough is no mistake either.
+            return may_answer;
+        }
+        let answers: Answers = shown_questions(step, &self.state)
+            .filter_map(|question| {
+                let value = self.state.record.draft(&question.id)?;
+                Some((question.id.clone(), value.clone()))
+            })
+            .collect();
+        match step.trial() {
+            None => self.record(EventKind::PageFinished { step: step.id.clone(), answers }),
+            Some(trial) => {
+                let progress = &self.state.record.trial;
+                let onset_ms = progress.onset_ms.unwrap_or(self.now_ms);
+                let replays = progress.plays.saturating_sub(1);
+                self.record(EventKind::TrialFinished {
+                    step: step.id.clone(),
+                    clip: trial.clip.clone(),
+                    answers,
+                    rt_ms: self.now_ms - onset_ms,
+                    replays,
+                });
+            }
+        }
+        self.arrive();
+        true
+    }
+
+    fn play(&mut self) -> bool {
+        let Some((step, trial)) = self.trial() else { return false };
+        if !can_play(self.plan, &self.state) {
+            return false;
+        }
+        if !self.state.record.trial.started {
+            let (step, clip) = (step.id.clone(), trial.clip.clone());
+            self.record(EventKind::TrialStarted { step, clip });
+        }
+        self.state.live.play = Play::Running;
+        self.effects.push(Effect::PlayClip(trial.clip.clone()));
+        true
+    }
+
+    fn played(&mut self, log: &PlayLog) -> bool {
+        let Some((step, _)) = self.trial() else { return false };
+        if self.state.live.play != Play::Running {
+            return false;
+        }
+        self.state.live.play = Play::Still;
+        self.record(EventKind::TrialPlayed { step: step.id.clone(), log: log.clone() });
+        true
+    }
+
+    fn clip_failed(&mut self, clip: &str, message: &str) -> bool {
+        self.state.live.prepared.remove(clip);
+        self.state.live.progress.remove(clip);
+        self.state.live.failed.insert(clip.to_owned(), message.to_owned());
+        if self.trial().is_some_and(|(_, trial)| trial.clip == clip) {
+            self.state.live.play = Play::Still;
+        }
+        let (clip, message) = (clip.to_owned(), message.to_owned());
+        self.record(EventKind::ClipFailed { clip, message });
+        true
+    }
+
+    fn retry(&mut self) -> bool {
+        let Some((_, trial)) = self.trial() else { return false };
+        if self.state.live.failed.remove(&trial.clip).is_none() {
+            return false;
+        }
+        let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
+        self.effects.push(Effect::PrepareClips(clips));
+        true
+    }
+
+    fn focus(&mut self, focused: bool) -> bool {
+        if self.state.record.focused != focused {
+            self.record(if focused { EventKind::FocusGained } else { EventKind::FocusLost });
+        }
+        true
+    }
+
+    fn withdraw(&mut self) -> bool {
+        if self.state.live.withdrawing {
+            return true;
+        }
+        if self.state.record.status == Status::Active {
+            self.record(EventKind::Withdrawn);
+        }
+        self.state.live.withdrawing = true;
+        self.state.live.play = Play::Still;
+        self.effects.extend([Effect::StopClip, Effect::Flush, Effect::Withdraw]);
+        self.effects.push(Effect::FocusHeading);
+        true
+    }
+
+    fn acknowledged(&mut self, stored: u64) -> bool {
+        self.state.live.stored = self.state.live.stored.max(stored);
+        let finished = self.state.record.status == Status::Finished;
+        let everything = self.state.live.stored >= self.state.record.events;
+        if finished && everything && !self.state.live.completing {
+            self.state.live.completing = true;
+            self.effects.push(Effect::Complete { events: self.state.record.events });
+        }
+        true
+    }
+}
+
+/// The questions of a step that are asked, given the answers so far.
+pub(super) fn shown_questions<'a>(
+    step: &'a Step,
+    state: &'a State,
+) -> impl Iterator<Item = &'a Question> {
+    step.questions()
+        .iter()
+        .filter(|question| question.is_shown(&state.record.drafts, &state.record.answers))
+}
+
+/// Whether the button that leads on does so.
+pub(super) fn can_submit(plan: &Plan, state: &State) -> bool {
+    let Some(step) = plan.step(state.record.step) else { return false };
+    let answered = shown_questions(step, state)
+        .all(|question| question.accept(state.record.draft(&question.id)).is_ok());
+    match &step.kind {
+        StepKind::Consent => false,
+        StepKind::Page(_) | StepKind::Debriefing(_) => true,
+        StepKind::Break(_) => break_seconds_left(plan, state) == 0,
+        StepKind::Questions { .. } => answered,
+        StepKind::Trial(_) => {
+            answered && state.record.trial.plays > 0 && state.live.play == Play::Still
+        }
+    }
+}
+
+/// Seconds until the break on the screen may end.
+pub(super) fn break_seconds_left(plan: &Plan, state: &State) -> u64 {
+    let Some(Step { kind: StepKind::Break(rest), .. }) = plan.step(state.record.step) else {
+        return 0;
+    };
+    let passed = (state.live.now_ms - state.record.entered_ms) / 1000.0;
+    (rest.minimum_seconds - passed).ceil().max(0.0) as u64
+}
+
+/// Whether the answers before this trial are still on their way, and it is worth waiting for them.
+pub(super) fn is_saving(state: &State) -> bool {
+    !state.record.trial.started
+        && state.live.stored < state.record.checkpoint
+        && state.live.now_ms - state.record.entered_ms < SAVING_GRACE_MS
+}
+
+/// Whether the clip on the screen may be played, or played again.
+pub(super) fn can_play(plan: &Plan, state: &State) -> bool {
+    let Some(trial) = plan.step(state.record.step).and_then(Step::trial) else { return false };
+    let replays_left = match (state.record.trial.plays, trial.maximum_replays) {
+        (0, _) | (_, None) => true,
+        (plays, Some(most)) => plays <= most,
+    };
+    state.record.status == Status::Active
+        && state.live.play == Play::Still
+        && state.live.prepared.contains(&trial.clip)
+        && !state.live.failed.contains_key(&trial.clip)
+        && replays_left
+        && !is_saving(state)
+}

@@ -1,0 +1,341 @@
+//! The order of trials: `(seed, configuration hash, participant number)` -> the exact order.
+//!
+//! Every draw comes from a stream named by its purpose, so the order is the same natively and in
+//! the browser, today and later, and a new kind of draw never shifts an old one.
+//!
+//! A constrained random order is first sought by shuffling until an order fits, which makes every
+//! order that fits equally likely; where few orders fit, it is built step by step with backtracking,
+//! within a budget; where that fails too, the order falls back on the one that `mimique check` found
+//! to prove that the constraints can be met. So a study that passed the check never hangs and never
+//! breaks a constraint.
+
+mod constrained;
+mod latin_square;
+mod stream;
+
+use std::collections::BTreeMap;
+
+use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
+use constrained::{Search, arrange};
+pub use stream::Stream;
+
+/// One item of a participant's order.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[serde(untagged)]
+pub enum OrderedItem {
+    /// A trial.
+    Trial {
+        /// Identifier of the trial: `faces/joy2.lsts30`, with `#2` at a second showing.
+        trial: String,
+        /// Name of its component.
+        component: String,
+        /// Its clip.
+        clip: String,
+        /// Identifier of the nearest sequence that has one, else the component's name.
+        condition: String,
+    },
+    /// Any other component.
+    Component {
+        /// Name of the component.
+        component: String,
+    },
+}
+
+impl OrderedItem {
+    fn is_trial(&self) -> bool {
+        matches!(self, Self::Trial { .. })
+    }
+}
+
+/// There is no such order.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum OrderError {
+    /// The constraints of a sequence cannot be met.
+    #[error(
+        "{pointer}/constraints: no order of its {parts} parts meets them; loosen or drop one of them"
+    )]
+    Unsatisfiable {
+        /// JSON pointer of the sequence.
+        pointer: String,
+        /// Number of parts.
+        parts: usize,
+    },
+    /// Whether the constraints can be met was not found out in the time given.
+    #[error(
+        "{pointer}/constraints: no order of its {parts} parts was found within the search's budget; loosen one of them"
+    )]
+    NotFound {
+        /// JSON pointer of the sequence.
+        pointer: String,
+        /// Number of parts.
+        parts: usize,
+    },
+    /// A sequence names what is not there.
+    #[error("{pointer}: there is no component {name:?}; name one of `components`")]
+    UnknownComponent {
+        /// JSON pointer of the name.
+        pointer: String,
+        /// The name.
+        name: String,
+    },
+}
+
+/// Whose order is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Draw<'a> {
+    /// Seed of the study.
+    pub seed: u64,
+    /// Hash of the canonical study file.
+    pub config_hash: &'a str,
+    /// Participant number.
+    pub participant: u64,
+}
+
+impl<'a> Draw<'a> {
+    /// The participant's own stream for a purpose.
+    pub fn stream(&self, purpose: &str) -> Stream {
+        Stream::new(self.seed, self.config_hash, Some(self.participant), purpose)
+    }
+
+    /// The stream for a purpose that all participants share.
+    pub fn shared_stream(&self, purpose: &str) -> Stream {
+        Stream::new(self.seed, self.config_hash, None, purpose)
+    }
+}
+
+/// The order that a participant gets.
+pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
+    let clips = study.clips();
+    let by_id = clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
+    let context = Context { study, clips: &clips, by_id, draw };
+    context.sequence(&study.sequence, "/sequence", None)
+}
+
+/// The order in which the options of a question are shown, as indices into the file's list.
+pub fn option_order(draw: Draw<'_>, question: &str, options: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..options).collect();
+    draw.stream(&format!("options/{question}")).shuffle(&mut order);
+    order
+}
+
+/// How many participants it takes until the samples of every sequence have come round; 1 without
+/// `numSamples`. Whether constraints can be met depends on nothing else of the participant number.
+pub(crate) fn sample_period(study: &Study) -> u64 {
+    fn of(study: &Study, clips: &[Clip], sequence: &Sequence) -> u64 {
+        let mut parts = 0_u64;
+        let mut period = 1_u64;
+        for item in &sequence.components {
+            match item {
+                SequenceItem::Component(name) => {
+                    parts += match study.components.get(name) {
+                        Some(Component::Trials(trials)) => {
+                            let chosen = clips.iter().filter(|clip| trials.clips.takes(clip));
+                            chosen.count() as u64 * u64::from(trials.repetitions)
+                        }
+                        _ => 1,
+                    };
+                }
+                SequenceItem::Sequence(nested) => {
+                    parts += 1;
+                    period = least_common_multiple(period, of(study, clips, nested));
+                }
+            }
+        }
+        match sequence.num_samples {
+            Some(samples) if (samples as u64) < parts => {
+                let windows = parts / greatest_common_divisor(parts, samples.max(1) as u64);
+                least_common_multiple(period, windows)
+            }
+            _ => period,
+        }
+    }
+    of(study, &study.clips(), &study.sequence)
+}
+
+fn greatest_common_divisor(left: u64, right: u64) -> u64 {
+    if right == 0 { left.max(1) } else { greatest_common_divisor(right, left % right) }
+}
+
+fn least_common_multiple(left: u64, right: u64) -> u64 {
+    (left / greatest_common_divisor(left, right)).saturating_mul(right)
+}
+
+struct Context<'a> {
+    study: &'a Study,
+    clips: &'a [Clip],
+    by_id: BTreeMap<&'a str, &'a Clip>,
+    draw: Draw<'a>,
+}
+
+impl Context<'_> {
+    fn sequence(
+        &self,
+        sequence: &Sequence,
+        pointer: &str,
+        enclosing: Option<&str>,
+    ) -> Result<Vec<OrderedItem>, OrderError> {
+        let condition = sequence.id.as_deref().or(enclosing);
+        let mut parts = Vec::new();
+        for (index, item) in sequence.components.iter().enumerate() {
+            let place = format!("{pointer}/components/{index}");
+            match item {
+                SequenceItem::Component(name) => {
+                    parts.extend(self.component(name, &place, condition)?);
+                }
+                SequenceItem::Sequence(nested) => {
+                    parts.push(self.sequence(nested, &place, condition)?);
+                }
+            }
+        }
+        if let Some(samples) = sequence.num_samples {
+            parts = self.sample(parts, samples, pointer);
+        }
+        let order = self.arrangement(sequence, &parts, pointer)?;
+        let mut slots: Vec<Option<Vec<OrderedItem>>> = parts.into_iter().map(Some).collect();
+        let arranged =
+            order.into_iter().filter_map(|index| slots[index].take()).flatten().collect();
+        Ok(with_interruptions(sequence, arranged))
+    }
+
+    /// The parts that a component's name stands for: its trials, or itself.
+    fn component(
+        &self,
+        name: &str,
+        pointer: &str,
+        condition: Option<&str>,
+    ) -> Result<Vec<Vec<OrderedItem>>, OrderError> {
+        let Some(component) = self.study.components.get(name) else {
+            return Err(OrderError::UnknownComponent {
+                pointer: pointer.to_owned(),
+                name: name.to_owned(),
+            });
+        };
+        let Component::Trials(trials) = component else {
+            return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);
+        };
+        let mut parts = Vec::new();
+        for showing in 1..=trials.repetitions {
+            for clip in self.clips.iter().filter(|clip| trials.clips.takes(clip)) {
+                let mut trial = format!("{name}/{}", clip.id);
+                if showing > 1 {
+                    trial = format!("{trial}#{showing}");
+                }
+                parts.push(vec![OrderedItem::Trial {
+                    trial,
+                    component: name.to_owned(),
+                    clip: clip.id.clone(),
+                    condition: condition.unwrap_or(name).to_owned(),
+                }]);
+            }
+        }
+        Ok(parts)
+    }
+
+    /// `samples` of the parts, each part equally often over participants: a window that moves round
+    /// a circle on which the parts were shuffled once for the whole study.
+    fn sample(
+        &self,
+        parts: Vec<Vec<OrderedItem>>,
+        samples: usize,
+        pointer: &str,
+    ) -> Vec<Vec<OrderedItem>> {
+        let count = parts.len();
+        if samples >= count {
+            return parts;
+        }
+        let mut circle: Vec<usize> = (0..count).collect();
+        self.draw.shared_stream(&format!("sample{pointer}")).shuffle(&mut circle);
+        let start = (u128::from(self.draw.participant) * samples as u128 % count as u128) as usize;
+        let chosen: Vec<usize> =
+            (0..samples).map(|offset| circle[(start + offset) % count]).collect();
+        let mut parts: Vec<Option<Vec<OrderedItem>>> = parts.into_iter().map(Some).collect();
+        let mut chosen_in_order = chosen;
+        chosen_in_order.sort_unstable();
+        chosen_in_order.into_iter().filter_map(|index| parts[index].take()).collect()
+    }
+
+    /// The parts' order as indices.
+    fn arrangement(
+        &self,
+        sequence: &Sequence,
+        parts: &[Vec<OrderedItem>],
+        pointer: &str,
+    ) -> Result<Vec<usize>, OrderError> {
+        let count = parts.len();
+        match sequence.order {
+            OrderRule::Fixed => Ok((0..count).collect()),
+            OrderRule::LatinSquare => {
+                let mut labels: Vec<usize> = (0..count).collect();
+                self.draw.shared_stream(&format!("latin square{pointer}")).shuffle(&mut labels);
+                let row = latin_square::williams_row(count, self.draw.participant);
+                Ok(row.into_iter().map(|index| labels[index]).collect())
+            }
+            OrderRule::Random => {
+                let mut stream = self.draw.stream(&format!("order{pointer}"));
+                let rules = sequence
+                    .constraints
+                    .iter()
+                    .map(|constraint| self.rule(constraint, parts))
+                    .collect();
+                arrange(count, rules, &mut stream).map_err(|search| match search {
+                    Search::Impossible => {
+                        OrderError::Unsatisfiable { pointer: pointer.to_owned(), parts: count }
+                    }
+                    Search::OutOfBudget => {
+                        OrderError::NotFound { pointer: pointer.to_owned(), parts: count }
+                    }
+                })
+            }
+        }
+    }
+
+    /// A constraint with each part's value as a number; only single trials have one.
+    fn rule(
+        &self,
+        constraint: &crate::study_file::Constraint,
+        parts: &[Vec<OrderedItem>],
+    ) -> constrained::Rule {
+        let mut numbers: BTreeMap<String, u32> = BTreeMap::new();
+        let values = parts
+            .iter()
+            .map(|part| {
+                let [OrderedItem::Trial { clip, .. }] = part.as_slice() else { return None };
+                let value = self.by_id.get(clip.as_str())?.factor_text(&constraint.factor)?;
+                let next = numbers.len() as u32;
+                Some(*numbers.entry(value).or_insert(next))
+            })
+            .collect();
+        constrained::Rule {
+            values,
+            at_most_alike: constraint.at_most_alike.unwrap_or(usize::MAX).max(1),
+            minimum_distance: constraint.minimum_distance.unwrap_or(1).max(1),
+        }
+    }
+}
+
+/// Puts the interruptions in, counting trials; none stands after the last trial.
+fn with_interruptions(sequence: &Sequence, items: Vec<OrderedItem>) -> Vec<OrderedItem> {
+    if sequence.interruptions.is_empty() {
+        return items;
+    }
+    let total = items.iter().filter(|item| item.is_trial()).count();
+    let mut result = Vec::with_capacity(items.len());
+    let mut done = 0;
+    for item in items {
+        let is_trial = item.is_trial();
+        result.push(item);
+        if !is_trial {
+            continue;
+        }
+        done += 1;
+        for interruption in &sequence.interruptions {
+            let spacing = interruption.spacing.max(1);
+            let first = interruption.first_location.unwrap_or(spacing).max(1);
+            if done < total && done >= first && (done - first).is_multiple_of(spacing) {
+                let component = interruption.component.clone();
+                result.push(OrderedItem::Component { component });
+            }
+        }
+    }
+    result
+}

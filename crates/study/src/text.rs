@@ -1,0 +1,275 @@
+//! The words of the pages that no study file writes: buttons, messages, in English and French.
+
+use crate::answer::AnswerProblem;
+
+/// Every fixed text of the pages in one language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Words {
+    /// Its language code.
+    pub language: &'static str,
+    /// The language's own name.
+    pub language_name: &'static str,
+    /// Button: agree to take part.
+    pub agree: &'static str,
+    /// Button: do not agree.
+    pub decline: &'static str,
+    /// Button: next page.
+    pub next: &'static str,
+    /// Button: begin.
+    pub begin: &'static str,
+    /// Button: send the answers of a trial.
+    pub submit: &'static str,
+    /// Button: play.
+    pub play: &'static str,
+    /// Button: play again.
+    pub play_again: &'static str,
+    /// Button: try again.
+    pub retry: &'static str,
+    /// Button: stop taking part.
+    pub withdraw: &'static str,
+    /// Question before stopping.
+    pub withdraw_question: &'static str,
+    /// Button: yes, stop and delete.
+    pub withdraw_yes: &'static str,
+    /// Button: no, go on.
+    pub withdraw_no: &'static str,
+    /// Label of the choice of language.
+    pub choose_language: &'static str,
+    /// Marks an answer that may be left out.
+    pub optional: &'static str,
+    /// Heading of the consent page's line on age.
+    pub age: &'static str,
+    /// Heading of how long answers are kept.
+    pub retention: &'static str,
+    /// Heading of the addresses.
+    pub contact: &'static str,
+    /// Who leads the study.
+    pub investigator: &'static str,
+    /// The ethics board.
+    pub ethics_board: &'static str,
+    /// Heading of the questions about the participant, if the study gives none.
+    pub about_you: &'static str,
+    /// The clip is being prepared.
+    pub loading: &'static str,
+    /// The last answer is being stored.
+    pub saving: &'static str,
+    /// Ready to be played.
+    pub ready: &'static str,
+    /// Being played.
+    pub playing: &'static str,
+    /// Watch first, then answer.
+    pub watch_first: &'static str,
+    /// Answer now.
+    pub answer_now: &'static str,
+    /// A play was cut short.
+    pub play_interrupted: &'static str,
+    /// A clip failed.
+    pub clip_failed: &'static str,
+    /// Heading while the last answers are sent.
+    pub sending: &'static str,
+    /// Below it.
+    pub sending_text: &'static str,
+    /// Heading of the last page.
+    pub thanks: &'static str,
+    /// Text of the last page.
+    pub thanks_text: &'static str,
+    /// Label of the completion code.
+    pub completion_code: &'static str,
+    /// Link back to the recruiting site.
+    pub go_back: &'static str,
+    /// Label of the receipt.
+    pub receipt: &'static str,
+    /// Label of the withdrawal code.
+    pub withdrawal_code: &'static str,
+    /// What the withdrawal code is for.
+    pub withdrawal_code_text: &'static str,
+    /// Heading after declining.
+    pub declined: &'static str,
+    /// Text after declining.
+    pub declined_text: &'static str,
+    /// Heading while answers are deleted.
+    pub withdrawing: &'static str,
+    /// Heading after withdrawal.
+    pub withdrawn: &'static str,
+    /// Text after withdrawal.
+    pub withdrawn_text: &'static str,
+    /// No script, no network, no graphics: something this page needs is missing.
+    pub cannot_run: &'static str,
+    /// The connection is lost; answers are kept.
+    pub offline: &'static str,
+}
+
+/// English.
+const ENGLISH: Words = Words {
+    language: "en",
+    language_name: "English",
+    agree: "I agree to take part",
+    decline: "I do not want to take part",
+    next: "Next",
+    begin: "Begin",
+    submit: "Send and go on",
+    play: "Play the clip",
+    play_again: "Play again",
+    retry: "Try again",
+    withdraw: "Stop and withdraw",
+    withdraw_question: "Do you want to stop now and have all your answers deleted?",
+    withdraw_yes: "Yes, stop and delete my answers",
+    withdraw_no: "No, go on",
+    choose_language: "Language",
+    optional: "optional",
+    age: "Age",
+    retention: "How long answers are kept",
+    contact: "Contact",
+    investigator: "Investigator",
+    ethics_board: "Ethics board",
+    about_you: "About you",
+    loading: "The clip is being prepared",
+    saving: "Your answers are being saved",
+    ready: "The clip is ready",
+    playing: "The clip is playing",
+    watch_first: "Please watch the whole clip before you answer.",
+    answer_now: "Please answer the questions.",
+    play_interrupted: "The clip was interrupted. Please play it again.",
+    clip_failed: "This clip could not be shown.",
+    sending: "Your last answers are being sent",
+    sending_text: "Please keep this page open until it says that everything has arrived.",
+    thanks: "Thank you",
+    thanks_text: "All your answers have arrived. You can close this page now.",
+    completion_code: "Completion code",
+    go_back: "Go back to the site that sent you here",
+    receipt: "Receipt",
+    withdrawal_code: "Withdrawal code",
+    withdrawal_code_text: "Keep this code if you might want to have your answers deleted later: give it to the investigator.",
+    declined: "You chose not to take part",
+    declined_text: "Nothing more is recorded. You can close this page now.",
+    withdrawing: "Your answers are being deleted",
+    withdrawn: "You have withdrawn",
+    withdrawn_text: "Your answers have been deleted. You can close this page now.",
+    cannot_run: "This page cannot run in this browser.",
+    offline: "The connection is lost. Your answers are kept here and will be sent when it is back.",
+};
+
+/// French.
+const FRENCH: Words = Words {
+    language: "fr",
+    language_name: "français",
+    agree: "J’accepte de participer",
+    decline: "Je ne souhaite pas participer",
+    next: "Suivant",
+    begin: "Commencer",
+    submit: "Envoyer et continuer",
+    play: "Voir l’extrait",
+    play_again: "Revoir l’extrait",
+    retry: "Réessayer",
+    withdraw: "Arrêter et me retirer",
+    withdraw_question: "Voulez-vous arrêter maintenant et faire effacer toutes vos réponses ?",
+    withdraw_yes: "Oui, arrêter et effacer mes réponses",
+    withdraw_no: "Non, continuer",
+    choose_language: "Langue",
+    optional: "facultatif",
+    age: "Âge",
+    retention: "Durée de conservation des réponses",
+    contact: "Contact",
+    investigator: "Responsable de l’étude",
+    ethics_board: "Comité d’éthique",
+    about_you: "À propos de vous",
+    loading: "L’extrait se prépare",
+    saving: "Vos réponses sont en cours d’enregistrement",
+    ready: "L’extrait est prêt",
+    playing: "L’extrait est en cours de lecture",
+    watch_first: "Veuillez regarder l’extrait en entier avant de répondre.",
+    answer_now: "Veuillez répondre aux questions.",
+    play_interrupted: "La lecture a été interrompue. Veuillez revoir l’extrait.",
+    clip_failed: "Cet extrait n’a pas pu être affiché.",
+    sending: "Vos dernières réponses sont en cours d’envoi",
+    sending_text: "Veuillez garder cette page ouverte jusqu’à ce qu’elle indique que tout est arrivé.",
+    thanks: "Merci",
+    thanks_text: "Toutes vos réponses sont arrivées. Vous pouvez fermer cette page.",
+    completion_code: "Code de fin",
+    go_back: "Revenir au site qui vous a adressé ici",
+    receipt: "Reçu",
+    withdrawal_code: "Code de retrait",
+    withdrawal_code_text: "Gardez ce code si vous pensez vouloir faire effacer vos réponses plus tard : donnez-le au responsable de l’étude.",
+    declined: "Vous avez choisi de ne pas participer",
+    declined_text: "Rien d’autre n’est enregistré. Vous pouvez fermer cette page.",
+    withdrawing: "Vos réponses sont en cours d’effacement",
+    withdrawn: "Vous vous êtes retiré(e) de l’étude",
+    withdrawn_text: "Vos réponses ont été effacées. Vous pouvez fermer cette page.",
+    cannot_run: "Cette page ne peut pas fonctionner dans ce navigateur.",
+    offline: "La connexion est perdue. Vos réponses sont gardées ici et seront envoyées à son retour.",
+};
+
+/// Languages whose fixed texts are complete.
+pub const LANGUAGES: [&str; 2] = ["en", "fr"];
+
+/// The fixed texts of a language; English where there are none.
+pub fn words(language: &str) -> &'static Words {
+    if language.split(['-', '_']).next() == Some("fr") { &FRENCH } else { &ENGLISH }
+}
+
+impl Words {
+    /// "Clip 3 of 12".
+    pub fn trial_of(&self, number: usize, of: usize) -> String {
+        match self.language {
+            "fr" => format!("Extrait {number} sur {of}"),
+            _ => format!("Clip {number} of {of}"),
+        }
+    }
+
+    /// "Practice clip 1 of 2".
+    pub fn training_of(&self, number: usize, of: usize) -> String {
+        match self.language {
+            "fr" => format!("Extrait d’entraînement {number} sur {of}"),
+            _ => format!("Practice clip {number} of {of}"),
+        }
+    }
+
+    /// "You must be at least 18 years old to take part."
+    pub fn minimum_age(&self, years: u32) -> String {
+        match self.language {
+            "fr" => format!("Il faut avoir au moins {years} ans pour participer."),
+            _ => format!("You must be at least {years} years old to take part."),
+        }
+    }
+
+    /// "You can go on in 12 seconds."
+    pub fn wait_seconds(&self, seconds: u64) -> String {
+        match self.language {
+            "fr" => format!("Vous pourrez continuer dans {seconds} s."),
+            _ => format!("You can go on in {seconds} s."),
+        }
+    }
+
+    /// What to mend in an answer.
+    pub fn problem(&self, problem: &AnswerProblem) -> String {
+        let french = self.language == "fr";
+        match problem {
+            AnswerProblem::Missing if french => "Veuillez répondre à cette question.".to_owned(),
+            AnswerProblem::Missing => "Please answer this question.".to_owned(),
+            AnswerProblem::NotAnOption if french => "Veuillez choisir une réponse.".to_owned(),
+            AnswerProblem::NotAnOption => "Please choose an answer.".to_owned(),
+            AnswerProblem::NotANumber if french => "Veuillez écrire un nombre.".to_owned(),
+            AnswerProblem::NotANumber => "Please write a number.".to_owned(),
+            AnswerProblem::NotWhole if french => "Veuillez écrire un nombre entier.".to_owned(),
+            AnswerProblem::NotWhole => "Please write a whole number.".to_owned(),
+            AnswerProblem::TooLow(least) if french => format!("Le minimum est {least}."),
+            AnswerProblem::TooLow(least) => format!("The lowest number is {least}."),
+            AnswerProblem::TooHigh(most) if french => format!("Le maximum est {most}."),
+            AnswerProblem::TooHigh(most) => format!("The highest number is {most}."),
+            AnswerProblem::TooLong(most) if french => {
+                format!("Veuillez ne pas dépasser {most} caractères.")
+            }
+            AnswerProblem::TooLong(most) => format!("Please write at most {most} characters."),
+            AnswerProblem::TooFew(least) if french => {
+                format!("Veuillez en choisir au moins {least}.")
+            }
+            AnswerProblem::TooFew(least) => format!("Please choose at least {least}."),
+            AnswerProblem::TooMany(most) if french => {
+                format!("Veuillez en choisir au plus {most}.")
+            }
+            AnswerProblem::TooMany(most) => format!("Please choose at most {most}."),
+            AnswerProblem::Incomplete if french => "Veuillez compléter cette réponse.".to_owned(),
+            AnswerProblem::Incomplete => "Please complete this answer.".to_owned(),
+        }
+    }
+}
