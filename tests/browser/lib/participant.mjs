@@ -1,0 +1,104 @@
+// A person taking part: reads what the page shows, answers, and remembers what was answered.
+
+import assert from "node:assert/strict";
+
+/** Where the page stands: step, view, and on a trial phase and clip. */
+export async function place(page) {
+  return page.locator("main[data-view]").evaluate((main) => ({
+    step: main.dataset.step,
+    view: main.dataset.view,
+    phase: main.dataset.phase,
+    clip: main.dataset.clip,
+    heading: main.querySelector("h1")?.textContent,
+  }));
+}
+
+/** Waits until the page stands elsewhere than `from`. */
+export async function leave(page, from, timeout = 30_000) {
+  await page.waitForFunction(
+    ([step, view]) => {
+      const main = document.querySelector("main[data-view]");
+      return main && (main.dataset.step !== step || main.dataset.view !== view);
+    },
+    [from.step, from.view],
+    { timeout },
+  );
+  return place(page);
+}
+
+/** A choice that depends on step and question alone: the same run gives the same answers. */
+function pick(text, count) {
+  let hash = 2166136261;
+  for (const c of text) hash = Math.imul(hash ^ c.charCodeAt(0), 16777619) >>> 0;
+  return hash % count;
+}
+
+/**
+ * Answers every question on the page and returns [{question, value}].
+ * `hands`: "mouse" clicks; "keyboard" only presses keys.
+ */
+export async function answer(page, hands, step) {
+  const given = [];
+  const questions = page.locator("fieldset[data-question]");
+  for (let i = 0; i < (await questions.count()); i++) {
+    const question = questions.nth(i);
+    const id = await question.getAttribute("data-question");
+    const radios = question.locator("input[type=radio]");
+    const count = await radios.count();
+    if (count > 0) {
+      assert.equal(await question.locator("input:checked").count(), 0, `${id}: nothing is pre-selected`);
+      const radio = radios.nth(pick(`${step}/${id}`, count));
+      const value = await radio.getAttribute("value");
+      if (hands === "mouse") {
+        // As a person does: on the tile, which is the label.
+        await question.locator("label", { has: page.locator(`input[value="${value}"]`) }).click();
+      } else {
+        await tabTo(page, `fieldset[data-question="${id}"] input[type=radio]`);
+        await page.keyboard.press("Space");
+        for (let steps = 0; steps < count && !(await radio.isChecked()); steps++) await page.keyboard.press("ArrowDown");
+      }
+      assert.ok(await radio.isChecked(), `${id}: ${value} is chosen`);
+      given.push({ question: id, value });
+      continue;
+    }
+    const field = question.locator("input, textarea").first();
+    const type = (await field.getAttribute("type")) ?? "text";
+    const value = type === "number" ? String(20 + pick(`${step}/${id}`, 40)) : `answer to ${id}`;
+    if (hands === "mouse") {
+      await field.click();
+    } else {
+      await tabTo(page, `fieldset[data-question="${id}"] :is(input, textarea)`);
+    }
+    await page.keyboard.type(value);
+    given.push({ question: id, value });
+  }
+  return given;
+}
+
+/** Presses Tab until the focus is on something that matches. */
+export async function tabTo(page, selector) {
+  for (let presses = 0; presses < 200; presses++) {
+    if (await page.evaluate((s) => document.activeElement?.matches(s) ?? false, selector)) return;
+    await page.keyboard.press("Tab");
+  }
+  throw new Error(`the keyboard does not reach ${selector}`);
+}
+
+/** Presses the page's primary button. */
+export async function go(page, hands) {
+  if (hands === "mouse") {
+    await page.locator("button.primary:not([disabled])").first().click();
+  } else {
+    await tabTo(page, "button.primary:not([disabled])");
+    await page.keyboard.press("Enter");
+  }
+}
+
+/** Waits for a phase of the trial on screen. */
+export async function phase(page, wanted, timeout = 90_000) {
+  await page.waitForFunction(
+    (phases) => phases.includes(document.querySelector("main[data-view]")?.dataset.phase),
+    [wanted].flat(),
+    { timeout },
+  );
+}

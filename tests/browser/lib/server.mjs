@@ -1,0 +1,77 @@
+// Starts `mimique serve` on a free port of the loopback interface, with its data in a new folder.
+
+import { spawn, execFileSync } from "node:child_process";
+import { mkdtempSync } from "node:fs";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../..");
+export const binary = process.env.MIMIQUE_BINARY ?? join(root, "target/release/mimique");
+
+/** Runs `mimique` to its end; its standard output. Throws with its standard error on failure. */
+export function mimique(args, options = {}) {
+  return execFileSync(binary, args, { encoding: "utf8", cwd: root, maxBuffer: 1 << 28, ...options });
+}
+
+/** A running server: `{url, folder, database, researcher, stop()}`. */
+export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port } = {}) {
+  port ??= await freePort();
+  const database = `sqlite:${join(folder, "answers.sqlite")}`;
+  const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--json"];
+  const child = spawn(binary, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });
+  let out = "";
+  let err = "";
+  child.stdout.on("data", (text) => (out += text));
+  child.stderr.on("data", (text) => (err += text));
+  const ended = new Promise((done) => child.on("exit", (code, signal) => done({ code, signal })));
+  const url = `http://127.0.0.1:${port}`;
+  const deadline = Date.now() + 120_000;
+  for (;;) {
+    const state = await Promise.race([ended, ready(url)]);
+    if (state === true) break;
+    if (state && typeof state === "object") throw new Error(`the server ended (${state.code ?? state.signal}):\n${err}`);
+    if (Date.now() > deadline) {
+      child.kill("SIGKILL");
+      throw new Error(`the server did not become ready in two minutes:\n${err}`);
+    }
+    await new Promise((done) => setTimeout(done, 200));
+  }
+  return {
+    url,
+    port,
+    folder,
+    database,
+    said: () => out,
+    kill: async () => {
+      child.kill("SIGKILL");
+      await ended;
+    },
+    stop: async () => {
+      child.kill("SIGTERM");
+      const kill = setTimeout(() => child.kill("SIGKILL"), 10_000);
+      await ended;
+      clearTimeout(kill);
+    },
+  };
+}
+
+async function ready(url) {
+  try {
+    return (await fetch(`${url}/readyz`)).ok;
+  } catch {
+    return false;
+  }
+}
+
+function freePort() {
+  return new Promise((done, fail) => {
+    const probe = createServer();
+    probe.on("error", fail);
+    probe.listen(0, "127.0.0.1", () => {
+      const { port } = probe.address();
+      probe.close(() => done(port));
+    });
+  });
+}
