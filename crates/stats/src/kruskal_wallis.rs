@@ -1,0 +1,245 @@
+//! Kruskal-Wallis test and Dunn's comparisons.
+//!
+//! Kruskal and Wallis 1952: H = (n - 1) * between-group sum of squares of midranks / total sum of
+//! squares, which contains the tie correction; upper chi-square tail with k - 1 degrees of freedom.
+
+use std::collections::HashMap;
+
+use serde::Serialize;
+
+use crate::adjust::Adjustment;
+use crate::describe::median;
+use crate::factor::Factor;
+use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::ranks::Ranks;
+use crate::sample::complete_rows;
+use crate::table::Numbers;
+use crate::tail::{Alternative, chi_square_upper, normal_tail};
+
+/// Arrangements of the observations into groups up to which the permutation p is enumerated.
+const ENUMERATED: f64 = 1e6;
+
+/// Result of [`kruskal_wallis`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct KruskalWallis {
+    /// Always `kruskal-wallis`.
+    pub test: &'static str,
+    /// What was computed.
+    pub variant: &'static str,
+    /// Observations used.
+    pub n: usize,
+    /// Rows dropped because of missing values.
+    pub dropped: usize,
+    /// Groups.
+    pub k: usize,
+    /// H, corrected for ties.
+    pub statistic: f64,
+    /// Degrees of freedom, k - 1.
+    pub df: usize,
+    /// Upper chi-square tail.
+    pub p_value: f64,
+    /// Its natural logarithm.
+    pub ln_p: f64,
+    /// 1 - sum(t^3 - t) / (n^3 - n).
+    pub tie_correction: f64,
+    /// Effect size H / (n - 1).
+    pub epsilon_squared: f64,
+    /// Effect size (H - k + 1) / (n - k), which may be negative; none where n = k.
+    #[serde(rename = "eta_squared_H")]
+    pub eta_squared_h: Option<f64>,
+    /// Observations a group.
+    pub group_n: Labelled<usize>,
+    /// Mean midrank a group.
+    pub mean_ranks: Labelled<f64>,
+    /// Median a group.
+    pub medians: Labelled<f64>,
+    /// Share of all arrangements with a statistic as large, where there are few enough to enumerate.
+    pub exact_permutation_p: Option<f64>,
+    /// Dunn's comparisons of all pairs.
+    pub dunn: Dunn,
+    /// What to mind.
+    pub warnings: Vec<String>,
+}
+
+/// Dunn 1964: differences of mean ranks in units of their tie-corrected standard error, two-sided.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Dunn {
+    /// `a | b` is a minus b.
+    pub pairs: Vec<String>,
+    /// z a pair.
+    pub z: Vec<f64>,
+    /// Two-sided p a pair.
+    pub p: Vec<f64>,
+    /// Holm's correction.
+    pub p_holm: Vec<f64>,
+    /// Bonferroni's correction.
+    pub p_bonferroni: Vec<f64>,
+    /// Benjamini and Hochberg's correction.
+    #[serde(rename = "p_BH")]
+    pub p_bh: Vec<f64>,
+    /// Benjamini and Yekutieli's correction.
+    #[serde(rename = "p_BY")]
+    pub p_by: Vec<f64>,
+    /// Hochberg's correction.
+    pub p_hochberg: Vec<f64>,
+}
+
+impl Dunn {
+    /// The p-values under a correction.
+    pub fn adjusted(&self, adjustment: Adjustment) -> &[f64] {
+        match adjustment {
+            Adjustment::Holm => &self.p_holm,
+            Adjustment::Bonferroni => &self.p_bonferroni,
+            Adjustment::Bh => &self.p_bh,
+            Adjustment::By => &self.p_by,
+            Adjustment::Hochberg => &self.p_hochberg,
+        }
+    }
+}
+
+/// Do groups differ in location? Rows with a missing response or group are dropped and counted.
+///
+/// Refuses a group column with one level; undefined if all responses are equal.
+pub fn kruskal_wallis(
+    response: &Numbers,
+    group: &Factor,
+) -> Result<Outcome<KruskalWallis>, Refusal> {
+    let (rows, dropped) = complete_rows(&[response], &[group])?;
+    let group = group.rows(&rows);
+    group.require_levels(2)?;
+    let values: Vec<f64> = rows.iter().map(|&row| response.values[row]).collect();
+    let ranks = Ranks::of(&values);
+    if ranks.values.len() == 1 {
+        return Ok(Outcome::undefined(format!(
+            "column \"{}\": all {} values are equal ({}), so ranks do not differ",
+            response.name,
+            values.len(),
+            ranks.values[0]
+        )));
+    }
+
+    let k = group.levels.len();
+    let n = values.len();
+    let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); k];
+    let mut doubled_sums = vec![0u64; k];
+    for (observation, &code) in group.codes.iter().enumerate() {
+        by_group[code as usize].push(values[observation]);
+        doubled_sums[code as usize] += ranks.doubled_rank(observation);
+    }
+    let sizes: Vec<usize> = by_group.iter().map(Vec::len).collect();
+    let mean_ranks: Vec<f64> =
+        doubled_sums.iter().zip(&sizes).map(|(&sum, &n)| sum as f64 / 2.0 / n as f64).collect();
+    let grand_mean = (n as f64 + 1.0) / 2.0;
+    let between: f64 =
+        mean_ranks.iter().zip(&sizes).map(|(m, &n)| n as f64 * (m - grand_mean).powi(2)).sum();
+    let total = ranks.sum_of_squares();
+    let statistic = (n - 1) as f64 * between / total;
+    let tail = chi_square_upper(statistic, (k - 1) as f64);
+
+    let mut warnings = Vec::new();
+    if let Some(smallest) = sizes.iter().min()
+        && *smallest < 5
+    {
+        warnings.push(format!(
+            "the smallest group has {smallest} observations: the chi-square approximation is rough"
+        ));
+    }
+    let n_cubed = n as f64 * ((n * n) as f64 - 1.0);
+    Ok(Outcome::Ok(KruskalWallis {
+        test: "kruskal-wallis",
+        variant: "chi-square approximation, corrected for ties",
+        n,
+        dropped,
+        k,
+        statistic,
+        df: k - 1,
+        p_value: tail.p,
+        ln_p: tail.ln_p,
+        tie_correction: 1.0 - ranks.tie_term() / n_cubed,
+        epsilon_squared: statistic / (n - 1) as f64,
+        eta_squared_h: (n > k).then(|| (statistic - k as f64 + 1.0) / (n - k) as f64),
+        group_n: Labelled::zip(&group.levels, sizes.iter().copied()),
+        medians: Labelled::zip(&group.levels, by_group.iter_mut().map(|values| median(values))),
+        exact_permutation_p: permutation_p(&ranks, &sizes, &doubled_sums),
+        dunn: dunn(&group.levels, &mean_ranks, &sizes, total / (n - 1) as f64),
+        mean_ranks: Labelled::zip(&group.levels, mean_ranks),
+        warnings,
+    }))
+}
+
+/// `rank_variance` is the total sum of squares of the midranks over n - 1.
+fn dunn(levels: &[String], mean_ranks: &[f64], sizes: &[usize], rank_variance: f64) -> Dunn {
+    let (mut pairs, mut z, mut p) = (Vec::new(), Vec::new(), Vec::new());
+    for a in 0..levels.len() {
+        for b in a + 1..levels.len() {
+            let spread = rank_variance * (1.0 / sizes[a] as f64 + 1.0 / sizes[b] as f64);
+            let score = (mean_ranks[a] - mean_ranks[b]) / spread.sqrt();
+            pairs.push(format!("{} | {}", levels[a], levels[b]));
+            z.push(score);
+            p.push(normal_tail(score, Alternative::TwoSided).p);
+        }
+    }
+    let given: Vec<Option<f64>> = p.iter().copied().map(Some).collect();
+    let adjusted = |by: Adjustment| by.apply(&given).into_iter().flatten().collect::<Vec<f64>>();
+    Dunn {
+        p_holm: adjusted(Adjustment::Holm),
+        p_bonferroni: adjusted(Adjustment::Bonferroni),
+        p_bh: adjusted(Adjustment::Bh),
+        p_by: adjusted(Adjustment::By),
+        p_hochberg: adjusted(Adjustment::Hochberg),
+        pairs,
+        z,
+        p,
+    }
+}
+
+/// Share of all assignments of the midranks to groups of these sizes whose statistic is at least the
+/// observed one. Counts rank sums by dynamic programming over the observations, in integers.
+fn permutation_p(ranks: &Ranks, sizes: &[usize], observed: &[u64]) -> Option<f64> {
+    let n = ranks.len();
+    let ln_arrangements = libm::lgamma(n as f64 + 1.0)
+        - sizes.iter().map(|&size| libm::lgamma(size as f64 + 1.0)).sum::<f64>();
+    if ln_arrangements > ENUMERATED.ln() || n > 60 {
+        return None;
+    }
+    // Sum of S_j^2 / n_j decides; times the product of the sizes it is an integer.
+    let common: u128 =
+        sizes.iter().try_fold(1u128, |product, &n| product.checked_mul(n as u128))?;
+    let weight = |sums: &[u64]| -> u128 {
+        sums.iter()
+            .zip(sizes)
+            .map(|(&sum, &n)| u128::from(sum) * u128::from(sum) * (common / n as u128))
+            .sum()
+    };
+    if common > 1 << 60 {
+        return None;
+    }
+    // State: observations and doubled rank sum in each group.
+    type State = Vec<(usize, u64)>;
+    let mut states: HashMap<State, f64> = HashMap::from([(vec![(0, 0); sizes.len()], 1.0)]);
+    for observation in 0..n {
+        let rank = ranks.doubled_rank(observation);
+        let mut next: HashMap<State, f64> = HashMap::new();
+        for (state, ways) in states {
+            for group in 0..sizes.len() {
+                if state[group].0 < sizes[group] {
+                    let mut with = state.clone();
+                    with[group].0 += 1;
+                    with[group].1 += rank;
+                    *next.entry(with).or_insert(0.0) += ways;
+                }
+            }
+        }
+        states = next;
+    }
+    let limit = weight(observed);
+    let (mut extreme, mut all) = (0.0, 0.0);
+    for (state, ways) in &states {
+        let sums: Vec<u64> = state.iter().map(|(_, sum)| *sum).collect();
+        all += ways;
+        if weight(&sums) >= limit {
+            extreme += ways;
+        }
+    }
+    Some(extreme / all)
+}

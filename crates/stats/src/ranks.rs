@@ -1,0 +1,152 @@
+//! Midranks by counting: distinct values in ascending order, how often each occurs, and its midrank.
+//!
+//! With few distinct values (ratings) nothing of the length of the data is sorted.
+
+use std::collections::HashMap;
+
+/// Distinct values beyond which sorting replaces counting.
+const COUNTED: usize = 4096;
+
+/// Midranks of a sample without missing values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranks {
+    /// Distinct values in ascending order.
+    pub values: Vec<f64>,
+    /// How often each distinct value occurs.
+    pub counts: Vec<u64>,
+    /// Twice the midrank of each distinct value: an integer, so that sums are exact.
+    pub doubled: Vec<u64>,
+    /// Distinct value of each observation.
+    pub codes: Vec<u32>,
+}
+
+impl Ranks {
+    /// Ranks finite values; -0 and 0 are one value.
+    pub fn of(sample: &[f64]) -> Self {
+        let (values, codes) = by_counting(sample).unwrap_or_else(|| by_sorting(sample));
+        let mut counts = vec![0; values.len()];
+        for &code in &codes {
+            counts[code as usize] += 1;
+        }
+        let mut below = 0;
+        let doubled = counts
+            .iter()
+            .map(|&count| {
+                let twice_midrank = 2 * below + count + 1;
+                below += count;
+                twice_midrank
+            })
+            .collect();
+        Self { values, counts, doubled, codes }
+    }
+
+    /// Number of observations.
+    pub fn len(&self) -> usize {
+        self.codes.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.codes.is_empty()
+    }
+
+    /// Midrank of an observation.
+    pub fn rank(&self, observation: usize) -> f64 {
+        self.doubled_rank(observation) as f64 / 2.0
+    }
+
+    /// Twice the midrank of an observation.
+    pub fn doubled_rank(&self, observation: usize) -> u64 {
+        self.doubled[self.codes[observation] as usize]
+    }
+
+    /// All midranks, in the sample's order.
+    pub fn to_vec(&self) -> Vec<f64> {
+        (0..self.len()).map(|observation| self.rank(observation)).collect()
+    }
+
+    /// Sum over tie groups of t^3 - t.
+    pub fn tie_term(&self) -> f64 {
+        self.counts.iter().map(|&t| t as f64).map(|t| t * (t * t - 1.0)).sum()
+    }
+
+    /// Whether any two observations are equal.
+    pub fn has_ties(&self) -> bool {
+        self.values.len() < self.len()
+    }
+
+    /// Sum of squared deviations of the midranks from their mean: (n^3 - n - tie term) / 12.
+    pub fn sum_of_squares(&self) -> f64 {
+        let n = self.len() as f64;
+        (n * (n * n - 1.0) - self.tie_term()) / 12.0
+    }
+}
+
+fn by_counting(sample: &[f64]) -> Option<(Vec<f64>, Vec<u32>)> {
+    let mut code_of: HashMap<u64, u32> = HashMap::new();
+    let mut found: Vec<f64> = Vec::new();
+    let mut codes = Vec::with_capacity(sample.len());
+    let mut last: Option<(u64, u32)> = None;
+    for &value in sample {
+        let value = value + 0.0; // -0 becomes 0
+        let bits = value.to_bits();
+        let code = match last {
+            Some((same, code)) if same == bits => code,
+            _ => *code_of.entry(bits).or_insert_with(|| {
+                found.push(value);
+                found.len() as u32 - 1
+            }),
+        };
+        if found.len() > COUNTED {
+            return None;
+        }
+        last = Some((bits, code));
+        codes.push(code);
+    }
+    let mut order: Vec<u32> = (0..found.len() as u32).collect();
+    order.sort_by(|&a, &b| found[a as usize].total_cmp(&found[b as usize]));
+    let mut new_code = vec![0; found.len()];
+    for (new, &old) in order.iter().enumerate() {
+        new_code[old as usize] = new as u32;
+    }
+    for code in &mut codes {
+        *code = new_code[*code as usize];
+    }
+    Some((order.iter().map(|&old| found[old as usize]).collect(), codes))
+}
+
+fn by_sorting(sample: &[f64]) -> (Vec<f64>, Vec<u32>) {
+    let mut order: Vec<(f64, u32)> =
+        sample.iter().enumerate().map(|(i, &value)| (value + 0.0, i as u32)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut values: Vec<f64> = Vec::new();
+    let mut codes = vec![0; sample.len()];
+    for (value, observation) in order {
+        if values.last() != Some(&value) {
+            values.push(value);
+        }
+        codes[observation as usize] = values.len() as u32 - 1;
+    }
+    (values, codes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ties_share_their_midrank() {
+        let ranks = Ranks::of(&[3.0, 1.0, 3.0, -0.0, 0.0]);
+        assert_eq!(ranks.to_vec(), [4.5, 3.0, 4.5, 1.5, 1.5]);
+        assert_eq!(ranks.tie_term(), 12.0);
+        let mean = 3.0;
+        let direct: f64 = ranks.to_vec().iter().map(|r| (r - mean) * (r - mean)).sum();
+        assert_eq!(ranks.sum_of_squares(), direct);
+    }
+
+    #[test]
+    fn counting_and_sorting_agree() {
+        let sample: Vec<f64> = (0..500).map(|i| f64::from(i * 7919 % 83) - 40.0).collect();
+        assert_eq!(by_counting(&sample), Some(by_sorting(&sample)));
+    }
+}

@@ -1,0 +1,162 @@
+//! Signed ranks of differences, and the distribution of their positive sum when signs are coin tosses.
+
+use crate::ranks::Ranks;
+use crate::tail::{Alternative, Tail, normal_tail};
+
+/// What becomes of differences that are zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Zeros {
+    /// Dropped before ranking (Wilcoxon 1945).
+    Drop,
+    /// Ranked with the others, then left out (Pratt 1959).
+    Pratt,
+    /// Ranked with the others, half of their ranks on each side.
+    Split,
+}
+
+/// Midranks of absolute differences with their signs, doubled so that they are integers.
+#[derive(Debug, Clone)]
+pub(crate) struct SignedRanks {
+    /// Doubled midranks that a coin toss gives to one side or the other.
+    tossed: Vec<u64>,
+    doubled_plus: u64,
+    doubled_minus: u64,
+    mean: f64,
+    variance: f64,
+}
+
+impl SignedRanks {
+    /// At least one difference must be other than zero.
+    pub(crate) fn of(differences: &[f64], zeros: Zeros) -> Self {
+        let kept: Vec<f64> = match zeros {
+            Zeros::Drop => differences.iter().copied().filter(|&d| d != 0.0).collect(),
+            Zeros::Pratt | Zeros::Split => differences.to_vec(),
+        };
+        let ranks = Ranks::of(&kept.iter().map(|d| d.abs()).collect::<Vec<_>>());
+        let (mut plus, mut minus, mut of_zeros) = (0u64, 0u64, 0u64);
+        let mut tossed = Vec::with_capacity(kept.len());
+        for (i, &difference) in kept.iter().enumerate() {
+            let rank = ranks.doubled_rank(i);
+            if difference == 0.0 {
+                of_zeros += rank;
+                continue;
+            }
+            tossed.push(rank);
+            if difference > 0.0 {
+                plus += rank;
+            } else {
+                minus += rank;
+            }
+        }
+        // Zeros that are split add the same to both sides; as other tools do, the variance then counts
+        // their ranks as if they had a sign, and corrects for their tie.
+        let (mean, variance) = if zeros == Zeros::Split {
+            plus += of_zeros / 2;
+            minus += of_zeros / 2;
+            let n = kept.len() as f64;
+            let full = n * (n + 1.0) * (2.0 * n + 1.0);
+            (n * (n + 1.0) / 4.0, (full - ranks.tie_term() / 2.0) / 24.0)
+        } else {
+            let sum: u64 = tossed.iter().sum();
+            let squares: f64 = tossed.iter().map(|&rank| (rank as f64 / 2.0).powi(2)).sum();
+            (sum as f64 / 4.0, squares / 4.0)
+        };
+        Self { tossed, doubled_plus: plus, doubled_minus: minus, mean, variance }
+    }
+
+    /// W+.
+    pub(crate) fn plus(&self) -> f64 {
+        self.doubled_plus as f64 / 2.0
+    }
+
+    /// W-.
+    pub(crate) fn minus(&self) -> f64 {
+        self.doubled_minus as f64 / 2.0
+    }
+
+    /// Normal approximation with the variance of the observed ranks, which is the tie correction.
+    pub(crate) fn normal(&self, alternative: Alternative, continuity: bool) -> Tail {
+        let distance = self.plus() - self.mean;
+        let correction = match alternative {
+            _ if !continuity => 0.0,
+            Alternative::TwoSided if distance == 0.0 => 0.0,
+            Alternative::TwoSided => 0.5 * distance.signum(),
+            Alternative::Greater => 0.5,
+            Alternative::Less => -0.5,
+        };
+        normal_tail((distance - correction) / self.variance.sqrt(), alternative)
+    }
+
+    /// Exact distribution of W+ over all signs, given the observed ranks with their ties.
+    pub(crate) fn exact(&self, alternative: Alternative) -> Tail {
+        let distribution = toss_distribution(&self.tossed);
+        let observed = self.doubled_plus as usize;
+        let at_most: f64 = distribution[..=observed].iter().sum();
+        let at_least: f64 = distribution[observed..].iter().rev().sum();
+        match alternative {
+            Alternative::TwoSided => Tail::from_p(at_most.min(at_least)).doubled(),
+            Alternative::Greater => Tail::from_p(at_least),
+            Alternative::Less => Tail::from_p(at_most),
+        }
+    }
+}
+
+/// Probability of every sum of `ranks` where each is taken with probability 1/2.
+pub(crate) fn toss_distribution(ranks: &[u64]) -> Vec<f64> {
+    let total: u64 = ranks.iter().sum();
+    let mut distribution = vec![0.0; total as usize + 1];
+    distribution[0] = 1.0;
+    let mut reach = 0;
+    for &rank in ranks {
+        let rank = rank as usize;
+        reach += rank;
+        for sum in (0..=reach).rev() {
+            let without = distribution[sum];
+            let with = if sum >= rank { distribution[sum - rank] } else { 0.0 };
+            distribution[sum] = 0.5 * (without + with);
+        }
+    }
+    distribution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tails by trying every combination of signs.
+    fn enumerated(differences: &[f64], zeros: Zeros) -> (f64, f64) {
+        let ranks = SignedRanks::of(differences, zeros);
+        let n = ranks.tossed.len();
+        let (mut at_most, mut at_least) = (0u64, 0u64);
+        for signs in 0..1u64 << n {
+            let sum: u64 = (0..n).filter(|i| signs >> i & 1 == 1).map(|i| ranks.tossed[i]).sum();
+            at_most += u64::from(sum <= ranks.doubled_plus);
+            at_least += u64::from(sum >= ranks.doubled_plus);
+        }
+        let all = (1u64 << n) as f64;
+        (at_most as f64 / all, at_least as f64 / all)
+    }
+
+    #[test]
+    fn exact_tails_are_those_of_enumeration() {
+        let samples: [&[f64]; 5] = [
+            &[1.0, -2.0, 3.0, 4.0, -5.0, 6.0],
+            &[1.0, 1.0, -1.0, 2.0, 2.0, -3.0, 0.0, 0.0],
+            &[0.0, 0.0, 0.0, 1.0],
+            &[-1.0, -1.0, -1.0, -2.0, -2.0, 0.5, 0.5],
+            &[2.0, 1.0, -1.0, 3.0, -4.0, 5.0, 5.0, 5.0, -2.0, 0.0, 7.0, -7.0, 8.0],
+        ];
+        for sample in samples {
+            for zeros in [Zeros::Drop, Zeros::Pratt] {
+                let ranks = SignedRanks::of(sample, zeros);
+                let (at_most, at_least) = enumerated(sample, zeros);
+                assert_eq!(ranks.exact(Alternative::Less).p, at_most);
+                assert_eq!(ranks.exact(Alternative::Greater).p, at_least);
+                assert_eq!(
+                    ranks.exact(Alternative::TwoSided).p,
+                    (2.0 * at_most.min(at_least)).min(1.0)
+                );
+            }
+        }
+    }
+}

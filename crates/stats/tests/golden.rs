@@ -1,0 +1,272 @@
+//! Every case of the shared data sets, every field that their file of expected values gives, and every
+//! distribution tail. A field that this walk does not know fails it.
+
+use std::path::PathBuf;
+
+use mimique_stats::{
+    Alternative, Blocks, Contingency, Factor, Numbers, Outcome, Refusal, SumsOfSquares, Table,
+    WilcoxonOptions, adjust_all, chi_square, chi_square_upper, confusion, describe, f_upper,
+    friedman, kruskal_wallis, mann_whitney, normal_upper, paired_differences, scheirer_ray_hare,
+    spearman, t_upper, wilcoxon,
+};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// The folder of the shared data, or a skip said aloud.
+fn data(test: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("MIMIQUE_DATA")
+        .map(PathBuf::from)
+        .unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
+    let folder = root.join("stats");
+    if folder.join("expected.json").exists() {
+        return Some(folder);
+    }
+    let skip =
+        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", folder.display());
+    assert!(std::env::var("MIMIQUE_NO_SKIP").as_deref() != Ok("1"), "{skip}");
+    eprintln!("{skip}");
+    None
+}
+
+fn expected(folder: &std::path::Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join("expected.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn all_cases_of_the_expected_file() {
+    let Some(folder) = data("all_cases_of_the_expected_file") else { return };
+    let expected = expected(&folder);
+    let cases = expected["cases"].as_array().unwrap();
+    assert!(cases.len() >= 25, "{} cases", cases.len());
+    let mut problems = Vec::new();
+    let mut compared = 0;
+    for case in cases {
+        let id = case["id"].as_str().unwrap();
+        let table =
+            Table::parse(&std::fs::read(folder.join(case["file"].as_str().unwrap())).unwrap())
+                .unwrap();
+        let actual = match run(case, &table) {
+            Ok(value) => value,
+            Err(refusal) => json!({"status": "refused", "reason": refusal.to_string()}),
+        };
+        let wanted = &case["expected"];
+        match wanted["status"].as_str() {
+            Some(status) => {
+                compared += 1;
+                if actual["status"] != status {
+                    problems.push(format!("{id}: status {} instead of {status}", actual["status"]));
+                }
+                let reason = actual["reason"].as_str().unwrap_or_default();
+                let columns = case["columns"].as_object().unwrap();
+                let named = columns
+                    .values()
+                    .any(|name| reason.contains(&format!("\"{}\"", name.as_str().unwrap())));
+                if status == "refused" && !named {
+                    problems.push(format!("{id}: the refusal names no column: {reason}"));
+                }
+                if actual.get("p_value").is_some() {
+                    problems.push(format!("{id}: a p although {status}"));
+                }
+            }
+            None => {
+                let tolerance = Tolerance::of(case["test"].as_str().unwrap());
+                compare(id, wanted, &actual, tolerance, &mut problems, &mut compared);
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{} problems:\n{}", problems.len(), problems.join("\n"));
+    assert!(compared > 800, "only {compared} values were compared");
+}
+
+/// Runs the test of a case and gives its result as JSON, with the few fields that stand elsewhere in
+/// the file of expected values put where that file has them.
+fn run(case: &Value, table: &Table) -> Result<Value, Refusal> {
+    let columns = &case["columns"];
+    let name = |key: &str| columns[key].as_str().unwrap_or_else(|| panic!("{case}: no {key}"));
+    let numbers = |key: &str| table.numbers(name(key));
+    let factor = |key: &str| table.factor(name(key));
+    match case["test"].as_str().unwrap() {
+        "kruskal_wallis" => Ok(value(&kruskal_wallis(&numbers("response")?, &factor("group")?)?)),
+        "wilcoxon_signed_rank" => {
+            let differences: Numbers = if columns.get("difference").is_some() {
+                numbers("difference")?
+            } else {
+                paired_differences(&numbers("x")?, &numbers("y")?)
+            };
+            let mut result = value(&wilcoxon(&differences, WilcoxonOptions::default())?);
+            let greater =
+                WilcoxonOptions { alternative: Alternative::Greater, ..WilcoxonOptions::default() };
+            let mut one_sided = value(&wilcoxon(&differences, greater)?)["p_by_semantics"].take();
+            if let Some(keys) = one_sided.as_object_mut() {
+                let thesis = keys["R_le_4.5_default (thesis era)"].clone();
+                keys.insert("R_le_4.5_default".to_owned(), thesis);
+            }
+            if let Some(fields) = result.as_object_mut() {
+                fields.insert("one_sided_greater".to_owned(), one_sided);
+            }
+            Ok(result)
+        }
+        "mann_whitney" => {
+            let levels: Vec<String> =
+                columns["levels"].as_array().unwrap().iter().map(Value::to_string).collect();
+            let group = factor("group")?.restricted(&levels)?;
+            Ok(value(&mann_whitney(&numbers("response")?, &group)?))
+        }
+        "scheirer_ray_hare" => {
+            let factors = [factor("factor1")?, factor("factor2")?];
+            let [first, second] = &factors;
+            Ok(value(&scheirer_ray_hare(
+                &numbers("response")?,
+                [first, second],
+                SumsOfSquares::default(),
+            )?))
+        }
+        "chi_square" => {
+            Ok(value(&chi_square(&Contingency::of(&factor("rows")?, &factor("columns")?)?)?))
+        }
+        "spearman" => Ok(value(&spearman(&numbers("x")?, &numbers("y")?)?)),
+        "friedman" => {
+            let blocks = Blocks::of(&numbers("response")?, &factor("group")?, &factor("block")?)?;
+            Ok(value(&friedman(&blocks)))
+        }
+        "descriptives" => Ok(value(&describe(&numbers("response")?.values))),
+        "p_adjust" => Ok(value(&adjust_all(&numbers("p")?.values))),
+        "confusion" => Ok(value(&confusion(&factor("truth")?, &factor("answer")?)?)),
+        other => panic!("{}: the test {other} is not known here", case["id"]),
+    }
+}
+
+fn value<T: Serialize>(result: &T) -> Value {
+    serde_json::to_value(result).unwrap()
+}
+
+/// How far a number may be off.
+#[derive(Clone, Copy)]
+enum Tolerance {
+    Relative,
+    /// What another tool found by a root finder.
+    Absolute(f64),
+}
+
+impl Tolerance {
+    fn of(test: &str) -> impl Fn(&str, &Value) -> Tolerance + Copy + use<> {
+        let two_samples = test == "mann_whitney";
+        move |key: &str, siblings: &Value| match key {
+            "estimate" | "ci_low" | "ci_high" => {
+                let own = siblings["abs_tolerance"].as_f64();
+                Tolerance::Absolute(own.unwrap_or(if two_samples { 2e-4 } else { 0.0 }))
+            }
+            _ => Tolerance::Relative,
+        }
+    }
+}
+
+/// Remarks of the file, not values.
+const REMARKS: [&str; 2] = ["rule_choice", "abs_tolerance"];
+
+fn compare(
+    path: &str,
+    wanted: &Value,
+    actual: &Value,
+    tolerance: impl Fn(&str, &Value) -> Tolerance + Copy,
+    problems: &mut Vec<String>,
+    compared: &mut usize,
+) {
+    match wanted {
+        Value::Object(fields) => {
+            for (key, wanted_value) in fields {
+                if REMARKS.contains(&key.as_str()) {
+                    continue;
+                }
+                let place = format!("{path}/{key}");
+                let Some(actual_value) = actual.get(key) else {
+                    problems.push(format!("{place}: there is no such field in the result"));
+                    continue;
+                };
+                match (wanted_value, tolerance(key, wanted)) {
+                    (Value::Number(number), Tolerance::Absolute(limit)) => {
+                        *compared += 1;
+                        let (wanted, actual) = (number.as_f64().unwrap(), actual_value.as_f64());
+                        if !actual.is_some_and(|actual| (actual - wanted).abs() <= limit) {
+                            problems.push(format!("{place}: {actual_value} instead of {wanted}"));
+                        }
+                    }
+                    _ => compare(&place, wanted_value, actual_value, tolerance, problems, compared),
+                }
+            }
+        }
+        Value::Array(items) => {
+            let Some(actual_items) = actual.as_array() else {
+                problems.push(format!("{path}: {actual} is no array"));
+                return;
+            };
+            if items.len() != actual_items.len() {
+                problems.push(format!("{path}: {} items", actual_items.len()));
+            }
+            for (i, (wanted, actual)) in items.iter().zip(actual_items).enumerate() {
+                compare(&format!("{path}/{i}"), wanted, actual, tolerance, problems, compared);
+            }
+        }
+        Value::Number(number) => {
+            *compared += 1;
+            let wanted = number.as_f64().unwrap();
+            if !actual.as_f64().is_some_and(|actual| close(actual, wanted)) {
+                problems.push(format!("{path}: {actual} instead of {wanted}"));
+            }
+        }
+        Value::String(text) if matches!(text.as_str(), "NaN" | "NA") => {
+            *compared += 1;
+            if !actual.is_null() {
+                problems.push(format!("{path}: {actual} where nothing is defined"));
+            }
+        }
+        other => {
+            *compared += 1;
+            if other != actual {
+                problems.push(format!("{path}: {actual} instead of {other}"));
+            }
+        }
+    }
+}
+
+fn close(actual: f64, wanted: f64) -> bool {
+    let relative = if wanted.abs() < 1e-280 { 1e-8 } else { 1e-9 };
+    // Zero is met up to the rounding of numbers about one.
+    (actual - wanted).abs() <= relative * wanted.abs() || (wanted == 0.0 && actual.abs() < 1e-12)
+}
+
+#[test]
+fn all_distribution_tails() {
+    let Some(folder) = data("all_distribution_tails") else { return };
+    let expected = expected(&folder);
+    let points = expected["distribution_tails"]["points"].as_array().unwrap();
+    assert!(points.len() >= 33);
+    for point in points {
+        let params: Vec<f64> =
+            point["params"].as_array().unwrap().iter().map(|p| p.as_f64().unwrap()).collect();
+        let x = point["x"].as_f64().unwrap();
+        let tail = match point["dist"].as_str().unwrap() {
+            "chi2" => chi_square_upper(x, params[0]),
+            "normal" => normal_upper(x),
+            "t" => t_upper(x, params[0]),
+            "F" => f_upper(x, params[0], params[1]),
+            other => panic!("the distribution {other} is not known here"),
+        };
+        let decimal: f64 = point["sf_decimal"].as_str().unwrap().parse().unwrap();
+        assert!(close(tail.p, point["sf"].as_f64().unwrap()), "{point}: {}", tail.p);
+        assert!(close(tail.p, decimal), "{point}: {}", tail.p);
+        let ln_sf = point["ln_sf"].as_f64().unwrap();
+        assert!(close(tail.ln_p, ln_sf), "{point}: ln {}", tail.ln_p);
+    }
+}
+
+#[test]
+fn a_comparison_of_two_groups_is_what_restricting_the_factor_gives() {
+    let factor = Factor::from_cells("g", ["b", "a", "c"].into_iter().map(Some), |_| None);
+    let restricted = factor.restricted(&["c".to_owned(), "a".to_owned()]).unwrap();
+    assert_eq!(restricted.levels, ["c", "a"]);
+    assert_eq!(restricted.codes, [Factor::MISSING, 1, 0]);
+    assert!(factor.restricted(&["d".to_owned()]).unwrap_err().to_string().contains("\"d\""));
+    let outcome: Outcome<u8> = Outcome::undefined("why");
+    assert_eq!(outcome.reason(), Some("why"));
+}
