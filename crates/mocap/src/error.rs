@@ -32,6 +32,15 @@ pub enum ReadError {
         /// Number of weight columns.
         columns: usize,
     },
+    /// Not a file of weights.
+    #[error(
+        "byte 0: not a Live Link Face export, {found}; \
+         give a CSV that starts with Timecode,BlendShapeCount"
+    )]
+    NotWeights {
+        /// What the file starts with.
+        found: String,
+    },
     /// A binary file is wrong at a byte.
     #[error("byte {offset}, {section}: {what}; {remedy}")]
     Binary {

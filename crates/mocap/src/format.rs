@@ -1,6 +1,6 @@
 //! The formats this crate reads, and how each is recognised by its content.
 
-use crate::text::{Delimiter, Document};
+use crate::text::{self, Delimiter, Document};
 
 /// A file format of motion capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -10,6 +10,18 @@ pub enum Format {
     C3d,
     /// CSV with a column a coordinate: `frame,time,LABEL_x,LABEL_y,LABEL_z`.
     WideCsv,
+    /// CSV with a row a marker and frame: `frame,time,marker,x,y,z`.
+    LongCsv,
+    /// Motion Analysis and OpenSim TRC.
+    Trc,
+    /// Qualisys Track Manager TSV.
+    QtmTsv,
+    /// OptiTrack Motive CSV.
+    MotiveCsv,
+    /// Vicon Nexus CSV.
+    ViconCsv,
+    /// Live Link Face CSV: weights, not markers.
+    LiveLinkCsv,
 }
 
 impl Format {
@@ -18,6 +30,12 @@ impl Format {
         match self {
             Self::C3d => "C3D",
             Self::WideCsv => "CSV, a column a coordinate",
+            Self::LongCsv => "CSV, a row a marker and frame",
+            Self::Trc => "TRC",
+            Self::QtmTsv => "QTM TSV",
+            Self::MotiveCsv => "Motive CSV",
+            Self::ViconCsv => "Vicon CSV",
+            Self::LiveLinkCsv => "Live Link Face CSV (weights)",
         }
     }
 }
@@ -29,10 +47,33 @@ pub(crate) fn is_c3d(bytes: &[u8]) -> bool {
     head.len() > 24 && head[1] == 0x50 && !utf16 && head.contains(&0)
 }
 
+/// The format of a file by its content; `None` when no reader knows it.
+pub fn recognise(bytes: &[u8]) -> Option<Format> {
+    if is_c3d(bytes) { Some(Format::C3d) } else { recognise_text(&Document::decode(bytes)) }
+}
+
 /// Recognise a text format by the first lines of the document.
 pub(crate) fn recognise_text(document: &Document<'_>) -> Option<Format> {
     let (_, header) =
         document.lines().find(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'))?;
     let delimiter = Delimiter::of(header);
-    crate::text::wide_csv::is_header(header, delimiter).then_some(Format::WideCsv)
+    if text::trc::is_first_line(header) {
+        Some(Format::Trc)
+    } else if text::qtm_tsv::is_first_line(header) {
+        Some(Format::QtmTsv)
+    } else if text::motive_csv::is_first_line(header) {
+        Some(Format::MotiveCsv)
+    } else if text::vicon_csv::is_first_line(header) {
+        Some(Format::ViconCsv)
+    } else if text::live_link::is_header(header) {
+        Some(Format::LiveLinkCsv)
+    } else if text::long_csv::is_header(header, delimiter) {
+        Some(Format::LongCsv)
+    } else if text::wide_csv::is_header(header, delimiter) {
+        Some(Format::WideCsv)
+    } else if text::qtm_tsv::is_row(header) {
+        Some(Format::QtmTsv)
+    } else {
+        None
+    }
 }

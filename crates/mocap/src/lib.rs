@@ -13,11 +13,13 @@ mod read;
 mod recording;
 mod text;
 mod unit;
+mod weight_take;
 
 pub use c3d::{C3dOptions, C3dStorage, Processor, write_c3d};
 pub use capture::{Capture, LengthUnit};
 pub use error::{ReadError, WriteError};
-pub use format::Format;
-pub use read::{ReadOptions, read, read_bytes, read_recording};
+pub use format::{Format, recognise};
+pub use read::{ReadOptions, read, read_bytes, read_recording, read_weights};
 pub use recording::{Event, Recording};
-pub use text::write_csv;
+pub use text::{write_csv, write_trc};
+pub use weight_take::WeightTake;

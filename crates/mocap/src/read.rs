@@ -1,6 +1,6 @@
 //! From a file of any known format to a capture.
 
-use crate::{Capture, Format, LengthUnit, ReadError, Recording, c3d, format, text};
+use crate::{Capture, Format, LengthUnit, ReadError, Recording, WeightTake, c3d, format, text};
 use std::path::Path;
 
 /// What the caller knows better than the file.
@@ -45,7 +45,28 @@ pub fn read_recording(
     let document = text::Document::decode(bytes);
     match format::recognise_text(&document) {
         Some(Format::WideCsv) => text::wide_csv::read(&document, options),
+        Some(Format::LongCsv) => text::long_csv::read(&document, options),
+        Some(Format::Trc) => text::trc::read(&document, options),
+        Some(Format::QtmTsv) => text::qtm_tsv::read(&document, options),
+        Some(Format::MotiveCsv) => text::motive_csv::read(&document, options),
+        Some(Format::ViconCsv) => text::vicon_csv::read(&document, options),
+        Some(Format::LiveLinkCsv) => {
+            let take = text::live_link::read(&document)?;
+            Err(ReadError::WeightsNotMarkers { columns: take.names.len() })
+        }
         Some(Format::C3d) | None => Err(ReadError::Unrecognised { found: beginning(bytes) }),
+    }
+}
+
+/// Read a performance recorded as weights (Live Link Face CSV).
+///
+/// # Errors
+/// [`ReadError`] with place, value and remedy.
+pub fn read_weights(_name: &str, bytes: &[u8]) -> Result<WeightTake, ReadError> {
+    let document = text::Document::decode(bytes);
+    match format::recognise_text(&document) {
+        Some(Format::LiveLinkCsv) => text::live_link::read(&document),
+        _ => Err(ReadError::NotWeights { found: beginning(bytes) }),
     }
 }
 

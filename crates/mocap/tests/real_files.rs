@@ -1,6 +1,8 @@
 //! The readers on files of real systems, found in `MIMIQUE_DATA` (default `../shared/data`).
 
-use mimique_mocap::{Capture, LengthUnit, ReadOptions, Recording, read, read_recording};
+use mimique_mocap::{
+    Capture, LengthUnit, ReadOptions, Recording, read, read_recording, read_weights,
+};
 use std::path::PathBuf;
 
 /// The data folder, or `None` after saying that the test is skipped.
@@ -94,4 +96,24 @@ fn qualisys_vicon_and_motive_files_are_read() {
     assert_eq!((motive.capture.labels.len(), motive.capture.frames()), (39, 1092));
     assert_eq!(motive.capture.unit, LengthUnit::Metre);
     assert_eq!(motive.capture.labels[0], "Derrick:C7");
+}
+
+#[test]
+fn live_link_takes_are_weights_at_30_hz() {
+    let Some(data) = data("live_link_takes_are_weights_at_30_hz") else { return };
+    for name in ["alex_rom_3.csv", "facial.csv"] {
+        let path = data.join("livelink").join(name);
+        let bytes = std::fs::read(&path).unwrap();
+        let take = read_weights(name, &bytes).unwrap();
+        assert_eq!((take.names.len(), take.rate_hz), (61, 30.0));
+        let dropped: usize = take.filled.iter().map(|(from, to)| to - from).sum();
+        eprintln!("{name}: {} frames, {dropped} of them filled in", take.frames());
+        let rows = bytes.iter().filter(|b| **b == b'\n').count() - 1;
+        assert_eq!(take.frames() - dropped, rows);
+        assert_eq!(
+            read(&path).unwrap_err().to_string(),
+            "line 1, header: a Live Link Face export, 61 weight columns and no marker; \
+             give it as weights, not as a capture"
+        );
+    }
 }

@@ -2,6 +2,7 @@
 
 use mimique_mocap::{
     C3dOptions, C3dStorage, Capture, LengthUnit, Processor, read_bytes, write_c3d, write_csv,
+    write_trc,
 };
 
 const PROCESSORS: [Processor; 3] = [Processor::Intel, Processor::Dec, Processor::Mips];
@@ -84,14 +85,13 @@ fn c3d_cut_short_is_refused_with_its_frame() {
 }
 
 #[test]
-fn csv_gives_back_every_bit() {
+fn csv_and_trc_give_back_every_bit() {
     let mut capture = planted(7, 90);
     capture.rate_hz = 60_000.0 / 1001.0;
     capture.unit = LengthUnit::Metre;
     capture.positions[1] = [0.1 + 0.2, -1e-17, 1.0 / 3.0];
     capture.labels[2] = "with, comma; \"quoted\"".to_owned();
-    assert_same(
-        &read_bytes("take.csv", write_csv(&capture).unwrap().as_bytes()).unwrap(),
-        &capture,
-    );
+    for text in [write_csv(&capture).unwrap(), write_trc(&capture, "take.trc").unwrap()] {
+        assert_same(&read_bytes("take", text.as_bytes()).unwrap(), &capture);
+    }
 }

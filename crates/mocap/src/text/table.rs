@@ -35,6 +35,14 @@ impl Table {
         options: &ReadOptions,
     ) -> Result<Recording, ReadError> {
         let header = self.lines.first().map_or(1, |l| l.saturating_sub(1)).max(1);
+        if self.labels.is_empty() {
+            return Err(ReadError::at_line(
+                header,
+                "header",
+                "no marker",
+                "export the take again with its markers and their labels",
+            ));
+        }
         if self.lines.is_empty() {
             return Err(ReadError::at_line(
                 header,
@@ -168,6 +176,20 @@ impl Table {
         self.notes.push(format!("{} dropped frames filled in as missing", total - rows as u64));
         Ok(first)
     }
+}
+
+/// A whole, not negative frame number.
+pub(crate) fn frame_number(value: f64, field: &str, line: usize) -> Result<u64, ReadError> {
+    // 2^53: beyond it a float no longer counts frames.
+    if value >= 0.0 && value.fract() == 0.0 && value < 9_007_199_254_740_992.0 {
+        return Ok(value as u64);
+    }
+    Err(ReadError::at_line(
+        line,
+        "frame",
+        format!("\"{field}\" is not a frame number"),
+        "number the frames with whole numbers from 0 up",
+    ))
 }
 
 /// The step in which frame numbers count: 1, or what the smallest step is in a take exported with

@@ -5,6 +5,7 @@
 //! brackets (`LABEL_x [mm]`). `time` is in seconds, `time_ms` in milliseconds. Lines that start
 //! with `#` are comments; `# unit: mm` and `# rate_hz: 200` are read.
 
+use super::table::frame_number;
 use super::{Delimiter, Document, Table, coordinate, split_fields};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording, plausibility};
 use std::borrow::Cow;
@@ -118,20 +119,6 @@ fn row_width(fields: &[Cow<'_, str>], columns: usize, line: usize) -> Result<(),
         ));
     }
     Ok(())
-}
-
-/// A whole, not negative frame number.
-pub(crate) fn frame_number(value: f64, field: &str, line: usize) -> Result<u64, ReadError> {
-    // 2^53: beyond it a float no longer counts frames.
-    if value >= 0.0 && value.fract() == 0.0 && value < 9_007_199_254_740_992.0 {
-        return Ok(value as u64);
-    }
-    Err(ReadError::at_line(
-        line,
-        "frame",
-        format!("\"{field}\" is not a frame number"),
-        "number the frames with whole numbers from 0 up",
-    ))
 }
 
 /// Read `# unit: mm` and `# rate_hz: 200`.
