@@ -1,0 +1,277 @@
+//! The flow, through the whole demo study.
+
+mod support;
+
+use mimique_study::flow::{Effect, Input, Phase, Plan, State, Status, View, update};
+use serde_json::json;
+use support::{Page, client, first_answer, started, study_text, whole_play};
+
+#[test]
+fn demo_goes_from_consent_to_the_completion_code() {
+    let mut page = Page::open(&study_text("demo.json"), 1);
+    assert!(matches!(page.view(), View::Consent { .. }));
+    page.finish();
+    let View::End(end) = page.view() else { panic!("{:?}", page.view()) };
+    assert_eq!(end.completion_code.unwrap().1, "MIMIQUE-DEMO");
+    assert_eq!(page.played.len(), 12);
+    let mut clips = page.played.clone();
+    clips.sort();
+    clips.dedup();
+    assert_eq!(clips.len(), 12, "each clip once");
+    assert_eq!(page.completed, Some(page.stored.len() as u64));
+    assert_eq!(page.state.record.unexpected, 0);
+}
+
+#[test]
+fn replay_of_any_beginning_is_the_state_that_was() {
+    let mut page = Page::open(&study_text("demo.json"), 2);
+    let mut checked = 0;
+    loop {
+        let replayed = State::replay(&page.plan, &page.stored);
+        assert_eq!(replayed.record, page.state.record, "after {} events", page.stored.len());
+        checked += 1;
+        if !page.act(&mut first_answer) {
+            break;
+        }
+    }
+    assert!(checked > 60, "{checked} states compared");
+}
+
+#[test]
+fn reload_at_every_point_ends_with_the_same_answers() {
+    let answers_of = |page: &Page| {
+        let finished = page.stored.iter().filter(|event| {
+            event.body["type"] == "trial_finished" || event.body["type"] == "page_finished"
+        });
+        finished.map(|event| event.body["answers"].clone()).collect::<Vec<_>>()
+    };
+    let text = study_text("demo.json");
+    let mut undisturbed = Page::open(&text, 3);
+    undisturbed.finish();
+    let mut reloaded = Page::open(&text, 3);
+    let mut acts: usize = 0;
+    loop {
+        // Every point, but not for ever: a trial that starts anew needs five acts to end.
+        if acts % 7 == 3 {
+            reloaded.reload();
+        }
+        acts += 1;
+        if !reloaded.act(&mut first_answer) {
+            break;
+        }
+    }
+    assert!(matches!(reloaded.view(), View::End(_)));
+    assert!(reloaded.state.record.resumptions > 8);
+    assert_eq!(answers_of(&reloaded), answers_of(&undisturbed));
+}
+
+#[test]
+fn reload_in_a_trial_starts_its_clip_anew() {
+    let mut page = Page::open(&study_text("demo.json"), 4);
+    while !matches!(page.view(), View::Trial(trial) if trial.phase == Phase::Answering) {
+        page.act(&mut first_answer);
+    }
+    page.send(Input::Answer { question: "emotion".into(), value: json!("joy") });
+    let View::Trial(before) = page.view() else { panic!() };
+    page.reload();
+    let View::Trial(after) = page.view() else { panic!() };
+    assert_eq!(after.step, before.step);
+    assert_eq!(after.phase, Phase::Ready);
+    assert!(after.questions.iter().all(|question| question.value.is_none()));
+    assert_eq!(page.state.record.resumptions, 1);
+}
+
+#[test]
+fn reload_on_a_page_of_questions_keeps_what_was_written() {
+    let mut page = Page::open(&study_text("demo.json"), 4);
+    page.send(Input::Consent);
+    page.send(Input::Answer { question: "age".into(), value: json!(41) });
+    page.reload();
+    let View::Questions { questions, button, .. } = page.view() else { panic!() };
+    assert_eq!(questions[0].value, Some(json!(41)));
+    assert_eq!(questions[1].value, None, "nothing is pre-selected");
+    assert!(!button.can_submit);
+}
+
+#[test]
+fn lost_last_event_of_a_session_is_made_up_after_a_reload() {
+    let mut page = Page::open(&study_text("demo.json"), 5);
+    page.finish();
+    // The page died between the last page's event and the one that says `finished`.
+    let finished = page.stored.iter().rposition(|event| event.body["type"] == "finished").unwrap();
+    page.stored.truncate(finished);
+    page.completed = None;
+    page.reload();
+    assert!(matches!(page.view(), View::End(_)), "{:?}", page.view());
+    assert_eq!(page.completed, Some(page.stored.len() as u64));
+}
+
+#[test]
+fn no_answer_counts_before_one_whole_play() {
+    let mut page = Page::open(&study_text("demo.json"), 6);
+    while !matches!(page.view(), View::Trial(_)) {
+        page.act(&mut first_answer);
+    }
+    let answer = || Input::Answer { question: "emotion".into(), value: json!("joy") };
+    page.send(answer());
+    let View::Trial(trial) = page.view() else { panic!() };
+    assert!(!trial.can_answer && trial.questions[0].value.is_none());
+    assert_eq!(page.state.record.unexpected, 1, "recorded and ignored");
+    assert_eq!(page.stored.last().unwrap().body["type"], "unexpected");
+
+    // A play cut short does not count either.
+    let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::PlayClip(_))));
+    let mut log = whole_play(page.now_ms);
+    log.aborted = Some("hidden".into());
+    let (state, _) = update(&page.plan, state, Input::Played(log), page.now_ms + 900.0);
+    page.state = state;
+    let View::Trial(trial) = page.view() else { panic!() };
+    assert_eq!(trial.phase, Phase::Ready);
+    assert!(!trial.can_answer);
+    assert!(trial.message.contains("interrupted"));
+}
+
+#[test]
+fn sending_too_early_points_out_what_is_missing() {
+    let mut page = Page::open(&study_text("demo.json"), 6);
+    page.send(Input::Consent);
+    page.send(Input::Answer { question: "age".into(), value: json!(7) });
+    page.send(Input::Next);
+    let View::Questions { questions, .. } = page.view() else { panic!() };
+    assert_eq!(questions[0].problem.as_deref(), Some("The lowest number is 18."));
+    assert_eq!(questions[1].problem.as_deref(), Some("Please answer this question."));
+    assert_eq!(page.state.record.unexpected, 0);
+}
+
+#[test]
+fn late_and_doubled_reports_change_nothing() {
+    let mut page = Page::open(&study_text("demo.json"), 7);
+    while page.played.len() < 2 {
+        page.act(&mut first_answer);
+    }
+    let before = page.view();
+    let unexpected = page.state.record.unexpected;
+    page.send(Input::Played(whole_play(page.now_ms)));
+    page.send(Input::Consent);
+    page.send(Input::Opened(client()));
+    page.send(Input::Retry);
+    page.send(Input::Shown { step: "demographics".into() });
+    page.send(Input::Acknowledged { stored: 1 });
+    assert_eq!(page.view(), before);
+    assert_eq!(page.state.record.unexpected, unexpected + 5);
+    page.finish();
+    assert!(matches!(page.view(), View::End(_)));
+}
+
+#[test]
+fn the_code_comes_only_after_everything_is_acknowledged() {
+    let (study, session) = started(&study_text("demo.json"), 8);
+    let plan = Plan::new(study, session).unwrap();
+    let mut page = Page::open(&study_text("demo.json"), 8);
+    page.finish();
+    // The same session at its end, with nothing acknowledged.
+    let state = State::replay(&plan, &page.stored);
+    assert_eq!(state.record.status, Status::Finished);
+    let total = page.stored.len() as u64;
+    let shown = mimique_study::flow::view(&plan, &state);
+    assert!(matches!(shown, View::ReceiptPending { stored: 0, .. }), "{shown:?}");
+    let (state, effects) =
+        update(&plan, state, Input::Acknowledged { stored: total - 1 }, page.now_ms);
+    assert_eq!(effects, vec![]);
+    let (state, effects) = update(&plan, state, Input::Acknowledged { stored: total }, page.now_ms);
+    assert_eq!(effects, vec![Effect::Complete { events: total }]);
+    let (_, effects) = update(&plan, state, Input::Acknowledged { stored: total }, page.now_ms);
+    assert_eq!(effects, vec![], "asked once");
+}
+
+#[test]
+fn next_trial_waits_a_moment_for_the_answers_before_it() {
+    let mut page = Page::open(&study_text("demo.json"), 9);
+    while page.state.record.step < page.plan.steps.len() - 3 {
+        page.act(&mut first_answer);
+    }
+    let mut state = page.state.clone();
+    state.live.stored = state.record.checkpoint - 1;
+    state.live.now_ms = state.record.entered_ms + 100.0;
+    let View::Trial(trial) = mimique_study::flow::view(&page.plan, &state) else { panic!() };
+    assert!(!trial.can_play);
+    assert_eq!(trial.phase, Phase::Loading { fraction: 1.0 });
+    // No network must not stop anybody.
+    let later = state.record.entered_ms + 3_500.0;
+    let (state, _) = update(&page.plan, state, Input::Tick, later);
+    let View::Trial(trial) = mimique_study::flow::view(&page.plan, &state) else { panic!() };
+    assert!(trial.can_play);
+}
+
+#[test]
+fn declining_and_withdrawing_end_the_session() {
+    let text = study_text("demo.json");
+    let mut page = Page::open(&text, 10);
+    page.send(Input::Decline);
+    assert!(matches!(page.view(), View::Declined { .. }));
+    let stored = page.stored.len();
+    page.send(Input::Consent);
+    page.send(Input::FocusLost);
+    assert_eq!(page.stored.len(), stored, "nothing more is recorded");
+
+    let mut page = Page::open(&text, 11);
+    page.send(Input::Consent);
+    page.send(Input::Withdraw);
+    assert!(matches!(page.view(), View::Withdrawn { confirmed: true, .. }));
+    assert_eq!(page.stored.last().unwrap().body["type"], "withdrawn");
+}
+
+#[test]
+fn focus_is_logged_once_a_change() {
+    let mut page = Page::open(&study_text("demo.json"), 12);
+    let stored = page.stored.len();
+    for input in [Input::FocusGained, Input::FocusLost, Input::FocusLost, Input::FocusGained] {
+        page.send(input);
+    }
+    let kinds: Vec<_> =
+        page.stored[stored..].iter().map(|event| event.body["type"].clone()).collect();
+    assert_eq!(kinds, [json!("focus_lost"), json!("focus_gained")]);
+}
+
+#[test]
+fn a_failed_clip_can_be_tried_again() {
+    let mut page = Page::open(&study_text("demo.json"), 13);
+    while !matches!(page.view(), View::Trial(_)) {
+        page.act(&mut first_answer);
+    }
+    let View::Trial(trial) = page.view() else { panic!() };
+    page.send(Input::ClipFailed { clip: trial.clip.clone(), message: "no network".into() });
+    let View::Trial(failed) = page.view() else { panic!() };
+    assert!(matches!(failed.phase, Phase::Failed { .. }) && !failed.can_play);
+    page.send(Input::Retry);
+    page.finish();
+    assert!(matches!(page.view(), View::End(_)));
+}
+
+#[test]
+fn pages_come_in_the_language_chosen() {
+    let mut page = Page::open(&study_text("demo.json"), 14);
+    page.send(Input::ChooseLanguage("fr".into()));
+    let View::Consent { agree, title, .. } = page.view() else { panic!() };
+    assert_eq!(agree, "J’accepte de participer");
+    assert_eq!(title, "Que lisez-vous sur ce visage ?");
+    page.reload();
+    let View::Consent { agree, .. } = page.view() else { panic!() };
+    assert_eq!(agree, "J’accepte de participer", "kept after a reload");
+    page.send(Input::ChooseLanguage("xx".into()));
+    assert_eq!(page.state.record.language, "fr");
+}
+
+#[test]
+fn unknown_events_of_another_version_are_counted_and_skipped() {
+    let mut page = Page::open(&study_text("demo.json"), 15);
+    page.send(Input::Consent);
+    let sequence = page.stored.len() as u64;
+    let body = json!({ "type": "from_the_future", "what": 1 });
+    page.stored.push(mimique_study::wire::Event { sequence, at_ms: page.now_ms, body });
+    let state = State::replay(&page.plan, &page.stored);
+    assert_eq!(state.record.events, sequence + 1);
+    assert_eq!(state.record.unexpected, 1);
+    assert_eq!(state.record.step, 1);
+}
