@@ -10,7 +10,6 @@ mod parts;
 mod read;
 #[cfg(feature = "readers")]
 mod read_error;
-mod weld;
 
 pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
 #[cfg(feature = "readers")]
@@ -20,4 +19,3 @@ pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar};
 #[cfg(feature = "readers")]
 pub use read_error::ReadError;
-pub use weld::Skin;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use mimique_face::{Part, Skin, read_avatar};
+use mimique_face::{Part, read_avatar};
 
 /// The real data, or `None` after saying that the test is skipped.
 fn data(test: &str) -> Option<PathBuf> {
@@ -61,20 +61,6 @@ fn ict_facekit_has_its_parts_shapes_and_turning_eyes() {
         eprintln!("eyeball {:?} radius {mean}", eye.centre);
         assert!((0.009..0.016).contains(&mean), "radius {mean} m");
     }
-    let skin = Skin::of(avatar);
-    eprintln!("welded {} tri {}", skin.positions.len(), skin.triangles.len());
-}
-
-#[test]
-fn a_welded_skin_stays_as_it_is() {
-    let Some(root) = data("a_welded_skin_stays_as_it_is") else { return };
-    let read = read_avatar(&root.join("lsts/avatar_skin.glb")).unwrap();
-    assert_eq!(read.avatar.shape_names.len(), 53);
-    let mesh = read.avatar.skin().unwrap();
-    let skin = Skin::of(&read.avatar);
-    assert_eq!(skin.positions, mesh.positions);
-    assert_eq!(skin.triangles, mesh.triangles);
-    assert_eq!(skin.shapes, mesh.shapes);
 }
 
 #[test]

@@ -1,1 +1,30 @@
 //! What joins avatar, capture and method: marker maps, the solve of a take, weight files, packs, provenance.
+//!
+//! ```text
+//! Avatar --AvatarSkin--> skin --+
+//! MarkerMap --------------------+--> solve_take --> WeightsTable + SolveReport
+//! Capture ----------------------+
+//!                               +--> JoinedTake --> operators pack + take pack
+//!                                                      (server)     |
+//!                                              solve_packs (server, browser) --> weights
+//! ```
+
+mod marker_map;
+mod operators_pack;
+mod provenance;
+mod report;
+mod skin;
+mod solve_packs;
+mod solve_take;
+mod take_pack;
+mod weights_file;
+
+pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
+pub use operators_pack::{decode_operators, encode_operators};
+pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
+pub use report::{FrameRow, FrameStatistics, SolveReport, StageSeconds};
+pub use skin::AvatarSkin;
+pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_unpacked};
+pub use solve_take::{JoinedTake, SolveError, SolvedCapture, TakeOptions, solve_take};
+pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
+pub use weights_file::{WeightsFileError, WeightsTable};

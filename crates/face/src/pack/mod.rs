@@ -14,17 +14,17 @@
 //! | eyeballs: mesh, centre, looks (shape, axis, radians) | |
 
 mod bytes;
+mod envelope;
 mod predict;
 mod surface;
 
 pub use bytes::{PackError, PackReader, PackWriter};
+pub use envelope::{open_pack, pack_kind, seal_pack};
 
 use crate::{Avatar, Eyeball, Look};
 
-const MAGIC: &[u8; 4] = b"MMAV";
+const KIND: &str = "MMAV";
 const VERSION: u32 = 1;
-/// Bodies longer than this are taken for damage.
-const LONGEST_BODY: usize = 1 << 29;
 /// Least bytes of a mesh, an eyeball and a look, for [`PackReader::count`].
 const LEAST: [usize; 3] = [20, 14, 17];
 
@@ -62,13 +62,7 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
             body.f32(look.radians);
         }
     }
-    let body = body.into_bytes();
-    let mut pack = PackWriter::new();
-    pack.raw(MAGIC);
-    pack.u32(VERSION);
-    pack.u32(body.len() as u32);
-    pack.raw(&miniz_oxide::deflate::compress_to_vec(&body, 9));
-    EncodedPack { bytes: pack.into_bytes(), error_bound }
+    EncodedPack { bytes: seal_pack(KIND, VERSION, &body.into_bytes()), error_bound }
 }
 
 /// Unpacks an avatar.
@@ -76,26 +70,8 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
 /// # Errors
 /// [`PackError`] for anything that [`encode_pack`] does not write.
 pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
-    let mut header = PackReader::new("MMAV", bytes);
-    if header.raw(4)? != MAGIC {
-        return header.refuse("not an avatar pack");
-    }
-    let version = header.u32()?;
-    if version != VERSION {
-        return header.refuse(format!("version {version}, {VERSION} expected"));
-    }
-    let length = header.u32()? as usize;
-    if length > LONGEST_BODY {
-        return header.refuse(format!("a body of {length} bytes"));
-    }
-    let left = header.left();
-    let body = miniz_oxide::inflate::decompress_to_vec_with_limit(header.raw(left)?, length);
-    let body = match body {
-        Ok(body) if body.len() == length => body,
-        Ok(body) => return header.refuse(format!("{} bytes for {length}", body.len())),
-        Err(e) => return header.refuse(format!("cannot be inflated: {e}")),
-    };
-    let mut r = PackReader::new("MMAV", &body);
+    let body = open_pack(KIND, VERSION, bytes)?;
+    let mut r = PackReader::new(KIND, &body);
     let name = r.text()?;
     let shape_names = r.texts()?;
     r.f32()?;

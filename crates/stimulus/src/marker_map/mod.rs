@@ -1,0 +1,130 @@
+//! Where each marker of a capture sits on the avatar, and which markers move with the head.
+//!
+//! Two forms are read: JSON with positions on the neutral skin (or vertices of the file), and CSV
+//! `marker,role,vertex` with role `face` or `head`.
+
+mod csv;
+mod json;
+mod resolve;
+
+use std::ops::Range;
+
+pub use resolve::{MapError, TOLERANCE_M};
+
+/// A marker map as read; [`MarkerMap::resolve`] finds its vertices on a skin.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MarkerMap {
+    /// The avatar that it is for, where it says so.
+    pub avatar: Option<String>,
+    /// The face markers, in the file's order.
+    pub face: Vec<MappedMarker>,
+    /// The markers that move rigidly with the head; they may be face markers too.
+    pub head: Vec<String>,
+    /// Frames of the neutral face, counted from 0, the end not included.
+    pub neutral: Option<Range<usize>>,
+}
+
+/// A face marker and its place on the skin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MappedMarker {
+    /// The capture's label.
+    pub label: String,
+    /// Where it sits.
+    pub place: MarkerPlace,
+}
+
+/// A place on the neutral skin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MarkerPlace {
+    /// Metres; decides within [`TOLERANCE_M`].
+    Position([f64; 3]),
+    /// Index in the avatar file's own order.
+    Vertex(u32),
+}
+
+/// A marker map that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}; {remedy}")]
+pub struct MapFileError {
+    /// Line, or JSON path.
+    pub place: String,
+    /// What is wrong, with the value.
+    pub what: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+impl MarkerMap {
+    /// Reads either form, told apart by the first character.
+    ///
+    /// # Errors
+    /// [`MapFileError`] with line or path: not the form, a label twice, a number that is none.
+    pub fn from_text(text: &str) -> Result<Self, MapFileError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let map =
+            if text.trim_start().starts_with('{') { json::read(text) } else { csv::read(text) }?;
+        if map.face.is_empty() {
+            return Err(MapFileError {
+                place: "marker map".to_owned(),
+                what: "no face marker".to_owned(),
+                remedy: "name at least four markers on the face",
+            });
+        }
+        Ok(map)
+    }
+
+    /// The label of every face marker, in order.
+    pub fn face_labels(&self) -> impl Iterator<Item = &str> {
+        self.face.iter().map(|m| m.label.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_keeps_its_order_and_converts_its_unit() {
+        let map = MarkerMap::from_text(
+            r#"{"avatar": "Ada", "unit": "mm", "note": "anything",
+               "markers": {"Z": {"position": [1, 2, 3]}, "A": {"vertex": 7}},
+               "head": ["Z"], "neutral": [0, 60]}"#,
+        )
+        .unwrap();
+        assert_eq!(map.avatar.as_deref(), Some("Ada"));
+        assert_eq!(map.face_labels().collect::<Vec<_>>(), ["Z", "A"]);
+        assert_eq!(map.face[0].place, MarkerPlace::Position([0.001, 0.002, 0.003]));
+        assert_eq!(map.face[1].place, MarkerPlace::Vertex(7));
+        assert_eq!(map.head, ["Z"]);
+        assert_eq!(map.neutral, Some(0..60));
+    }
+
+    #[test]
+    fn csv_knows_face_and_head() {
+        let map =
+            MarkerMap::from_text("marker,role,vertex\r\nA,face,3\r\nH0,head,9\r\n\r\n").unwrap();
+        assert_eq!(map.face, [MappedMarker { label: "A".into(), place: MarkerPlace::Vertex(3) }]);
+        assert_eq!(map.head, ["H0"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        for (text, place, what) in [
+            ("marker,role,vertex\nA,nose,3\n", "line 2", "role \"nose\""),
+            ("marker,role,vertex\nA,face,x\n", "line 2", "vertex \"x\""),
+            ("marker,role,vertex\nA,face,1\nA,face,2\n", "line 3", "marker \"A\" twice"),
+            ("marker;role\n", "line 1", "marker;role"),
+            (r#"{"markers": {"A": {"vertex": 1}, "A": {"vertex": 2}}}"#, "markers", "\"A\" twice"),
+            (r#"{"markers": {"A": {}}}"#, "markers.A", "neither position nor vertex"),
+            (r#"{"markers": {"A": {"vertex": 1}}, "unit": "inch"}"#, "unit", "inch"),
+            (r#"{"markers": {"A": {"vertex": 1}}, "neutral": [60, 0]}"#, "neutral", "60:0"),
+            (r#"{"markers": {}}"#, "marker map", "no face marker"),
+            (r#"{"markers": "#, "JSON", ""),
+            ("", "line 1", ""),
+        ] {
+            let error = MarkerMap::from_text(text).unwrap_err();
+            assert!(error.place.contains(place), "{text}: {error}");
+            assert!(error.what.contains(what), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The operators pack (`MMOP`): what the solver needs of avatar and marker map, and no mesh.
+//!
+//! Body: options (Laplacian, k_s, k_b, sigma), shape names, marker labels, S, marker positions, D,
+//! H as f64, then Kouadio's linked rows where they were asked for. l^2 and tau follow from D and H.
+
+use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
+use mimique_solver::{LaplacianKind, LinkedRows, OperatorOptions, OperatorParts, Operators};
+
+const KIND: &str = "MMOP";
+const VERSION: u32 = 1;
+
+const LAPLACIANS: [LaplacianKind; 4] = [
+    LaplacianKind::Uniform,
+    LaplacianKind::Umbrella,
+    LaplacianKind::CotanClamped,
+    LaplacianKind::CotanLiteral,
+];
+
+/// Packs operators. Every bit of every number is kept.
+pub fn encode_operators(operators: &Operators) -> Vec<u8> {
+    let parts = operators.parts();
+    let mut w = PackWriter::new();
+    let kind = LAPLACIANS.iter().position(|k| *k == parts.options.laplacian);
+    w.u8(kind.unwrap_or(0) as u8);
+    w.f64(parts.options.k_s);
+    w.f64(parts.options.k_b);
+    w.f64(parts.options.sigma.unwrap_or(f64::NAN));
+    w.texts(&parts.shape_names);
+    w.texts(&parts.marker_labels);
+    w.u64(parts.vertex_count as u64);
+    let mut all = |numbers: &[f64]| numbers.iter().for_each(|&x| w.f64(x));
+    all(parts.marker_positions.as_flattened());
+    all(&parts.marker_deltas);
+    all(&parts.shell_gram);
+    w.u8(u8::from(parts.linked.is_some()));
+    if let Some(linked) = &parts.linked {
+        w.f64(linked.sigma);
+        w.u64(linked.vertex_count as u64);
+        linked.grams.iter().chain(&linked.sums).for_each(|&x| w.f64(x));
+    }
+    seal_pack(KIND, VERSION, &w.into_bytes())
+}
+
+/// Unpacks operators: the same bits as were packed.
+///
+/// # Errors
+/// [`PackError`] for anything that [`encode_operators`] does not write.
+pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
+    let body = open_pack(KIND, VERSION, bytes)?;
+    let mut r = PackReader::new(KIND, &body);
+    let kind = r.u8()?;
+    let Some(&laplacian) = LAPLACIANS.get(usize::from(kind)) else {
+        return r.refuse(format!("Laplacian {kind}"));
+    };
+    let (k_s, k_b, sigma) = (r.f64()?, r.f64()?, r.f64()?);
+    let options =
+        OperatorOptions { laplacian, k_s, k_b, sigma: (!sigma.is_nan()).then_some(sigma) };
+    let shape_names = r.texts()?;
+    let marker_labels = r.texts()?;
+    let (n, p) = (shape_names.len(), marker_labels.len());
+    let vertex_count = r.u64()? as usize;
+    let positions = numbers(&mut r, 3, p)?;
+    let marker_deltas = numbers(&mut r, 3 * p, n)?;
+    let shell_gram = numbers(&mut r, n, n)?;
+    let linked = match r.u8()? {
+        0 => None,
+        1 => Some(LinkedRows {
+            sigma: r.f64()?,
+            vertex_count: r.u64()? as usize,
+            grams: numbers(&mut r, p, n.saturating_mul(n + 1) / 2)?,
+            sums: numbers(&mut r, 3 * p, n)?,
+        }),
+        other => return r.refuse(format!("linked flag {other}")),
+    };
+    let left = r.left();
+    if left > 0 {
+        return r.refuse(format!("{left} bytes too many"));
+    }
+    let marker_positions = positions.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+    Operators::from_parts(OperatorParts {
+        options,
+        shape_names,
+        marker_labels,
+        marker_positions,
+        vertex_count,
+        marker_deltas,
+        shell_gram,
+        linked,
+    })
+    .or_else(|e| r.refuse(e.to_string()))
+}
+
+/// `rows` x `columns` numbers, if the pack has that many.
+fn numbers(r: &mut PackReader<'_>, rows: usize, columns: usize) -> Result<Vec<f64>, PackError> {
+    let count = rows.saturating_mul(columns);
+    if count.saturating_mul(8) > r.left() {
+        return r.refuse(format!("{count} numbers, {} bytes left", r.left()));
+    }
+    (0..count).map(|_| r.f64()).collect()
+}

@@ -1,0 +1,175 @@
+//! What a solve says of itself: per frame, over all frames, in words.
+
+use mimique_solver::{FrameReport, FrameWarning, MethodSpec, Operators};
+use serde::Serialize;
+
+/// Residual, iterations and convergence over the frames of a take.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FrameStatistics {
+    /// Frames.
+    pub frames: usize,
+    /// Root mean square of the frames' residuals, millimetres.
+    pub residual_rms_mm: f64,
+    /// Largest residual of a frame, millimetres.
+    pub residual_worst_mm: f64,
+    /// Mean number of iterations.
+    pub iterations_mean: f64,
+    /// Largest number of iterations.
+    pub iterations_most: u32,
+    /// Largest KKT error, in units of weight.
+    pub kkt_worst: f64,
+    /// Markers not seen, over all frames.
+    pub missing_markers: u64,
+    /// Frames that did not reach the tolerance; the first of them.
+    pub not_converged: Option<(usize, usize)>,
+    /// Frames in which no marker is seen; the first of them.
+    pub without_markers: Option<(usize, usize)>,
+    /// Frames whose norm had to be smoothed.
+    pub smoothed: usize,
+}
+
+impl FrameStatistics {
+    /// Sums up the reports of consecutive frames.
+    pub fn of(reports: &[FrameReport]) -> Self {
+        let count = reports.len().max(1) as f64;
+        let with = |warning: FrameWarning| {
+            let mut frames =
+                (0..reports.len()).filter(|&i| reports[i].warning == Some(warning)).peekable();
+            let first = *frames.peek()?;
+            Some((frames.count(), first))
+        };
+        let most = |of: fn(&FrameReport) -> f64| reports.iter().map(of).fold(0.0, f64::max);
+        Self {
+            frames: reports.len(),
+            residual_rms_mm: 1e3
+                * (reports.iter().map(|r| r.residual * r.residual).sum::<f64>() / count).sqrt(),
+            residual_worst_mm: 1e3 * most(|r| r.residual),
+            iterations_mean: reports.iter().map(|r| f64::from(r.iterations)).sum::<f64>() / count,
+            iterations_most: reports.iter().map(|r| r.iterations).max().unwrap_or(0),
+            kkt_worst: most(|r| r.kkt_error),
+            missing_markers: reports.iter().map(|r| u64::from(r.missing_markers)).sum(),
+            not_converged: with(FrameWarning::NotConverged),
+            without_markers: with(FrameWarning::NoMarkers),
+            smoothed: with(FrameWarning::Smoothed).map_or(0, |(count, _)| count),
+        }
+    }
+
+    /// What should be said of the frames, counted from `first_frame`.
+    pub fn warnings(&self, first_frame: u64) -> Vec<String> {
+        let mut out = Vec::new();
+        let frames =
+            |count: usize| if count == 1 { "1 frame".into() } else { format!("{count} frames") };
+        if let Some((count, first)) = self.not_converged {
+            out.push(format!(
+                "{} did not reach the tolerance (the first is {}; KKT error up to {:.1e})",
+                frames(count),
+                first as u64 + first_frame,
+                self.kkt_worst
+            ));
+        }
+        if let Some((count, first)) = self.without_markers {
+            out.push(format!(
+                "{} without any marker (the first is {}): their weights come from the priors alone",
+                frames(count),
+                first as u64 + first_frame
+            ));
+        }
+        if self.smoothed > 0 {
+            out.push(format!(
+                "{} met the markers exactly: the norm was smoothed with eps = 1e-4 l",
+                frames(self.smoothed)
+            ));
+        }
+        out
+    }
+}
+
+/// The seconds of each stage of a solve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct StageSeconds {
+    /// Reading the files (filled in by the caller).
+    pub read: f64,
+    /// Welding, Laplacian, D and H, factorisations.
+    pub set_up: f64,
+    /// Head, alignment, adaptation.
+    pub front_end: f64,
+    /// The weights.
+    pub solve: f64,
+    /// Writing the files (filled in by the caller).
+    pub write: f64,
+}
+
+/// One frame of a report.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrameRow {
+    /// The frame's number, as in the capture.
+    pub frame: u64,
+    /// Root mean square distance of the markers, millimetres.
+    pub residual_mm: f64,
+    /// Iterations.
+    pub iterations: u32,
+    /// KKT error, in units of weight.
+    pub kkt_error: f64,
+    /// Markers not seen.
+    pub missing_markers: u32,
+    /// What is to be said of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
+}
+
+/// What a solve says of itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolveReport {
+    /// The avatar.
+    pub avatar: String,
+    /// Vertices of its welded skin.
+    pub vertices: usize,
+    /// Its shapes.
+    pub shapes: usize,
+    /// The face markers.
+    pub markers: Vec<String>,
+    /// The markers that stabilise the head.
+    pub head: Vec<String>,
+    /// Frames of the neutral, counted from 0, the end not included.
+    pub neutral: [usize; 2],
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// The method with every parameter that it used.
+    pub method: MethodSpec,
+    /// l = sqrt(tr(D^T D) / N), millimetres.
+    pub data_scale_mm: f64,
+    /// tau = tr(H) / N, square metres.
+    pub shell_scale_m2: f64,
+    /// Over all frames.
+    pub summary: FrameStatistics,
+    /// The seconds of each stage.
+    pub seconds: StageSeconds,
+    /// What should be said, a sentence each.
+    pub warnings: Vec<String>,
+    /// SHA-256 of the weights.
+    pub weights_hash: String,
+    /// SHA-256 of all that the weights come from, and of the weights.
+    pub provenance: String,
+    /// A row a frame.
+    pub frames: Vec<FrameRow>,
+}
+
+/// Shapes that move no marker by a millimetre at weight 1, and are not locked.
+pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
+    let names: Vec<&str> = operators
+        .parts()
+        .shape_names
+        .iter()
+        .zip(operators.marker_reach())
+        .filter(|(name, reach)| *reach < 1e-3 && !spec.locked.contains(name))
+        .map(|(name, _)| name.as_str())
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} shapes move no marker by 1 mm, so the markers hardly tell their weights: {}; \
+             lock them to 0 or place markers where they move",
+            names.len(),
+            names.join(", ")
+        )
+    })
+}

@@ -1,0 +1,60 @@
+//! The skin of an avatar as the solver wants it: one welded surface in f64.
+
+use mimique_face::{Avatar, Mesh, Part};
+use mimique_solver::{MeshError, SkinMesh, SparseDeltas};
+
+/// An avatar's skin, its seams closed, and the way back to the file's vertices.
+#[derive(Debug, Clone)]
+pub struct AvatarSkin {
+    /// The avatar's name.
+    pub name: String,
+    /// The N shapes, in the avatar's order.
+    pub shape_names: Vec<String>,
+    /// The welded surface, S vertices.
+    pub mesh: SkinMesh,
+    /// Welded vertex of each vertex of the skin meshes, in the file's order.
+    pub welded_from_file: Vec<u32>,
+}
+
+impl AvatarSkin {
+    /// Joins and welds every mesh of an avatar that is skin.
+    ///
+    /// # Errors
+    /// [`MeshError`] when there is no skin, or a damaged one.
+    pub fn of(avatar: &Avatar) -> Result<Self, MeshError> {
+        let mut open = SkinMesh {
+            shapes: vec![SparseDeltas::default(); avatar.shape_names.len()],
+            ..SkinMesh::default()
+        };
+        avatar.meshes.iter().filter(|m| m.part == Part::Skin).for_each(|m| append(&mut open, m));
+        let welded = open.weld()?;
+        Ok(Self {
+            name: avatar.name.clone(),
+            shape_names: avatar.shape_names.clone(),
+            mesh: welded.mesh,
+            welded_from_file: welded.index_of,
+        })
+    }
+
+    /// The vertex nearest to `point` (metres) and its distance; `None` for an empty skin.
+    pub fn nearest(&self, point: [f64; 3]) -> Option<(usize, f64)> {
+        let square = |p: &[f64; 3]| -> f64 { (0..3).map(|a| (p[a] - point[a]).powi(2)).sum() };
+        self.mesh
+            .positions
+            .iter()
+            .map(square)
+            .enumerate()
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(v, square)| (v, square.sqrt()))
+    }
+}
+
+fn append(skin: &mut SkinMesh, mesh: &Mesh) {
+    let first = skin.positions.len() as u32;
+    skin.positions.extend(mesh.positions.iter().map(|p| p.map(f64::from)));
+    skin.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    for (shape, more) in skin.shapes.iter_mut().zip(&mesh.shapes) {
+        shape.vertices.extend(more.vertices.iter().map(|v| v + first));
+        shape.deltas.extend(more.deltas.iter().map(|d| d.map(f64::from)));
+    }
+}

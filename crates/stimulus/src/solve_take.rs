@@ -1,0 +1,389 @@
+//! Avatar, capture, marker map and method in; weights a frame and a report out.
+
+use std::ops::Range;
+
+use mimique_mocap::Capture;
+use mimique_solver::{
+    Fit, FitError, FrontEnd, FrontEndError, MarkerColumns, MarkerFrames, MeshError, Method,
+    MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion,
+};
+
+use crate::provenance::{Provenance, weights_hash};
+use crate::report::{FrameRow, FrameStatistics, SolveReport, StageSeconds, unseen_shapes};
+use crate::solve_packs::lowpass;
+use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
+use crate::{AvatarSkin, MapError, MarkerMap, WeightsTable};
+
+/// Frames that a neutral should be the mean of.
+const NEUTRAL_FRAMES: usize = 60;
+/// Seconds of margin on both sides of a segment, for the head's low-pass to settle.
+const MARGIN_SECONDS: f64 = 0.25;
+
+/// What the user decides beside the method.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TakeOptions {
+    /// Frames of the neutral face, counted from 0; the map's, or the first 60, where not given.
+    pub neutral: Option<Range<usize>>,
+    /// Labels of the markers that stabilise the head; the map's where not given.
+    pub head: Option<Vec<String>>,
+}
+
+/// Why a take cannot be solved.
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    /// The map does not fit the avatar.
+    #[error("marker map, {0}")]
+    Map(#[from] MapError),
+    /// The capture and the map have no label in common.
+    #[error(
+        "markers: the capture has none of the map's labels (the map names {map}, the capture \
+         {capture}); write the map with the capture's labels"
+    )]
+    NoCommonLabel {
+        /// Some labels of the map.
+        map: String,
+        /// Some labels of the capture.
+        capture: String,
+    },
+    /// A head marker that the capture does not have.
+    #[error(
+        "head marker {label}: not in the capture, which has {capture}; name markers of the capture"
+    )]
+    NoHeadMarker {
+        /// The label.
+        label: String,
+        /// Some labels of the capture.
+        capture: String,
+    },
+    /// The capture is empty.
+    #[error("capture: no frames; record or export the take again")]
+    NoFrames,
+    /// A segment is not inside the capture.
+    #[error("frames {first}:{end} of {frames}; give a range inside the capture")]
+    Segment {
+        /// First frame.
+        first: usize,
+        /// One past the last.
+        end: usize,
+        /// Frames there are.
+        frames: usize,
+    },
+    /// The skin cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// D and H cannot be built.
+    #[error(transparent)]
+    Operators(#[from] OperatorError),
+    /// Head, neutral, alignment or adaptation fail.
+    #[error(transparent)]
+    FrontEnd(#[from] FrontEndError),
+    /// The method does not solve.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+/// Weights and what is said of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolvedCapture {
+    /// The weights, a row a frame.
+    pub table: WeightsTable,
+    /// How it went.
+    pub report: SolveReport,
+}
+
+/// Avatar, marker map and capture brought together; solves any method and any segment.
+#[derive(Debug, Clone)]
+pub struct JoinedTake<'a> {
+    skin: &'a AvatarSkin,
+    /// Face markers that the capture has: label and welded vertex.
+    markers: Vec<(String, usize)>,
+    /// Labels of the columns of `positions`.
+    labels: Vec<String>,
+    columns: MarkerColumns,
+    /// Frames x 3 columns, metres.
+    positions: Vec<f64>,
+    neutral: Range<usize>,
+    rate_hz: f64,
+    first_frame: u64,
+    warnings: Vec<String>,
+}
+
+/// Solves a capture with one method.
+///
+/// `clock` gives seconds from any origin; it is asked between the stages.
+///
+/// # Errors
+/// [`SolveError`]: map, labels, head, neutral, or a method that does not solve.
+pub fn solve_take(
+    skin: &AvatarSkin,
+    capture: &Capture,
+    map: &MarkerMap,
+    spec: &MethodSpec,
+    options: &TakeOptions,
+    clock: &mut dyn FnMut() -> f64,
+) -> Result<SolvedCapture, SolveError> {
+    if spec.method == Method::Recorded {
+        return Err(FitError::Recorded.into());
+    }
+    spec.validate().map_err(FitError::from)?;
+    let mut seconds = StageSeconds::default();
+    let start = clock();
+    let joined = JoinedTake::new(skin, capture, map, options)?;
+    let operators = joined.operators(spec)?;
+    let fit = Fit::new(&operators, spec)?;
+    let set_up = clock();
+    seconds.set_up = set_up - start;
+    let take = joined.frames();
+    let (front_end, poses) = joined.front_end(&operators, spec)?;
+    let displacements = front_end.take_displacements(take, &poses)?;
+    let front = clock();
+    seconds.front_end = front - set_up;
+    let solution = fit.solve_take(&displacements)?;
+    seconds.solve = clock() - front;
+
+    let mut warnings = joined.warnings.clone();
+    warnings.extend(unseen_shapes(&operators, spec));
+    let summary = FrameStatistics::of(&solution.reports);
+    warnings.extend(summary.warnings(joined.first_frame));
+    let frames = (solution.reports.iter().zip(joined.first_frame..))
+        .map(|(r, frame)| FrameRow {
+            frame,
+            residual_mm: 1e3 * r.residual,
+            iterations: r.iterations,
+            kkt_error: r.kkt_error,
+            missing_markers: r.missing_markers,
+            warning: r.warning.map(|w| w.to_string()),
+        })
+        .collect();
+    let weights_hash = weights_hash(&solution.weights);
+    let report = SolveReport {
+        avatar: skin.name.clone(),
+        vertices: skin.mesh.positions.len(),
+        shapes: skin.shape_names.len(),
+        markers: joined.markers.iter().map(|(label, _)| label.clone()).collect(),
+        head: joined.head_labels(),
+        neutral: [joined.neutral.start, joined.neutral.end],
+        rate_hz: joined.rate_hz,
+        method: spec.resolved(),
+        data_scale_mm: 1e3 * operators.data_scale().sqrt(),
+        shell_scale_m2: operators.shell_scale(),
+        summary,
+        seconds,
+        warnings,
+        provenance: joined.provenance(spec).text("weights", &weights_hash).hash(),
+        weights_hash,
+        frames,
+    };
+    let names = skin.shape_names.clone();
+    let table = WeightsTable::at_rate(names, solution.weights, joined.first_frame, joined.rate_hz);
+    Ok(SolvedCapture { table, report })
+}
+
+impl<'a> JoinedTake<'a> {
+    /// Finds the map's markers on the skin and in the capture.
+    ///
+    /// # Errors
+    /// [`SolveError`]: the map does not fit the avatar or the capture, no frames, no head marker.
+    pub fn new(
+        skin: &'a AvatarSkin,
+        capture: &Capture,
+        map: &MarkerMap,
+        options: &TakeOptions,
+    ) -> Result<Self, SolveError> {
+        let frames = capture.frames();
+        if frames == 0 {
+            return Err(SolveError::NoFrames);
+        }
+        let mut warnings = Vec::new();
+        let resolved = map.resolve(skin)?;
+        let (markers, absent): (Vec<_>, Vec<_>) =
+            resolved.into_iter().partition(|(label, _)| capture.marker_index(label).is_some());
+        if markers.is_empty() {
+            return Err(SolveError::NoCommonLabel {
+                map: some(map.face_labels()),
+                capture: some(capture.labels.iter().map(String::as_str)),
+            });
+        }
+        if !absent.is_empty() {
+            warnings.push(format!(
+                "{} markers of the map are not in the capture: {}",
+                absent.len(),
+                some(absent.iter().map(|(label, _)| label.as_str()))
+            ));
+        }
+        let head = options.head.as_ref().unwrap_or(&map.head);
+        // Columns: face markers, then the head markers that are none.
+        let mut labels: Vec<String> = markers.iter().map(|(label, _)| label.clone()).collect();
+        let face = (0..labels.len()).collect();
+        let mut head_columns = Vec::new();
+        for label in head {
+            if capture.marker_index(label).is_none() {
+                return Err(SolveError::NoHeadMarker {
+                    label: label.clone(),
+                    capture: some(capture.labels.iter().map(String::as_str)),
+                });
+            }
+            let column = labels.iter().position(|l| l == label).unwrap_or_else(|| {
+                labels.push(label.clone());
+                labels.len() - 1
+            });
+            head_columns.push(column);
+        }
+        if head_columns.is_empty() {
+            warnings.push(
+                "no head markers are named: the capture is taken to be free of head motion"
+                    .to_owned(),
+            );
+        }
+        let neutral = options.neutral.clone().or_else(|| map.neutral.clone());
+        let neutral = neutral.unwrap_or(0..NEUTRAL_FRAMES.min(frames));
+        if neutral.start < neutral.end && neutral.len() < NEUTRAL_FRAMES {
+            warnings.push(format!(
+                "the neutral is the mean of {} frames: {NEUTRAL_FRAMES} or more are steadier",
+                neutral.len()
+            ));
+        }
+        Ok(Self {
+            skin,
+            markers,
+            positions: metres(capture, &labels),
+            labels,
+            columns: MarkerColumns {
+                face,
+                head: (!head_columns.is_empty()).then_some(head_columns),
+            },
+            neutral,
+            rate_hz: capture.rate_hz,
+            first_frame: capture.first_frame,
+            warnings,
+        })
+    }
+
+    /// What should be said of map, capture and avatar together.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Number of frames.
+    pub fn frame_count(&self) -> usize {
+        self.frames().len()
+    }
+
+    /// D, H and l for a method.
+    ///
+    /// # Errors
+    /// [`OperatorError`] for a skin or markers that cannot be used.
+    pub fn operators(&self, spec: &MethodSpec) -> Result<Operators, OperatorError> {
+        let options = OperatorOptions::of(spec);
+        Operators::build(&self.skin.mesh, &self.skin.shape_names, &self.markers, &options)
+    }
+
+    /// The pack of frames `first..end` (counted from 0), with a margin for the head's low-pass.
+    ///
+    /// # Errors
+    /// [`SolveError`]: a segment outside, or a head or neutral that cannot be found.
+    pub fn segment(
+        &self,
+        operators: &Operators,
+        spec: &MethodSpec,
+        segment: Range<usize>,
+    ) -> Result<TakePack, SolveError> {
+        let frames = self.frame_count();
+        let Range { start: first, end } = segment;
+        if first >= end || end > frames {
+            return Err(SolveError::Segment { first, end, frames });
+        }
+        let (front_end, _) = self.front_end(operators, spec)?;
+        let margin = (MARGIN_SECONDS * self.rate_hz).ceil() as usize;
+        let stored = first.saturating_sub(margin)..(end + margin).min(frames);
+        let width = 3 * self.labels.len();
+        let markers = SegmentMarkers {
+            labels: self.labels.clone(),
+            face: self.columns.face.clone(),
+            head: self.columns.head.clone(),
+            head_reference: front_end.head_reference().to_vec(),
+            neutral: front_end.neutral().to_vec(),
+            positions: self.positions[stored.start * width..stored.end * width].to_vec(),
+        };
+        Ok(TakePack {
+            rate_hz: self.rate_hz,
+            first_frame: self.first_frame + first as u64,
+            played: first - stored.start..end - stored.start,
+            content: TakeContent::Markers(markers),
+        })
+    }
+
+    fn frames(&self) -> MarkerFrames<'_> {
+        MarkerFrames { positions: &self.positions, columns: self.labels.len() }
+    }
+
+    fn front_end(
+        &self,
+        operators: &Operators,
+        spec: &MethodSpec,
+    ) -> Result<(FrontEnd, Vec<RigidMotion>), FrontEndError> {
+        let lowpass = lowpass(spec, self.rate_hz)?;
+        let poses = FrontEnd::head_poses(self.frames(), &self.columns, lowpass.as_ref())?;
+        let avatar_markers = &operators.parts().marker_positions;
+        let neutral = self.neutral.clone();
+        let front_end =
+            FrontEnd::fit(self.frames(), &self.columns, &poses, neutral, avatar_markers)?;
+        Ok((front_end, poses))
+    }
+
+    fn head_labels(&self) -> Vec<String> {
+        let head = self.columns.head.as_deref().unwrap_or_default();
+        head.iter().map(|&c| self.labels[c].clone()).collect()
+    }
+
+    /// Avatar, capture, map and method: everything that the weights follow from.
+    pub fn provenance(&self, spec: &MethodSpec) -> Provenance {
+        let mesh = &self.skin.mesh;
+        let corners: Vec<f64> = mesh.triangles.iter().flatten().map(|&v| f64::from(v)).collect();
+        let mut shapes = Vec::new();
+        for shape in &mesh.shapes {
+            shapes.push(shape.vertices.len() as f64);
+            shapes.extend(shape.vertices.iter().map(|&v| f64::from(v)));
+            shapes.extend(shape.deltas.iter().flatten());
+        }
+        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
+        Provenance::new()
+            .numbers("avatar.positions", mesh.positions.as_flattened())
+            .numbers("avatar.triangles", &corners)
+            .numbers("avatar.shapes", &shapes)
+            .text("avatar.shapeNames", &self.skin.shape_names.join("\n"))
+            .numbers("capture.positions", &self.positions)
+            .numbers("capture.rate", &[self.rate_hz])
+            .text("capture.labels", &self.labels.join("\n"))
+            .numbers("map.vertices", &vertices)
+            .text("map.head", &self.head_labels().join("\n"))
+            .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
+            .method(spec)
+    }
+}
+
+/// The named columns of a capture in metres; what is not finite is NaN in all three coordinates.
+fn metres(capture: &Capture, labels: &[String]) -> Vec<f64> {
+    let columns: Vec<usize> = labels.iter().filter_map(|l| capture.marker_index(l)).collect();
+    let unit = capture.unit.metres();
+    (0..capture.frames())
+        .flat_map(|frame| {
+            let row = capture.frame(frame);
+            columns.iter().flat_map(|&c| {
+                let p = row[c];
+                if p.iter().all(|x| x.is_finite()) { p.map(|x| x * unit) } else { [f64::NAN; 3] }
+            })
+        })
+        .collect()
+}
+
+/// The first few of some labels.
+fn some<'l>(labels: impl Iterator<Item = &'l str>) -> String {
+    let labels: Vec<&str> = labels.collect();
+    let named = labels.iter().take(6).copied().collect::<Vec<_>>().join(", ");
+    match labels.len() {
+        0 => "none".to_owned(),
+        1..=6 => named,
+        more => format!("{named} and {} more", more - 6),
+    }
+}

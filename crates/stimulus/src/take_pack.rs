@@ -1,0 +1,236 @@
+//! The take pack (`MMTK`): the markers of one segment, or weights that were recorded.
+//!
+//! Markers: the columns that are needed, in metres, in steps of a hundredth of a millimetre (a
+//! sensor's noise is ten times that), with a margin of frames on both sides for filters to settle;
+//! the head's reference and the neutral face of the whole capture as f64. What is stored of each
+//! coordinate is its change from frame to frame.
+
+use std::ops::Range;
+
+use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
+
+const KIND: &str = "MMTK";
+const VERSION: u32 = 1;
+/// Step of the markers' coordinates, metres.
+const STEP_M: f64 = 1e-5;
+/// Step of recorded weights.
+const STEP_WEIGHT: f64 = 1e-4;
+
+/// What is played: a segment's markers or weights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TakePack {
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// Number of the first played frame in the capture's own count.
+    pub first_frame: u64,
+    /// Which of the stored frames are played; the others are margins.
+    pub played: Range<usize>,
+    /// Markers or weights.
+    pub content: TakeContent,
+}
+
+/// The two kinds of takes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TakeContent {
+    /// Trajectories to solve.
+    Markers(SegmentMarkers),
+    /// Weights to show as they are.
+    Weights {
+        /// Names of the M columns.
+        shape_names: Vec<String>,
+        /// Frame-major, M a frame.
+        weights: Vec<f64>,
+    },
+}
+
+/// The markers of a segment and what the front end needs to know of the rest of the capture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SegmentMarkers {
+    /// Labels of the C columns.
+    pub labels: Vec<String>,
+    /// Columns that are face markers.
+    pub face: Vec<usize>,
+    /// Columns that move with the head; none = the head is held still.
+    pub head: Option<Vec<usize>>,
+    /// The head markers in the capture's first frame, metres.
+    pub head_reference: Vec<[f64; 3]>,
+    /// The stabilised neutral of the face markers, metres.
+    pub neutral: Vec<[f64; 3]>,
+    /// Frames x 3C, metres, NaN where a marker is not seen.
+    pub positions: Vec<f64>,
+}
+
+/// Packs a take. Coordinates and weights are rounded to the pack's steps.
+pub fn encode_take(take: &TakePack) -> Vec<u8> {
+    let mut w = PackWriter::new();
+    w.f64(take.rate_hz);
+    w.u64(take.first_frame);
+    w.varint(take.played.start as u32);
+    w.varint(take.played.end as u32);
+    match &take.content {
+        TakeContent::Markers(m) => {
+            w.u8(0);
+            w.texts(&m.labels);
+            columns_to(&mut w, Some(&m.face));
+            columns_to(&mut w, m.head.as_ref());
+            m.head_reference.iter().chain(&m.neutral).flatten().for_each(|&x| w.f64(x));
+            tracks_to(&mut w, &m.positions, 3 * m.labels.len(), STEP_M);
+        }
+        TakeContent::Weights { shape_names, weights } => {
+            w.u8(1);
+            w.texts(shape_names);
+            tracks_to(&mut w, weights, shape_names.len(), STEP_WEIGHT);
+        }
+    }
+    seal_pack(KIND, VERSION, &w.into_bytes())
+}
+
+/// Unpacks a take.
+///
+/// # Errors
+/// [`PackError`] for anything that [`encode_take`] does not write.
+pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
+    let body = open_pack(KIND, VERSION, bytes)?;
+    let mut r = PackReader::new(KIND, &body);
+    let rate_hz = r.f64()?;
+    if !(rate_hz.is_finite() && rate_hz > 0.0) {
+        return r.refuse(format!("{rate_hz} frames a second"));
+    }
+    let first_frame = r.u64()?;
+    let played = r.varint()? as usize..r.varint()? as usize;
+    let kind = r.u8()?;
+    let (content, frames) = match kind {
+        0 => {
+            let labels = r.texts()?;
+            let Some(face) = columns_from(&mut r, labels.len())? else {
+                return r.refuse("no face markers");
+            };
+            let head = columns_from(&mut r, labels.len())?;
+            let heads = head.as_ref().map_or(0, Vec::len);
+            let head_reference = points(&mut r, heads)?;
+            let neutral = points(&mut r, face.len())?;
+            let columns = 3 * labels.len();
+            let positions = tracks_from(&mut r, columns, STEP_M)?;
+            let frames = positions.len() / columns.max(1);
+            let markers = SegmentMarkers { labels, face, head, head_reference, neutral, positions };
+            (TakeContent::Markers(markers), frames)
+        }
+        1 => {
+            let shape_names = r.texts()?;
+            let weights = tracks_from(&mut r, shape_names.len(), STEP_WEIGHT)?;
+            let frames = weights.len() / shape_names.len().max(1);
+            if weights.iter().any(|w| w.is_nan()) {
+                return r.refuse("a weight is missing");
+            }
+            (TakeContent::Weights { shape_names, weights }, frames)
+        }
+        other => return r.refuse(format!("kind {other}")),
+    };
+    if played.is_empty() || played.end > frames {
+        return r.refuse(format!("plays frames {}:{} of {frames}", played.start, played.end));
+    }
+    r.finish()?;
+    Ok(TakePack { rate_hz, first_frame, played, content })
+}
+
+/// A flag, then count and indices.
+fn columns_to(w: &mut PackWriter, columns: Option<&Vec<usize>>) {
+    w.u8(u8::from(columns.is_some()));
+    if let Some(columns) = columns {
+        w.varint(columns.len() as u32);
+        columns.iter().for_each(|&c| w.varint(c as u32));
+    }
+}
+
+fn columns_from(r: &mut PackReader<'_>, of: usize) -> Result<Option<Vec<usize>>, PackError> {
+    match r.u8()? {
+        0 => return Ok(None),
+        1 => {}
+        other => return r.refuse(format!("column flag {other}")),
+    }
+    let count = r.count(1)?;
+    let mut columns = Vec::with_capacity(count);
+    for _ in 0..count {
+        let column = r.varint()? as usize;
+        if column >= of {
+            return r.refuse(format!("column {column} of {of}"));
+        }
+        columns.push(column);
+    }
+    Ok(Some(columns))
+}
+
+/// Points, finite or (a head marker not seen in the first frame) all NaN.
+fn points(r: &mut PackReader<'_>, count: usize) -> Result<Vec<[f64; 3]>, PackError> {
+    if count.saturating_mul(24) > r.left() {
+        return r.refuse(format!("{count} points, {} bytes left", r.left()));
+    }
+    (0..count).map(|_| Ok([r.f64()?, r.f64()?, r.f64()?])).collect()
+}
+
+/// Frame count; then for every column the runs of missing and present frames, and the changes of
+/// what is present: low bytes, then the rest.
+fn tracks_to(w: &mut PackWriter, values: &[f64], columns: usize, step: f64) {
+    let frames = values.len() / columns.max(1);
+    w.varint(frames as u32);
+    for column in 0..columns {
+        let track = || (0..frames).map(move |f| values[f * columns + column]);
+        let mut runs = Vec::new();
+        let (mut length, mut present) = (0u32, false);
+        for value in track() {
+            if value.is_finite() != present {
+                runs.push(length);
+                (length, present) = (0, !present);
+            }
+            length += 1;
+        }
+        runs.push(length);
+        w.varint(runs.len() as u32);
+        runs.into_iter().for_each(|run| w.varint(run));
+        let mut last = 0i32;
+        let changes: Vec<u32> = track()
+            .filter(|value| value.is_finite())
+            .map(|value| {
+                let q = (value / step).round() as i32;
+                let change = q.wrapping_sub(std::mem::replace(&mut last, q));
+                ((change << 1) ^ (change >> 31)) as u32
+            })
+            .collect();
+        changes.iter().for_each(|&c| w.u8(c as u8));
+        changes.iter().for_each(|&c| w.varint(c >> 8));
+    }
+}
+
+fn tracks_from(r: &mut PackReader<'_>, columns: usize, step: f64) -> Result<Vec<f64>, PackError> {
+    let frames = r.varint()? as usize;
+    // A column takes three bytes at least, however many frames it misses.
+    let most = r.left().saturating_mul(64);
+    if columns == 0 || columns.saturating_mul(3) > r.left() || frames.saturating_mul(columns) > most
+    {
+        return r.refuse(format!("{frames} frames of {columns} columns"));
+    }
+    let mut values = vec![f64::NAN; frames * columns];
+    for column in 0..columns {
+        let runs: Vec<u32> = (0..r.count(1)?).map(|_| r.varint()).collect::<Result<_, _>>()?;
+        let mut at = 0usize;
+        let mut present = Vec::new();
+        for (i, run) in runs.into_iter().enumerate() {
+            let end = at.saturating_add(run as usize);
+            if end > frames {
+                return r.refuse(format!("a run to frame {end} of {frames}"));
+            }
+            if i % 2 == 1 {
+                present.extend(at..end);
+            }
+            at = end;
+        }
+        let low = r.raw(present.len())?;
+        let mut q = 0i32;
+        for (frame, &low) in present.into_iter().zip(low) {
+            let change = (r.varint()? << 8) | u32::from(low);
+            q = q.wrapping_add(((change >> 1) as i32) ^ -((change & 1) as i32));
+            values[frame * columns + column] = f64::from(q) * step;
+        }
+    }
+    Ok(values)
+}
