@@ -1,1 +1,43 @@
 //! The server: pages, packs, answers kept in SQLite or PostgreSQL, export.
+//!
+//! [`App`] joins studies ([`HostedStudy`]), their packs ([`PackStore`]), the pages ([`Assets`]) and
+//! [`Storage`]; [`router`] is its HTTP interface (the bodies are `mimique_study::wire`), [`serve`]
+//! runs it until it is told to stop, [`export`] writes what was answered.
+//!
+//! What it promises: an append is acknowledged only after its transaction is on disk; sending a
+//! request again changes nothing; a participant number is never given twice; tokens, codes and keys
+//! are kept as hashes; no address of a participant is stored and no answer is logged.
+
+mod app;
+mod assets;
+mod atomic_file;
+mod clock;
+mod compression;
+mod error;
+pub mod export;
+mod folder;
+mod hosted;
+mod packs;
+mod receipt;
+mod researcher;
+mod routes;
+mod secret;
+mod serve;
+mod static_file;
+mod storage;
+
+pub use app::{App, AppError};
+pub use assets::{Assets, AssetsError};
+pub use hosted::{HostedStudy, Stage};
+pub use packs::{PackError, PackStore};
+pub use routes::router;
+pub use serve::{ServeError, serve};
+pub use storage::{
+    Access, Appended, Completed, MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry,
+    SessionRecord, Status, Storage, StorageError, StudyVersion,
+};
+
+/// The public name of a participant: `p0007`.
+pub fn participant_id(number: u64) -> String {
+    format!("p{number:04}")
+}

@@ -1,0 +1,102 @@
+//! The HTTP interface: a file a group of addresses.
+
+mod pages;
+mod researcher;
+mod sessions;
+mod statics;
+mod studies;
+
+use std::any::Any;
+use std::time::Duration;
+
+use axum::extract::{DefaultBodyLimit, FromRequest, Request};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use tower_http::catch_panic::CatchPanicLayer;
+
+use crate::app::App;
+use crate::error::Error;
+
+/// A request's body in bytes at most: some twenty trials with their frame logs.
+const LARGEST_BODY: usize = 2 * 1024 * 1024;
+/// A request and its answer must have passed within this time.
+const LONGEST_REQUEST: Duration = Duration::from_secs(60);
+
+/// Scripts and styles only from here; nothing inline, nothing from elsewhere.
+const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; \
+     style-src 'self'; img-src 'self' data:; connect-src 'self'; worker-src 'self'; \
+     media-src 'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
+
+/// Every address of the server.
+pub fn router(app: App) -> Router {
+    Router::new()
+        .route("/", get(pages::index))
+        .route("/s/{study}", get(pages::participant_without_slash))
+        .route("/s/{study}/", get(pages::participant))
+        .route("/preview/{study}", get(pages::preview))
+        .route("/assets/{hash}/{*name}", get(statics::asset))
+        .route("/packs/{hash}", get(statics::pack))
+        .route("/api/studies", get(studies::list))
+        .route("/api/studies/{study}", get(studies::bundle))
+        .route("/api/studies/{study}/sessions", post(sessions::start))
+        .route("/api/sessions/{session}", get(sessions::resume))
+        .route("/api/sessions/{session}/events", post(sessions::append))
+        .route("/api/sessions/{session}/complete", post(sessions::complete))
+        .route("/api/sessions/{session}/withdraw", post(sessions::withdraw))
+        .route("/researcher", get(researcher::page))
+        .route("/researcher/{study}/export/{format}", get(researcher::export))
+        .route("/healthz", get(|| async { "ok\n" }))
+        .route("/readyz", get(pages::ready))
+        .fallback(|| async { Error::NotFound })
+        .method_not_allowed_fallback(|| async { Error::MethodNotAllowed })
+        .layer(DefaultBodyLimit::max(LARGEST_BODY))
+        .layer(middleware::from_fn(time_limit))
+        .layer(CatchPanicLayer::custom(panicked))
+        .layer(middleware::from_fn(security_headers))
+        .with_state(app)
+}
+
+/// A JSON body; what is wrong with it is a refusal like any other.
+pub(crate) struct Body<T>(pub T);
+
+impl<S: Send + Sync, T: serde::de::DeserializeOwned> FromRequest<S> for Body<T> {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
+        let Json(value) = Json::<T>::from_request(request, state).await?;
+        Ok(Self(value))
+    }
+}
+
+async fn time_limit(request: Request, next: Next) -> Response {
+    match tokio::time::timeout(LONGEST_REQUEST, next.run(request)).await {
+        Ok(response) => response,
+        Err(_) => Error::Timeout.into_response(),
+    }
+}
+
+async fn security_headers(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers = response.headers_mut();
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    // What is not said to be kept is not kept.
+    headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
+    response
+}
+
+/// A panic is our mistake: its text may hold an answer, so that only its happening is logged.
+fn panicked(_: Box<dyn Any + Send>) -> Response {
+    let mut response = Error::Internal("a request panicked".into()).into_response();
+    *response.status_mut() = StatusCode::INTERNAL_SERVER_ERROR;
+    response
+}

@@ -1,0 +1,103 @@
+//! Pages: participant's, preview, the list of studies; readiness.
+
+use axum::extract::{Path, RawQuery, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{Html, IntoResponse, Response};
+use maud::{DOCTYPE, html};
+
+use crate::app::App;
+use crate::error::Error;
+
+/// The list of studies.
+pub(super) async fn index(State(app): State<App>) -> Html<String> {
+    let assets = app.assets.prefix();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="robots" content="noindex";
+                title { "Studies" }
+                link rel="icon" href={ (assets) "/icon.svg" } type="image/svg+xml";
+                link rel="stylesheet" href={ (assets) "/style.css" };
+            }
+            body {
+                main.page {
+                    h1 { "Studies" }
+                    @for study in app.studies.values() {
+                        @let language = study.study().default_language();
+                        section.card lang=(language) {
+                            h2 { (study.title(language)) }
+                            p { (study.study().study_metadata.description.in_language(language)) }
+                            div.actions {
+                                a.button.primary href={ "/s/" (study.id()) "/" } lang="en" {
+                                    "Take part"
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    Html(page.into_string())
+}
+
+/// The page's addresses are relative to the slash; what recruitment appended goes along.
+pub(super) async fn participant_without_slash(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    RawQuery(query): RawQuery,
+) -> Result<Response, Error> {
+    let study = app.study(&study)?;
+    let query = query.map(|query| format!("?{query}")).unwrap_or_default();
+    let address = format!("/s/{}/{query}", study.id());
+    Ok((StatusCode::PERMANENT_REDIRECT, [(header::LOCATION, address)]).into_response())
+}
+
+pub(super) async fn participant(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    from_template(&app, "index.html", &study, &headers)
+}
+
+pub(super) async fn preview(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    from_template(&app, "preview.html", &study, &headers)
+}
+
+/// Whether answers can be stored.
+pub(super) async fn ready(State(app): State<App>) -> Result<&'static str, Error> {
+    app.storage.ping().await?;
+    Ok("ready\n")
+}
+
+fn from_template(
+    app: &App,
+    name: &str,
+    study: &str,
+    headers: &HeaderMap,
+) -> Result<Response, Error> {
+    let study = app.study(study)?;
+    let wanted = headers
+        .get(header::ACCEPT_LANGUAGE)
+        .and_then(|value| value.to_str().ok())
+        .and_then(|value| value.split([',', ';']).next())
+        .unwrap_or_default();
+    let language = study.study().language_for(wanted.trim());
+    let values = [
+        ("assets", app.assets.prefix()),
+        ("lang", language.to_owned()),
+        ("title", study.title(language).to_owned()),
+        ("study", study.id().to_owned()),
+    ];
+    let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
+    let page = app.assets.page(name, &values).ok_or(Error::NotFound)?;
+    Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
+}

@@ -1,0 +1,24 @@
+//! `/assets` and `/packs`: files that never change under their address.
+
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::response::Response;
+
+use crate::app::App;
+use crate::error::Error;
+
+pub(super) async fn asset(
+    State(app): State<App>,
+    Path((hash, name)): Path<(String, String)>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    Ok(app.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers))
+}
+
+pub(super) async fn pack(
+    State(app): State<App>,
+    Path(hash): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    Ok(app.packs.get(&hash).ok_or(Error::UnknownPack)?.respond(&headers))
+}

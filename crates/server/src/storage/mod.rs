@@ -1,0 +1,303 @@
+//! Where answers are kept: one interface, SQLite or PostgreSQL behind it.
+//!
+//! The statements are the same text for both databases (`store.rs`, compiled once for each, since
+//! the generic bounds of sqlx would be longer than the queries); `sqlite.rs` and `postgres.rs` hold
+//! what differs. Every change goes through a writer that commits many of them in one transaction
+//! and answers each only after the commit.
+
+mod migrations;
+mod postgres;
+mod records;
+mod sqlite;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use mimique_study::wire::Event;
+
+pub use records::{
+    Access, Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
+};
+
+/// Why storage did not do what it was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum StorageError {
+    /// No session has this token.
+    #[error("no session has this token; start the study again from its address")]
+    UnknownSession,
+    /// The participant has withdrawn: nothing more is taken.
+    #[error("the participant has withdrawn; nothing more is stored")]
+    Withdrawn,
+    /// Events are missing, so the session cannot be completed.
+    #[error("{} events are missing, first {first}; send them again", missing.len(), first = missing.first().copied().unwrap_or(0))]
+    MissingEvents {
+        /// Their sequences, at most [`MOST_SEQUENCES_REPORTED`].
+        missing: Vec<u64>,
+    },
+    /// The withdrawal code is not this session's.
+    #[error("the withdrawal code is not the one of this session; copy it as it was shown")]
+    WrongWithdrawalCode,
+    /// The database's address cannot be read.
+    #[error("{url}: {problem}; use sqlite:FILE or postgres://USER@HOST/NAME")]
+    Address {
+        /// The address without its password.
+        url: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The database was made by a later version of Mimique.
+    #[error(
+        "the database has schema version {found}, this binary knows up to {known}; use the newer binary"
+    )]
+    SchemaTooNew {
+        /// Version found in the database.
+        found: i64,
+        /// Highest version that this binary knows.
+        known: i64,
+    },
+    /// A stored value cannot be read back.
+    #[error("table {table}: {problem}; restore the database from a backup")]
+    Damaged {
+        /// The table it stands in.
+        table: &'static str,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The database failed.
+    #[error("the database failed: {0}; see that it runs and that its disk has room")]
+    Database(sqlx::Error),
+    /// The database does not answer.
+    #[error("the database does not answer; see that it runs")]
+    Unavailable,
+    /// The server is stopping.
+    #[error("the server is stopping; send the request again in a moment")]
+    Stopping,
+}
+
+impl From<sqlx::Error> for StorageError {
+    fn from(error: sqlx::Error) -> Self {
+        match error {
+            sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => {
+                Self::Unavailable
+            }
+            error => Self::Database(error),
+        }
+    }
+}
+
+/// How many missing sequences are listed at most.
+pub const MOST_SEQUENCES_REPORTED: usize = 1000;
+
+/// Handle of the database; cheap to clone.
+#[derive(Clone)]
+pub struct Storage {
+    store: Store,
+}
+
+#[derive(Clone)]
+enum Store {
+    Sqlite(sqlite::Store),
+    Postgres(postgres::Store),
+}
+
+/// Calls the same method of whichever database is behind.
+macro_rules! on_store {
+    ($self:ident, $store:ident => $call:expr) => {
+        match &$self.store {
+            Store::Sqlite($store) => $call,
+            Store::Postgres($store) => $call,
+        }
+    };
+}
+
+impl Storage {
+    /// Opens `sqlite:FILE` (made when absent) or `postgres://…` and brings its schema up to date.
+    pub async fn open(url: &str) -> Result<Self, StorageError> {
+        let store = if url.starts_with("postgres://") || url.starts_with("postgresql://") {
+            Store::Postgres(postgres::open(url).await?)
+        } else if let Some(path) = sqlite_path(url) {
+            Store::Sqlite(sqlite::open(&path).await?)
+        } else {
+            return Err(StorageError::Address {
+                url: without_password(url),
+                problem: "unknown kind of database".into(),
+            });
+        };
+        Ok(Self { store })
+    }
+
+    /// `SQLite` or `PostgreSQL`, for messages.
+    pub fn kind(&self) -> &'static str {
+        match self.store {
+            Store::Sqlite(_) => "SQLite",
+            Store::Postgres(_) => "PostgreSQL",
+        }
+    }
+
+    /// Waits until every change accepted so far is committed, then closes.
+    pub async fn close(&self) {
+        on_store!(self, store => store.close().await)
+    }
+
+    /// Asks the database whether it answers.
+    pub async fn ping(&self) -> Result<(), StorageError> {
+        on_store!(self, store => store.ping().await)
+    }
+
+    /// The secret kept under this name, made by `make` at the first call.
+    pub async fn server_key(
+        &self,
+        name: &str,
+        make: impl FnOnce() -> String,
+    ) -> Result<String, StorageError> {
+        let fresh = make();
+        on_store!(self, store => store.server_key(name, &fresh).await)
+    }
+
+    /// Makes this version the current one of its study; returns the hash of the version that it
+    /// replaces, if it replaces another.
+    pub async fn register_study(
+        &self,
+        version: &StudyVersion,
+        now_ms: i64,
+    ) -> Result<Option<String>, StorageError> {
+        on_store!(self, store => store.register_study(version, now_ms).await)
+    }
+
+    /// Every version of every study ever served, in order of study and first service.
+    pub async fn study_versions(&self) -> Result<Vec<StudyVersion>, StorageError> {
+        on_store!(self, store => store.study_versions().await)
+    }
+
+    /// Starts a session, or finds the one started with the same token.
+    pub async fn start(&self, session: NewSession) -> Result<SessionRecord, StorageError> {
+        on_store!(self, store => store.start(session).await)
+    }
+
+    /// The session with this token's hash.
+    pub async fn session(&self, token_hash: &str) -> Result<SessionRecord, StorageError> {
+        on_store!(self, store => store.session(token_hash).await)
+    }
+
+    /// Every session of a study, by participant number.
+    pub async fn sessions(&self, study_id: &str) -> Result<Vec<SessionRecord>, StorageError> {
+        on_store!(self, store => store.sessions(study_id).await)
+    }
+
+    /// Every stored event of a session, by sequence.
+    pub async fn events(&self, session_key: i64) -> Result<Vec<Event>, StorageError> {
+        on_store!(self, store => store.events(session_key).await)
+    }
+
+    /// How many differing bodies were sent for stored sequences, by session key.
+    pub async fn conflict_counts(&self, study_id: &str) -> Result<Vec<(i64, u64)>, StorageError> {
+        on_store!(self, store => store.conflict_counts(study_id).await)
+    }
+
+    /// The recruitment identifiers of one session, by name.
+    pub async fn session_recruitment(
+        &self,
+        session_key: i64,
+    ) -> Result<BTreeMap<String, String>, StorageError> {
+        on_store!(self, store => store.session_recruitment(session_key).await)
+    }
+
+    /// The recruitment identifiers of a study's participants, by participant and name.
+    pub async fn recruitment(&self, study_id: &str) -> Result<Vec<RecruitmentEntry>, StorageError> {
+        on_store!(self, store => store.recruitment(study_id).await)
+    }
+
+    /// Appends events; resolves after they are committed.
+    pub async fn append(
+        &self,
+        token_hash: &str,
+        events: Vec<Event>,
+        now_ms: i64,
+    ) -> Result<Appended, StorageError> {
+        on_store!(self, store => store.append(token_hash, events, now_ms).await)
+    }
+
+    /// Completes a session of which events `0..events` must all be stored; the receipt is keyed
+    /// with `receipt_key`. Repeating it gives the first receipt again.
+    pub async fn complete(
+        &self,
+        token_hash: &str,
+        events: u64,
+        receipt_key: &[u8],
+        now_ms: i64,
+    ) -> Result<Completed, StorageError> {
+        on_store!(self, store => store.complete(token_hash, events, receipt_key, now_ms).await)
+    }
+
+    /// Deletes a session's events and identifiers and keeps its number; returns how many events
+    /// were deleted.
+    pub async fn withdraw(
+        &self,
+        token_hash: &str,
+        withdrawal_hash: &str,
+        now_ms: i64,
+    ) -> Result<u64, StorageError> {
+        on_store!(self, store => store.withdraw(token_hash, withdrawal_hash, now_ms).await)
+    }
+
+    /// Remembers the hash of a researcher's secret until `expires_ms`; forgets expired ones.
+    pub async fn grant_access(
+        &self,
+        access: Access,
+        secret_hash: &str,
+        now_ms: i64,
+        expires_ms: i64,
+    ) -> Result<(), StorageError> {
+        on_store!(self, store => store.grant_access(access, secret_hash, now_ms, expires_ms).await)
+    }
+
+    /// Whether a researcher's secret with this hash is known and has not expired.
+    pub async fn has_access(
+        &self,
+        access: Access,
+        secret_hash: &str,
+        now_ms: i64,
+    ) -> Result<bool, StorageError> {
+        on_store!(self, store => store.has_access(access, secret_hash, now_ms).await)
+    }
+}
+
+/// The file of a `sqlite:` address; a plain path is taken as one.
+fn sqlite_path(url: &str) -> Option<PathBuf> {
+    let path = match url.split_once(':') {
+        Some(("sqlite", rest)) => rest.strip_prefix("//").unwrap_or(rest),
+        // A drive letter is no scheme.
+        Some((scheme, _)) if scheme.len() > 1 => return None,
+        _ => url,
+    };
+    (!path.is_empty()).then(|| PathBuf::from(path))
+}
+
+/// An address fit for a message.
+fn without_password(url: &str) -> String {
+    match (url.find("://"), url.rfind('@')) {
+        (Some(scheme), Some(at)) if scheme + 3 <= at => {
+            format!("{}…{}", &url[..scheme + 3], &url[at..])
+        }
+        _ => url.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_name_a_file_or_nothing() {
+        assert_eq!(sqlite_path("sqlite:a/b.sqlite"), Some(PathBuf::from("a/b.sqlite")));
+        assert_eq!(sqlite_path("sqlite:///tmp/b"), Some(PathBuf::from("/tmp/b")));
+        assert_eq!(sqlite_path("answers.sqlite"), Some(PathBuf::from("answers.sqlite")));
+        assert_eq!(sqlite_path("mysql://x/y"), None);
+        assert_eq!(sqlite_path("sqlite:"), None);
+    }
+
+    #[test]
+    fn a_password_is_not_repeated_in_messages() {
+        assert_eq!(without_password("mysql://me:secret@host/x"), "mysql://…@host/x");
+    }
+}

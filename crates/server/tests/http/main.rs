@@ -1,0 +1,68 @@
+//! The HTTP interface on SQLite and on PostgreSQL: one suite, both databases.
+//!
+//! On SQLite every topic is a test of its own; on PostgreSQL all topics run in one test on a private
+//! cluster, each in a fresh database.
+
+mod client;
+mod pages;
+mod postgres;
+mod researcher;
+mod sessions;
+mod study;
+
+use client::TestServer;
+
+/// Declares the topics: a test each on SQLite, one test of all on PostgreSQL.
+macro_rules! topics {
+    ($($module:ident :: $topic:ident),* $(,)?) => {
+        mod sqlite {
+            $(
+                #[test]
+                fn $topic() {
+                    let folder = tempfile::tempdir().unwrap();
+                    let url = format!("sqlite:{}", folder.path().join("answers.sqlite").display());
+                    super::client::block_on(async move {
+                        super::$module::$topic(&super::TestServer::open(&url).await).await;
+                    });
+                }
+            )*
+        }
+
+        #[test]
+        fn postgres_passes_every_topic_too() {
+            let Some(cluster) = postgres::Cluster::start("postgres_passes_every_topic_too") else {
+                return;
+            };
+            client::block_on(async {
+                $(
+                    let url = cluster.fresh_database(stringify!($topic)).await;
+                    $module::$topic(&TestServer::open(&url).await).await;
+                )*
+            });
+        }
+    };
+}
+
+topics! {
+    sessions::a_repeated_start_finds_the_same_session,
+    sessions::participant_numbers_are_given_once,
+    sessions::an_append_repeated_changes_nothing,
+    sessions::gaps_are_reported_and_filled_in_any_order,
+    sessions::another_body_for_a_stored_event_is_refused_and_kept_apart,
+    sessions::many_appends_at_once_are_all_stored,
+    sessions::a_session_goes_on_after_a_reload,
+    sessions::a_restart_keeps_everything,
+    sessions::completing_needs_every_event,
+    sessions::a_receipt_stays_the_same,
+    sessions::the_code_is_given_only_at_the_end,
+    sessions::withdrawal_deletes_answers_and_identifiers,
+    sessions::withdrawal_needs_the_code,
+    sessions::unknown_sessions_and_studies_are_not_found,
+    sessions::bad_requests_are_refusals,
+    sessions::oversized_bodies_are_refused,
+    pages::pages_carry_a_strict_policy,
+    pages::assets_and_packs_are_kept_for_ever,
+    pages::the_study_tells_participants_no_secrets,
+    pages::the_server_says_that_it_is_ready,
+    researcher::the_page_needs_the_printed_address,
+}

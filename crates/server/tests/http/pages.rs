@@ -1,0 +1,83 @@
+//! Pages, assets and packs: their headers and forms.
+
+use axum::http::{StatusCode, header};
+use mimique_study::wire::{Bundle, StudySummary};
+
+use crate::client::TestServer;
+use crate::study;
+
+pub async fn pages_carry_a_strict_policy(server: &TestServer) {
+    for path in ["/", "/s/faces/", "/preview/faces"] {
+        let answer = server.get(path).await;
+        assert_eq!(answer.status, StatusCode::OK, "{path}");
+        let policy = answer.header(header::CONTENT_SECURITY_POLICY);
+        assert!(policy.contains("default-src 'none'"), "{policy}");
+        assert!(!policy.contains("unsafe-inline") && !policy.contains("'unsafe-eval'"), "{policy}");
+        assert_eq!(answer.header(header::X_CONTENT_TYPE_OPTIONS), "nosniff");
+        assert_eq!(answer.header(header::REFERRER_POLICY), "no-referrer");
+        assert!(!answer.text().contains("<feelings>"), "the title is escaped");
+    }
+    let french = [(header::ACCEPT_LANGUAGE, "fr-CA,fr;q=0.9,en;q=0.8")];
+    let page = server.get_with("/s/faces/", &french).await.text();
+    assert!(page.contains("<html lang=\"fr\"><title>Visages</title>"), "{page}");
+    // What the recruitment platform appended survives the missing slash.
+    let answer = server.get("/s/faces?PROLIFIC_PID=7&x=%20").await;
+    assert_eq!(answer.status, StatusCode::PERMANENT_REDIRECT);
+    assert_eq!(answer.header(header::LOCATION), "/s/faces/?PROLIFIC_PID=7&x=%20");
+}
+
+pub async fn assets_and_packs_are_kept_for_ever(server: &TestServer) {
+    let page = server.get("/s/faces/").await.text();
+    let start = page.find("/assets/").unwrap();
+    let prefix = &page[start..start + "/assets/".len() + 16];
+    let style = format!("{prefix}/style.css");
+    let pack = format!("/packs/{}", study::sha256(&study::pack()));
+    for path in [&style, &pack] {
+        let plain = server.get(path).await;
+        assert_eq!(plain.status, StatusCode::OK, "{path}");
+        assert_eq!(plain.header(header::CONTENT_ENCODING), "");
+        for (accepted, coding) in [("gzip, br", "br"), ("gzip", "gzip")] {
+            let packed = server.get_with(path, &[(header::ACCEPT_ENCODING, accepted)]).await;
+            assert_eq!(packed.header(header::CONTENT_ENCODING), coding);
+            assert_eq!(packed.header(header::VARY), "Accept-Encoding");
+            assert_eq!(packed.header(header::CACHE_CONTROL), "public, max-age=31536000, immutable");
+            assert!(packed.body.len() < plain.body.len() / 4);
+        }
+    }
+    assert_eq!(server.get(&style).await.header(header::CONTENT_TYPE), "text/css; charset=utf-8");
+    assert_eq!(server.get(&pack).await.text(), study::pack());
+    for path in [
+        format!("{prefix}/index.html"),
+        format!("{prefix}/../style.css"),
+        format!("{prefix}/%2e%2e/style.css"),
+        "/assets/0000000000000000/style.css".to_owned(),
+    ] {
+        server.get(&path).await.refused(StatusCode::NOT_FOUND, "not-found");
+    }
+    let unknown = format!("/packs/{}", "0".repeat(64));
+    server.get(&unknown).await.refused(StatusCode::NOT_FOUND, "unknown-pack");
+    server.get("/packs/..%2fanswers.sqlite").await.refused(StatusCode::NOT_FOUND, "unknown-pack");
+}
+
+pub async fn the_study_tells_participants_no_secrets(server: &TestServer) {
+    let studies: Vec<StudySummary> = server.get("/api/studies").await.ok();
+    assert_eq!(studies.len(), 1);
+    assert_eq!(studies[0].id, "faces");
+    assert_eq!(studies[0].title, study::file()["studyMetadata"]["title"]);
+    let answer = server.get("/api/studies/faces").await;
+    let bundle: Bundle = answer.ok();
+    assert_eq!(bundle.config_hash, studies[0].config_hash);
+    assert_eq!(bundle.study["components"], study::file()["components"]);
+    for secret in ["C1 X", "example.org", "hypotheses"] {
+        assert!(!answer.text().contains(secret), "{secret}");
+    }
+}
+
+pub async fn the_server_says_that_it_is_ready(server: &TestServer) {
+    assert_eq!(server.get("/healthz").await.text(), "ok\n");
+    assert_eq!(server.get("/readyz").await.text(), "ready\n");
+    server.storage.close().await;
+    assert_eq!(server.get("/healthz").await.status, StatusCode::OK);
+    let answer = server.get("/readyz").await;
+    answer.refused(StatusCode::SERVICE_UNAVAILABLE, "unavailable");
+}
