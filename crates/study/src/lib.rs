@@ -5,6 +5,7 @@ mod canonical;
 mod event;
 pub mod flow;
 mod order;
+pub mod responses;
 mod study_file;
 pub mod text;
 pub mod wire;

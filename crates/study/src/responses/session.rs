@@ -1,0 +1,137 @@
+//! One session's events, read into finished steps.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::event::{Answers, Client, EventKind, PlayLog};
+use crate::wire::{Event, SessionStarted};
+
+/// One session as the server keeps it.
+#[derive(Debug, Clone, Copy)]
+pub struct SessionRecord<'a> {
+    /// As at its start.
+    pub started: &'a SessionStarted,
+    /// Its events, in ascending order of sequence.
+    pub events: &'a [Event],
+    /// What the server knows better than the events (`excluded`, `expired`).
+    pub status: Option<&'a str>,
+}
+
+/// How a session stands, from its events: `completed`, `declined`, `withdrawn` or `active`.
+pub fn session_status(events: &[Event]) -> &'static str {
+    let mut status = "active";
+    for event in events {
+        match event.body.get("type").and_then(|word| word.as_str()) {
+            Some("finished") => status = "completed",
+            Some("declined") => status = "declined",
+            Some("withdrawn") => return "withdrawn",
+            _ => {}
+        }
+    }
+    status
+}
+
+/// What the events say, step by step.
+#[derive(Debug, Default)]
+pub(super) struct Walk {
+    pub opened_ms: f64,
+    pub client: Client,
+    pub language: String,
+    pub consent_version: Option<String>,
+    pub steps: Vec<FinishedStep>,
+}
+
+/// A page or a trial that was finished.
+#[derive(Debug, Default, Clone)]
+pub(super) struct FinishedStep {
+    pub id: String,
+    pub clip: Option<String>,
+    pub answers: Answers,
+    /// When each answer was last changed, page clock.
+    pub answered_ms: BTreeMap<String, f64>,
+    pub start_ms: f64,
+    pub end_ms: f64,
+    /// The first whole play of the attempt that was finished.
+    pub play: Option<PlayLog>,
+    pub replays: u32,
+    pub rt_ms: Option<f64>,
+    /// How often the page was opened again, or a play was cut short, in this step.
+    pub interruptions: u32,
+    pub focus_losses: u32,
+    pub client: Client,
+}
+
+impl Walk {
+    pub fn of(events: &[Event]) -> Self {
+        let mut walk = Self::default();
+        let mut here = FinishedStep::default();
+        // Time of the last event that opened a step: its start unless it says so itself.
+        let mut begun_ms = 0.0;
+        let mut started_ms = None;
+        for event in events {
+            let Ok(kind) = EventKind::deserialize(&event.body) else { continue };
+            let at_ms = event.at_ms;
+            match kind {
+                EventKind::Opened { client, language } => {
+                    (walk.opened_ms, begun_ms) = (at_ms, at_ms);
+                    walk.client = client;
+                    walk.language = language;
+                }
+                EventKind::Resumed { client } => {
+                    walk.client = client;
+                    here.interruptions += 1;
+                    here.play = None;
+                    // A trial starts anew; the answers of a page stay, with their times.
+                    if started_ms.take().is_some() {
+                        here.answered_ms.clear();
+                    }
+                }
+                EventKind::LanguageChosen { language } => walk.language = language,
+                EventKind::Consented { version, language } => {
+                    walk.consent_version = Some(version);
+                    walk.language = language;
+                    (here, begun_ms) = (FinishedStep::default(), at_ms);
+                }
+                EventKind::PageShown { .. } if started_ms.is_none() => begun_ms = at_ms,
+                EventKind::Answered { question, .. } => {
+                    here.answered_ms.insert(question, at_ms);
+                }
+                EventKind::TrialStarted { .. } => started_ms = Some(at_ms),
+                EventKind::TrialPlayed { log, .. } => {
+                    if !log.is_whole() {
+                        here.interruptions += 1;
+                    } else if here.play.is_none() {
+                        here.play = Some(log);
+                    }
+                }
+                EventKind::FocusLost => here.focus_losses += 1,
+                EventKind::PageFinished { step, answers } => {
+                    let done = FinishedStep { id: step, answers, ..here };
+                    walk.finish(done, begun_ms, at_ms);
+                    (here, begun_ms, started_ms) = (FinishedStep::default(), at_ms, None);
+                }
+                EventKind::TrialFinished { step, clip, answers, rt_ms, replays } => {
+                    let start_ms = started_ms.unwrap_or(begun_ms);
+                    let (clip, rt_ms) = (Some(clip), Some(rt_ms));
+                    let done = FinishedStep { id: step, clip, answers, rt_ms, replays, ..here };
+                    walk.finish(done, start_ms, at_ms);
+                    (here, begun_ms, started_ms) = (FinishedStep::default(), at_ms, None);
+                }
+                _ => {}
+            }
+        }
+        walk
+    }
+
+    fn finish(&mut self, mut step: FinishedStep, start_ms: f64, end_ms: f64) {
+        // A step is finished once; a second report of it is another tab's, and is left out.
+        if self.steps.iter().any(|done| done.id == step.id) {
+            return;
+        }
+        step.start_ms = start_ms;
+        step.end_ms = end_ms;
+        step.client = self.client.clone();
+        self.steps.push(step);
+    }
+}

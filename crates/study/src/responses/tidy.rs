@@ -1,0 +1,413 @@
+//! The tidy form: one row a participant x trial x response.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::cells::{answer_cells, iso_time, milliseconds, number, plain};
+use super::column::{Column, ColumnKind, Table};
+use super::session::{FinishedStep, SessionRecord, Walk, session_status};
+use crate::answer::alike;
+use crate::study_file::{Clip, Component, Question, QuestionKind, SequenceItem, Study};
+use crate::wire::ClipSource;
+
+/// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
+/// the participant at the end.
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
+    use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
+    [
+        ("participant_id", Text, "", "Public identifier of the participant"),
+        (
+            "participant",
+            Integer,
+            "",
+            "Participant number; with seed and config_hash it decides the order",
+        ),
+        ("trial_id", Text, "", "Identifier of the trial or page"),
+        ("trial_index", Integer, "", "Place among all pages and trials of the session, from 0"),
+        (
+            "trial_order",
+            Integer,
+            "",
+            "Place among the trials (or among the practice trials), from 1",
+        ),
+        ("trial_type", Text, "", "trial, training, demographics or questionnaire"),
+        ("condition", Text, "", "Sequence or block that the trial belongs to"),
+        ("stage", Text, "", "pilot or live"),
+        ("status", Text, "", "How the session stands: completed, active, withdrawn, declined"),
+        ("stimulus", Text, "", "Identifier of the clip"),
+        ("response_id", Text, "", "Identifier of the question"),
+        ("answer", Any, "", "The answer; scales are coded as shown, several choices joined by |"),
+        ("response", Any, "", "The same as answer"),
+        ("truth", Any, "", "The right answer, where the clip has one"),
+        ("correct", Boolean, "", "Whether the answer is the right one"),
+        ("attention_passed", Boolean, "", "Whether an attention check was passed"),
+        (
+            "rt",
+            Number,
+            "ms",
+            "From the first frame of the first whole play (of a page: from its showing) to the last change of this answer",
+        ),
+        ("duration", Number, "ms", "From the start of the trial or page to its end"),
+        (
+            "time_elapsed",
+            Number,
+            "ms",
+            "From the opening of the session to the end of the trial or page",
+        ),
+        ("replays", Integer, "", "Whole plays after the first"),
+        ("interruptions", Integer, "", "Reloads and plays cut short within the trial or page"),
+        ("focus_losses", Integer, "", "Times the page lost the focus or was hidden"),
+        (
+            "onset_ms",
+            Number,
+            "ms",
+            "First frame of the first whole play, after the opening of the session",
+        ),
+        ("frames", Integer, "", "Frames shown in that play"),
+        ("frames_late", Integer, "", "Frames of it that came late"),
+        ("frame_longest_ms", Number, "ms", "Longest time between two of its frames"),
+        ("refresh_hz", Number, "Hz", "Rate of the display as measured"),
+        ("backend", Text, "", "What drew the clip: webgpu or webgl2"),
+        ("clip_width", Number, "px", "Width of the clip as shown, CSS pixels"),
+        ("clip_height", Number, "px", "Height of the clip as shown, CSS pixels"),
+        ("viewport", Text, "px", "Width x height of the window, CSS pixels"),
+        ("device_pixel_ratio", Number, "", "Device pixels per CSS pixel"),
+        ("weights_hash", Text, "", "SHA-256 of the weights as the browser solved them"),
+        (
+            "provenance",
+            Text,
+            "",
+            "SHA-256 over avatar, capture, marker map, method, parameters and solver",
+        ),
+        ("start_time", Time, "", "Start of the trial or page, UTC, the participant's clock"),
+        ("end_time", Time, "", "Its end"),
+        ("language", Text, "", "Language of the pages"),
+        ("consent_version", Text, "", "Version of the agreement"),
+        ("seed", Integer, "", "Seed of the study's random streams"),
+        ("config_hash", Text, "", "SHA-256 of the canonical study file"),
+        ("browser", Text, "", "Browser name, major version and platform class"),
+    ]
+};
+
+/// The tidy form. `clips` are the study's clips as the server prepared them; a session of another
+/// version of the study keeps its rows, with the factors that are still known.
+pub fn tidy<'a>(
+    study: &Study,
+    clips: &BTreeMap<String, ClipSource>,
+    sessions: impl IntoIterator<Item = SessionRecord<'a>>,
+) -> Table {
+    let layout = Layout::new(study, clips);
+    let mut rows = Vec::new();
+    for session in sessions {
+        layout.session(&session, &mut rows);
+    }
+    Table { columns: layout.columns, rows }
+}
+
+/// What is the same for every session.
+struct Layout<'a> {
+    study: &'a Study,
+    sources: &'a BTreeMap<String, ClipSource>,
+    clips: BTreeMap<String, Clip>,
+    demographics: Vec<&'a Question>,
+    conditions: BTreeMap<String, String>,
+    columns: Vec<Column>,
+}
+
+/// Cells by column name, put in order at the end.
+type Cells = BTreeMap<String, Value>;
+
+impl<'a> Layout<'a> {
+    fn new(study: &'a Study, sources: &'a BTreeMap<String, ClipSource>) -> Self {
+        let factors = study.factor_names();
+        let demographics: Vec<&Question> =
+            study.demographics.iter().flat_map(|page| &page.questions).collect();
+        let mut columns = Vec::new();
+        for (name, kind, unit, description) in FIXED_COLUMNS {
+            let mut column = Column::new(name, kind, description);
+            column.unit = (!unit.is_empty()).then(|| unit.to_owned());
+            columns.push(column);
+            if name == "stimulus" {
+                columns.extend(factors.iter().map(|factor| factor_column(study, factor)));
+            }
+        }
+        for question in &demographics {
+            columns.extend(question_columns(question, study.default_language()));
+        }
+        let mut conditions = BTreeMap::new();
+        conditions_of(&study.sequence, None, &mut conditions);
+        let clips = study.clips().into_iter().map(|clip| (clip.id.clone(), clip)).collect();
+        Self { study, sources, clips, demographics, conditions, columns }
+    }
+
+    fn session(&self, session: &SessionRecord<'_>, rows: &mut Vec<Vec<Value>>) {
+        let walk = Walk::of(session.events);
+        let status = session.status.unwrap_or_else(|| session_status(session.events));
+        let mut common = Cells::new();
+        let mut put = |name: &str, value: Value| common.insert(name.to_owned(), value);
+        put("participant_id", session.started.participant_id.as_str().into());
+        put("participant", session.started.participant.into());
+        put("stage", session.started.stage.as_str().into());
+        put("status", status.into());
+        put("seed", session.started.seed.into());
+        put("config_hash", session.started.config_hash.as_str().into());
+        put("language", walk.language.as_str().into());
+        put("consent_version", walk.consent_version.as_deref().into());
+        if let Some(page) = walk.steps.iter().find(|step| step.id == "demographics") {
+            for question in &self.demographics {
+                let answer = page.answers.get(&question.id).unwrap_or(&Value::Null);
+                for (suffix, cell) in answer_cells(question, answer) {
+                    put(&format!("{}{suffix}", question.id), cell);
+                }
+            }
+        }
+        let (mut trials, mut trainings) = (0_u64, 0_u64);
+        for (index, step) in walk.steps.iter().enumerate() {
+            let kind = self.kind(step);
+            let order = match kind {
+                StepType::Trial => count(&mut trials),
+                StepType::Training => count(&mut trainings),
+                _ => Value::Null,
+            };
+            let mut cells = common.clone();
+            self.step_cells(&walk, step, kind, &mut cells);
+            cells.insert("trial_index".to_owned(), index.into());
+            cells.insert("trial_order".to_owned(), order);
+            self.answer_rows(step, kind, &cells, rows);
+        }
+    }
+
+    fn kind(&self, step: &FinishedStep) -> StepType {
+        match (&step.clip, step.id.as_str()) {
+            (Some(_), id) if id.starts_with("training/") => StepType::Training,
+            (Some(_), _) => StepType::Trial,
+            (None, "demographics") => StepType::Demographics,
+            (None, _) => StepType::Questionnaire,
+        }
+    }
+
+    /// Name of the component, from the step's identifier.
+    fn component<'s>(&self, step: &'s FinishedStep) -> &'s str {
+        step.id.split(['/', '#']).next().unwrap_or(&step.id)
+    }
+
+    fn step_cells(&self, walk: &Walk, step: &FinishedStep, kind: StepType, cells: &mut Cells) {
+        let mut put = |name: &str, value: Value| cells.insert(name.to_owned(), value);
+        put("trial_id", step.id.as_str().into());
+        put("trial_type", kind.word().into());
+        let component = self.component(step);
+        if kind == StepType::Trial {
+            let condition = self.conditions.get(component).map_or(component, String::as_str);
+            put("condition", condition.into());
+        }
+        put("duration", milliseconds(step.end_ms - step.start_ms));
+        put("time_elapsed", milliseconds(step.end_ms - walk.opened_ms));
+        put("interruptions", step.interruptions.into());
+        put("focus_losses", step.focus_losses.into());
+        put("start_time", iso_time(step.start_ms).into());
+        put("end_time", iso_time(step.end_ms).into());
+        let [width, height] = step.client.viewport;
+        put("viewport", format!("{width}x{height}").into());
+        put("device_pixel_ratio", number(step.client.device_pixel_ratio));
+        let about: Vec<&str> = step.client.about.values().map(String::as_str).collect();
+        put("browser", about.join(" ").into());
+        let Some(clip) = &step.clip else { return };
+        put("stimulus", clip.as_str().into());
+        put("replays", step.replays.into());
+        if let Some(known) = self.clips.get(clip) {
+            for (factor, value) in &known.factors {
+                put(factor, value.to_value());
+            }
+        }
+        if let Some(source) = self.sources.get(clip) {
+            put("provenance", source.provenance.as_str().into());
+        }
+        if let Some(play) = &step.play {
+            put("onset_ms", milliseconds(play.onset_ms - walk.opened_ms));
+            put("frames", play.frames.len().into());
+            put("frames_late", play.late.into());
+            put("frame_longest_ms", milliseconds(play.longest_ms));
+            put("refresh_hz", milliseconds(play.refresh_hz));
+            put("backend", play.backend.as_str().into());
+            put("clip_width", number(play.width));
+            put("clip_height", number(play.height));
+            put("weights_hash", play.weights_hash.as_str().into());
+        }
+    }
+
+    /// The questions that the step asks, as the study says now.
+    fn questions(&self, step: &FinishedStep, kind: StepType) -> Vec<&Question> {
+        let shared = |ids: &[String]| -> Vec<&Question> {
+            ids.iter()
+                .filter_map(|id| self.study.questions.iter().find(|question| question.id == *id))
+                .collect()
+        };
+        match kind {
+            StepType::Demographics => self.demographics.clone(),
+            StepType::Training => {
+                self.study.training.as_ref().map_or_else(Vec::new, |each| shared(&each.questions))
+            }
+            _ => match self.study.components.get(self.component(step)) {
+                Some(Component::Trials(block)) => shared(&block.questions),
+                Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
+                _ => Vec::new(),
+            },
+        }
+    }
+
+    fn answer_rows(
+        &self,
+        step: &FinishedStep,
+        kind: StepType,
+        cells: &Cells,
+        rows: &mut Vec<Vec<Value>>,
+    ) {
+        let questions = self.questions(step, kind);
+        let earlier = BTreeMap::new();
+        for question in &questions {
+            let answer = step.answers.get(&question.id);
+            if answer.is_none() && !question.is_shown(&step.answers, &earlier) {
+                continue;
+            }
+            let answer = answer.unwrap_or(&Value::Null);
+            for (suffix, cell) in answer_cells(question, answer) {
+                let mut row = cells.clone();
+                row.insert("response_id".to_owned(), format!("{}{suffix}", question.id).into());
+                self.judge(question, step, answer, &mut row);
+                rows.push(self.row(row, step, &question.id, cell));
+            }
+        }
+        // Answers to questions that this version of the study no longer asks.
+        for (id, answer) in &step.answers {
+            if !questions.iter().any(|question| question.id == *id) {
+                let mut row = cells.clone();
+                row.insert("response_id".to_owned(), id.as_str().into());
+                rows.push(self.row(row, step, id, plain(Some(answer))));
+            }
+        }
+    }
+
+    /// Whether the answer is right, and whether an attention check was passed.
+    fn judge(&self, question: &Question, step: &FinishedStep, answer: &Value, row: &mut Cells) {
+        if let QuestionKind::SingleChoice(choice) = &question.kind
+            && let Some(factor) = &choice.truth
+            && let Some(clip) = step.clip.as_ref().and_then(|clip| self.clips.get(clip))
+            && let Some(truth) = clip.factor_text(factor)
+        {
+            if !answer.is_null() {
+                let correct = answer.as_str() == Some(truth.as_str());
+                row.insert("correct".to_owned(), correct.into());
+            }
+            row.insert("truth".to_owned(), truth.into());
+        }
+        if let Some(check) = &question.attention_check {
+            let passed = alike(answer, &check.expected);
+            row.insert("attention_passed".to_owned(), passed.into());
+        }
+    }
+
+    fn row(&self, mut cells: Cells, step: &FinishedStep, id: &str, answer: Value) -> Vec<Value> {
+        let onset_ms = step.play.as_ref().map_or(step.start_ms, |play| play.onset_ms);
+        let rt = step.answered_ms.get(id).map(|at_ms| at_ms - onset_ms);
+        // An answer without an event of its own takes the time at which all were sent.
+        let rt = rt.filter(|_| !answer.is_null()).or(step.rt_ms.filter(|_| !answer.is_null()));
+        cells.insert("rt".to_owned(), rt.map_or(Value::Null, milliseconds));
+        cells.insert("response".to_owned(), answer.clone());
+        cells.insert("answer".to_owned(), answer);
+        self.columns
+            .iter()
+            .map(|column| cells.remove(&column.name).unwrap_or(Value::Null))
+            .collect()
+    }
+}
+
+/// Kinds of steps that have answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum StepType {
+    Trial,
+    Training,
+    Demographics,
+    Questionnaire,
+}
+
+impl StepType {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Trial => "trial",
+            Self::Training => "training",
+            Self::Demographics => "demographics",
+            Self::Questionnaire => "questionnaire",
+        }
+    }
+}
+
+fn count(counter: &mut u64) -> Value {
+    *counter += 1;
+    (*counter).into()
+}
+
+fn factor_column(study: &Study, factor: &str) -> Column {
+    let mut levels: Vec<Value> = study
+        .clips()
+        .iter()
+        .filter_map(|clip| clip.factors.get(factor))
+        .map(|v| v.to_value())
+        .collect();
+    levels.sort_by(|left, right| match (left.as_f64(), right.as_f64()) {
+        (Some(left), Some(right)) => left.total_cmp(&right),
+        _ => left.to_string().cmp(&right.to_string()),
+    });
+    levels.dedup();
+    let numbers = levels.iter().all(Value::is_number);
+    let kind = if numbers { ColumnKind::Number } else { ColumnKind::Text };
+    let mut column = Column::new(factor, kind, "Factor of the clip");
+    column.levels = levels.into_iter().map(|level| (level, String::new())).collect();
+    column
+}
+
+/// The columns of an answer about the participant.
+fn question_columns(question: &Question, language: &str) -> Vec<Column> {
+    let prompt = question.prompt.in_language(language);
+    let kind = match &question.kind {
+        QuestionKind::Likert(_) | QuestionKind::ValenceArousal(_) | QuestionKind::Ranking(_) => {
+            ColumnKind::Integer
+        }
+        QuestionKind::Slider(_) | QuestionKind::Number(_) => ColumnKind::Number,
+        _ => ColumnKind::Text,
+    };
+    let levels = match &question.kind {
+        QuestionKind::SingleChoice(choice) => choice
+            .options
+            .iter()
+            .map(|each| (each.value.as_str().into(), each.label.in_language(language).to_owned()))
+            .collect(),
+        _ => Vec::new(),
+    };
+    answer_cells(question, &Value::Null)
+        .into_iter()
+        .map(|(suffix, _)| {
+            let mut column = Column::new(&format!("{}{suffix}", question.id), kind, prompt);
+            column.levels = levels.clone();
+            column
+        })
+        .collect()
+}
+
+/// Component -> identifier of the nearest sequence that has one.
+fn conditions_of(
+    sequence: &crate::study_file::Sequence,
+    enclosing: Option<&str>,
+    conditions: &mut BTreeMap<String, String>,
+) {
+    let condition = sequence.id.as_deref().or(enclosing);
+    for item in &sequence.components {
+        match item {
+            SequenceItem::Component(name) => {
+                let condition = condition.unwrap_or(name).to_owned();
+                conditions.entry(name.clone()).or_insert(condition);
+            }
+            SequenceItem::Sequence(nested) => conditions_of(nested, condition, conditions),
+        }
+    }
+}
