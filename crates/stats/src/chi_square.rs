@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::factor::Factor;
 use crate::outcome::{Labelled, Refusal};
 use crate::sample::complete_rows;
+use crate::table::Table;
 use crate::tail::{Tail, chi_square_upper};
 
 /// A table of counts with named rows and columns, none of them empty.
@@ -44,6 +45,30 @@ impl Contingency {
             dropped,
             left_out: Vec::new(),
         })
+    }
+
+    /// From a table file: labels in the first column, counts in the others. Refuses what is no count.
+    pub fn from_table(table: &Table) -> Result<Self, Refusal> {
+        let names = table.names();
+        let rows: Vec<String> = (0..table.rows())
+            .map(|row| match table.cell(row, 0) {
+                Some(label) => label.to_owned(),
+                None => format!("line {}", table.line(row)),
+            })
+            .collect();
+        let mut counts = vec![Vec::new(); rows.len()];
+        for name in &names[1..] {
+            for (row, value) in table.numbers(name)?.values.into_iter().enumerate() {
+                // A blank cell of a table of counts is a count of none.
+                let count = if value.is_nan() { 0.0 } else { value };
+                if count < 0.0 || count.fract() != 0.0 || count > 1e15 {
+                    let problem = format!("line {}: {count} is no count", table.line(row));
+                    return Err(Refusal::column(name, problem, "give whole numbers from 0"));
+                }
+                counts[row].push(count as u64);
+            }
+        }
+        Ok(Self::from_counts([&names[0], "columns"], &rows, &names[1..], &counts))
     }
 
     /// From counts; rows and columns without any are left out and named.

@@ -28,6 +28,7 @@ mod tail;
 mod two_way;
 mod walsh;
 mod wilcoxon;
+mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
 pub use aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
@@ -50,3 +51,4 @@ pub use tail::{
 };
 pub use walsh::HodgesLehmann;
 pub use wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, paired_differences, wilcoxon};
+pub use words::{format_number, format_p};

@@ -185,6 +185,24 @@ impl Table {
         Ok(Factor::from_cells(name.trim(), cells, |cell| self.number(cell)))
     }
 
+    /// One column as a factor, or the combination of several named with commas between them
+    /// (`participant,expression`): the levels of a combination are joined by ` / `.
+    pub fn combined_factor(&self, names: &str) -> Result<Factor, Refusal> {
+        if self.has(names.trim()) || !names.contains(',') {
+            return self.factor(names);
+        }
+        let columns =
+            names.split(',').map(|name| self.position(name)).collect::<Result<Vec<_>, _>>()?;
+        let joined: Vec<Option<String>> = (0..self.rows())
+            .map(|row| {
+                let cells: Option<Vec<&str>> =
+                    columns.iter().map(|&column| self.cell(row, column)).collect();
+                cells.map(|cells| cells.join(" / "))
+            })
+            .collect();
+        Ok(Factor::from_cells(names.trim(), joined.iter().map(Option::as_deref), |_| None))
+    }
+
     /// A cell as a finite number.
     fn number(&self, cell: &str) -> Option<f64> {
         csv::parse_number(cell, self.separator != ',')
