@@ -19,3 +19,17 @@ pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar};
 #[cfg(feature = "readers")]
 pub use read_error::ReadError;
+
+#[cfg(feature = "parametric")]
+mod parametric_head;
+#[cfg(feature = "parametric")]
+pub use parametric_head::{
+    Density, HeadSpec, Identity, MarkerSites, SHAPE_NAMES, build_head, marker_sites,
+};
+#[cfg(feature = "parametric")]
+mod performance;
+#[cfg(feature = "parametric")]
+pub use performance::{
+    Clip, Emotion, HeadPose, Performance, Segment, SyntheticTake, performance_weights,
+    synthetic_take,
+};

@@ -1,0 +1,77 @@
+//! Renders the built-in head to PNG without a GPU, to look at while its shape is worked on.
+//!
+//! `contact_sheet OUT.png [key=value ...] [/ key=value ...]...` draws one cell for each `/`; what
+//! stands before the first `/` holds for all of them. Keys: `seed`, `density` (0-3), `yaw`, `pitch`
+//! (degrees), `zoom`, `cx`, `cy` (mm), `size` (pixels), `columns`, `grid=1` for mesh lines, and any
+//! blendshape (`mouthSmile=1` moves both sides).
+
+#[path = "support/raster.rs"]
+mod raster;
+
+use mimique_face::{Density, HeadSpec, Identity, build_head};
+use raster::{Camera, Canvas};
+use std::error::Error;
+
+#[derive(Clone, Default)]
+struct Cell {
+    spec: HeadSpec,
+    camera: Camera,
+    lines: bool,
+    pose: Vec<(String, f64)>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let out = args.next().ok_or("usage: contact_sheet OUT.png [key=value ...] [/ ...]")?;
+    let (mut size, mut columns) = (600, 5);
+    let mut common = Cell::default();
+    let mut cells: Vec<Cell> = Vec::new();
+    for arg in args {
+        if arg == "/" {
+            cells.push(common.clone());
+            continue;
+        }
+        let cell = cells.last_mut().unwrap_or(&mut common);
+        let (key, value) = arg.split_once('=').ok_or("arguments are key=value")?;
+        match key {
+            "seed" => cell.spec.identity = Identity::from_seed(value.parse()?),
+            "density" => cell.spec.density = Density::ALL[value.parse::<usize>()?.min(3)],
+            "yaw" => cell.camera.yaw = value.parse()?,
+            "pitch" => cell.camera.pitch = value.parse()?,
+            "zoom" => cell.camera.zoom = value.parse()?,
+            "cx" => cell.camera.target[0] = value.parse::<f32>()? * 1e-3,
+            "cy" => cell.camera.target[1] = value.parse::<f32>()? * 1e-3,
+            "size" => size = value.parse()?,
+            "columns" => columns = value.parse()?,
+            "grid" => cell.lines = value == "1",
+            name => cell.pose.push((name.to_string(), value.parse()?)),
+        }
+    }
+    if cells.is_empty() {
+        cells.push(common);
+    }
+    let columns = cells.len().min(columns);
+    let mut canvas = Canvas::new(columns * size, cells.len().div_ceil(columns) * size);
+    for (i, cell) in cells.iter().enumerate() {
+        let head = build_head(&cell.spec);
+        let mut weights = vec![0.0; head.shape_names.len()];
+        for (name, w) in &cell.pose {
+            let mut found = false;
+            for (k, shape) in head.shape_names.iter().enumerate() {
+                if shape == name
+                    || shape.strip_suffix("Left").is_some_and(|s| s == name)
+                    || shape.strip_suffix("Right").is_some_and(|s| s == name)
+                {
+                    weights[k] = *w;
+                    found = true;
+                }
+            }
+            if !found {
+                return Err(format!("no blendshape `{name}`").into());
+            }
+        }
+        let rect = [i % columns * size, i / columns * size, size, size];
+        canvas.draw_head(&head, &weights, &cell.camera, rect, cell.lines);
+    }
+    canvas.save(&out)
+}

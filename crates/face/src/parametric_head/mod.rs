@@ -1,0 +1,232 @@
+//! The built-in head, made wholly by code: a control cage with edge loops is shrink-wrapped onto a
+//! sculpt of blended volumes, lids and lips are laid into its holes, muscles act on the cage, and
+//! Catmull-Clark subdivision carries neutral and blendshapes to the wanted density.
+
+mod colour;
+mod ear;
+mod eyeball;
+mod eyelids;
+mod identity;
+mod layout;
+mod lips;
+mod mouth_parts;
+mod muscles;
+mod nose;
+pub(crate) mod rng;
+mod sculpt;
+mod sites;
+mod subdivide;
+mod topology;
+pub(crate) mod vec3;
+
+pub use identity::Identity;
+pub use muscles::SHAPE_NAMES;
+pub use sites::{MarkerSites, marker_sites};
+
+use crate::avatar::{Avatar, Mesh, Part, SparseShape};
+use eyelids::Eye;
+use sculpt::{Landmarks, Sculpt};
+use subdivide::Step;
+use topology::Topology;
+use vec3::Vec3;
+
+/// What to build.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct HeadSpec {
+    /// Who it is.
+    pub identity: Identity,
+    /// How finely.
+    pub density: Density,
+}
+
+/// Density of the mesh: one topology, each step splits every quad of the cage in four.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Density {
+    /// The cage itself: about 2,000 skin vertices.
+    Coarse,
+    /// One subdivision: about 8,000. The solver runs on this one.
+    #[default]
+    Standard,
+    /// Two subdivisions: about 33,000.
+    Fine,
+    /// Three subdivisions: about 130,000.
+    Finest,
+}
+
+impl Density {
+    /// All densities, coarsest first.
+    pub const ALL: [Density; 4] =
+        [Density::Coarse, Density::Standard, Density::Fine, Density::Finest];
+
+    /// The density whose number of skin vertices comes nearest in ratio to `vertices`.
+    pub fn nearest(vertices: usize) -> Density {
+        match vertices {
+            0..=4_200 => Density::Coarse,
+            4_201..=17_000 => Density::Standard,
+            17_001..=68_000 => Density::Fine,
+            _ => Density::Finest,
+        }
+    }
+
+    fn steps(self) -> usize {
+        match self {
+            Density::Coarse => 0,
+            Density::Standard => 1,
+            Density::Fine => 2,
+            Density::Finest => 3,
+        }
+    }
+}
+
+/// A cage with everything that the parts of the head are made from.
+pub(crate) struct Cage {
+    pub topology: Topology,
+    pub at: Landmarks,
+    pub sculpt: Sculpt,
+    pub eye: Eye,
+    /// Wanted surface positions of the cage's vertices, millimetres.
+    pub surface: Vec<Vec3>,
+    /// Control points.
+    pub control: Vec<Vec3>,
+}
+
+impl Cage {
+    fn new(who: &Identity) -> Cage {
+        let topology = Topology::new();
+        let at = Landmarks::new(who);
+        let sculpt = Sculpt::new(who, &at);
+        let placed = layout::place(&topology, &sculpt, &at, Eye::new(who, &at));
+        Cage {
+            topology,
+            at,
+            sculpt,
+            eye: placed.eye,
+            surface: placed.surface,
+            control: placed.control,
+        }
+    }
+}
+
+/// The cage's connectivity carried to a density.
+pub(crate) struct Subdivided {
+    steps: Vec<Step>,
+    quads: Vec<[u32; 4]>,
+    is_socket: Vec<bool>,
+    cage_vertices: usize,
+}
+
+impl Subdivided {
+    pub(crate) fn new(topology: &Topology, density: Density) -> Subdivided {
+        let cage_vertices = topology.sites.len();
+        let mut quads = topology.quads.clone();
+        let mut is_socket = topology.quad_is_socket.clone();
+        let mut steps: Vec<Step> = Vec::new();
+        for _ in 0..density.steps() {
+            let step = Step::new(steps.last().map_or(cage_vertices, Step::len), &quads);
+            quads = step.quads.clone();
+            is_socket = is_socket.iter().flat_map(|&s| [s; 4]).collect();
+            steps.push(step);
+        }
+        Subdivided { steps, quads, is_socket, cage_vertices }
+    }
+
+    /// A channel of the cage on the finest vertices.
+    fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
+        self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values))
+    }
+
+    /// Vertices of one part, in the order in which its quads name them.
+    fn part_vertices(&self, want_socket: bool) -> Vec<u32> {
+        let count = self.steps.last().map_or(self.cage_vertices, Step::len);
+        let mut seen = vec![false; count];
+        let mut from = Vec::new();
+        for (quad, _) in self.quads.iter().zip(&self.is_socket).filter(|q| *q.1 == want_socket) {
+            for &v in quad {
+                if !std::mem::replace(&mut seen[v as usize], true) {
+                    from.push(v);
+                }
+            }
+        }
+        from
+    }
+
+    /// Skin vertex of each cage vertex (subdivision keeps cage vertices first);
+    /// `u32::MAX` for those that only line the mouth.
+    pub(crate) fn skin_vertex_of_cage(&self) -> Vec<u32> {
+        let mut own = vec![u32::MAX; self.cage_vertices];
+        for (k, v) in self.part_vertices(false).into_iter().enumerate() {
+            if let Some(slot) = own.get_mut(v as usize) {
+                *slot = k as u32;
+            }
+        }
+        own
+    }
+
+    /// One part as a mesh: triangles along the shorter diagonal of each quad.
+    fn mesh(&self, want_socket: bool, neutral: &[Vec3], shapes: &[Vec<Vec3>]) -> (Mesh, Vec<u32>) {
+        let from = self.part_vertices(want_socket);
+        let mut own = vec![u32::MAX; neutral.len()];
+        for (k, &v) in from.iter().enumerate() {
+            own[v as usize] = k as u32;
+        }
+        let mut triangles = Vec::new();
+        for (quad, _) in self.quads.iter().zip(&self.is_socket).filter(|q| *q.1 == want_socket) {
+            let q = quad.map(|v| own[v as usize]);
+            let at = |k: usize| neutral[quad[k] as usize];
+            // A small bias makes nearly equal diagonals fall alike on both sides of the face.
+            if (at(0) - at(2)).length() < 0.9999 * (at(1) - at(3)).length() {
+                triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+            } else {
+                triangles.extend([[q[0], q[1], q[3]], [q[1], q[2], q[3]]]);
+            }
+        }
+        let pick = |values: &[Vec3]| from.iter().map(|&v| values[v as usize]).collect::<Vec<_>>();
+        let mesh = Mesh {
+            positions: pick(neutral).into_iter().map(Vec3::metres).collect(),
+            triangles,
+            shapes: shapes.iter().map(|d| sparse(pick(d).into_iter())).collect(),
+            ..Mesh::default()
+        };
+        (mesh, from)
+    }
+}
+
+/// Build the head. The same spec gives the same bytes on every platform.
+pub fn build_head(spec: &HeadSpec) -> Avatar {
+    let who = &spec.identity;
+    let cage = Cage::new(who);
+    let fine = Subdivided::new(&cage.topology, spec.density);
+    let neutral = fine.refine(&cage.control);
+    let shapes: Vec<Vec<Vec3>> = muscles::all(&cage).iter().map(|d| fine.refine(d)).collect();
+    let (mut skin, from) = fine.mesh(false, &neutral, &shapes);
+    let tints = fine.refine(&colour::cage_tints(&cage, who));
+    skin.name = "skin".to_string();
+    skin.part = Part::Skin;
+    skin.base_colour = who.skin_colour;
+    skin.vertex_colours = from.iter().map(|&v| tints[v as usize].linear_rgb()).collect();
+    let (mut lining, _) = fine.mesh(true, &neutral, &shapes);
+    lining.name = "mouth_socket".to_string();
+    lining.part = Part::Socket;
+    lining.base_colour = [0.16, 0.035, 0.03];
+    let mut avatar = Avatar {
+        name: "Built-in head".to_string(),
+        shape_names: SHAPE_NAMES.iter().map(|s| s.to_string()).collect(),
+        meshes: vec![skin, lining],
+        eyeballs: Vec::new(),
+    };
+    mouth_parts::add(&mut avatar, &cage);
+    eyeball::add(&mut avatar, &cage.eye, who);
+    avatar
+}
+
+/// Displacements of a mesh's vertices, without those below a micrometre.
+pub(crate) fn sparse(deltas: impl Iterator<Item = Vec3>) -> SparseShape {
+    let mut shape = SparseShape::default();
+    for (v, d) in deltas.enumerate() {
+        if d.length() > 1e-3 {
+            shape.vertices.push(v as u32);
+            shape.deltas.push(d.metres());
+        }
+    }
+    shape
+}

@@ -1,0 +1,262 @@
+//! The head as blended implicit volumes (after Inigo Quilez' smooth minimum): cranium, brow, cheek
+//! bones, nose, jaw, neck. The cage is shrink-wrapped onto its zero level. Millimetres.
+
+use super::identity::Identity;
+use super::vec3::{Vec3, mix, v3};
+
+enum Volume {
+    Ellipsoid {
+        centre: Vec3,
+        radii: Vec3,
+    },
+    /// Two spheres and the cone between them.
+    RoundCone {
+        a: Vec3,
+        b: Vec3,
+        ra: f64,
+        rb: f64,
+    },
+}
+
+struct Piece {
+    volume: Volume,
+    /// Width of the blend with what was there before.
+    blend: f64,
+    /// A pair, one on each side.
+    pair: bool,
+    /// Carved out instead of added.
+    carve: bool,
+}
+
+/// The blended volumes of one person.
+pub(crate) struct Sculpt {
+    pieces: Vec<Piece>,
+}
+
+/// Where the features of one person stand, from which sculpt and loops are both made.
+#[derive(Debug, Clone)]
+pub(crate) struct Landmarks {
+    /// Centre of the left eyeball, and its radius.
+    pub eye: Vec3,
+    pub eye_radius: f64,
+    /// Height of the line between the lips; half the width of the mouth.
+    pub mouth_y: f64,
+    pub mouth_half: f64,
+    /// Heights of the red of the lips, and how far they stand out (1 = average).
+    pub lip_upper: f64,
+    pub lip_lower: f64,
+    pub lip_swell: f64,
+    /// Height of the nose's tip and base; half breadth over the wings.
+    pub nose_tip: Vec3,
+    pub nose_base_y: f64,
+    pub wing_half: f64,
+    /// Lowest point of the chin.
+    pub chin_y: f64,
+    /// Middle of the left ear.
+    pub ear: Vec3,
+    pub ear_scale: f64,
+    /// Height of the brow's middle.
+    pub brow_y: f64,
+    /// Hinge of the jaw (on the midline plane).
+    pub jaw_hinge: Vec3,
+}
+
+impl Landmarks {
+    pub(crate) fn new(who: &Identity) -> Landmarks {
+        let m = who.masculinity;
+        let nose_base_y = -46.0 - 2.0 * who.nose_length - 1.0 * m;
+        let mouth_y = nose_base_y - 21.0 - 0.8 * m;
+        Landmarks {
+            eye: v3(31.5 + 1.0 * who.eye_spacing, 0.0, 71.5),
+            eye_radius: 15.6 + 0.45 * who.eye_size - 0.6 * m,
+            mouth_y,
+            mouth_half: 24.5 + 1.3 * who.mouth_width + 1.0 * m,
+            lip_upper: (7.0 + 0.9 * who.lip_fullness - 1.0 * m - 1.5 * who.age).max(3.5),
+            lip_lower: (8.8 + 1.0 * who.lip_fullness - 0.8 * m - 1.5 * who.age).max(4.5),
+            lip_swell: 1.0 + 0.06 * who.lip_fullness - 0.08 * m - 0.12 * who.age,
+            nose_tip: v3(0.0, nose_base_y + 8.5, 112.5 + 1.2 * who.nose_bridge),
+            nose_base_y,
+            wing_half: 16.5 + 1.1 * who.nose_width + 0.8 * m,
+            chin_y: mouth_y - 41.0 - 2.0 * who.chin - 3.0 * m,
+            ear: v3(70.0, -17.0, -6.0),
+            ear_scale: 1.0 + 0.06 * who.ear_size + 0.05 * m + 0.06 * who.age,
+            brow_y: 22.5 + 1.2 * who.brow_height - 2.0 * m - 1.0 * who.age,
+            jaw_hinge: v3(0.0, -22.0, 8.0),
+        }
+    }
+}
+
+impl Sculpt {
+    pub(crate) fn new(who: &Identity, at: &Landmarks) -> Sculpt {
+        let m = who.masculinity;
+        let mut s = Sculpt { pieces: Vec::new() };
+        let width = 1.0 + 0.022 * who.face_width + 0.01 * m;
+        let jaw = 1.0 + 0.035 * who.jaw_width + 0.07 * (m - 0.35);
+        let chin = at.chin_y;
+        let tip = at.nose_tip;
+        // Skull and face.
+        s.ellipsoid(v3(0.0, 27.0, -3.0), v3(75.0, 84.0, 95.0), 1.0);
+        s.ellipsoid(v3(0.0, -28.0, 26.0), v3(61.0 * width, 74.0, 60.0), 26.0);
+        // Jaw: body from angle to chin, muzzle, chin.
+        s.pair_cone(
+            v3(46.0 * jaw, at.mouth_y + 2.0, 14.0),
+            v3(14.0, chin + 15.0, 78.0),
+            14.0,
+            13.0,
+            26.0,
+        );
+        s.ellipsoid(v3(0.0, at.mouth_y + 1.0, 62.0), v3(37.0, 33.0, 37.5), 16.0);
+        let chin_half = mix(7.0, 11.0, m);
+        s.pair_cone(
+            v3(chin_half, chin + 13.5, 86.0 + 1.5 * who.chin),
+            v3(-chin_half, chin + 13.5, 86.0 + 1.5 * who.chin),
+            13.0,
+            13.0,
+            14.0,
+        );
+        // Cheeks.
+        s.pair_ellipsoid(
+            v3(43.0 * width, -25.0, 55.0),
+            v3(20.0, 15.0, 24.0 + 1.3 * who.cheekbones),
+            16.0,
+        );
+        s.pair_ellipsoid(
+            v3(38.0 * width, -56.0, 50.0),
+            v3(22.0 + 1.2 * who.fullness, 27.0, 29.0 + 0.8 * who.fullness - 2.5 * who.age),
+            18.0,
+        );
+        s.pair_cone(v3(56.0 * width, -20.0, 44.0), v3(66.0, -14.0, 4.0), 9.0, 7.0, 14.0);
+        // Brow ridge and sockets.
+        s.pair_cone(
+            v3(9.0, at.brow_y - 5.0, 82.0 + 2.0 * m),
+            v3(42.0, at.brow_y - 2.0, 67.0 + 1.5 * m),
+            8.5,
+            8.5,
+            12.0,
+        );
+        s.carve_pair(v3(at.eye.x + 0.5, -2.0, 97.0), v3(18.0, 14.5, 16.0), 12.0);
+        // Nose: bridge, tip, wings, base.
+        s.cone(v3(0.0, 8.0, 83.0), tip + v3(0.0, 6.0, -8.0), 7.5, 8.0, 9.0);
+        s.pair_cone(v3(7.0, -12.0, 84.0), v3(10.0, tip.y, 94.0), 6.0, 8.0, 8.0);
+        s.ellipsoid(tip + v3(0.0, 0.5, -10.5), v3(9.5, 9.0, 10.5), 6.0);
+        s.pair_ellipsoid(v3(at.wing_half - 7.0, tip.y - 2.0, tip.z - 15.5), v3(7.0, 6.8, 9.5), 4.5);
+        s.cone(
+            tip + v3(0.0, -5.5, -9.0),
+            v3(0.0, at.nose_base_y + 1.0, tip.z - 17.0),
+            4.0,
+            5.0,
+            5.0,
+        );
+        // Neck.
+        let neck = 1.0 + 0.16 * (m - 0.35);
+        s.cone(v3(0.0, -40.0, -18.0), v3(0.0, -220.0, -26.0), 50.0 * neck, 58.0 * neck, 22.0);
+        s
+    }
+
+    fn push(&mut self, volume: Volume, blend: f64, pair: bool, carve: bool) {
+        self.pieces.push(Piece { volume, blend, pair, carve });
+    }
+
+    fn ellipsoid(&mut self, centre: Vec3, radii: Vec3, blend: f64) {
+        self.push(Volume::Ellipsoid { centre, radii }, blend, false, false);
+    }
+
+    fn pair_ellipsoid(&mut self, centre: Vec3, radii: Vec3, blend: f64) {
+        self.push(Volume::Ellipsoid { centre, radii }, blend, true, false);
+    }
+
+    fn carve_pair(&mut self, centre: Vec3, radii: Vec3, blend: f64) {
+        self.push(Volume::Ellipsoid { centre, radii }, blend, true, true);
+    }
+
+    fn cone(&mut self, a: Vec3, b: Vec3, ra: f64, rb: f64, blend: f64) {
+        self.push(Volume::RoundCone { a, b, ra, rb }, blend, false, false);
+    }
+
+    fn pair_cone(&mut self, a: Vec3, b: Vec3, ra: f64, rb: f64, blend: f64) {
+        self.push(Volume::RoundCone { a, b, ra, rb }, blend, true, false);
+    }
+
+    /// Signed distance, nearly: negative inside, zero on the skin.
+    pub(crate) fn distance(&self, p: Vec3) -> f64 {
+        let mut d = f64::INFINITY;
+        for piece in &self.pieces {
+            let mut q = volume_distance(&piece.volume, p);
+            if piece.pair {
+                q = smooth_min(q, volume_distance(&piece.volume, p.mirrored()), piece.blend);
+            }
+            d = if d.is_infinite() {
+                q
+            } else if piece.carve {
+                -smooth_min(-d, q, piece.blend)
+            } else {
+                smooth_min(d, q, piece.blend)
+            };
+        }
+        d
+    }
+
+    fn gradient(&self, p: Vec3) -> Vec3 {
+        let h = 0.05;
+        let along = |e: Vec3| (self.distance(p + e) - self.distance(p - e)) / (2.0 * h);
+        v3(along(v3(h, 0.0, 0.0)), along(v3(0.0, h, 0.0)), along(v3(0.0, 0.0, h)))
+    }
+
+    /// Outward unit normal of the level through `p`.
+    pub(crate) fn normal(&self, p: Vec3) -> Vec3 {
+        self.gradient(p).unit()
+    }
+
+    /// Onto the skin along the gradient (damped Newton steps).
+    pub(crate) fn project(&self, start: Vec3) -> Vec3 {
+        let mut p = start;
+        for _ in 0..12 {
+            let d = self.distance(p);
+            if d.abs() < 1e-4 {
+                break;
+            }
+            let g = self.gradient(p);
+            let square = g.dot(g).max(0.05);
+            p = p - g * (0.9 * d / square);
+        }
+        p
+    }
+
+    /// The skin seen from the front at (x, y): marched from far before the face.
+    pub(crate) fn front(&self, x: f64, y: f64) -> Vec3 {
+        let mut p = v3(x, y, 170.0);
+        for _ in 0..120 {
+            let d = self.distance(p);
+            if d.abs() < 1e-3 || p.z < -50.0 {
+                break;
+            }
+            // The blends overstate distance a little: short steps keep the march outside.
+            p.z -= 0.7 * d;
+        }
+        p
+    }
+}
+
+fn volume_distance(volume: &Volume, p: Vec3) -> f64 {
+    match *volume {
+        Volume::Ellipsoid { centre, radii } => {
+            let q = p - centre;
+            let k0 = v3(q.x / radii.x, q.y / radii.y, q.z / radii.z).length();
+            let k1 =
+                v3(q.x / (radii.x * radii.x), q.y / (radii.y * radii.y), q.z / (radii.z * radii.z))
+                    .length();
+            if k1 > 0.0 { k0 * (k0 - 1.0) / k1 } else { -radii.x.min(radii.y).min(radii.z) }
+        }
+        Volume::RoundCone { a, b, ra, rb } => {
+            let ab = b - a;
+            let t = ((p - a).dot(ab) / ab.dot(ab)).clamp(0.0, 1.0);
+            (p - (a + ab * t)).length() - mix(ra, rb, t)
+        }
+    }
+}
+
+/// Polynomial smooth minimum: the plain one where the two differ by more than `k`.
+fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
+    let h = (k - (a - b).abs()).max(0.0) / k;
+    a.min(b) - h * h * k * 0.25
+}
