@@ -7,6 +7,9 @@ use std::f64::consts::{PI, SQRT_2};
 pub struct Lowpass {
     b: [f64; 3],
     a: [f64; 2],
+    /// Frames by which the ends are continued: three periods of the cut-off, in which the filter's
+    /// memory fades to a hundred-thousandth and below.
+    settling: usize,
 }
 
 /// Why there is no such filter.
@@ -34,7 +37,8 @@ impl Lowpass {
         let b0 = w * w * norm;
         let a1 = 2.0 * (w * w - 1.0) * norm;
         let a2 = (1.0 - SQRT_2 * w + w * w) * norm;
-        Ok(Lowpass { b: [b0, 2.0 * b0, b0], a: [a1, a2] })
+        let settling = (3.0 * rate_hz / cutoff_hz).ceil() as usize;
+        Ok(Lowpass { b: [b0, 2.0 * b0, b0], a: [a1, a2], settling })
     }
 
     /// Filter in place, forwards and backwards: no delay, and twice the slope.
@@ -46,8 +50,7 @@ impl Lowpass {
         if n < 2 {
             return;
         }
-        // 3 x (order + 1), as is usual for a filter of three coefficients.
-        let pad = 9.min(n - 1);
+        let pad = self.settling.min(n - 1);
         let (first, last) = (signal[0], signal[n - 1]);
         let mut padded = Vec::with_capacity(n + 2 * pad);
         padded.extend((1..=pad).rev().map(|i| 2.0 * first - signal[i]));

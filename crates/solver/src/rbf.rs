@@ -1,5 +1,7 @@
 //! Morphological adaptation (thesis 5.2.2): radial basis functions r^3 plus an affine part.
 
+use crate::dense::solve_general;
+
 /// F(m) = sum over k of u_k |m - M0_k|^3 + affine(m), eq. 5.18 (where q is printed wrongly: it is
 /// ax + by + cz + d), for the three coordinates at once.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +77,7 @@ impl Rbf {
             system[i * n + p + 3] = 1.0;
             system[(p + 3) * n + i] = 1.0;
         }
-        crate::dense::solve_general(&mut system, &mut right, n).ok_or(RbfError::Planar)?;
+        solve_general(&mut system, &mut right, n).ok_or(RbfError::Planar)?;
         Ok(Rbf {
             centre,
             scale,

@@ -1,0 +1,334 @@
+//! Head, neutral, alignment and adaptation, alone and up to the planted take.
+
+mod common;
+
+use std::path::Path;
+
+use mimique_solver::{
+    Fit, FrontEnd, FrontEndError, Lowpass, MarkerColumns, MarkerFrames, Method, MethodSpec,
+    OperatorOptions, Rbf, RbfError, RigidError, RigidMotion, align_rigidly,
+};
+
+type Points = Vec<[f64; 3]>;
+
+/// SciPy 1.17's cubic RBF with degree 1 on 40 points of a face, and the same in 40-digit arithmetic;
+/// millimetres.
+struct Golden {
+    actor: Points,
+    avatar: Points,
+    points: Points,
+    scipy: Points,
+    exact: Points,
+}
+
+fn golden() -> Golden {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/rbf_scipy.json");
+    let json = common::json(&file);
+    let points = |key: &str| common::numbers(&json[key]).as_chunks::<3>().0.to_vec();
+    Golden {
+        actor: points("actor"),
+        avatar: points("avatar"),
+        points: points("points"),
+        scipy: points("scipy"),
+        exact: points("exact"),
+    }
+}
+
+/// A turn about a slanted axis, and a shift.
+fn motion(angle: f64, shift: [f64; 3]) -> RigidMotion {
+    let (s, c) = (angle / 2.0).sin_cos();
+    let axis = [0.6 * s, -0.48 * s, 0.64 * s];
+    let turn = RigidMotion::from_quaternion([c, axis[0], axis[1], axis[2]]);
+    RigidMotion { translation: shift, ..turn }
+}
+
+fn worst_distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    a.iter().zip(b).fold(0.0, |s, (a, b)| (0..3).fold(s, |s: f64, k| s.max((a[k] - b[k]).abs())))
+}
+
+#[test]
+fn rbf_interpolates_and_equals_scipy() {
+    let g = golden();
+    let rbf = Rbf::interpolate(&g.actor, &g.avatar).unwrap();
+    let at_centres: Points = g.actor.iter().map(|&p| rbf.apply(p)).collect();
+    let elsewhere: Points = g.points.iter().map(|&p| rbf.apply(p)).collect();
+    let at_centres = worst_distance(&at_centres, &g.avatar);
+    let ours = worst_distance(&elsewhere, &g.exact);
+    let scipys = worst_distance(&g.scipy, &g.exact);
+    eprintln!("at the centres {at_centres:.1e} mm; ours {ours:.1e} mm, SciPy {scipys:.1e} mm off");
+    assert!(at_centres < 2e-12 && ours < 2e-12 && ours < scipys, "{at_centres:e} {ours:e}");
+}
+
+#[test]
+fn rbf_reproduces_affine_maps() {
+    let g = golden();
+    let map = |p: [f64; 3]| {
+        [
+            1.1 * p[0] - 0.2 * p[1] + 3.0,
+            0.9 * p[1] + 0.1 * p[2] - 2.0,
+            0.3 * p[0] + 1.2 * p[2] + 5.0,
+        ]
+    };
+    let values: Points = g.actor.iter().map(|&p| map(p)).collect();
+    let rbf = Rbf::interpolate(&g.actor, &values).unwrap();
+    for &p in &g.points {
+        assert!(worst_distance(&[rbf.apply(p)], &[map(p)]) < 1e-11);
+    }
+}
+
+#[test]
+fn rbf_without_a_solution_is_refused_in_words() {
+    let g = golden();
+    let mut twice = g.actor.clone();
+    twice[7] = twice[3];
+    assert_eq!(Rbf::interpolate(&twice, &g.avatar), Err(RbfError::Coincident(3, 7)));
+    assert_eq!(Rbf::interpolate(&g.actor[..3], &g.avatar), Err(RbfError::TooFew(3)));
+    let flat: Points = g.actor.iter().map(|p| [p[0], p[1], 2.0 * p[0] - p[1]]).collect();
+    assert_eq!(Rbf::interpolate(&flat, &g.avatar), Err(RbfError::Planar));
+}
+
+#[test]
+fn alignment_recovers_a_rigid_motion_and_never_reflects() {
+    let g = golden();
+    for angle in [0.0, 0.3, 1.5, 3.0, 3.141_592_65, -2.0] {
+        let m = motion(angle, [10.0, -40.0, 500.0]);
+        let moved: Points = g.actor.iter().map(|&p| m.apply(p)).collect();
+        let found = align_rigidly(&g.actor, &moved).unwrap();
+        let back: Points = g.actor.iter().map(|&p| found.apply(p)).collect();
+        assert!(worst_distance(&back, &moved) < 1e-11, "angle {angle}");
+    }
+    let mirrored: Points = g.actor.iter().map(|p| [-p[0], p[1], p[2]]).collect();
+    let r = align_rigidly(&g.actor, &mirrored).unwrap().rotation;
+    let determinant = r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1])
+        - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0])
+        + r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
+    assert!((determinant - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn alignment_refuses_lines_and_too_few() {
+    let line: Points = (0..5).map(|i| [f64::from(i), 2.0 * f64::from(i), 1.0]).collect();
+    assert_eq!(align_rigidly(&line, &line), Err(RigidError::Collinear));
+    assert_eq!(align_rigidly(&line[..2], &line), Err(RigidError::TooFew(2)));
+    assert_eq!(align_rigidly(&[[1.0; 3]; 4], &[[1.0; 3]; 4]), Err(RigidError::Collinear));
+}
+
+/// A slow nod of 0.2 rad and a drift of the head, at 200 frames/s.
+fn head_motion(frame: usize) -> RigidMotion {
+    let t = frame as f64;
+    motion(0.2 * (t / 60.0).sin(), [0.0004 * t, 0.3, -0.0002 * t])
+}
+
+/// A made-up take in metres: the golden actor smiles a little while the head moves; 5 head markers.
+fn small_take(frames: usize, head_moves: bool) -> (Vec<f64>, MarkerColumns) {
+    let g = golden();
+    let mut out = Vec::new();
+    for f in 0..frames {
+        let t = f as f64;
+        let m = if head_moves { head_motion(f) } else { RigidMotion::IDENTITY };
+        for (k, p) in g.actor.iter().enumerate() {
+            let moves = if f < 5 { 0.0 } else { 0.002 * (t / 4.0 + k as f64).sin() };
+            out.extend(m.apply([p[0] / 1e3 + moves, p[1] / 1e3 - moves, p[2] / 1e3]));
+        }
+        for p in [[0.0, 0.2, 0.0], [0.09, 0.1, 0.0], [-0.09, 0.1, 0.01], [0.0, 0.1, 0.1]] {
+            out.extend(m.apply(p));
+        }
+    }
+    (out, MarkerColumns { face: (0..40).collect(), head: Some(vec![40, 41, 42, 43]) })
+}
+
+fn displacements(positions: &[f64], columns: &MarkerColumns) -> Result<Vec<f64>, FrontEndError> {
+    let avatar: Points = golden().avatar.iter().map(|p| p.map(|x| x / 1e3)).collect();
+    let take = MarkerFrames { positions, columns: 44 };
+    let poses = FrontEnd::head_poses(take, columns, None)?;
+    FrontEnd::fit(take, columns, &poses, 0..5, &avatar)?.take_displacements(take, &poses)
+}
+
+#[test]
+fn head_motion_leaves_displacements_unchanged() {
+    let (still, columns) = small_take(40, false);
+    let (moving, _) = small_take(40, true);
+    let a = displacements(&still, &columns).unwrap();
+    let b = displacements(&moving, &columns).unwrap();
+    // 3e-12 mm in metres.
+    let error = common::worst(&a, &b);
+    eprintln!("head motion moves d by {error:.1e} m");
+    assert!(error < 3e-15, "{error:e}");
+    assert!(common::largest(&a) > 1e-3);
+    // The neutral is met exactly.
+    assert!(common::largest(&a[..120]) < 1e-15);
+    // A capture that was stabilised before needs no head.
+    let none = MarkerColumns { head: None, ..columns };
+    let c = displacements(&still, &none).unwrap();
+    assert!(common::worst(&a, &c) < 1e-15);
+}
+
+#[test]
+fn lost_head_markers_are_refused_with_their_frame() {
+    let (mut take, columns) = small_take(12, true);
+    let cell = |frame: usize, column: usize| (frame * 44 + column) * 3;
+    take[cell(4, 41)] = f64::NAN;
+    let three = displacements(&take, &columns).unwrap();
+    assert!(three.iter().all(|x| x.is_finite()), "three head markers are enough");
+    take[cell(7, 41)] = f64::NAN;
+    take[cell(7, 43)] = f64::NAN;
+    assert_eq!(
+        displacements(&take, &columns).unwrap_err().to_string(),
+        "frame 7, head markers: 2 points in common, 3 are needed; name other head markers, or \
+         fill the gap"
+    );
+    for frame in 0..12 {
+        for (axis, x) in [0.01, 0.0, 0.05].into_iter().enumerate() {
+            take[cell(frame, 40) + axis] = x;
+            take[cell(frame, 41) + axis] = 2.0 * x;
+            take[cell(frame, 42) + axis] = 3.0 * x;
+            take[cell(frame, 43) + axis] = 4.0 * x;
+        }
+    }
+    assert_eq!(
+        displacements(&take, &columns).unwrap_err().to_string(),
+        "frame 0, head markers: the points stand in one line; name other head markers, or fill \
+         the gap"
+    );
+}
+
+#[test]
+fn lost_face_markers_stay_lost_and_others_do_not_move() {
+    let (mut take, columns) = small_take(12, true);
+    let whole = displacements(&take, &columns).unwrap();
+    take[(8 * 44 + 13) * 3 + 1] = f64::NAN;
+    let holed = displacements(&take, &columns).unwrap();
+    for (i, (a, b)) in whole.iter().zip(&holed).enumerate() {
+        let lost = i / 3 == 8 * 40 + 13;
+        assert!(if lost { b.is_nan() } else { a.to_bits() == b.to_bits() }, "number {i}");
+    }
+    for frame in 0..5 {
+        take[(frame * 44 + 2) * 3] = f64::NAN;
+    }
+    assert_eq!(
+        displacements(&take, &columns).unwrap_err(),
+        FrontEndError::NeutralUnseen { marker: 2 }
+    );
+}
+
+#[test]
+fn near_rigid_face_markers_can_be_the_head() {
+    let (take, columns) = small_take(12, true);
+    let shared = MarkerColumns { head: Some(vec![0, 7, 11, 19, 40, 41]), ..columns };
+    let d = displacements(&take, &shared).unwrap();
+    assert!(d.iter().all(|x| x.is_finite()) && common::largest(&d) < 0.02);
+}
+
+#[test]
+fn segment_restored_from_its_parts_has_the_same_bits() {
+    let (take, columns) = small_take(30, true);
+    let avatar: Points = golden().avatar.iter().map(|p| p.map(|x| x / 1e3)).collect();
+    let whole = MarkerFrames { positions: &take, columns: 44 };
+    let poses = FrontEnd::head_poses(whole, &columns, None).unwrap();
+    let front = FrontEnd::fit(whole, &columns, &poses, 0..5, &avatar).unwrap();
+    let all = front.take_displacements(whole, &poses).unwrap();
+    let (head, neutral) = (front.head_reference().to_vec(), front.neutral().to_vec());
+    let restored = FrontEnd::from_neutral(columns, head, neutral, avatar).unwrap();
+    let segment = MarkerFrames { positions: &take[10 * 132..20 * 132], columns: 44 };
+    let poses = restored.segment_poses(segment, None).unwrap();
+    assert_eq!(restored.take_displacements(segment, &poses).unwrap(), all[1200..2400]);
+}
+
+#[test]
+fn lowpass_passes_lines_and_halves_the_power_at_its_cutoff_both_ways() {
+    let lowpass = Lowpass::new(10.0, 200.0).unwrap();
+    let mut line: Vec<f64> = (0..300).map(|i| 3.0 + 0.1 * f64::from(i)).collect();
+    let before = line.clone();
+    lowpass.filter(&mut line);
+    assert!(common::worst(&line, &before) < 1e-6 * 30.0);
+    for (hz, gain) in [(1.0, 1.0), (10.0, 0.5), (40.0, 0.0)] {
+        let wave = |i: usize| (2.0 * std::f64::consts::PI * hz * i as f64 / 200.0).sin();
+        let mut signal: Vec<f64> = (0..2000).map(wave).collect();
+        lowpass.filter(&mut signal);
+        // Zero phase: the filtered wave is the wave itself, scaled.
+        let found = (500..1500).map(|i| signal[i] * wave(i)).sum::<f64>() / 500.0;
+        assert!((found - gain).abs() < 0.01, "{hz} Hz: {found}");
+    }
+    assert_eq!(
+        Lowpass::new(120.0, 200.0).unwrap_err().to_string(),
+        "low-pass 120 Hz at 200 frames/s; give a cut-off above 0 and below 100 Hz"
+    );
+}
+
+#[test]
+fn head_lowpass_takes_noise_out_of_the_pose() {
+    let (clean, columns) = small_take(400, true);
+    let mut noisy = clean.clone();
+    let mut seed = 1_u64;
+    for frame in 0..400 {
+        for cell in (frame * 44 + 40) * 3..(frame + 1) * 44 * 3 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            noisy[cell] += 3e-4 * ((seed >> 33) as f64 / f64::from(1_u32 << 31) - 0.5);
+        }
+    }
+    let error = |lowpass: Option<&Lowpass>| {
+        let take = |positions| MarkerFrames { positions, columns: 44 };
+        let truth = FrontEnd::head_poses(take(&clean), &columns, None).unwrap();
+        let found = FrontEnd::head_poses(take(&noisy), &columns, lowpass).unwrap();
+        let at = [0.05, 0.0, 0.1];
+        let squares: f64 = (truth.iter().zip(&found).enumerate())
+            .map(|(f, (a, b))| {
+                let m =
+                    motion(0.2 * (f as f64 / 9.0).sin(), [0.01 * f as f64, 0.3, -0.004 * f as f64]);
+                let p = m.apply(at);
+                worst_distance(&[a.apply(p)], &[b.apply(p)]).powi(2)
+            })
+            .sum();
+        (squares / 400.0).sqrt()
+    };
+    let lowpass = Lowpass::new(10.0, 200.0).unwrap();
+    let (raw, filtered) = (error(None), error(Some(&lowpass)));
+    assert!(filtered < 0.6 * raw, "{raw:e} {filtered:e}");
+}
+
+/// The planted take: millimetres in the CSV, metres here; 40 face and 6 head markers.
+fn planted_displacements(data: &Path, avatar: &Points) -> (usize, Vec<f64>) {
+    let (frames, cells) = common::table(&data.join("lsts/take_n01.csv"), 2);
+    let metres: Vec<f64> = cells.iter().map(|x| x / 1000.0).collect();
+    let take = MarkerFrames { positions: &metres, columns: 46 };
+    let columns = MarkerColumns { face: (0..40).collect(), head: Some((40..46).collect()) };
+    let poses = FrontEnd::head_poses(take, &columns, None).unwrap();
+    let front = FrontEnd::fit(take, &columns, &poses, 0..60, avatar).unwrap();
+    (frames, front.take_displacements(take, &poses).unwrap())
+}
+
+#[test]
+fn planted_take_from_its_file_gives_the_stored_weights() {
+    let Some(data) = common::data("planted_take_from_its_file_gives_the_stored_weights") else {
+        return;
+    };
+    let operators = common::operators(&data, &OperatorOptions::default());
+    let (frames, d) = planted_displacements(&data, &operators.parts().marker_positions);
+    assert_eq!(frames, 5660);
+    let names = std::fs::read_to_string(data.join("lsts/frames/_Dm_metres.csv")).unwrap();
+    let at: Vec<usize> =
+        names.lines().skip(1).map(|l| l.split(',').next().unwrap().parse().unwrap()).collect();
+    let (_, stored) = common::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
+    let found: Vec<f64> = at.iter().flat_map(|&f| d[f * 120..(f + 1) * 120].to_vec()).collect();
+    let error = common::worst(&found, &stored);
+    eprintln!("displacements {error:.1e} m");
+    assert!(error < 1e-9, "{error:e}");
+    for (method, alpha, file) in [
+        (Method::Lsts, Some(0.3), "F4_box_k0.1_a0.3"),
+        (Method::Box, None, "box_no_prior_lsq_linear"),
+        (Method::LstsNorm, Some(0.5), "F1_thesis_normalised_a0.5"),
+    ] {
+        let mut spec = MethodSpec::new(method);
+        spec.alpha = alpha;
+        let take = Fit::new(&operators, &spec).unwrap().solve_take(&d).unwrap();
+        let found: Vec<f64> =
+            at.iter().flat_map(|&f| take.weights[f * 53..(f + 1) * 53].to_vec()).collect();
+        let (_, expected) = common::table(&data.join(format!("lsts/frames/{file}.csv")), 1);
+        let error = common::worst(&found, &expected);
+        let steps: u32 = take.reports.iter().map(|r| r.iterations).sum();
+        eprintln!("{method}: {error:.1e}, {:.2} steps a frame", f64::from(steps) / 5660.0);
+        assert!(error < 1e-6, "{method}: {error:e}");
+        let kkt = take.reports.iter().fold(0.0_f64, |s, r| s.max(r.kkt_error));
+        assert!(kkt < 1e-9 && take.reports.iter().all(|r| r.warning.is_none()), "{kkt:e}");
+    }
+}

@@ -1,0 +1,365 @@
+//! Laplacian, thin shell, D, H and their scales against closed forms and stored matrices.
+
+mod common;
+
+use mimique_solver::{
+    Fit, Laplacian, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
+    SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
+};
+
+/// A width x height grid in the plane, each square cut along the same diagonal.
+fn grid(width: usize, height: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let at = |x: usize, y: usize| (y * width + x) as u32;
+    let positions =
+        (0..width * height).map(|i| [(i % width) as f64, (i / width) as f64, 0.0]).collect();
+    let triangles = (0..(width - 1) * (height - 1))
+        .flat_map(|i| {
+            let (x, y) = (i % (width - 1), i / (width - 1));
+            [[at(x, y), at(x + 1, y), at(x + 1, y + 1)], [at(x, y), at(x + 1, y + 1), at(x, y + 1)]]
+        })
+        .collect();
+    (positions, triangles)
+}
+
+/// Vertices two rings inside the border.
+fn inside(width: usize, height: usize) -> impl Iterator<Item = usize> {
+    (0..width * height).filter(move |i| {
+        let (x, y) = (i % width, i / width);
+        x >= 2 && y >= 2 && x + 2 < width && y + 2 < height
+    })
+}
+
+#[test]
+fn shell_of_an_affine_field_vanishes_inside() {
+    let (p, t) = grid(12, 10);
+    let l = Laplacian::new(&p, &t, LaplacianKind::Uniform);
+    let field: Vec<f64> = p.iter().map(|p| 3.0 * p[0] - 2.0 * p[1] + 7.0).collect();
+    let a = apply_shell(&l, 1.0, 1.0, &field);
+    assert!(inside(12, 10).all(|i| a[i].abs() < 1e-12));
+}
+
+#[test]
+fn shell_of_a_wave_has_the_closed_eigenvalue() {
+    let (p, t) = grid(14, 13);
+    let l = Laplacian::new(&p, &t, LaplacianKind::Uniform);
+    for [kx, ky] in [[0.3_f64, 0.2_f64], [1.1, -0.7], [2.0, 1.3]] {
+        let field: Vec<f64> = p.iter().map(|p| (kx * p[0] + ky * p[1]).cos()).collect();
+        let lambda = 2.0 * kx.cos() + 2.0 * ky.cos() + 2.0 * (kx + ky).cos() - 6.0;
+        let a = apply_shell(&l, 1.0, 1.0, &field);
+        for i in inside(14, 13) {
+            // The sign matters: with k_s L instead of -k_s L this is off by 2 lambda.
+            let error = (a[i] - (-lambda + lambda * lambda) * field[i]).abs();
+            // The entries of a row of A add up to some 100 in size: 1e-13 is their rounding.
+            assert!(error < 1e-13, "vertex {i}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn cotangent_laplacian_of_an_affine_field_on_a_plane_vanishes() {
+    let (mut p, t) = grid(9, 9);
+    for (i, p) in p.iter_mut().enumerate() {
+        p[0] += 0.3 * ((i * 37 % 11) as f64 / 11.0 - 0.5);
+        p[1] += 0.3 * ((i * 53 % 13) as f64 / 13.0 - 0.5);
+    }
+    let l = Laplacian::cotangent_over_areas(&p, &t);
+    let field: Vec<f64> = p.iter().map(|p| 0.4 * p[0] + 1.7 * p[1] - 3.0).collect();
+    let lf = l.apply(&field);
+    assert!((0..81).filter(|i| i % 9 % 8 != 0 && i / 9 % 8 != 0).all(|i| lf[i].abs() < 1e-13));
+    let total: f64 = mixed_voronoi_areas(&p, &t).iter().sum();
+    let surface: f64 = t.iter().map(|t| area(t.map(|v| p[v as usize]))).sum();
+    assert!((total - surface).abs() < 1e-12 * surface);
+}
+
+#[test]
+fn cotangent_laplacian_of_a_sphere_is_its_curvature() {
+    let radius = 2.5;
+    let (p, t) = sphere(radius, 3);
+    let l = Laplacian::cotangent_over_areas(&p, &t);
+    for axis in 0..3 {
+        let field: Vec<f64> = p.iter().map(|p| p[axis]).collect();
+        let lf = l.apply(&field);
+        for (i, p) in p.iter().enumerate() {
+            let expected = -2.0 * p[axis] / (radius * radius);
+            assert!((lf[i] - expected).abs() < 0.03 * 2.0 / radius, "{} for {expected}", lf[i]);
+        }
+    }
+    let total: f64 = mixed_voronoi_areas(&p, &t).iter().sum();
+    let surface: f64 = t.iter().map(|t| area(t.map(|v| p[v as usize]))).sum();
+    assert!((total - surface).abs() < 1e-12 * surface);
+}
+
+#[test]
+fn clamped_cotangent_rows_are_means() {
+    let (p, t) = sphere(1.0, 2);
+    let l = Laplacian::new(&p, &t, LaplacianKind::CotanClamped);
+    for i in 0..p.len() {
+        assert!((l.row(i).map(|(_, w)| w).sum::<f64>() - 1.0).abs() < 1e-14);
+        assert!(l.row(i).all(|(_, w)| (0.0..=1.0).contains(&w)));
+    }
+}
+
+#[test]
+fn energy_of_a_translation_is_zero_and_of_a_rotation_is_not() {
+    let (p, t) = sphere(0.1, 2);
+    let shape = |delta: &dyn Fn([f64; 3]) -> [f64; 3]| SparseDeltas {
+        vertices: (0..p.len() as u32).collect(),
+        deltas: p.iter().map(|&p| delta(p)).collect(),
+    };
+    let shapes = vec![
+        shape(&|_| [0.01, -0.02, 0.03]),
+        shape(&|p| [-0.1 * p[1], 0.1 * p[0], 0.0]),
+        shape(&|p| p.map(|x| 0.1 * x)),
+    ];
+    let mesh = SkinMesh { positions: p, triangles: t, shapes };
+    let l = Laplacian::new(&mesh.positions, &mesh.triangles, LaplacianKind::Uniform);
+    let h = shell_gram(&mesh, &l, 1.0, 1.0, &[]);
+    assert!(h[0].abs() < 1e-30);
+    assert!(h[4] > 1e-6 && h[8] > 1e-6, "{h:?}");
+}
+
+#[test]
+fn toy_every_matrix_and_solution() {
+    let Some(data) = common::data("toy_every_matrix_and_solution") else { return };
+    let toy = common::json(&data.join("lsts/toy.json"));
+    let numbers = |key: &str| common::numbers(&toy[key]);
+    let triples = |key: &str| -> Vec<[f64; 3]> { numbers(key).as_chunks::<3>().0.to_vec() };
+    let positions = triples("vertices");
+    let triangles: Vec<[u32; 3]> =
+        triples("triangles").iter().map(|t| t.map(|v| v as u32)).collect();
+    let shapes: Vec<SparseDeltas> = (triples("deltas").chunks(16))
+        .map(|d| SparseDeltas { vertices: (0..16).collect(), deltas: d.to_vec() })
+        .collect();
+    let vertices: Vec<usize> = numbers("markers").iter().map(|&v| v as usize).collect();
+    let close = |what: &str, a: &[f64], b: &[f64]| {
+        let error = common::worst(a, b) / common::largest(b);
+        assert!(error < 1e-12, "{what}: {error:e}");
+    };
+
+    let uniform = Laplacian::new(&positions, &triangles, LaplacianKind::Uniform);
+    let matrix = |l: &Laplacian| -> Vec<f64> {
+        let mut a = vec![0.0; 256];
+        for j in 0..16 {
+            let unit: Vec<f64> = (0..16).map(|i| f64::from(u8::from(i == j))).collect();
+            for (i, x) in apply_shell(l, 1.0, 1.0, &unit).into_iter().enumerate() {
+                a[i * 16 + j] = x;
+            }
+        }
+        a
+    };
+    close("A uniform", &matrix(&uniform), &numbers("A_uniform"));
+    let cotan = Laplacian::cotangent_over_areas(&positions, &triangles);
+    close("A cotangent", &matrix(&cotan), &numbers("A_cot"));
+    close("areas", &mixed_voronoi_areas(&positions, &triangles), &numbers("area_mixed"));
+    let mut ab = vec![0.0; 48 * 3];
+    for (k, shape) in shapes.iter().enumerate() {
+        for axis in 0..3 {
+            let field: Vec<f64> = shape.deltas.iter().map(|d| d[axis]).collect();
+            for (i, x) in apply_shell(&uniform, 1.0, 1.0, &field).into_iter().enumerate() {
+                ab[(3 * i + axis) * 3 + k] = x;
+            }
+        }
+    }
+    close("AB", &ab, &numbers("AB"));
+
+    let mesh = SkinMesh { positions, triangles, shapes };
+    let names: Vec<String> = (0..3).map(|k| format!("shape{k}")).collect();
+    let markers: Vec<(String, usize)> = vertices.iter().map(|&v| (format!("M{v}"), v)).collect();
+    let operators = Operators::build(&mesh, &names, &markers, &OperatorOptions::default()).unwrap();
+    close("H", &operators.parts().shell_gram, &numbers("H_uniform_nonmarker"));
+    close("l^2", &[operators.data_scale()], &numbers("ell2"));
+    close("tau", &[operators.shell_scale()], &numbers("tau"));
+
+    let d = numbers("d");
+    for (name, method) in [
+        ("thesis_literal", Method::ThesisLiteral),
+        ("F1", Method::LstsNorm),
+        ("F3", Method::LstsSoft),
+        ("F4_box", Method::Lsts),
+    ] {
+        let mut spec = MethodSpec::new(method);
+        spec.alpha = Some(0.5);
+        spec.unit = (method == Method::ThesisLiteral).then_some(Unit::M);
+        let solution = Fit::new(&operators, &spec).unwrap().solve_frame(&d).unwrap();
+        close(name, &solution.weights, &common::numbers(&toy["solutions"][name]["c"]));
+    }
+}
+
+#[test]
+fn stored_operators_of_a_real_head() {
+    let Some(data) = common::data("stored_operators_of_a_real_head") else { return };
+    let stored = common::json(&data.join("lsts/operators.json"));
+    let constants = common::json(&data.join("lsts/constants.json"));
+    let close = |what: &str, a: &[f64], b: &[f64]| {
+        let error = common::worst(a, b) / common::largest(b);
+        eprintln!("{what}: {error:.1e}");
+        assert!(error < 1e-12, "{what}: {error:e}");
+    };
+    for (kind, h, tau) in [
+        (LaplacianKind::Uniform, "H_uniform", "tau_uniform"),
+        (LaplacianKind::Umbrella, "H_umbrella", "tau_umbrella"),
+        (LaplacianKind::CotanLiteral, "H_cot", "tau_cot"),
+    ] {
+        let options = OperatorOptions { laplacian: kind, ..OperatorOptions::default() };
+        let operators = common::operators(&data, &options);
+        assert_eq!(operators.parts().vertex_count, constants["S"].as_u64().unwrap() as usize);
+        close("D", &operators.parts().marker_deltas, &common::numbers(&stored["D"]));
+        close(h, &operators.parts().shell_gram, &common::numbers(&stored[h]));
+        close("l^2", &[operators.data_scale()], &common::numbers(&stored["ell2"]));
+        close(tau, &[operators.shell_scale()], &common::numbers(&stored[tau]));
+    }
+    let (mesh, _) = common::skin(&data);
+    let l = Laplacian::new(&mesh.positions, &mesh.triangles, LaplacianKind::Uniform);
+    let rows: Vec<usize> =
+        common::numbers(&stored["check_rows"]).iter().map(|&r| r as usize).collect();
+    let mut ab = vec![0.0; rows.len() * 3 * mesh.shapes.len()];
+    for (k, shape) in mesh.shapes.iter().enumerate() {
+        for axis in 0..3 {
+            let mut field = vec![0.0; mesh.positions.len()];
+            for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
+                field[v as usize] = d[axis];
+            }
+            let a = apply_shell(&l, 1.0, 1.0, &field);
+            for (at, &row) in rows.iter().enumerate() {
+                ab[(3 * at + axis) * mesh.shapes.len() + k] = a[row];
+            }
+        }
+    }
+    close("AB", &ab, &common::numbers(&stored["ABrows_uniform"]));
+    let kouadio = OperatorOptions { sigma: Some(0.012), ..OperatorOptions::default() };
+    let linked = common::operators(&data, &kouadio).parts().linked.as_ref().unwrap().vertex_count;
+    let expected = &constants["variants"]["kouadio_box_sigma12mm"]["linked_vertices"];
+    assert_eq!(linked as u64, expected.as_u64().unwrap());
+}
+
+#[test]
+fn welding_closes_the_seams_of_an_exported_head() {
+    let Some(data) = common::data("welding_closes_the_seams_of_an_exported_head") else { return };
+    let (mesh, _) = common::read_skin(&data.join("ict-facekit/ict-facekit.glb"));
+    // 11,925 vertices in the file; every place holds one vertex afterwards.
+    let mut places: Vec<[u64; 3]> =
+        mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!((mesh.positions.len(), places.len()), (11_382, 11_382));
+}
+
+#[test]
+fn welding_keeps_touching_lips_apart() {
+    let mesh = SkinMesh {
+        positions: vec![
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, -1.0, -0.0],
+        ],
+        triangles: vec![[0, 1, 2], [3, 5, 4]],
+        shapes: vec![SparseDeltas {
+            vertices: vec![0, 1],
+            deltas: vec![[0.0; 3], [0.1, 0.0, 0.0]],
+        }],
+    };
+    let welded = mesh.weld().unwrap();
+    // 0 and 3 are one (a delta of 0 is none), 1 and 4 move differently.
+    assert_eq!(welded.index_of, [0, 1, 2, 0, 3, 4]);
+    assert_eq!(welded.mesh.triangles, [[0, 1, 2], [0, 4, 3]]);
+    assert_eq!(welded.mesh.shapes[0].vertices, [1]);
+}
+
+#[test]
+fn wrong_meshes_and_parts_are_refused_in_words() {
+    let mut mesh = SkinMesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        triangles: vec![[0, 1, 7]],
+        shapes: vec![SparseDeltas { vertices: vec![1], deltas: vec![[0.1; 3]] }],
+    };
+    let say = |mesh: &SkinMesh, names: &[&str], marker: usize| {
+        let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
+        let markers = [("M0".to_owned(), marker)];
+        Operators::build(mesh, &names, &markers, &OperatorOptions::default())
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(say(&mesh, &["a"], 1), "skin, triangle 0: vertex 7 of 3; re-export the mesh");
+    mesh.triangles = vec![[0, 1, 2]];
+    assert_eq!(say(&mesh, &["a"], 9), "marker M0: vertex 9 of 3; correct the marker map");
+    assert_eq!(say(&mesh, &[], 1), "shape names: 0 of them, 1 expected; name every shape");
+    assert_eq!(
+        say(&mesh, &["a"], 2),
+        "the motion of all shapes at all markers is 0; place markers where the blendshapes move \
+         the skin"
+    );
+    mesh.shapes[0].deltas[0][1] = f64::NAN;
+    assert_eq!(
+        say(&mesh, &["a"], 1),
+        "skin, blendshape 0: a number is not finite; re-export the mesh"
+    );
+}
+
+#[test]
+fn parts_restore_the_same_bits() {
+    let Some(data) = common::data("parts_restore_the_same_bits") else { return };
+    let options = OperatorOptions { sigma: Some(0.012), ..OperatorOptions::default() };
+    let built = common::operators(&data, &options);
+    let parts: OperatorParts = built.parts().clone();
+    let restored = Operators::from_parts(parts).unwrap();
+    assert_eq!(restored.data_scale().to_bits(), built.data_scale().to_bits());
+    assert_eq!(restored.shell_scale().to_bits(), built.shell_scale().to_bits());
+    let mut short = built.parts().clone();
+    short.shell_gram.pop();
+    let error = Operators::from_parts(short).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "numbers of H: 2808 of them, 2809 expected; build the operators again from the avatar"
+    );
+}
+
+fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
+    let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
+    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    0.5 * n.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// An octahedron cut in four `levels` times and pushed out to the sphere.
+fn sphere(radius: f64, levels: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let mut points: Vec<[f64; 3]> = vec![
+        [1.0, 0.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let mut triangles: Vec<[u32; 3]> = vec![
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
+    for _ in 0..levels {
+        let mut middle = std::collections::BTreeMap::new();
+        let mut finer = Vec::new();
+        for t in triangles {
+            let m: [u32; 3] = std::array::from_fn(|k| {
+                let (a, b) = (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]));
+                *middle.entry((a, b)).or_insert_with(|| {
+                    let sum: [f64; 3] =
+                        std::array::from_fn(|x| points[a as usize][x] + points[b as usize][x]);
+                    let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    points.push(sum.map(|x| x / length));
+                    (points.len() - 1) as u32
+                })
+            });
+            finer.extend([[t[0], m[0], m[2]], [t[1], m[1], m[0]], [t[2], m[2], m[1]], m]);
+        }
+        triangles = finer;
+    }
+    (points.iter().map(|p| p.map(|x| radius * x)).collect(), triangles)
+}
