@@ -90,7 +90,7 @@ fn rbf_without_a_solution_is_refused_in_words() {
 #[test]
 fn alignment_recovers_a_rigid_motion_and_never_reflects() {
     let g = golden();
-    for angle in [0.0, 0.3, 1.5, 3.0, 3.141_592_65, -2.0] {
+    for angle in [0.0, 0.3, 1.5, 3.0, std::f64::consts::PI, -2.0] {
         let m = motion(angle, [10.0, -40.0, 500.0]);
         let moved: Points = g.actor.iter().map(|&p| m.apply(p)).collect();
         let found = align_rigidly(&g.actor, &moved).unwrap();
@@ -261,9 +261,9 @@ fn head_lowpass_takes_noise_out_of_the_pose() {
     let mut noisy = clean.clone();
     let mut seed = 1_u64;
     for frame in 0..400 {
-        for cell in (frame * 44 + 40) * 3..(frame + 1) * 44 * 3 {
+        for x in &mut noisy[(frame * 44 + 40) * 3..(frame + 1) * 44 * 3] {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            noisy[cell] += 3e-4 * ((seed >> 33) as f64 / f64::from(1_u32 << 31) - 0.5);
+            *x += 3e-4 * ((seed >> 33) as f64 / f64::from(1_u32 << 31) - 0.5);
         }
     }
     let error = |lowpass: Option<&Lowpass>| {
