@@ -1,20 +1,31 @@
 //! A capture at another rate.
 
-use crate::{Capture, FilterError, LowPass};
+use crate::{Capture, LowPass};
+
+/// A rate no capture can have.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("resample: {rate_hz} frames a second; give a rate above 0 and up to 100000")]
+pub struct ResampleError {
+    /// The rate asked for.
+    pub rate_hz: f64,
+}
 
 /// Resample to `rate_hz` by cubic interpolation (Catmull-Rom; straight beside gaps and ends).
 /// Downwards, frequencies that the new rate cannot hold are taken out first, by a zero-phase
 /// Butterworth at 0.4 of it. A new frame between a present and a missing one is missing.
 ///
 /// # Errors
-/// [`FilterError`] when the new rate is not above 0 and finite.
-pub fn resample(capture: &Capture, rate_hz: f64) -> Result<Capture, FilterError> {
-    if !(rate_hz.is_finite() && rate_hz > 0.0) {
-        return Err(FilterError::Cutoff { cutoff_hz: rate_hz, rate_hz: capture.rate_hz });
+/// [`ResampleError`] when the new rate is not above 0 and at most 100,000.
+pub fn resample(capture: &Capture, rate_hz: f64) -> Result<Capture, ResampleError> {
+    // The bound keeps a slip of the unit (microseconds for hertz) from filling the memory.
+    if !(rate_hz > 0.0 && rate_hz <= 100_000.0) {
+        return Err(ResampleError { rate_hz });
     }
     let mut source = capture.clone();
     if rate_hz < capture.rate_hz {
-        LowPass::Butterworth { cutoff_hz: 0.4 * rate_hz }.filter_capture(&mut source)?;
+        LowPass::Butterworth { cutoff_hz: 0.4 * rate_hz }
+            .filter_capture(&mut source)
+            .map_err(|_| ResampleError { rate_hz })?;
     }
     let (frames, markers) = (source.frames(), source.labels.len());
     let ratio = source.rate_hz / rate_hz;

@@ -1,7 +1,7 @@
 //! The readers on files of real systems, found in `MIMIQUE_DATA` (default `../shared/data`).
 
 use mimique_mocap::{
-    Capture, LengthUnit, ReadOptions, Recording, read, read_recording, read_weights,
+    Capture, CaptureFacts, LengthUnit, ReadOptions, Recording, read, read_recording, read_weights,
 };
 use std::path::PathBuf;
 
@@ -116,4 +116,20 @@ fn live_link_takes_are_weights_at_30_hz() {
              give it as weights, not as a capture"
         );
     }
+}
+
+#[test]
+fn facts_of_real_takes() {
+    let Some(data) = data("facts_of_real_takes") else { return };
+    for name in ["lsts/take_n01.csv", "animface/JawMoCap.c3d", "animface/CheeksMoCap.csv"] {
+        let facts = CaptureFacts::of(&recording(data.join(name)));
+        assert!(facts.extent_m.is_some_and(|e| (0.1..0.4).contains(&e)), "{:?}", facts.extent_m);
+        assert!(facts.presence.iter().all(|m| m.gaps == 0));
+        assert!(facts.swaps.is_empty(), "{name}: {:?}", facts.swaps);
+        eprintln!("{name}: {:?} {:?}", facts.stillest, facts.warnings);
+    }
+    let vicon = CaptureFacts::of(&recording(data.join("c3d/Vicon.c3d")));
+    let missing: usize = vicon.presence.iter().map(|m| vicon.frames - m.present).sum();
+    assert_eq!(missing, 305, "as ezc3d counts them");
+    eprintln!("Vicon: {:?}", vicon.warnings);
 }
