@@ -41,6 +41,10 @@ pub struct Landmarks {
     pub chin: [f32; 3],
     /// Most forward point between the eyes' height and the chin: the tip of the nose.
     pub nose_tip: [f32; 3],
+    /// Where the lips part, on the midline; a guess where the skin has no rim at the mouth.
+    pub mouth: [f32; 3],
+    /// Corner of the mouth on the person's left, where the skin has a rim at the mouth.
+    pub mouth_corner: Option<[f32; 3]>,
 }
 
 /// Eye to chin in units of the distance between the eyes, where no chin can be found.
@@ -77,11 +81,15 @@ impl Landmarks {
                 }
             }
         }
+        let guess = Vec3::new(middle.x, middle.y + 0.6 * (chin.y - middle.y), nose.z - 0.3 * span);
+        let (mouth, corner) = mouth(avatar, guess, span);
         Self {
             eye_right: right.into(),
             eye_left: left.into(),
             chin: chin.into(),
             nose_tip: nose.into(),
+            mouth: mouth.into(),
+            mouth_corner: corner,
         }
     }
 
@@ -120,6 +128,43 @@ fn eyes(avatar: &Avatar) -> (Vec3, Vec3) {
     );
     let half = Vec3::new((high.x - low.x).max(1e-3) * 0.21, 0.0, 0.0);
     (middle - half, middle + half)
+}
+
+/// The midpoint and the left corner of the open border of the skin nearest to where a mouth is.
+fn mouth(avatar: &Avatar, guess: Vec3, span: f32) -> (Vec3, Option<[f32; 3]>) {
+    let mut rim = Vec::new();
+    for mesh in avatar.meshes.iter().filter(|m| m.part == Part::Skin) {
+        let place = |v: u32| mesh.positions[v as usize].map(f32::to_bits);
+        let near = |v: u32| {
+            let off = (Vec3::from(mesh.positions[v as usize]) - guess).abs() / span;
+            off.x < 0.7 && off.y < 0.4 && off.z < 0.7
+        };
+        let mut edges: Vec<[[u32; 3]; 2]> = (mesh.triangles.iter())
+            .filter(|t| t.iter().all(|&v| (v as usize) < mesh.positions.len() && near(v)))
+            .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
+            .map(|e| e.map(place))
+            .map(|[a, b]| if a < b { [a, b] } else { [b, a] })
+            .collect();
+        edges.sort_unstable();
+        let alone = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).flatten();
+        // The border of the region itself is alone too: keep what lies well inside.
+        rim.extend(alone.flatten().map(|p| Vec3::from(p.map(f32::from_bits))).filter(|p| {
+            let off = (*p - guess).abs() / span;
+            off.x < 0.6 && off.y < 0.3 && off.z < 0.6
+        }));
+    }
+    let Some(corner) = rim.iter().copied().reduce(|a, b| if b.x > a.x { b } else { a }) else {
+        return (guess, None);
+    };
+    let reach = corner.x - guess.x;
+    let central = || rim.iter().filter(|p| (p.x - guess.x).abs() < 0.3 * reach);
+    let (low, high) =
+        central().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), p| (l.min(p.y), h.max(p.y)));
+    let front = central().fold(f32::NEG_INFINITY, |z, p| z.max(p.z));
+    if reach < 0.15 * span || low > high {
+        return (guess, None);
+    }
+    (Vec3::new(guess.x, (low + high) * 0.5, front), Some(corner.into()))
 }
 
 /// Centre of a mesh's bounding box.

@@ -2,7 +2,7 @@
 //!
 //! | table | one entry a | holds |
 //! |---|---|---|
-//! | `neutral` | vertex | position, 1 |
+//! | `neutral` | vertex | position; how far along a lash |
 //! | `vertices` | vertex | where its deltas and its ring start, how many, its eyeball |
 //! | `entries` | (vertex, blendshape) that is not zero | displacement, blendshape |
 //! | `rings` | (vertex, triangle round it) | the triangle's other two corners, in order |
@@ -51,8 +51,8 @@ pub(crate) enum Layer {
     Closed,
     /// Open sheets: both sides are seen.
     Sheet,
-    /// Wet and shading layers over the eye, blended.
-    Overlay,
+    /// Lashes: hairs thinner than a pixel.
+    Blended,
 }
 
 /// An eyeball, measured.
@@ -74,9 +74,12 @@ impl Geometry {
         }
         let mut out = Self { shape_count, ..Self::default() };
         let eye_of_mesh = out.measure_eyes(avatar)?;
-        let mut order: Vec<usize> = (0..avatar.meshes.len()).collect();
+        // Shading shells over the eye belong to other renderers; this one shades the eye itself.
+        let mut order: Vec<usize> = (0..avatar.meshes.len())
+            .filter(|&m| avatar.meshes[m].part != Part::EyeOverlay)
+            .collect();
         // Closed surfaces first and the skin first of all: it hides most of what follows.
-        order.sort_by_key(|&m| {
+        order.sort_unstable_by_key(|&m| {
             (layer(avatar.meshes[m].part), avatar.meshes[m].part != Part::Skin, m)
         });
         for m in order {
@@ -150,15 +153,14 @@ impl Geometry {
         }
 
         let material = material_code(mesh, eye);
-        let painted = mesh.part == Part::Skin && mesh.vertex_colours.is_empty();
-        let lips = if painted { lip_distance(mesh, landmarks) } else { Vec::new() };
+        let lashes =
+            if mesh.part == Part::Lashes { lash_length(mesh, landmarks) } else { Vec::new() };
         for v in 0..count {
             let colour = mesh.vertex_colours.get(v).copied().unwrap_or(mesh.base_colour);
             let root = colour.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
             self.colours.push([root[0], root[1], root[2], material]);
-            if let Some(&distance) = lips.get(v) {
-                let v = base as usize + v;
-                self.neutral[v][3] = distance;
+            if let Some(&length) = lashes.get(v) {
+                self.neutral[base as usize + v][3] = length;
             }
         }
 
@@ -166,10 +168,7 @@ impl Geometry {
         self.indices.extend(mesh.triangles.iter().flatten().map(|&i| base + i));
         let indices = first..self.indices.len() as u32;
         if !indices.is_empty() {
-            let casts_shadow = !matches!(
-                mesh.part,
-                Part::Lashes | Part::EyeOverlay | Part::EyeLeft | Part::EyeRight
-            );
+            let casts_shadow = !matches!(mesh.part, Part::Lashes | Part::EyeLeft | Part::EyeRight);
             self.draws.push(Draw { indices, layer: layer(mesh.part), casts_shadow });
         }
         Ok(())
@@ -199,16 +198,11 @@ impl Geometry {
     }
 }
 
-/// Distance of lips, in units of the eyes' span, where there are none.
-const NO_LIPS: f32 = 9.0;
-
 fn layer(part: Part) -> Layer {
     match part {
         Part::Skin | Part::EyeLeft | Part::EyeRight => Layer::Closed,
-        Part::EyeOverlay => Layer::Overlay,
-        Part::Teeth | Part::Tongue | Part::Socket | Part::Lashes | Part::Hair | Part::Other => {
-            Layer::Sheet
-        }
+        Part::Lashes => Layer::Blended,
+        _ => Layer::Sheet,
     }
 }
 
@@ -222,9 +216,9 @@ fn material_code(mesh: &Mesh, eye: Option<usize>) -> u8 {
         Part::Teeth => Material::Teeth,
         Part::Tongue => Material::Tongue,
         Part::Socket => Material::Socket,
-        Part::Lashes | Part::Hair => Material::Hair,
-        Part::EyeOverlay => Material::Wet,
-        Part::EyeLeft | Part::EyeRight | Part::Other => Material::Cloth,
+        Part::Lashes => Material::Lashes,
+        Part::Hair => Material::Hair,
+        Part::EyeLeft | Part::EyeRight | Part::EyeOverlay | Part::Other => Material::Cloth,
     }) as u8
 }
 
@@ -300,7 +294,7 @@ fn weld(mesh: &Mesh, starts: &[u32], entries: &[[f32; 4]]) -> Vec<u32> {
 fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye {
     let mut distances: Vec<f32> =
         mesh.positions.iter().map(|&p| (Vec3::from(p) - centre).length()).collect();
-    distances.sort_by(f32::total_cmp);
+    distances.sort_unstable_by(f32::total_cmp);
     let radius = distances[distances.len() / 2].max(1e-5);
     // A cornea bulges: the pupil looks towards the mean of the farthest points. A plain ball looks ahead.
     let far = distances[distances.len() - 1 - distances.len() / 50];
@@ -312,46 +306,15 @@ fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye
     Eye { centre, radius, forward, looks }
 }
 
-/// Distance of each vertex from the rim of the mouth (the open border of the skin nearest to where
-/// a mouth is), in units of the eyes' span, for painting lips. [`NO_LIPS`] without such a rim.
-fn lip_distance(mesh: &Mesh, landmarks: &Landmarks) -> Vec<f32> {
-    let span = landmarks.eye_span().max(1e-6);
-    let eyes = Vec3::from(landmarks.eyes_middle());
-    let chin = Vec3::from(landmarks.chin);
-    let mouth = Vec3::new(
-        eyes.x,
-        eyes.y + 0.60 * (chin.y - eyes.y),
-        Vec3::from(landmarks.nose_tip).z - 0.2 * span,
-    );
-    let mut sides: HashMap<[[u32; 3]; 2], u32> = HashMap::new();
-    let place = |v: u32| mesh.positions[v as usize].map(f32::to_bits);
-    for t in &mesh.triangles {
-        for k in 0..3 {
-            let (a, b) = (place(t[k]), place(t[(k + 1) % 3]));
-            *sides.entry(if a < b { [a, b] } else { [b, a] }).or_default() += 1;
-        }
-    }
-    let mut rim: Vec<Vec3> = (sides.iter().filter(|(_, n)| **n == 1))
-        .flat_map(|(ends, _)| ends.map(|p| Vec3::from(p.map(f32::from_bits))))
-        .filter(|p| {
-            (p.x - mouth.x).abs() < 0.6 * span
-                && (p.y - mouth.y).abs() < 0.35 * span
-                && (p.z - mouth.z).abs() < 0.6 * span
-        })
-        .collect();
-    // A map yields them in any order; sorted, the sums below are the same each time.
-    rim.sort_by(|a, b| {
-        a.to_array().partial_cmp(&b.to_array()).unwrap_or(std::cmp::Ordering::Equal)
-    });
-    rim.dedup();
-    (mesh.positions.iter())
-        .map(|&p| {
-            let p = Vec3::from(p);
-            if (p - mouth).length() > span {
-                return NO_LIPS;
-            }
-            let near = rim.iter().map(|r| r.distance_squared(p)).fold(f32::INFINITY, f32::min);
-            if near.is_finite() { near.sqrt() / span } else { NO_LIPS }
-        })
-        .collect()
+/// How far along a lash each vertex lies: 0 at the lid, 1 at the longest tip, measured as distance
+/// from the nearer eye.
+fn lash_length(mesh: &Mesh, landmarks: &Landmarks) -> Vec<f32> {
+    let eyes = [Vec3::from(landmarks.eye_right), Vec3::from(landmarks.eye_left)];
+    let nearer = |p: [f32; 3]| {
+        eyes.map(|e| e.distance(Vec3::from(p))).into_iter().fold(f32::INFINITY, f32::min)
+    };
+    let distances: Vec<f32> = mesh.positions.iter().map(|&p| nearer(p)).collect();
+    let low = distances.iter().copied().fold(f32::INFINITY, f32::min);
+    let high = distances.iter().copied().fold(0.0, f32::max);
+    distances.iter().map(|d| (d - low) / (high - low).max(1e-6)).collect()
 }

@@ -13,7 +13,7 @@ use crate::geometry::{Draw, Eye, Geometry};
 use crate::layouts::{
     EyeballPose, Gaze, LIST_TABLE_WIDTH, MAX_EYEBALLS, Pose, Scene, VERTEX_TABLE_WIDTH,
 };
-use crate::pipelines::Pipelines;
+use crate::pipelines::{OCCLUSION_FORMAT, Pipelines};
 use crate::tables;
 
 /// An avatar ready to be drawn by the renderer that loaded it.
@@ -28,9 +28,11 @@ pub struct Head {
     pub(crate) scene_buffer: Buffer,
     pub(crate) positions: TextureView,
     pub(crate) surfaces: TextureView,
+    pub(crate) occlusions: TextureView,
     pub(crate) deform_group: BindGroup,
     pub(crate) light_group: BindGroup,
     pub(crate) surface_group: BindGroup,
+    pub(crate) occlusion_group: BindGroup,
     pub(crate) shade_group: BindGroup,
 }
 
@@ -76,8 +78,9 @@ impl Head {
             &geometry.rings,
         )?;
         let high = tables::rows(geometry.neutral.len(), wide);
-        let positions = tables::target(device, "positions", wide, high);
-        let surfaces = tables::target(device, "surfaces", wide, high);
+        let positions = tables::target(device, "positions", float, wide, high);
+        let surfaces = tables::target(device, "surfaces", float, wide, high);
+        let occlusions = tables::target(device, "occlusions", OCCLUSION_FORMAT, wide, high);
         let buffer = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some(label),
@@ -90,28 +93,31 @@ impl Head {
         let scene_buffer = buffer("scene", &vec![0; size_of::<Scene>()], uniform);
         let (pose, scene) = (pose_buffer.as_entire_binding(), scene_buffer.as_entire_binding());
         let view = BindingResource::TextureView;
+        let sampler = BindingResource::Sampler(shadow.1);
+        let group = |layout, resources: &[BindingResource<'_>]| group(device, layout, resources);
         let deform_group = group(
-            device,
             &pipelines.deform_layout,
-            [pose, view(&neutral), view(&vertices), view(&entries)],
+            &[pose, view(&neutral), view(&vertices), view(&entries)],
         );
-        let light_group = group(device, &pipelines.light_layout, [scene.clone(), view(&positions)]);
+        let light_group = group(&pipelines.light_layout, &[scene.clone(), view(&positions)]);
         let surface_group = group(
-            device,
             &pipelines.surface_layout,
-            [
+            &[
                 scene.clone(),
                 view(&vertices),
                 view(&rings),
                 view(&positions),
                 view(shadow.0),
-                BindingResource::Sampler(shadow.1),
+                sampler.clone(),
             ],
         );
+        let occlusion_group = group(
+            &pipelines.occlusion_layout,
+            &[scene.clone(), view(&positions), view(shadow.0), sampler, view(&surfaces)],
+        );
         let shade_group = group(
-            device,
             &pipelines.shade_layout,
-            [scene, view(&positions), view(&surfaces), view(&neutral)],
+            &[scene, view(&positions), view(&surfaces), view(&neutral), view(&occlusions)],
         );
         Ok(Self {
             landmarks,
@@ -134,7 +140,9 @@ impl Head {
             surfaces,
             deform_group,
             light_group,
+            occlusions,
             surface_group,
+            occlusion_group,
             shade_group,
         })
     }
@@ -192,15 +200,15 @@ fn frame(forward: Vec3) -> Mat3 {
     Mat3::from_cols(x, forward.cross(x), forward)
 }
 
-fn group<const N: usize>(
+/// Binds the resources one after another.
+fn group(
     device: &Device,
     layout: &BindGroupLayout,
-    resources: [BindingResource<'_>; N],
+    resources: &[BindingResource<'_>],
 ) -> BindGroup {
-    let mut binding = 0;
-    let entries = resources.map(|resource| {
-        binding += 1;
-        wgpu::BindGroupEntry { binding: binding - 1, resource }
-    });
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }

@@ -43,6 +43,9 @@ pub(crate) struct Scene {
     pub eyes_middle: [f32; 4],
     /// Midpoint of the lips; depth of the face behind them at which the mouth is dark.
     pub mouth: [f32; 4],
+    /// Where the lips part in the middle (x, y), half the mouth's width, how much higher its corners
+    /// are; width 0 where no lips are to be painted.
+    pub lips: [f32; 4],
     /// Tint; roughness.
     pub skin: [f32; 4],
     /// Colour; 1 where painted.
@@ -70,8 +73,8 @@ pub(crate) enum Material {
     Tongue = 3,
     Socket = 4,
     Hair = 5,
-    Wet = 6,
-    Cloth = 7,
+    Cloth = 6,
+    Lashes = 7,
     /// The first eye; the second is one more.
     Eye = 8,
 }

@@ -25,7 +25,7 @@ impl Look {
         background: [0.40, 0.41, 0.42],
         skin_tint: [1.0, 1.0, 1.0],
         skin_roughness: 0.46,
-        iris: [0.17, 0.23, 0.20],
+        iris: [0.115, 0.125, 0.105],
         brows: [0.055, 0.034, 0.022],
         exposure: 1.0,
         paint: true,

@@ -13,17 +13,31 @@ pub(crate) const SAMPLES: u32 = 4;
 /// Depth of the picture and of the key light's view.
 pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
+/// Sums over directions of the sky; a half float takes 24 of them without loss that could be seen.
+pub(crate) const OCCLUSION_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Blending that adds.
+const ADD: wgpu::BlendState = wgpu::BlendState {
+    color: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    },
+    alpha: wgpu::BlendComponent::REPLACE,
+};
+
 pub(crate) struct Pipelines {
     pub deform_layout: BindGroupLayout,
     pub surface_layout: BindGroupLayout,
+    pub occlusion_layout: BindGroupLayout,
     pub shade_layout: BindGroupLayout,
     pub light_layout: BindGroupLayout,
     pub deform: RenderPipeline,
     pub light: RenderPipeline,
     pub surface: RenderPipeline,
+    pub occlusion: RenderPipeline,
     closed: RenderPipeline,
     sheet: RenderPipeline,
-    overlay: RenderPipeline,
+    blended: RenderPipeline,
 }
 
 impl Pipelines {
@@ -38,6 +52,7 @@ impl Pipelines {
         };
         let deform_module = module("deform.wgsl", include_str!("shaders/deform.wgsl"));
         let surface_module = module("surface.wgsl", include_str!("shaders/surface.wgsl"));
+        let occlusion_module = module("occlusion.wgsl", include_str!("shaders/occlusion.wgsl"));
         let shade_module = module("shade.wgsl", include_str!("shaders/shade.wgsl"));
 
         let (float, integer) =
@@ -66,6 +81,17 @@ impl Pipelines {
                 entry(5, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
             ],
         );
+        let occlusion_layout = layout(
+            device,
+            "occlusion",
+            &[
+                uniform(0, fragment),
+                table(1, fragment, float),
+                table(2, fragment, TextureSampleType::Depth),
+                entry(3, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                table(4, fragment, float),
+            ],
+        );
         let shade_layout = layout(
             device,
             "shade",
@@ -74,28 +100,41 @@ impl Pipelines {
                 table(1, ShaderStages::VERTEX, float),
                 table(2, ShaderStages::VERTEX, float),
                 table(3, ShaderStages::VERTEX, float),
+                table(4, ShaderStages::VERTEX, float),
             ],
         );
         let light_layout =
             layout(device, "light", &[uniform(0, both), table(1, ShaderStages::VERTEX, float)]);
 
-        let cover = |name, module, layout, entries: [&'static str; 2]| {
-            table_pass(device, name, module, layout, entries)
+        let float32 = TextureFormat::Rgba32Float.into();
+        let summed = wgpu::ColorTargetState {
+            format: OCCLUSION_FORMAT,
+            blend: Some(ADD),
+            write_mask: wgpu::ColorWrites::ALL,
         };
+        let cover =
+            |module, layout, entries, target| table_pass(device, module, layout, entries, target);
         Self {
-            deform: cover("deform", &deform_module, &deform_layout, ["cover_positions", "deform"]),
+            deform: cover(&deform_module, &deform_layout, ["cover_positions", "deform"], &float32),
             surface: cover(
-                "surface",
                 &surface_module,
                 &surface_layout,
                 ["cover_surface", "surface"],
+                &float32,
+            ),
+            occlusion: cover(
+                &occlusion_module,
+                &occlusion_layout,
+                ["cover_occlusion", "occlusion"],
+                &summed,
             ),
             light: light_pass(device, &shade_module, &light_layout),
             closed: picture_pass(device, &shade_module, &shade_layout, format, Layer::Closed),
             sheet: picture_pass(device, &shade_module, &shade_layout, format, Layer::Sheet),
-            overlay: picture_pass(device, &shade_module, &shade_layout, format, Layer::Overlay),
+            blended: picture_pass(device, &shade_module, &shade_layout, format, Layer::Blended),
             deform_layout,
             surface_layout,
+            occlusion_layout,
             shade_layout,
             light_layout,
         }
@@ -106,20 +145,20 @@ impl Pipelines {
         match layer {
             Layer::Closed => &self.closed,
             Layer::Sheet => &self.sheet,
-            Layer::Overlay => &self.overlay,
+            Layer::Blended => &self.blended,
         }
     }
 }
 
 fn table_pass(
     device: &Device,
-    name: &str,
     module: &ShaderModule,
     group: &BindGroupLayout,
     entries: [&str; 2],
+    target: &wgpu::ColorTargetState,
 ) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(name),
+        label: Some(entries[1]),
         layout: Some(&pipeline_layout(device, group)),
         vertex: wgpu::VertexState {
             module,
@@ -134,7 +173,7 @@ fn table_pass(
             module,
             entry_point: Some(entries[1]),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(TextureFormat::Rgba32Float.into())],
+            targets: &[Some(target.clone())],
         }),
         multiview_mask: None,
         cache: None,
@@ -174,7 +213,7 @@ fn picture_pass(
     format: TextureFormat,
     layer: Layer,
 ) -> RenderPipeline {
-    let blended = layer == Layer::Overlay;
+    let blended = layer == Layer::Blended;
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("picture"),
         layout: Some(&pipeline_layout(device, group)),

@@ -70,13 +70,10 @@ impl Renderer {
     /// # Errors
     /// [`StageError`] when the avatar is malformed or too large for this machine.
     pub fn load(&self, avatar: &Avatar) -> Result<Head, StageError> {
-        Head::new(
-            &self.device,
-            &self.queue,
-            &self.pipelines,
-            (&self.shadow, &self.shadow_sampler),
-            avatar,
-        )
+        let shadow = (&self.shadow, &self.shadow_sampler);
+        let head = Head::new(&self.device, &self.queue, &self.pipelines, shadow, avatar)?;
+        self.find_occlusions(&head);
+        Ok(head)
     }
 
     /// Changes the size of the pictures, pixels.
@@ -110,23 +107,53 @@ impl Renderer {
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        fill_table(
-            &mut encoder,
-            "deform",
-            &head.positions,
-            &self.pipelines.deform,
-            &head.deform_group,
-        );
+        let clear = LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let passes = &self.pipelines;
+        fill_table(&mut encoder, &head.positions, &passes.deform, &head.deform_group, clear);
         self.light_pass(&mut encoder, head);
-        fill_table(
-            &mut encoder,
-            "surface",
-            &head.surfaces,
-            &self.pipelines.surface,
-            &head.surface_group,
-        );
+        fill_table(&mut encoder, &head.surfaces, &passes.surface, &head.surface_group, clear);
         self.picture_pass(&mut encoder, head, target);
         self.queue.submit([encoder.finish()]);
+    }
+
+    /// Looks at the neutral head from many sides and sums up where each vertex is seen from.
+    fn find_occlusions(&self, head: &Head) {
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("occlusions") };
+        self.queue.write_buffer(&head.pose_buffer, 0, bytemuck::bytes_of(&head.pose(&[])));
+        for (i, towards) in sky().enumerate() {
+            let mut scene = self.scene(head, View::FRONT, &[]);
+            scene.light_from_world = Camera::light(&head.landmarks, towards).to_cols_array_2d();
+            self.queue.write_buffer(&head.scene_buffer, 0, bytemuck::bytes_of(&scene));
+            let mut encoder = self.device.create_command_encoder(&descriptor);
+            let clear = LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            let passes = &self.pipelines;
+            if i == 0 {
+                fill_table(
+                    &mut encoder,
+                    &head.positions,
+                    &passes.deform,
+                    &head.deform_group,
+                    clear,
+                );
+                fill_table(
+                    &mut encoder,
+                    &head.surfaces,
+                    &passes.surface,
+                    &head.surface_group,
+                    clear,
+                );
+            }
+            self.light_pass(&mut encoder, head);
+            let sum = if i == 0 { clear } else { LoadOp::Load };
+            fill_table(
+                &mut encoder,
+                &head.occlusions,
+                &passes.occlusion,
+                &head.occlusion_group,
+                sum,
+            );
+            self.queue.submit([encoder.finish()]);
+        }
     }
 
     fn light_pass(&self, encoder: &mut wgpu::CommandEncoder, head: &Head) {
@@ -181,23 +208,29 @@ impl Renderer {
         let camera = Camera::portrait(&head.landmarks, view, aspect);
         let span = head.landmarks.eye_span();
         let eyes = head.landmarks.eyes_middle();
-        let (chin, nose) = (head.landmarks.chin, head.landmarks.nose_tip);
+        let (mouth, nose) = (head.landmarks.mouth, head.landmarks.nose_tip);
         let with = |v: [f32; 3], w: f32| [v[0], v[1], v[2], w];
         Scene {
             clip_from_world: camera.clip_from_world.to_cols_array_2d(),
             light_from_world: Camera::light(&head.landmarks, TOWARDS_KEY).to_cols_array_2d(),
             camera: camera.position.extend(0.0).into(),
             eyes_middle: with(eyes, span),
-            mouth: [
-                eyes[0],
-                eyes[1] + 0.6 * (chin[1] - eyes[1]),
-                nose[2] - 0.34 * span,
-                0.55 * span,
-            ],
+            mouth: [mouth[0], mouth[1], nose[2] - 0.34 * span, 0.55 * span],
+            lips: self.lips(head),
             skin: with(self.look.skin_tint, self.look.skin_roughness),
             brows: with(self.look.brows, if self.look.paint { 1.0 } else { 0.0 }),
             iris: with(self.look.iris, self.look.exposure),
             gaze: head.gaze(weights),
+        }
+    }
+
+    fn lips(&self, head: &Head) -> [f32; 4] {
+        let mouth = head.landmarks.mouth;
+        match head.landmarks.mouth_corner {
+            Some(corner) if self.look.paint => {
+                [mouth[0], mouth[1], corner[0] - mouth[0], corner[1] - mouth[1]]
+            }
+            _ => [0.0; 4],
         }
     }
 }
@@ -205,27 +238,38 @@ impl Renderer {
 /// A pass over every vertex of a table.
 fn fill_table(
     encoder: &mut wgpu::CommandEncoder,
-    label: &str,
     table: &TextureView,
     pipeline: &wgpu::RenderPipeline,
     group: &wgpu::BindGroup,
+    load: LoadOp<wgpu::Color>,
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
+        label: Some("table"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: table,
             depth_slice: None,
             resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: StoreOp::Store,
-            },
+            ops: Operations { load, store: StoreOp::Store },
         })],
         ..wgpu::RenderPassDescriptor::default()
     });
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, group, &[]);
     pass.draw(0..3, 0..1);
+}
+
+/// Directions spread evenly over the sky in front of, above and beside a face (a spiral of the
+/// golden angle without its rear part).
+fn sky() -> impl Iterator<Item = Vec3> {
+    const COUNT: u32 = 36;
+    (0..COUNT)
+        .map(|i| {
+            let y = 1.0 - (2.0 * i as f32 + 1.0) / COUNT as f32;
+            let (sin, cos) = (2.399_963_2 * i as f32).sin_cos();
+            let radius = (1.0 - y * y).sqrt();
+            Vec3::new(radius * cos, y, radius * sin)
+        })
+        .filter(|d| d.z > -0.25)
 }
 
 /// The multisampled picture and its depth.

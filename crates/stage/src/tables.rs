@@ -55,10 +55,16 @@ pub(crate) fn upload<T: bytemuck::Pod>(
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
-/// A table that a pass fills: one RGBA32F texel an entry.
-pub(crate) fn target(device: &Device, name: &'static str, width: u32, height: u32) -> TextureView {
+/// A table that a pass fills.
+pub(crate) fn target(
+    device: &Device,
+    name: &'static str,
+    format: TextureFormat,
+    width: u32,
+    height: u32,
+) -> TextureView {
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
-    empty(device, name, TextureFormat::Rgba32Float, width, height, usage)
+    empty(device, name, format, width, height, usage)
         .create_view(&wgpu::TextureViewDescriptor::default())
 }
 

@@ -12,6 +12,7 @@ struct Scene {
     camera: vec4f,
     eyes_middle: vec4f,
     mouth: vec4f,
+    lips: vec4f,
     skin: vec4f,
     brows: vec4f,
     iris: vec4f,

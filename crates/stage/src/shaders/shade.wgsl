@@ -3,6 +3,7 @@
 @group(0) @binding(1) var positions: texture_2d<f32>;
 @group(0) @binding(2) var surfaces: texture_2d<f32>;
 @group(0) @binding(3) var neutral: texture_2d<f32>;
+@group(0) @binding(4) var occlusions: texture_2d<f32>;
 
 // Layout: `layouts.rs`, `Material`.
 const MATERIAL_SKIN: u32 = 0u;
@@ -11,12 +12,15 @@ const MATERIAL_TEETH: u32 = 2u;
 const MATERIAL_TONGUE: u32 = 3u;
 const MATERIAL_SOCKET: u32 = 4u;
 const MATERIAL_HAIR: u32 = 5u;
-const MATERIAL_WET: u32 = 6u;
-const MATERIAL_CLOTH: u32 = 7u;
+const MATERIAL_CLOTH: u32 = 6u;
+const MATERIAL_LASHES: u32 = 7u;
 const MATERIAL_EYE: u32 = 8u;
 
 const PI: f32 = 3.14159265;
 const KEY_LIGHT: vec3f = vec3f(2.05, 1.93, 1.78);
+// Where the key light is mirrored in the eyes: lower than it stands, as a photographer's reflector,
+// so that the upper lid does not cover it.
+const CATCH: vec3f = vec3f(-0.3482, 0.3383, 0.8743);
 const FILL: vec3f = vec3f(0.7071, 0.1414, 0.6928);
 const FILL_LIGHT: vec3f = vec3f(0.46, 0.50, 0.56);
 const RIM_LEFT: vec3f = vec3f(-0.8165, 0.3266, -0.4763);
@@ -35,9 +39,10 @@ struct Point {
     @location(0) position: vec3f,
     // Normal; visibility of the key light.
     @location(1) surface: vec4f,
-    // Neutral position; distance from the rim of the mouth.
+    // Neutral position; how far along a lash.
     @location(2) neutral: vec4f,
-    @location(3) colour: vec3f,
+    // Base colour; part of the sky that the neutral head leaves open here.
+    @location(3) colour: vec4f,
     @location(4) @interpolate(flat) material: u32,
 }
 
@@ -50,7 +55,8 @@ fn project(@builtin(vertex_index) index: u32, @location(0) colour: vec4f) -> Poi
     out.position = position.xyz;
     out.surface = textureLoad(surfaces, texel, 0);
     out.neutral = textureLoad(neutral, texel, 0);
-    out.colour = colour.rgb * colour.rgb;
+    let sky = textureLoad(occlusions, texel, 0).xy;
+    out.colour = vec4f(colour.rgb * colour.rgb, sky.x / max(sky.y, 1e-3));
     out.material = u32(colour.a * 255.0 + 0.5);
     return out;
 }
@@ -96,7 +102,7 @@ fn one_light(f: Finish, n: vec3f, v: vec3f, l: vec3f, light: vec3f, visible: vec
 fn all_lights(f: Finish, n: vec3f, v: vec3f, key_visible: f32) -> vec3f {
     // Where the surface turns from the light the wrapped falloff shades it already.
     let toward = smoothstep(-0.05, 0.30, dot(n, KEY));
-    let shade = mix(1.0, key_visible, toward);
+    let shade = clamp(mix(1.0, key_visible, toward), 0.0, 1.0);
     // Blood scatters red into a shadow's edge.
     let key = pow(vec3f(shade), vec3f(1.0) / (1.0 + 1.6 * f.wrap));
     var sum = one_light(f, n, v, KEY, KEY_LIGHT, key);
@@ -128,7 +134,9 @@ fn noise(p: vec2f) -> f32 {
     return mix(low, high, s.y);
 }
 
-fn painted(base: vec3f, at: vec4f) -> vec3f {
+fn painted(plain: vec3f, at: vec4f) -> vec3f {
+    // Plain colours of files are a pale average; skin is darker and warmer.
+    let base = plain * vec3f(0.90, 0.72, 0.63);
     let unit = scene.eyes_middle.w;
     let p = (at.xyz - scene.eyes_middle.xyz) / unit;
     let side = abs(p.x);
@@ -136,81 +144,127 @@ fn painted(base: vec3f, at: vec4f) -> vec3f {
     // Blood under cheeks, nose and chin.
     let cheek = exp(-(dot(vec2f(side - 0.62, p.y + 0.62), vec2f(side - 0.62, p.y + 0.62))) * 9.0);
     let nose = exp(-dot(vec2f(side, p.y + 0.70), vec2f(side, p.y + 0.70)) * 22.0);
-    var colour = base * mix(vec3f(1.0), vec3f(1.04, 0.86, 0.84), (0.75 * cheek + 0.55 * nose) * front);
+    var colour = base * mix(vec3f(1.0), vec3f(1.06, 0.84, 0.82), (0.75 * cheek + 0.55 * nose) * front);
     colour *= 0.96 + 0.08 * noise(p.xy * 26.0);
-    // Lips: a band about the rim of the mouth, wider in the middle.
-    let across = clamp(1.0 - side * side * 5.0, 0.25, 1.0);
-    let lip = 1.0 - smoothstep(0.085 * across, 0.135 * across, at.w);
-    colour = mix(colour, base * vec3f(0.80, 0.50, 0.50), 0.80 * lip);
-    // Brows: an arch over each eye, thinner outwards, of hairs that lean outwards.
-    let along = (side - 0.17) / 0.66;
-    let arch = 0.335 + 0.13 * sin(clamp(along * 1.25, 0.0, 1.25) * 1.9) - 0.10 * along * along;
-    let thick = mix(0.075, 0.028, clamp(along, 0.0, 1.0));
+    colour = mix(colour, base * vec3f(0.74, 0.43, 0.43), 0.85 * lips(at.xyz));
+    let brow = brows(p) * front * scene.brows.w;
+    return mix(colour, scene.brows.rgb, brow);
+}
+
+// Lips: from the line where they part up to a bow and down to an arc.
+fn lips(at: vec3f) -> f32 {
+    if scene.lips.z <= 0.0 {
+        return 0.0;
+    }
+    let unit = scene.eyes_middle.w;
+    let x = abs(at.x - scene.lips.x) / scene.lips.z;
+    let y = (at.y - scene.lips.y - scene.lips.w * x * x) / unit;
+    let inside = max(1.0 - x * x, 0.0);
+    let bow = 0.150 * pow(inside, 0.75) - 0.020 * exp(-x * x * 70.0) + 0.012 * exp(-(x - 0.27) * (x - 0.27) * 60.0);
+    let arc = 0.185 * pow(inside, 0.62);
+    let soft = 0.016;
+    let above = 1.0 - smoothstep(bow - soft, bow + soft, y);
+    let below = 1.0 - smoothstep(arc - soft, arc + soft * 1.5, -y);
+    let width = 1.0 - smoothstep(0.95, 1.03, x);
+    return above * below * width * smoothstep(-0.3, 0.0, (at.z - scene.mouth.z) / unit + 0.3);
+}
+
+// Brows: an arch over each eye, thinner outwards, of hairs that lean outwards. `p` is relative to
+// the eyes' midpoint in units of their span.
+fn brows(p: vec3f) -> f32 {
+    let side = abs(p.x);
+    let along = (side - 0.17) / 0.72;
+    let arch = 0.350 + 0.150 * sin(clamp(along, 0.0, 1.2) * 2.2) - 0.16 * along * along;
+    let thick = mix(0.088, 0.034, clamp(along, 0.0, 1.0));
     let off = (p.y - arch) / thick;
-    let hairs = noise(vec2f(side * 46.0 - p.y * 30.0, p.y * 34.0 + side * 22.0));
-    let body = 1.0 - smoothstep(0.35, 1.05 + 0.35 * (hairs - 0.5), abs(off));
-    let ends = smoothstep(-0.04, 0.10, along) * (1.0 - smoothstep(0.86, 1.02, along));
-    let brow = body * ends * (0.62 + 0.38 * hairs) * front * scene.brows.w;
-    return mix(colour, scene.brows.rgb, clamp(brow, 0.0, 0.94));
+    // Hairs stand up near the nose and lie along the arch further out.
+    let turn = mix(1.25, 0.25, clamp(along * 1.3, 0.0, 1.0));
+    let lean = vec2f(cos(turn) * side + sin(turn) * p.y, cos(turn) * p.y - sin(turn) * side);
+    let hairs = 0.5 * noise(lean * vec2f(22.0, 150.0)) + 0.5 * noise(lean * vec2f(40.0, 330.0) + 7.0);
+    let body = 1.0 - smoothstep(0.15, 1.15, abs(off) + 0.45 * (hairs - 0.5));
+    let ends = smoothstep(-0.10, 0.20, along) * (1.0 - smoothstep(0.70, 1.04, along));
+    return clamp(body * ends * (0.62 + 0.62 * hairs), 0.0, 0.90);
 }
 
 // ---- eyes ----
 
-fn eye(f_in: Finish, n: vec3f, v: vec3f, p: Point, index: u32) -> vec3f {
-    let gaze = scene.gaze[index];
-    let arm = p.position - vec3f(gaze.rows[0].w, gaze.rows[1].w, gaze.rows[2].w);
-    let local = vec3f(dot(gaze.rows[0].xyz, arm), dot(gaze.rows[1].xyz, arm), dot(gaze.rows[2].xyz, arm));
-    let local_v = normalize(vec3f(dot(gaze.rows[0].xyz, v), dot(gaze.rows[1].xyz, v), dot(gaze.rows[2].xyz, v)));
-    let direction = normalize(local);
-    // The iris is a disc behind the cornea: follow the refracted ray down to it.
-    let inward = refract(-local_v, direction, 1.0 / 1.336);
-    let depth = (direction.z - 0.80) / max(-inward.z, 0.2);
-    let on_iris = direction.xy + inward.xy * max(depth, 0.0);
-    let r = length(on_iris);
-    let IRIS = 0.46;
-    let PUPIL = 0.175;
-    let angle = atan2(on_iris.y, on_iris.x);
-    let fibres = noise(vec2f(angle * 14.0, r * 9.0)) * 0.6 + noise(vec2f(angle * 37.0 + 9.0, r * 17.0)) * 0.4;
-    let s = r / IRIS;
-    var iris = scene.iris.rgb * (0.55 + 0.95 * fibres) * mix(1.5, 0.85, smoothstep(0.4, 0.95, s));
+fn eye(p: Point, v: vec3f, index: u32) -> vec3f {
+    let rows = scene.gaze[index].rows;
+    let arm = p.position - vec3f(rows[0].w, rows[1].w, rows[2].w);
+    let local = vec3f(dot(rows[0].xyz, arm), dot(rows[1].xyz, arm), dot(rows[2].xyz, arm));
+    let seen = vec3f(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
+    let radius = 1.0 / length(rows[0].xyz);
+    let ball = normalize(local);
+    // An iris measures 11.8 mm where eyes stand 63 mm apart, whatever the size of the ball.
+    let iris_radius = clamp(0.094 * scene.eyes_middle.w / radius, 0.36, 0.50);
+    let pupil_radius = 0.37 * iris_radius;
+    // The cornea bulges: over the iris the surface is a smaller ball further forward.
+    let over = 1.0 - smoothstep(iris_radius * 0.95, iris_radius * 1.30, length(ball.xy));
+    let bulged = select(ball, normalize(ball - vec3f(0.0, 0.0, 0.42)), ball.z > 0.42);
+    let n_local = normalize(mix(ball, bulged, over));
+    let n = normalize(rows[0].xyz * n_local.x + rows[1].xyz * n_local.y + rows[2].xyz * n_local.z);
+    // The iris is a disc behind it: follow the refracted ray down.
+    let inward = refract(-normalize(seen), n_local, 1.0 / 1.336);
+    let disc = sqrt(1.0 - iris_radius * iris_radius) - 0.04;
+    let at = ball.xy + inward.xy * max((ball.z - disc) / max(-inward.z, 0.2), 0.0);
+    let r = length(at);
+    let s = r / iris_radius;
+
+    let angle = atan2(at.y, at.x);
+    let fibres = 0.6 * noise(vec2f(angle * 14.0, s * 4.0)) + 0.4 * noise(vec2f(angle * 37.0 + 9.0, s * 8.0));
+    var iris = scene.iris.rgb * (0.55 + 0.95 * fibres) * mix(1.4, 0.9, smoothstep(0.4, 0.95, s));
     iris = mix(iris, scene.iris.rgb * vec3f(1.9, 1.45, 0.8), 0.45 * (1.0 - smoothstep(0.42, 0.62, s)));
-    iris *= 1.0 - 0.82 * smoothstep(0.80, 1.0, s);
-    iris *= smoothstep(PUPIL, PUPIL + 0.035, r);
-    // Light that entered the cornea from above gathers on the iris' lower half.
-    iris *= 1.0 + 0.55 * clamp(-on_iris.y / IRIS, -0.6, 1.0);
-    let bare = p.colour * mix(vec3f(0.84, 0.79, 0.76), vec3f(0.74, 0.48, 0.43), smoothstep(0.62, 1.05, length(direction.xy)));
-    let white = 1.0 - smoothstep(-0.030, 0.030, IRIS - r);
-    var f = f_in;
-    f.albedo = mix(iris, bare, white);
+    iris *= 1.0 - 0.85 * smoothstep(0.78, 1.0, s);
+    iris *= smoothstep(pupil_radius, pupil_radius + 0.03, r);
+    // Light that entered the cornea from above gathers on the lower half of the iris.
+    iris *= 1.0 + 0.50 * clamp(-at.y / iris_radius, -0.6, 1.0);
+    let vein = mix(vec3f(0.84, 0.79, 0.76), vec3f(0.72, 0.47, 0.42), smoothstep(0.60, 1.05, length(ball.xy)));
+    let white = 1.0 - smoothstep(-0.035, 0.035, iris_radius - r);
+
+    var f: Finish;
+    f.albedo = mix(iris, p.colour.rgb * vein, white);
     f.wrap = vec3f(0.30, 0.22, 0.20);
     f.specular = 0.0;
     f.roughness = 0.5;
     // The lids stand before the ball and take light from its upper and outer parts.
-    let lids = 1.0 - 0.55 * smoothstep(0.05, 0.62, local.y + 0.10 * abs(local.x)) - 0.40 * smoothstep(0.45, 0.95, length(local.xy));
-    f.open = clamp(lids, 0.15, 1.0);
-    var colour = all_lights(f, n, v, p.surface.w) * mix(1.0, f.open, 0.5);
-    // The wet cornea mirrors a soft box (the key) and a dim window (the fill).
-    let curved = normalize(n + 0.35 * (1.0 - white) * (n - vec3f(gaze.rows[2].xyz)));
-    let mirror = reflect(-v, curved);
-    let box = smoothstep(0.955, 0.978, dot(mirror, KEY)) * mix(0.35, 1.0, p.surface.w);
-    let window = smoothstep(0.90, 0.97, dot(mirror, FILL));
-    let grazing = 1.0 - max(dot(n, v), 0.0);
-    let fresnel = 0.025 + 0.5 * pow(grazing, 5.0);
-    colour += (box * 34.0 * KEY_LIGHT * 0.5 + window * 2.2 * FILL_LIGHT + 0.7 * mix(GROUND, SKY, mirror.y * 0.5 + 0.5) * f.open) * fresnel;
-    return colour;
+    let outward = arm / radius;
+    let upper = smoothstep(0.02, 0.60, outward.y + 0.10 * abs(outward.x));
+    f.open = clamp(1.0 - 0.55 * upper - 0.40 * smoothstep(0.45, 0.95, length(outward.xy)), 0.15, 1.0);
+    let body = all_lights(f, n, v, p.surface.w) * mix(1.0, f.open, 0.5);
+
+    // The wet surface mirrors a soft box (the key), a dim window (the fill) and the room.
+    let mirror = reflect(-v, n);
+    let box = smoothstep(0.970, 0.984, dot(mirror, CATCH));
+    let window = smoothstep(0.950, 0.985, dot(mirror, FILL));
+    let room = mix(GROUND, SKY, mirror.y * 0.5 + 0.5) * f.open;
+    let fresnel = 0.025 + 0.5 * pow(clamp(1.0 - dot(n, v), 0.0, 1.0), 5.0);
+    return body + (box * 26.0 * KEY_LIGHT + window * 3.0 * FILL_LIGHT + 0.7 * room) * fresnel;
+}
+
+// Lashes that come as bands: hairs side by side that end at different lengths. `at` is neutral.
+fn lash(at: vec4f) -> f32 {
+    let unit = scene.eyes_middle.w;
+    let side = sign(at.x - scene.eyes_middle.x);
+    let arm = (at.xy - scene.eyes_middle.xy) / unit - vec2f(0.5 * side, -0.06);
+    let around = atan2(arm.y, arm.x);
+    let hair = noise(vec2f(around * 42.0, 3.0)) * 0.7 + noise(vec2f(around * 97.0, 8.0)) * 0.3;
+    let root = exp(-at.w * at.w * 30.0);
+    let tips = 1.0 - smoothstep(0.10 + 0.75 * hair, 0.30 + 0.80 * hair, at.w);
+    let band = clamp(0.80 * root + 0.75 * tips * smoothstep(0.25, 0.60, hair), 0.0, 0.92);
+    // Those of the lower lid are short and sparse.
+    let lower = (0.30 * root + 0.40 * smoothstep(0.45, 0.70, hair)) * (1.0 - smoothstep(0.08, 0.34, at.w));
+    return select(band, lower, arm.y < 0.0);
 }
 
 // ---- picture ----
 
-// A film's response: linear in the shadows, a long shoulder (Hable 2010), scaled so that 1 stays
-// under white.
+// A film's response: a soft toe, a long shoulder (Narkowicz 2015, fitted to the ACES curve).
 fn film(x: vec3f) -> vec3f {
-    return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.50) + 0.06) - 0.0666667;
+    return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
 fn developed(light: vec3f) -> vec3f {
-    let white = film(vec3f(6.0));
-    return clamp(film(light * scene.iris.w * 2.0) / white, vec3f(0.0), vec3f(1.0));
+    return clamp(film(light * scene.iris.w * 0.42), vec3f(0.0), vec3f(1.0));
 }
 
 @fragment
@@ -218,7 +272,7 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let v = normalize(scene.camera.xyz - p.position);
     var n = normalize(p.surface.xyz);
     var f: Finish;
-    f.albedo = p.colour;
+    f.albedo = p.colour.rgb;
     f.roughness = 0.55;
     f.specular = 0.030;
     f.wrap = vec3f(0.10);
@@ -227,10 +281,10 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     // How far behind the lips, and so how dark.
     let behind = clamp((scene.mouth.z - p.position.z) / scene.mouth.w, 0.0, 1.6);
     if p.material >= MATERIAL_EYE {
-        return vec4f(developed(eye(f, n, v, p, p.material - MATERIAL_EYE)), 1.0);
+        return vec4f(developed(eye(p, v, p.material - MATERIAL_EYE)), 1.0);
     }
     if p.material <= MATERIAL_PAINTED_SKIN {
-        var albedo = p.colour;
+        var albedo = p.colour.rgb;
         if p.material == MATERIAL_PAINTED_SKIN {
             albedo = painted(albedo, p.neutral);
         }
@@ -238,6 +292,7 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         f.roughness = scene.skin.w;
         f.specular = 0.028;
         f.wrap = vec3f(0.42, 0.20, 0.14);
+        f.open = 0.25 + 0.75 * clamp(p.colour.a, 0.0, 1.0);
     } else {
         if !front {
             n = -n;
@@ -246,14 +301,14 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
             f.open = exp(-2.6 * behind);
             f.wrap = vec3f(0.25, 0.12, 0.10);
             f.roughness = select(0.34, 0.28, p.material == MATERIAL_TEETH);
-            f.albedo *= select(0.55, 0.80, p.material == MATERIAL_TEETH);
+            f.albedo *= select(vec3f(0.55), vec3f(0.80, 0.74, 0.64), p.material == MATERIAL_TEETH);
         }
-        if p.material == MATERIAL_HAIR {
+        if p.material == MATERIAL_HAIR || p.material == MATERIAL_LASHES {
             f.roughness = 0.62;
+            f.specular = 0.015;
         }
-        if p.material == MATERIAL_WET {
-            f.roughness = 0.18;
-            alpha = 0.25;
+        if p.material == MATERIAL_LASHES {
+            alpha = lash(p.neutral);
         }
     }
     return vec4f(developed(all_lights(f, n, v, p.surface.w * f.open)), alpha);

@@ -1,0 +1,31 @@
+// The solver's worker: packs in, weights out. Speaks with stage-host.js:
+//   in   {id, operators: Uint8Array, take: Uint8Array, method: string (JSON)}
+//   out  {id, weights: Float32Array (frames x shapes), frames, shapes, rate_hz, weights_hash, report, solve_ms}
+//   or   {id, error: string}
+import init, { solve } from "./solver.js";
+
+const ready = init();
+
+self.onmessage = async ({ data }) => {
+  const { id, operators, take, method } = data;
+  try {
+    await ready;
+    const started = performance.now();
+    const solved = solve(operators, take, method);
+    const weights = solved.weights();
+    const answer = {
+      id,
+      weights,
+      frames: solved.frames(),
+      shapes: solved.shapes(),
+      rate_hz: solved.rate_hz(),
+      weights_hash: solved.weights_hash(),
+      report: solved.report(),
+      solve_ms: performance.now() - started,
+    };
+    solved.free();
+    self.postMessage(answer, [weights.buffer]);
+  } catch (error) {
+    self.postMessage({ id, error: String(error?.message ?? error) });
+  }
+};

@@ -1,0 +1,59 @@
+// Which back end this browser can run, and the module built for it.
+
+const MODULES = { webgpu: "./stage_webgpu.js", webgl2: "./stage_webgl.js" };
+
+let found = null;
+let restarts = 0;
+
+/// "webgpu" or "webgl2"; a thrown Error says why neither. `?backend=` in the address decides for tests.
+export function backend() {
+  found ??= detect();
+  return found;
+}
+
+/// The canvas module of the back end. After a crash of the module ask for a fresh one.
+export async function loadModule(name, fresh = false) {
+  if (fresh) restarts += 1;
+  const url = new URL(MODULES[name], import.meta.url);
+  if (restarts > 0) url.searchParams.set("restart", restarts);
+  const module = await import(url.href);
+  await module.default();
+  return module;
+}
+
+async function detect() {
+  const wish = new URLSearchParams(globalThis.location?.search ?? "").get("backend");
+  const wanted = wish === null ? ["webgpu", "webgl2"] : [wish];
+  const reasons = [];
+  for (const name of wanted) {
+    const reason = name === "webgpu" ? await webgpuLacks() : name === "webgl2" ? webgl2Lacks() : "unknown back end";
+    if (reason === null) return name;
+    reasons.push(`${name}: ${reason}`);
+  }
+  throw new Error(
+    `This browser cannot draw the stimuli (${reasons.join("; ")}). ` +
+      "Use a current Chrome, Edge, Firefox or Safari with hardware acceleration switched on.",
+  );
+}
+
+async function webgpuLacks() {
+  if (!navigator.gpu) return "not offered";
+  try {
+    const adapter = await navigator.gpu.requestAdapter();
+    if (!adapter) return "no graphics adapter";
+    const device = await adapter.requestDevice();
+    device.destroy();
+    return null;
+  } catch (error) {
+    return String(error.message ?? error);
+  }
+}
+
+function webgl2Lacks() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  if (!context) return "not offered";
+  // The stage keeps positions in float textures that it renders into.
+  const renderable = context.getExtension("EXT_color_buffer_float");
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return renderable ? null : "cannot render to float textures";
+}

@@ -1,0 +1,213 @@
+// Joins the canvas module and the solver's worker for the participant's page and the preview.
+// The contract is in ARCHITECTURE.md, "The host scripts".
+import { backend, loadModule } from "./stage-backend.js";
+import { prepareClip, preparedClip, weightsAt } from "./stage-clips.js";
+import { refreshPeriod } from "./stage-clock.js";
+import { Playback } from "./stage-playback.js";
+
+export { backend, prepareClip, preparedClip };
+
+/// A stage on a canvas. `look`: {background: "#rrggbb", width, height (CSS pixels), variant:
+/// "stimulus" (or left out) | "reference"}.
+export async function openStage(canvas, look) {
+  const stage = new Stage(canvas, look);
+  await stage.reopen();
+  // Measured while nothing is drawn, so that plays know when a frame is late.
+  await refreshPeriod();
+  return stage;
+}
+
+class Stage {
+  #canvas;
+  #look;
+  #backend = null;
+  #gpu = null;
+  #lost = null;
+  #reopening = null;
+  #closed = false;
+  #playback = null;
+  #shown = null;
+  #view = { yaw: 0, pitch: 0, zoom: 1 };
+  #weights = new Float32Array(0);
+  #onContextLost = (event) => {
+    // Without this the browser never gives the context back.
+    event.preventDefault();
+    this.#fail("graphics context: lost");
+  };
+
+  constructor(canvas, look) {
+    this.#canvas = canvas;
+    this.#look = { background: "", variant: "stimulus", width: 640, height: 640, ...look };
+    canvas.style.width = `${this.#look.width}px`;
+    canvas.style.maxWidth = "100%";
+    canvas.style.aspectRatio = `${this.#look.width} / ${this.#look.height}`;
+    canvas.style.height = "auto";
+    canvas.addEventListener("webglcontextlost", this.#onContextLost);
+  }
+
+  /// Draws one frame of a prepared clip. Resolves when it is drawn.
+  async show(clipId, timeMs) {
+    const clip = preparedClip(clipId);
+    this.#shown = { clipId, timeMs };
+    if (this.#lost !== null) await this.reopen();
+    this.#fit();
+    try {
+      this.#draw(clip, timeMs);
+    } catch (error) {
+      this.#fail(error.message);
+      throw error;
+    }
+  }
+
+  /// Plays a prepared clip once; resolves with the log whatever happens.
+  async play(clipId) {
+    const clip = preparedClip(clipId);
+    if (this.#playback) throw new Error("stage: a clip is playing; stop it first");
+    const playback = new Playback((timeMs) => this.#draw(clip, timeMs));
+    this.#playback = playback;
+    try {
+      if (this.#lost !== null) await this.reopen();
+      this.#fit();
+      this.#load(clip);
+      const log = await playback.run(clip.duration_ms);
+      if (log.failure) this.#fail(log.failure);
+      // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
+      if (this.#lost !== null) await this.reopen().catch(() => {});
+      return this.#log(clip, log);
+    } catch (error) {
+      this.#fail(error.message);
+      return this.#log(clip, playback.log(error.message));
+    } finally {
+      this.#playback = null;
+      this.#shown = { clipId, timeMs: clip.duration_ms };
+    }
+  }
+
+  /// Aborts the play in progress.
+  stop() {
+    this.#playback?.abort("stopped");
+  }
+
+  /// Gives everything back.
+  close() {
+    this.stop();
+    this.#closed = true;
+    this.#canvas.removeEventListener("webglcontextlost", this.#onContextLost);
+    this.#free();
+  }
+
+  /// Turns the camera: {yaw, pitch} in radians, {zoom} 1 for the standard portrait.
+  setView(view) {
+    this.#view = { ...this.#view, ...view };
+  }
+
+  /// Another backdrop or variant.
+  setLook(look) {
+    this.#look = { ...this.#look, ...look };
+    this.#gpu?.setLook(this.#look.background, this.#look.variant);
+  }
+
+  /// {backend, adapter, lost: null | reason}
+  state() {
+    return { backend: this.#backend, adapter: this.#gpu?.adapter() ?? "", lost: this.#lost };
+  }
+
+  /// Loses the device on purpose: for tests of the recovery.
+  lose() {
+    this.#gpu?.lose();
+  }
+
+  /// Opens the canvas (again) and draws what it showed.
+  reopen() {
+    this.#reopening ??= this.#open().finally(() => (this.#reopening = null));
+    return this.#reopening;
+  }
+
+  async #open() {
+    if (this.#closed) throw new Error("stage: closed; open a new one");
+    this.#backend = await backend();
+    const crashed = /unreachable|RuntimeError|memory access|recursive use/.test(this.#lost ?? "");
+    this.#free();
+    if (this.#backend === "webgl2") await restored(this.#canvas);
+    const module = await loadModule(this.#backend, crashed);
+    const { width, height } = this.#pixels();
+    this.#canvas.width = width;
+    this.#canvas.height = height;
+    const { background, variant } = this.#look;
+    this.#gpu = await module.Canvas.open(this.#canvas, width, height, background, variant);
+    this.#lost = null;
+    if (this.#shown && !this.#playback) await this.show(this.#shown.clipId, this.#shown.timeMs);
+  }
+
+  #free() {
+    try {
+      this.#gpu?.free();
+    } catch {
+      // A module that crashed cannot tidy up; it is dropped whole.
+    }
+    this.#gpu = null;
+  }
+
+  #fail(why) {
+    if (this.#closed) return;
+    this.#lost ??= why;
+    this.#playback?.abort(`renderer lost: ${why}`);
+  }
+
+  #pixels() {
+    const ratio = globalThis.devicePixelRatio || 1;
+    const css = this.#canvas.getBoundingClientRect();
+    const width = css.width || this.#look.width;
+    const height = css.height || this.#look.height;
+    const most = 4096;
+    const scale = Math.min(ratio, most / width, most / height);
+    return { width: Math.max(1, Math.round(width * scale)), height: Math.max(1, Math.round(height * scale)) };
+  }
+
+  #fit() {
+    const { width, height } = this.#pixels();
+    if (this.#canvas.width === width && this.#canvas.height === height) return;
+    this.#canvas.width = width;
+    this.#canvas.height = height;
+    this.#gpu.resize(width, height);
+  }
+
+  #load(clip) {
+    if (this.#gpu.hasAvatar(clip.avatarHash)) return;
+    const shapes = this.#gpu.loadAvatar(clip.avatarHash, clip.avatarPack);
+    if (shapes !== clip.shapes) {
+      throw new Error(`clip ${clip.clip}: ${clip.shapes} weights a frame, its avatar has ${shapes} blendshapes`);
+    }
+  }
+
+  // True when the frame went to the display.
+  #draw(clip, timeMs) {
+    this.#load(clip);
+    if (this.#weights.length !== clip.shapes) this.#weights = new Float32Array(clip.shapes);
+    weightsAt(clip, timeMs, this.#weights);
+    const { yaw, pitch, zoom } = this.#view;
+    return this.#gpu.draw(clip.avatarHash, this.#weights, yaw, pitch, zoom);
+  }
+
+  #log(clip, { failure, ...log }) {
+    const css = this.#canvas.getBoundingClientRect();
+    return {
+      backend: this.#backend,
+      ...log,
+      width: css.width,
+      height: css.height,
+      device_pixel_ratio: globalThis.devicePixelRatio || 1,
+      weights_hash: clip.weights_hash,
+    };
+  }
+}
+
+// Waits until the browser has given a lost WebGL context back.
+async function restored(canvas) {
+  const context = canvas.getContext("webgl2");
+  if (!context?.isContextLost()) return;
+  await new Promise((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error("graphics context: not given back within 10 s")), 10_000);
+    canvas.addEventListener("webglcontextrestored", () => (clearTimeout(timer), resolve()), { once: true });
+  });
+}
