@@ -20,6 +20,8 @@ pub enum Format {
     MotiveCsv,
     /// Vicon Nexus CSV.
     ViconCsv,
+    /// BVH: joints of a skeleton.
+    Bvh,
     /// Live Link Face CSV: weights, not markers.
     LiveLinkCsv,
 }
@@ -35,6 +37,7 @@ impl Format {
             Self::QtmTsv => "QTM TSV",
             Self::MotiveCsv => "Motive CSV",
             Self::ViconCsv => "Vicon CSV",
+            Self::Bvh => "BVH",
             Self::LiveLinkCsv => "Live Link Face CSV (weights)",
         }
     }
@@ -59,6 +62,8 @@ pub(crate) fn recognise_text(document: &Document<'_>) -> Option<Format> {
     let delimiter = Delimiter::of(header);
     if text::trc::is_first_line(header) {
         Some(Format::Trc)
+    } else if text::bvh::is_first_line(header) {
+        Some(Format::Bvh)
     } else if text::qtm_tsv::is_first_line(header) {
         Some(Format::QtmTsv)
     } else if text::motive_csv::is_first_line(header) {

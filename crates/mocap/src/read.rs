@@ -45,6 +45,7 @@ pub fn read_recording(
     let document = text::Document::decode(bytes);
     match format::recognise_text(&document) {
         Some(Format::WideCsv) => text::wide_csv::read(&document, options),
+        Some(Format::Bvh) => text::bvh::read(&document, options),
         Some(Format::LongCsv) => text::long_csv::read(&document, options),
         Some(Format::Trc) => text::trc::read(&document, options),
         Some(Format::QtmTsv) => text::qtm_tsv::read(&document, options),

@@ -1,5 +1,6 @@
 //! Text formats: decoding, lines, fields, numbers; a file a format.
 
+pub(crate) mod bvh;
 mod document;
 pub(crate) mod live_link;
 pub(crate) mod long_csv;
