@@ -7,6 +7,7 @@ use crate::assets::Assets;
 use crate::error::Error;
 use crate::hosted::HostedStudy;
 use crate::packs::PackStore;
+use crate::researcher::SessionViews;
 use crate::storage::{Access, Storage, StorageError, StudyVersion};
 use crate::{clock, secret};
 
@@ -17,9 +18,12 @@ const LINK_LIFETIME_MS: i64 = 7 * 24 * 3600 * 1000;
 #[derive(Clone)]
 pub struct App {
     pub(crate) studies: Arc<BTreeMap<String, HostedStudy>>,
+    /// The bundle of every version ever served of these studies, JSON text, by study and hash.
+    pub(crate) bundles: Arc<BTreeMap<(String, String), String>>,
     pub(crate) packs: Arc<PackStore>,
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
+    pub(crate) session_views: Arc<SessionViews>,
     pub(crate) token_key: Arc<[u8]>,
     pub(crate) receipt_key: Arc<[u8]>,
 }
@@ -70,10 +74,20 @@ impl App {
                 return Err(AppError::StudyTwice { id });
             }
         }
+        let mut bundles = BTreeMap::new();
+        for version in storage.study_versions().await? {
+            if let Some(current) = by_id.get(&version.study_id) {
+                let bundle = HostedStudy::from_version(&version, current.stage())?;
+                let text = serde_json::to_string(bundle.bundle()).map_err(damaged)?;
+                bundles.insert((version.study_id, version.config_hash), text);
+            }
+        }
         Ok(Self {
             studies: Arc::new(by_id),
+            bundles: Arc::new(bundles),
             packs: Arc::new(packs),
             assets: Arc::new(assets),
+            session_views: Arc::default(),
             token_key: key(&storage, "tokens").await?,
             receipt_key: key(&storage, "receipts").await?,
             storage,
@@ -90,6 +104,13 @@ impl App {
         Ok(format!("/researcher?key={key}"))
     }
 
+    /// What the page needs of a version of a study; of the current one if none is named.
+    pub(crate) fn bundle(&self, id: &str, config_hash: Option<&str>) -> Result<&str, Error> {
+        let hash = config_hash.unwrap_or(self.study(id)?.config_hash());
+        let key = (id.to_owned(), hash.to_owned());
+        self.bundles.get(&key).map(String::as_str).ok_or(Error::UnknownStudy)
+    }
+
     pub(crate) fn study(&self, id: &str) -> Result<&HostedStudy, Error> {
         self.studies.get(id).ok_or(Error::UnknownStudy)
     }
@@ -98,4 +119,8 @@ impl App {
 async fn key(storage: &Storage, name: &str) -> Result<Arc<[u8]>, AppError> {
     let fresh = secret::random::<32>()?;
     Ok(storage.server_key(name, || fresh).await?.into_bytes().into())
+}
+
+fn damaged(error: serde_json::Error) -> StorageError {
+    StorageError::Damaged { table: "study_versions", problem: error.to_string() }
 }

@@ -154,6 +154,7 @@ impl From<ExportError> for Error {
         match error {
             ExportError::Storage(error) => Self::Storage(error),
             ExportError::UnknownStudy { .. } => Self::UnknownStudy,
+            other => Self::Internal(other.to_string()),
         }
     }
 }

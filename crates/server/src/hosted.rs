@@ -6,6 +6,9 @@ use mimique_study::wire::{Bundle, ClipSource, StudySummary};
 use mimique_study::{Study, StudyFileError, config_hash};
 use serde_json::Value;
 
+use crate::export::Version;
+use crate::storage::{StorageError, StudyVersion};
+
 /// Whether answers count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stage {
@@ -33,7 +36,6 @@ pub struct HostedStudy {
     stage: Stage,
     file: Value,
     bundle: Bundle,
-    bundle_text: String,
 }
 
 impl HostedStudy {
@@ -44,15 +46,28 @@ impl HostedStudy {
         stage: Stage,
     ) -> Result<Self, StudyFileError> {
         let study = Study::from_value(&file)?;
+        Ok(Self::from_parts(file, study, clips, stage))
+    }
+
+    /// A version as it was stored.
+    pub(crate) fn from_version(version: &StudyVersion, stage: Stage) -> Result<Self, StorageError> {
+        let Version { file, study, clips, .. } = Version::read(version)?;
+        Ok(Self::from_parts(file, study, clips, stage))
+    }
+
+    fn from_parts(
+        file: Value,
+        study: Study,
+        clips: BTreeMap<String, ClipSource>,
+        stage: Stage,
+    ) -> Self {
         let bundle = Bundle {
             study_id: study.id.clone(),
             config_hash: config_hash(&file),
             study: without_secrets(file.clone()),
             clips,
         };
-        let bundle_text = serde_json::to_string(&bundle)
-            .map_err(|error| StudyFileError::Shape(error.to_string()))?;
-        Ok(Self { study, stage, file, bundle, bundle_text })
+        Self { study, stage, file, bundle }
     }
 
     /// Identifier used in addresses.
@@ -83,11 +98,6 @@ impl HostedStudy {
     /// What the page needs: the study without what participants must not know.
     pub fn bundle(&self) -> &Bundle {
         &self.bundle
-    }
-
-    /// [`Self::bundle`] as JSON text.
-    pub(crate) fn bundle_text(&self) -> &str {
-        &self.bundle_text
     }
 
     pub(crate) fn summary(&self) -> StudySummary {

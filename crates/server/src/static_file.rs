@@ -59,6 +59,8 @@ pub(crate) fn content_type(name: &str) -> &'static str {
         "html" => "text/html; charset=utf-8",
         "js" | "mjs" => "text/javascript; charset=utf-8",
         "json" => "application/json",
+        "jsonl" => "application/x-ndjson",
+        "zip" => "application/zip",
         "wasm" => "application/wasm",
         "svg" => "image/svg+xml",
         "png" => "image/png",

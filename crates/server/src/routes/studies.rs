@@ -1,10 +1,11 @@
 //! `/api/studies`: which studies there are, and all that a page needs of one.
 
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::{Path, Query, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use mimique_study::wire::StudySummary;
+use serde::Deserialize;
 
 use crate::app::App;
 use crate::error::Error;
@@ -13,10 +14,17 @@ pub(super) async fn list(State(app): State<App>) -> Json<Vec<StudySummary>> {
     Json(app.studies.values().map(|study| study.summary()).collect())
 }
 
+#[derive(Deserialize)]
+pub(super) struct Version {
+    config_hash: Option<String>,
+}
+
+/// A session that began under an earlier version of the study goes on with that version.
 pub(super) async fn bundle(
     State(app): State<App>,
     Path(study): Path<String>,
+    Query(version): Query<Version>,
 ) -> Result<Response, Error> {
-    let text = app.study(&study)?.bundle_text().to_owned();
+    let text = app.bundle(&study, version.config_hash.as_deref())?.to_owned();
     Ok(([(header::CONTENT_TYPE, "application/json")], text).into_response())
 }

@@ -5,7 +5,7 @@ use std::future::Future;
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
-use mimique_server::{App, Storage, router};
+use mimique_server::{App, HostedStudy, Storage, router};
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, Withdrawn,
 };
@@ -72,10 +72,14 @@ impl Answer {
 
 impl TestServer {
     pub async fn open(url: &str) -> Self {
+        Self::open_with(url, vec![study::hosted(), study::demo()]).await
+    }
+
+    pub async fn open_with(url: &str, studies: Vec<HostedStudy>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let storage = Storage::open(url).await.unwrap();
         let app = App::new(
-            vec![study::hosted()],
+            studies,
             study::packs(folder.path()),
             study::assets(folder.path()),
             storage.clone(),
@@ -90,6 +94,12 @@ impl TestServer {
     pub async fn restart(&self) -> Self {
         self.storage.close().await;
         Self::open(&self.url).await
+    }
+
+    /// The same with other studies.
+    pub async fn restart_with(&self, studies: Vec<HostedStudy>) -> Self {
+        self.storage.close().await;
+        Self::open_with(&self.url, studies).await
     }
 
     pub async fn send(&self, request: Request<Body>) -> Answer {
@@ -123,13 +133,17 @@ impl TestServer {
 
     /// Starts a session of a participant known by `nonce`.
     pub async fn start(&self, nonce: u64) -> SessionStarted {
+        self.start_in("faces", nonce).await
+    }
+
+    pub async fn start_in(&self, study: &str, nonce: u64) -> SessionStarted {
         let body = json!({
             "nonce": format!("{nonce:032x}"),
             "language": "en",
             "recruitment": {"PROLIFIC_PID": format!("person {nonce}"), "utm_source": "elsewhere"},
             "client": {"browser": "Firefox", "version": "140"},
         });
-        self.post("/api/studies/faces/sessions", body).await.ok()
+        self.post(&format!("/api/studies/{study}/sessions"), body).await.ok()
     }
 
     pub async fn append(&self, session: &str, events: &[Event]) -> Answer {

@@ -4,7 +4,9 @@
 //! cluster, each in a fresh database.
 
 mod client;
+mod exports;
 mod pages;
+mod participant;
 mod postgres;
 mod researcher;
 mod sessions;
@@ -64,5 +66,14 @@ topics! {
     pages::assets_and_packs_are_kept_for_ever,
     pages::the_study_tells_participants_no_secrets,
     pages::the_server_says_that_it_is_ready,
+    exports::the_tidy_table_holds_every_answer,
+    exports::every_form_is_the_same_each_time,
+    exports::the_other_forms_hold_the_same_answers,
+    exports::a_psych_ds_folder_explains_every_column,
+    exports::identifiers_are_exported_only_when_asked_for,
+    exports::each_session_is_read_by_its_own_version,
+    exports::a_study_must_be_named_where_there_are_several,
     researcher::the_page_needs_the_printed_address,
+    researcher::the_page_shows_what_was_stored,
+    researcher::exports_need_the_cookie,
 }

@@ -45,7 +45,23 @@ pub fn file() -> Value {
 
 /// The study as hosted.
 pub fn hosted() -> HostedStudy {
-    HostedStudy::new(file(), BTreeMap::new(), Stage::Live).unwrap()
+    host(file())
+}
+
+/// The file of the demo study.
+pub fn demo_file() -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json");
+    mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The demo study as hosted, without its packs.
+pub fn demo() -> HostedStudy {
+    host(demo_file())
+}
+
+/// A study as hosted, without packs.
+pub fn host(file: Value) -> HostedStudy {
+    HostedStudy::new(file, BTreeMap::new(), Stage::Live).unwrap()
 }
 
 /// Pages as small as they can be.
