@@ -97,6 +97,18 @@ pub struct Words {
     pub cannot_run: &'static str,
     /// The connection is lost; answers are kept.
     pub offline: &'static str,
+    /// The browser keeps nothing: a reload would lose what waits.
+    pub not_kept: &'static str,
+    /// The address names no study.
+    pub no_study: &'static str,
+    /// The server cannot be reached.
+    pub unreachable: &'static str,
+    /// The server does not let this participant begin.
+    pub cannot_begin: &'static str,
+    /// Heading: the session is open in another tab.
+    pub other_tab: &'static str,
+    /// What to do about it.
+    pub other_tab_text: &'static str,
 }
 
 /// English.
@@ -147,6 +159,12 @@ const ENGLISH: Words = Words {
     withdrawn_text: "Your answers have been deleted. You can close this page now.",
     cannot_run: "This page cannot run in this browser.",
     offline: "The connection is lost. Your answers are kept here and will be sent when it is back.",
+    not_kept: "This browser keeps nothing on this device: please do not close or reload the page before the end.",
+    no_study: "There is no study at this address.",
+    unreachable: "The study cannot be reached. Please check the connection and try again.",
+    cannot_begin: "You cannot take part now.",
+    other_tab: "This study is open in another tab",
+    other_tab_text: "Please go on there, or close that tab and try again here.",
 };
 
 /// French.
@@ -197,6 +215,12 @@ const FRENCH: Words = Words {
     withdrawn_text: "Vos réponses ont été effacées. Vous pouvez fermer cette page.",
     cannot_run: "Cette page ne peut pas fonctionner dans ce navigateur.",
     offline: "La connexion est perdue. Vos réponses sont gardées ici et seront envoyées à son retour.",
+    not_kept: "Ce navigateur ne garde rien sur cet appareil : veuillez ne pas fermer ni recharger la page avant la fin.",
+    no_study: "Il n’y a pas d’étude à cette adresse.",
+    unreachable: "L’étude est injoignable. Vérifiez la connexion et réessayez.",
+    cannot_begin: "Vous ne pouvez pas participer pour l’instant.",
+    other_tab: "Cette étude est ouverte dans un autre onglet",
+    other_tab_text: "Continuez dans cet onglet, ou fermez-le et réessayez ici.",
 };
 
 /// Languages whose fixed texts are complete.

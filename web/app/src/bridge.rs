@@ -1,0 +1,51 @@
+//! The border to the host scripts (`static/bridge.js`): canvas, solver, locks.
+
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(raw_module = "./bridge.js")]
+extern "C" {
+    /// Takes the lock of a session for as long as the page lives; false if another tab has it.
+    #[wasm_bindgen(js_name = holdSession, catch)]
+    pub async fn hold_session(name: &str) -> Result<JsValue, JsValue>;
+
+    /// Browser name, its major version and platform class, as JSON: nothing finer.
+    #[wasm_bindgen(js_name = about)]
+    pub fn about() -> String;
+
+    /// Fetches and solves a clip; calls back with 0..1.
+    #[wasm_bindgen(js_name = prepareClip, catch)]
+    pub async fn prepare_clip(
+        clip: &str,
+        source: &str,
+        progress: &js_sys::Function,
+    ) -> Result<JsValue, JsValue>;
+
+    /// Puts the stage on a canvas.
+    #[wasm_bindgen(js_name = attachStage)]
+    pub fn attach_stage(canvas: &web_sys::HtmlCanvasElement, look: &str);
+
+    /// Takes the stage off its canvas.
+    #[wasm_bindgen(js_name = detachStage)]
+    pub fn detach_stage();
+
+    /// Shows the first frame of a clip.
+    #[wasm_bindgen(js_name = showClip, catch)]
+    pub async fn show_clip(clip: &str) -> Result<JsValue, JsValue>;
+
+    /// Plays a clip once; resolves with the log as JSON, its times on the page's clock.
+    #[wasm_bindgen(js_name = playClip, catch)]
+    pub async fn play_clip(clip: &str) -> Result<JsValue, JsValue>;
+
+    /// Aborts the play in progress.
+    #[wasm_bindgen(js_name = stopClip)]
+    pub fn stop_clip();
+}
+
+/// What a script threw, as text.
+pub fn reason(thrown: &JsValue) -> String {
+    thrown
+        .dyn_ref::<js_sys::Error>()
+        .map(|error| String::from(error.message()))
+        .or_else(|| thrown.as_string())
+        .unwrap_or_else(|| format!("{thrown:?}"))
+}

@@ -1,0 +1,117 @@
+//! Questions on the screen: a file a kind. Nothing is pre-selected; each works by keyboard alone.
+
+mod choice;
+mod field;
+mod grid;
+mod likert;
+mod matrix;
+mod ranking;
+mod slider;
+
+use leptos::prelude::*;
+use mimique_study::flow::{Input, QuestionKindView, QuestionView};
+use serde_json::Value;
+
+use crate::session::Session;
+
+/// What every kind of control needs: how to read and to give the answer.
+#[derive(Clone)]
+struct Answering {
+    /// Distinguishes the fields of the page: names and identifiers are made of it.
+    name: String,
+    id: String,
+    now: Memo<Option<QuestionView>>,
+    session: Session,
+}
+
+impl Answering {
+    /// The answer so far (tracked).
+    fn value(&self) -> Option<Value> {
+        self.now.with(|now| now.as_ref().and_then(|question| question.value.clone()))
+    }
+
+    /// Gives an answer; null takes it back.
+    fn give(&self, value: Value) {
+        self.session.send(Input::Answer { question: self.id.clone(), value });
+    }
+
+    /// Whether the answer so far is this text (tracked).
+    fn is(&self, wanted: &str) -> bool {
+        self.value().is_some_and(|value| value.as_str() == Some(wanted))
+    }
+
+    /// An identifier for an element of this question.
+    fn element(&self, part: &str) -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        format!("q-{}-{part}", self.name.chars().map(plain).collect::<String>())
+    }
+}
+
+/// A question: legend, help, control, problem.
+#[component]
+pub fn QuestionField(
+    /// Distinguishes the fields of the page.
+    name: String,
+    /// The question as it is first shown.
+    first: QuestionView,
+    /// The question as it is now.
+    now: Memo<Option<QuestionView>>,
+) -> impl IntoView {
+    let answering = Answering { name, id: first.id.clone(), now, session: Session::here() };
+    let help_id = answering.element("help");
+    let problem_id = answering.element("problem");
+    let problem = Memo::new(move |_| now.with(|now| now.as_ref().and_then(|q| q.problem.clone())));
+    let described = {
+        let (help, problem_id) =
+            (first.help.is_some().then(|| help_id.clone()), problem_id.clone());
+        move || {
+            let ids = help.iter().cloned().chain(problem.get().map(|_| problem_id.clone()));
+            Some(ids.collect::<Vec<_>>().join(" ")).filter(|ids| !ids.is_empty())
+        }
+    };
+    let control = match first.kind {
+        QuestionKindView::SingleChoice { options } => choice::single(answering, options).into_any(),
+        QuestionKindView::MultipleChoice { options, maximum } => {
+            choice::multiple(answering, options, maximum).into_any()
+        }
+        QuestionKindView::Likert { points, left, right } => {
+            likert::likert(answering, points, left, right).into_any()
+        }
+        QuestionKindView::Slider { minimum, maximum, step, left, right } => {
+            slider::slider(answering, minimum, maximum, step, left, right).into_any()
+        }
+        QuestionKindView::Number { minimum, maximum, integer, unit } => {
+            field::number(answering, minimum, maximum, integer, unit).into_any()
+        }
+        QuestionKindView::Text { long, max_length } => {
+            field::text(answering, long, max_length).into_any()
+        }
+        QuestionKindView::Matrix { rows, options } => {
+            matrix::matrix(answering, rows, options).into_any()
+        }
+        QuestionKindView::Ranking { options } => ranking::ranking(answering, options).into_any(),
+        QuestionKindView::ValenceArousal { num_items, left, right, bottom, top } => {
+            grid::grid(answering, num_items, [left, right, bottom, top]).into_any()
+        }
+        // A kind of a later version of the study file: the page is older than the server.
+        _ => view! { <p class="notice bad">"?"</p> }.into_any(),
+    };
+    view! {
+        <fieldset class="question" data-question=first.id
+            aria-describedby=described
+            aria-invalid=move || problem.get().map(|_| "true")>
+            <legend>
+                {first.prompt}
+                {first.optional_mark.map(|mark| view! { <span class="optional">" ("{mark}")"</span> })}
+            </legend>
+            {first.video.map(|address| view! {
+                <video class="prompt" src=address controls playsinline preload="metadata"></video>
+            })}
+            {first.help.map(|text| view! { <p class="hint" id=help_id.clone()>{text}</p> })}
+            {control}
+            {move || problem.get().map(|text| view! {
+                <p class="problem" id=problem_id.clone()>{text}</p>
+            })}
+        </fieldset>
+    }
+}

@@ -1,0 +1,341 @@
+//! The interpreter: inputs go into `flow::update`, the effects that come out are carried out.
+//!
+//! One writer puts events into IndexedDB, one sender sends them; both go on in order, one thing at
+//! a time, whatever the pages do meanwhile.
+
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::rc::Rc;
+
+use gloo::timers::future::TimeoutFuture;
+use leptos::prelude::*;
+use mimique_study::PlayLog;
+use mimique_study::flow::{Effect, Input, Plan, State, update};
+use mimique_study::wire::{ClipSource, Event, Refusal};
+use wasm_bindgen::closure::Closure;
+use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen_futures::spawn_local;
+
+use crate::memory::{Identity, Keep};
+use crate::network::{self, Failure};
+use crate::outbox::{Outbox, back_off};
+use crate::{bridge, pages};
+
+/// What the header has to say about the connection.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Connection {
+    /// Answers wait here because the server is not reached.
+    pub offline: bool,
+    /// The browser keeps nothing: a reload would lose what waits.
+    pub fleeting: bool,
+    /// The server refuses what is sent.
+    pub refused: Option<Refusal>,
+}
+
+/// Everything that a session runs on.
+pub struct Engine {
+    /// What this participant goes through.
+    pub plan: Plan,
+    /// Where the session is; pages read it through `flow::view`.
+    pub state: RwSignal<State>,
+    /// What the header says.
+    pub connection: RwSignal<Connection>,
+    clips: BTreeMap<String, ClipSource>,
+    keep: Keep,
+    to_keep: RefCell<VecDeque<Event>>,
+    writing: Cell<bool>,
+    outbox: RefCell<Outbox>,
+    sending: Cell<bool>,
+    /// Set to end a wait before the next try.
+    wake: Cell<bool>,
+    to_prepare: RefCell<VecDeque<String>>,
+    preparing: Cell<bool>,
+    prepared: RefCell<BTreeSet<String>>,
+}
+
+/// The page's clock: milliseconds since 1970, never running backwards within one load.
+pub fn now_ms() -> f64 {
+    let performance = window().performance();
+    performance.map_or_else(js_sys::Date::now, |clock| clock.time_origin() + clock.now())
+}
+
+impl Engine {
+    /// An engine at `state`, with what the server has not acknowledged yet in `unsent`.
+    pub fn new(
+        plan: Plan,
+        state: State,
+        clips: BTreeMap<String, ClipSource>,
+        keep: Keep,
+        stored: u64,
+        unsent: Vec<Event>,
+    ) -> Rc<Self> {
+        let mut outbox = Outbox::new(stored);
+        unsent.into_iter().for_each(|event| outbox.push(event));
+        let connection = Connection { fleeting: !keep.is_lasting(), ..Connection::default() };
+        Rc::new(Self {
+            plan,
+            state: RwSignal::new(state),
+            connection: RwSignal::new(connection),
+            clips,
+            keep,
+            to_keep: RefCell::default(),
+            writing: Cell::new(false),
+            outbox: RefCell::new(outbox),
+            sending: Cell::new(false),
+            wake: Cell::new(false),
+            to_prepare: RefCell::default(),
+            preparing: Cell::new(false),
+            prepared: RefCell::default(),
+        })
+    }
+
+    /// One input: the state moves on, the effects are carried out.
+    pub fn dispatch(self: &Rc<Self>, input: Input) {
+        let before = self.state.get_untracked();
+        let (after, effects) = update(&self.plan, before, input, now_ms());
+        self.state.set(after);
+        for effect in effects {
+            self.carry_out(effect);
+        }
+    }
+
+    fn carry_out(self: &Rc<Self>, effect: Effect) {
+        match effect {
+            Effect::Store(event) => {
+                self.to_keep.borrow_mut().push_back(event);
+                self.write();
+            }
+            Effect::Flush => self.flush(),
+            Effect::PrepareClips(clips) => {
+                let mut queue = self.to_prepare.borrow_mut();
+                // The first named is the most urgent.
+                queue.retain(|waiting| !clips.contains(waiting));
+                clips.into_iter().rev().for_each(|clip| queue.push_front(clip));
+                drop(queue);
+                self.prepare();
+            }
+            Effect::PlayClip(clip) => self.play(clip),
+            Effect::StopClip => bridge::stop_clip(),
+            Effect::Complete { events } => self.complete(events),
+            Effect::Withdraw => self.withdraw(),
+            Effect::FocusHeading => pages::focus_heading(),
+            // An effect of a later version of the flow: the page is older than the study.
+            _ => {}
+        }
+    }
+
+    /// Sends now what waits, without the rest of a back-off.
+    pub fn flush(self: &Rc<Self>) {
+        self.wake.set(true);
+        self.send();
+    }
+
+    fn write(self: &Rc<Self>) {
+        if self.writing.replace(true) {
+            return;
+        }
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            loop {
+                let next = engine.to_keep.borrow_mut().pop_front();
+                let Some(event) = next else { break };
+                if engine.keep.put(&event).await.is_err() {
+                    engine.connection.update(|connection| connection.fleeting = true);
+                }
+                engine.outbox.borrow_mut().push(event);
+                engine.send();
+            }
+            engine.writing.set(false);
+        });
+    }
+
+    fn send(self: &Rc<Self>) {
+        if self.sending.replace(true) {
+            return;
+        }
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let mut failures = 0;
+            loop {
+                let batch = engine.outbox.borrow().batch();
+                if batch.is_empty() {
+                    break;
+                }
+                let session = &engine.plan.started.session;
+                match network::append(session, batch.clone()).await {
+                    Ok(answer) => {
+                        failures = 0;
+                        let gone = engine.outbox.borrow_mut().acknowledge(&batch, &answer);
+                        // What cannot be forgotten here is sent again after a reload, and refused
+                        // as known: no harm.
+                        let _ = engine.keep.forget(&gone).await;
+                        engine.connected();
+                        let stored = engine.outbox.borrow().stored();
+                        engine.dispatch(Input::Acknowledged { stored });
+                        if gone.is_empty() {
+                            // The server took nothing of what was sent: do not run in circles.
+                            TimeoutFuture::new(1_000).await;
+                        }
+                    }
+                    Err(Failure::Unreachable(_)) => {
+                        failures += 1;
+                        if failures > 1 {
+                            engine.connection.update(|connection| connection.offline = true);
+                        }
+                        engine.wait(failures).await;
+                    }
+                    Err(Failure::Refused(refusal)) => {
+                        // The events stay in IndexedDB; a reload or a retry sends them again.
+                        engine.connection.update(|connection| connection.refused = Some(refusal));
+                        break;
+                    }
+                }
+            }
+            engine.sending.set(false);
+        });
+    }
+
+    fn connected(&self) {
+        let well = self
+            .connection
+            .with_untracked(|connection| !connection.offline && connection.refused.is_none());
+        if !well {
+            self.connection.update(|connection| {
+                connection.offline = false;
+                connection.refused = None;
+            });
+        }
+    }
+
+    /// Waits before the next try; `flush` ends the wait.
+    async fn wait(&self, failures: u32) {
+        self.wake.set(false);
+        let mut left = back_off(failures, js_sys::Math::random()).as_millis() as u32;
+        while left > 0 && !self.wake.get() {
+            let slice = left.min(200);
+            TimeoutFuture::new(slice).await;
+            left -= slice;
+        }
+    }
+
+    fn prepare(self: &Rc<Self>) {
+        if self.preparing.replace(true) {
+            return;
+        }
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            loop {
+                let next = engine.to_prepare.borrow_mut().pop_front();
+                let Some(clip) = next else { break };
+                engine.prepare_one(clip).await;
+            }
+            engine.preparing.set(false);
+        });
+    }
+
+    async fn prepare_one(self: &Rc<Self>, clip: String) {
+        if self.prepared.borrow().contains(&clip) {
+            return self.dispatch(Input::ClipPrepared { clip });
+        }
+        let source = match self.clips.get(&clip).map(serde_json::to_string) {
+            Some(Ok(source)) => source,
+            _ => {
+                let message = "the server has no such clip".to_owned();
+                return self.dispatch(Input::ClipFailed { clip, message });
+            }
+        };
+        let progress = Closure::<dyn Fn(f64)>::new({
+            let (engine, clip) = (Rc::clone(self), clip.clone());
+            move |fraction| engine.dispatch(Input::ClipProgress { clip: clip.clone(), fraction })
+        });
+        match bridge::prepare_clip(&clip, &source, progress.as_ref().unchecked_ref()).await {
+            Ok(_) => {
+                self.prepared.borrow_mut().insert(clip.clone());
+                self.dispatch(Input::ClipPrepared { clip });
+            }
+            Err(thrown) => {
+                let message = bridge::reason(&thrown);
+                self.dispatch(Input::ClipFailed { clip, message });
+            }
+        }
+    }
+
+    /// Shows the first frame of a clip that is prepared.
+    pub fn show(self: &Rc<Self>, clip: String) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            if let Err(thrown) = bridge::show_clip(&clip).await {
+                engine.prepared.borrow_mut().remove(&clip);
+                let message = bridge::reason(&thrown);
+                engine.dispatch(Input::ClipFailed { clip, message });
+            }
+        });
+    }
+
+    fn play(self: &Rc<Self>, clip: String) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let input = match bridge::play_clip(&clip).await.map(|log| play_log(&log)) {
+                Ok(Ok(log)) => Input::Played(log),
+                Ok(Err(message)) => Input::ClipFailed { clip, message },
+                Err(thrown) => Input::ClipFailed { clip, message: bridge::reason(&thrown) },
+            };
+            engine.dispatch(input);
+        });
+    }
+
+    fn complete(self: &Rc<Self>, events: u64) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let mut failures = 0;
+            loop {
+                match network::complete(&engine.plan.started.session, events).await {
+                    Ok(receipt) => {
+                        engine.connected();
+                        engine.dispatch(Input::ReceiptArrived(receipt));
+                        break;
+                    }
+                    Err(failure) => {
+                        failures += 1;
+                        engine.connection.update(|connection| match failure {
+                            Failure::Unreachable(_) => connection.offline = true,
+                            Failure::Refused(refusal) => connection.refused = Some(refusal),
+                        });
+                        engine.wait(failures).await;
+                    }
+                }
+            }
+        });
+    }
+
+    fn withdraw(self: &Rc<Self>) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let started = &engine.plan.started;
+            let mut failures = 0;
+            loop {
+                let answer =
+                    network::withdraw(&started.session, started.withdrawal_code.clone()).await;
+                match answer {
+                    // Whatever is refused now is gone already.
+                    Ok(_) | Err(Failure::Refused(_)) => break,
+                    Err(Failure::Unreachable(_)) => {
+                        failures += 1;
+                        engine.connection.update(|connection| connection.offline = true);
+                        engine.wait(failures).await;
+                    }
+                }
+            }
+            *engine.outbox.borrow_mut() = Outbox::new(u64::MAX);
+            let _ = engine.keep.clear().await;
+            Identity::forget(&engine.plan.study.id);
+            engine.connected();
+            engine.dispatch(Input::WithdrawalConfirmed);
+        });
+    }
+}
+
+fn play_log(log: &JsValue) -> Result<PlayLog, String> {
+    let text = log.as_string().ok_or("the stage gave no log")?;
+    serde_json::from_str(&text).map_err(|error| format!("the stage's log: {error}"))
+}

@@ -1,0 +1,127 @@
+//! A trial: the clip, then its questions. The canvas stays from one trial to the next.
+
+use leptos::html::Canvas;
+use leptos::prelude::*;
+use mimique_study::flow::{Input, Phase, TrialView, View};
+
+use super::ProgressLine;
+use super::questions::QuestionList;
+use crate::bridge;
+use crate::session::Session;
+
+/// A trial.
+#[component]
+pub fn TrialPage() -> impl IntoView {
+    let session = Session::here();
+    let View::Trial(first) = session.view.get_untracked() else {
+        return ().into_any();
+    };
+    // After the last trial the view is another before this page is gone: the last one stays.
+    let trial: Memo<TrialView> = Memo::new(move |last: Option<&TrialView>| {
+        session.view.with(|view| match view {
+            View::Trial(trial) => (**trial).clone(),
+            _ => last.cloned().unwrap_or_else(|| (*first).clone()),
+        })
+    });
+    let part = move |read: fn(&TrialView) -> String| Memo::new(move |_| trial.with(read));
+    let step = part(|trial| trial.step.clone());
+    let clip = part(|trial| trial.clip.clone());
+    let phase = part(|trial| phase_word(&trial.phase).to_owned());
+    let heading = part(|trial| trial.heading.clone());
+    let message = part(|trial| trial.message.clone());
+    let play_label = part(|trial| trial.play_label.clone());
+    let submit_label = part(|trial| trial.button.label.clone());
+    let can_play = Memo::new(move |_| trial.with(|trial| trial.can_play));
+    let can_answer = Memo::new(move |_| trial.with(|trial| trial.can_answer));
+    let questions = Memo::new(move |_| trial.with(|trial| trial.questions.clone()));
+    let done = Memo::new(move |_| trial.with(|trial| trial.progress.done));
+    let total = Memo::new(move |_| trial.with(|trial| trial.progress.total));
+    let fraction = Memo::new(move |_| {
+        trial.with(|trial| match trial.phase {
+            Phase::Loading { fraction } => Some(fraction),
+            _ => None,
+        })
+    });
+    let failed = Memo::new(move |_| {
+        trial.with(|trial| match &trial.phase {
+            Phase::Failed { reason, retry } => Some((reason.clone(), retry.clone())),
+            _ => None,
+        })
+    });
+    // Questions appear once the clip was seen and stay while it is played again.
+    let seen = Memo::new(move |last: Option<&(String, bool)>| {
+        let step = step.get();
+        let before = last.is_some_and(|(of, seen)| *of == step && *seen);
+        (step, before || can_answer.get())
+    });
+
+    let look = session.engine().plan.study.stimuli.look.clone();
+    let (width, height) = (look.width, look.height);
+    let look = serde_json::to_string(&look).unwrap_or_default();
+    let canvas = NodeRef::<Canvas>::new();
+    canvas.on_load(move |canvas| bridge::attach_stage(&canvas, &look));
+    on_cleanup(bridge::detach_stage);
+    Effect::new(move |_| {
+        if phase.get() == "ready" {
+            session.engine().show(clip.get());
+        }
+    });
+
+    view! {
+        <main class="page" data-view="trial" data-step=step data-phase=phase data-clip=clip>
+            <ProgressLine done total/>
+            <div class="card">
+                <h1 tabindex="-1">{heading}</h1>
+                {move || trial.with(|trial| trial.instruction.clone()).map(|text| view! { <p>{text}</p> })}
+                <div class="stage-frame">
+                    <div class="stage"
+                        style=("--stage-width", format!("{width}px"))
+                        style=("--stage-aspect", format!("{width} / {height}"))>
+                        <canvas node_ref=canvas aria-hidden="true"></canvas>
+                        <Show when=move || fraction.get().is_some()>
+                            <div class="veil">
+                                <progress max="1" aria-label=move || message.get()
+                                    value=move || fraction.get().unwrap_or(0.0).to_string()></progress>
+                            </div>
+                        </Show>
+                    </div>
+                </div>
+                <p class="trial-message" role="status">{message}</p>
+                {move || failed.get().map(|(reason, retry)| view! {
+                    <p class="notice bad">{reason}</p>
+                    <button type="button" class="primary" data-action="retry"
+                        on:click=move |_| session.send(Input::Retry)>{retry}</button>
+                })}
+                <Show when=move || can_play.get()>
+                    <div class="actions centred">
+                        <button type="button" data-action="play"
+                            class:primary=move || !seen.get().1
+                            on:click=move |_| session.send(Input::Play)>{play_label}</button>
+                    </div>
+                </Show>
+            </div>
+            <Show when=move || seen.get().1>
+                <form class="card" novalidate
+                    on:submit=move |event| { event.prevent_default(); session.send(Input::Next); }>
+                    <fieldset class="bare" disabled=move || !can_answer.get()>
+                        <QuestionList step questions/>
+                        <div class="actions">
+                            <button type="submit" class="primary" data-action="next">{submit_label}</button>
+                        </div>
+                    </fieldset>
+                </form>
+            </Show>
+        </main>
+    }
+    .into_any()
+}
+
+fn phase_word(phase: &Phase) -> &'static str {
+    match phase {
+        Phase::Loading { .. } => "loading",
+        Phase::Failed { .. } => "failed",
+        Phase::Ready => "ready",
+        Phase::Playing => "playing",
+        Phase::Answering => "answering",
+    }
+}
