@@ -151,3 +151,90 @@ impl Objective {
         row[0] += e.bound_curvature[i];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const N: usize = 4;
+
+    /// 6 rows of D and a positive H, made of cosines.
+    fn matrices() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let deltas: Vec<f64> = (0..6 * N).map(|i| (1.7 * i as f64).cos()).collect();
+        let roots: Vec<f64> = (0..5 * N).map(|i| (0.9 * i as f64 + 1.0).cos()).collect();
+        (crate::dense::gram(&deltas, N), crate::dense::gram(&roots, N), deltas)
+    }
+
+    fn objectives() -> Vec<Objective> {
+        let terms = |weight, eps| [Term::Squared { weight }, Term::Norm { weight, eps }];
+        (terms(1.3, 0.02).into_iter())
+            .flat_map(|data| {
+                [Term::Absent].into_iter().chain(terms(0.4, 0.1)).map(move |shell| Objective {
+                    data,
+                    shell,
+                    bounds_weight: 0.3,
+                    soft_bounds: vec![[-0.1, 1.1], [-0.1, 1.1], [0.2, 0.6], [-0.5, 1.0]],
+                    softness: 0.1,
+                })
+            })
+            .collect()
+    }
+
+    #[test]
+    fn gradient_and_hessian_are_the_differences_of_value_and_gradient() {
+        let (gram, shell, deltas) = matrices();
+        let m = Matrices { deltas: &deltas, gram: &gram, shell: &shell };
+        let d = [0.3, -0.2, 0.5, 0.9, -0.4, 0.1];
+        let c = [0.4, 1.05, 0.1, -0.2];
+        let step = 1e-5;
+        for objective in objectives() {
+            let at = |k: usize, h: f64| {
+                let mut there = c;
+                there[k] += h;
+                let mut e = Evaluation::default();
+                objective.evaluate(m, &d, &there, &mut e);
+                e
+            };
+            let here = at(0, 0.0);
+            for k in 0..N {
+                let (up, down) = (at(k, step), at(k, -step));
+                let slope = (up.value - down.value) / (2.0 * step);
+                assert!((slope - here.gradient[k]).abs() < 1e-7, "{objective:?}");
+                let mut row = vec![0.0; N - k];
+                objective.hessian_row(m, &here, false, k, &mut row);
+                for i in k..N {
+                    let curvature = (up.gradient[i] - down.gradient[i]) / (2.0 * step);
+                    assert!((curvature - row[i - k]).abs() < 1e-6, "{objective:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn majorised_quadratic_lies_above() {
+        let (gram, shell, deltas) = matrices();
+        let m = Matrices { deltas: &deltas, gram: &gram, shell: &shell };
+        let d = [0.3, -0.2, 0.5, 0.9, -0.4, 0.1];
+        for mut objective in objectives() {
+            // The bounds are not majorised.
+            objective.bounds_weight = 0.0;
+            let (mut here, mut there) = (Evaluation::default(), Evaluation::default());
+            let c = [0.4, 1.05, 0.1, -0.2];
+            objective.evaluate(m, &d, &c, &mut here);
+            for k in 0..40 {
+                let p: [f64; N] = std::array::from_fn(|i| 3.0 * (k as f64 + 2.0 * i as f64).sin());
+                let moved: [f64; N] = std::array::from_fn(|i| c[i] + p[i]);
+                objective.evaluate(m, &d, &moved, &mut there);
+                let mut model = here.value;
+                for i in 0..N {
+                    model += here.gradient[i] * p[i];
+                    let mut row = vec![0.0; N - i];
+                    objective.hessian_row(m, &here, true, i, &mut row);
+                    model += 0.5 * row[0] * p[i] * p[i];
+                    model += (i + 1..N).map(|j| row[j - i] * p[i] * p[j]).sum::<f64>();
+                }
+                assert!(there.value <= model + 1e-12);
+            }
+        }
+    }
+}
