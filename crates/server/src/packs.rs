@@ -9,7 +9,9 @@ use std::path::Path;
 use axum::body::Bytes;
 use sha2::{Digest, Sha256};
 
+use crate::export::Version;
 use crate::static_file::StaticFile;
+use crate::storage::{Storage, StorageError};
 use crate::{compression, secret};
 
 /// Packs in memory, by hash.
@@ -68,6 +70,26 @@ impl PackStore {
             gzip: Some(Bytes::from(gzip)).filter(|bytes| !bytes.is_empty()),
         };
         self.packs.insert(hash.to_owned(), file);
+        Ok(())
+    }
+
+    /// Reads the packs of every version of every study in the database as far as they are still in
+    /// the folder, so that sessions which began under an earlier version can go on.
+    pub async fn load_earlier_versions(
+        &mut self,
+        storage: &Storage,
+        folder: &Path,
+    ) -> Result<(), StorageError> {
+        for version in storage.study_versions().await? {
+            let version = Version::read(&version)?;
+            for clip in version.clips.values() {
+                for hash in [&clip.avatar, &clip.operators, &clip.take] {
+                    if let Err(error) = self.load(folder, hash) {
+                        tracing::warn!("a pack of an earlier version is gone: {error}");
+                    }
+                }
+            }
+        }
         Ok(())
     }
 

@@ -45,6 +45,12 @@ pub enum StorageError {
         /// What is wrong with it.
         problem: String,
     },
+    /// There is no database to read.
+    #[error("no file {path}; give the database that `mimique serve` writes")]
+    NoDatabase {
+        /// The file.
+        path: String,
+    },
     /// The database was made by a later version of Mimique.
     #[error(
         "the database has schema version {found}, this binary knows up to {known}; use the newer binary"
@@ -124,6 +130,19 @@ impl Storage {
             });
         };
         Ok(Self { store })
+    }
+
+    /// Like [`Self::open`], but a SQLite file must be there already.
+    pub async fn open_existing(url: &str) -> Result<Self, StorageError> {
+        if let Some(path) = sqlite_path(url).filter(|path| !path.is_file()) {
+            return Err(StorageError::NoDatabase { path: path.display().to_string() });
+        }
+        Self::open(url).await
+    }
+
+    /// A database's address fit for a message.
+    pub fn without_password(url: &str) -> String {
+        without_password(url)
     }
 
     /// `SQLite` or `PostgreSQL`, for messages.

@@ -311,6 +311,13 @@ impl Store {
 
 /// Runs every step that the database has not seen, in one transaction.
 async fn migrate(pool: &Pool<Db>) -> Result<(), StorageError> {
+    const VERSION: &str = "SELECT COALESCE(MAX(version), 0) AS version FROM schema_migrations";
+    // A database that is up to date is not locked. Without the table there is nothing in it.
+    if let Ok(row) = sqlx::query(VERSION).fetch_one(pool).await
+        && row.try_get::<i64, _>("version")? == LATEST
+    {
+        return Ok(());
+    }
     let mut transaction = pool.begin_with(BEGIN_WRITE).await?;
     if let Some(lock) = LOCK_SCHEMA {
         sqlx::query(lock).execute(&mut *transaction).await?;
@@ -318,9 +325,7 @@ async fn migrate(pool: &Pool<Db>) -> Result<(), StorageError> {
     sqlx::query("CREATE TABLE IF NOT EXISTS schema_migrations (version BIGINT PRIMARY KEY)")
         .execute(&mut *transaction)
         .await?;
-    let row = sqlx::query("SELECT COALESCE(MAX(version), 0) AS version FROM schema_migrations")
-        .fetch_one(&mut *transaction)
-        .await?;
+    let row = sqlx::query(VERSION).fetch_one(&mut *transaction).await?;
     let found: i64 = row.try_get("version")?;
     if found > LATEST {
         return Err(StorageError::SchemaTooNew { found, known: LATEST });
