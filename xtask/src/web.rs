@@ -162,6 +162,8 @@ impl Module {
                     .arg(script)
                     .arg(self.opt_level)
                     .args(["--all-features", "--disable-gc", "--disable-custom-descriptors"])
+                    // No browser reads them yet.
+                    .args(["--disable-compact-imports"])
                     .arg(&wasm)
                     .arg("-o")
                     .arg(&wasm),
