@@ -1,10 +1,104 @@
-//! `mimique check`.
+//! `mimique check`: every problem of a study file at once, each with its place and a remedy.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use mimique_study::{Report, Severity, check, json_schema, resolve_path};
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {}
+#[command(group(clap::ArgGroup::new("what").required(true).args(["study", "schema"])))]
+pub struct Args {
+    /// Study file (JSON, comments allowed)
+    study: Option<PathBuf>,
+    /// Print the JSON Schema of study files instead, for editors
+    #[arg(long)]
+    schema: bool,
+}
 
 /// Runs the command.
-pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
-    anyhow::bail!("this command is being written")
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let Some(file) = args.study else {
+        writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
+        return Ok(());
+    };
+    let report = check_file(&file)?;
+    if json {
+        let text = serde_json::json!({
+            "file": file.display().to_string(),
+            "ok": report.study.is_some(),
+            "errors": report.errors(),
+            "warnings": report.warnings(),
+            "config_hash": report.study.as_ref().map(|study| study.config_hash()),
+            "issues": report.issues,
+        });
+        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+    } else {
+        print(&mut out, &file, &report)?;
+    }
+    // Everything was said above.
+    anyhow::ensure!(report.study.is_some(), "");
+    Ok(())
+}
+
+/// Reads and checks a study file; files that it names are looked for on this machine.
+pub fn check_file(file: &Path) -> anyhow::Result<Report> {
+    let bytes = std::fs::read(file)
+        .with_context(|| format!("{}: the study file cannot be read", file.display()))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        anyhow::anyhow!("{}: byte {place}: not UTF-8; save the file as UTF-8", file.display())
+    })?;
+    let folder = file.parent().unwrap_or(Path::new("."));
+    let data = std::env::var_os("MIMIQUE_DATA").map(PathBuf::from);
+    Ok(check(&text, &|path| {
+        let found = resolve_path(path, folder, data.as_deref()).map_err(|error| {
+            let text = error.to_string();
+            match text.split_once("; ") {
+                Some((message, hint)) => (message.to_owned(), hint.to_owned()),
+                None => (text, "mend the path".to_owned()),
+            }
+        })?;
+        if found.is_file() {
+            Ok(())
+        } else {
+            let message = format!("no file {}", found.display());
+            Err((message, "put the file there, or mend the path".to_owned()))
+        }
+    }))
+}
+
+fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io::Result<()> {
+    for issue in &report.issues {
+        let severity = match issue.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let place = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
+        let file = file.display();
+        writeln!(out, "{severity}: {file}: {place}: {}; {}", issue.message, issue.hint)?;
+    }
+    match &report.study {
+        None => writeln!(
+            out,
+            "{}: {} errors, {} warnings",
+            file.display(),
+            report.errors(),
+            report.warnings()
+        ),
+        Some(checked) => {
+            let study = checked.study();
+            writeln!(
+                out,
+                "{}: no errors, {} warnings; {} clips, languages {}, configuration {}",
+                file.display(),
+                report.warnings(),
+                study.clips().len(),
+                study.languages.join(" "),
+                checked.config_hash()
+            )
+        }
+    }
 }

@@ -1,10 +1,71 @@
-//! `mimique order`.
+//! `mimique order`: the exact trial order that a participant gets.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use mimique_study::{Draw, OrderedItem, order};
+
+use crate::check::check_file;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Study file (JSON, comments allowed)
+    study: PathBuf,
+    /// Participant number, as in the export's column `participant`
+    #[arg(long, short = 'k')]
+    participant: u64,
+    /// Seed instead of the study's own
+    #[arg(long)]
+    seed: Option<u64>,
+}
 
 /// Runs the command.
-pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
-    anyhow::bail!("this command is being written")
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let file = args.study.display();
+    let report = check_file(&args.study)?;
+    // Stimuli are not needed to know their order, so a missing file does no harm here.
+    let blocking = report.issues.iter().find(|issue| {
+        issue.severity == mimique_study::Severity::Error && issue.code != "missing-file"
+    });
+    if let Some(issue) = blocking {
+        anyhow::bail!(
+            "{file}: {}: {}; {} (`mimique check` lists every problem)",
+            if issue.pointer.is_empty() { "/" } else { &issue.pointer },
+            issue.message,
+            issue.hint
+        );
+    }
+    let text = std::fs::read_to_string(&args.study).with_context(|| format!("{file}"))?;
+    let value = mimique_study::parse(&text).with_context(|| format!("{file}"))?;
+    let study = mimique_study::Study::from_value(&value).with_context(|| format!("{file}"))?;
+    let config_hash = mimique_study::config_hash(&value);
+    let seed = args.seed.unwrap_or(study.seed);
+    let draw = Draw { seed, config_hash: &config_hash, participant: args.participant };
+    let items = order(&study, draw).with_context(|| format!("{file}"))?;
+
+    let mut out = std::io::stdout().lock();
+    if json {
+        let text = serde_json::json!({
+            "study": study.id,
+            "seed": seed,
+            "config_hash": config_hash,
+            "participant": args.participant,
+            "order": items,
+        });
+        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+        return Ok(());
+    }
+    let mut trials = 0;
+    for item in &items {
+        match item {
+            OrderedItem::Trial { trial, clip, .. } => {
+                trials += 1;
+                writeln!(out, "{trials:>4}  {clip:<24}  {trial}")?;
+            }
+            OrderedItem::Component { component } => writeln!(out, "   -  {component}")?,
+        }
+    }
+    Ok(())
 }

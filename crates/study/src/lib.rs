@@ -2,6 +2,7 @@
 
 mod answer;
 mod canonical;
+mod check;
 mod event;
 pub mod flow;
 mod order;
@@ -12,6 +13,9 @@ pub mod wire;
 
 pub use answer::{AnswerProblem, LONG_TEXT, SHORT_TEXT};
 pub use canonical::{canonical, config_hash};
+pub use check::{
+    CheckedStudy, FileLookup, Issue, Report, SCHEMA_ADDRESS, Severity, check, json_schema,
+};
 pub use event::{Answers, Client, EventKind, PlayLog};
 pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
 pub use study_file::*;

@@ -16,7 +16,7 @@ mod stream;
 use std::collections::BTreeMap;
 
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
-use constrained::{Search, arrange};
+use constrained::{Search, arrange, prove_arrangement};
 pub use stream::Stream;
 
 /// One item of a participant's order.
@@ -107,9 +107,25 @@ impl<'a> Draw<'a> {
 pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
     let clips = study.clips();
     let by_id = clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
-    let context = Context { study, clips: &clips, by_id, draw };
+    let context = Context { study, clips: &clips, by_id, draw, prove: false };
     context.sequence(&study.sequence, "/sequence", None)
 }
+
+/// Proves that every participant has an order: finds, for every sample that can be drawn, the order
+/// on which [`order`] falls back when its own search fails.
+pub(crate) fn prove(study: &Study, draw: Draw<'_>) -> Result<(), OrderError> {
+    let clips = study.clips();
+    for participant in 0..sample_period(study).min(MOST_SAMPLES) {
+        let by_id = clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
+        let draw = Draw { participant, ..draw };
+        let context = Context { study, clips: &clips, by_id, draw, prove: true };
+        context.sequence(&study.sequence, "/sequence", None)?;
+    }
+    Ok(())
+}
+
+/// Most samples that are tried out; nested samples could have more, by their product.
+const MOST_SAMPLES: u64 = 2_000;
 
 /// The order in which the options of a question are shown, as indices into the file's list.
 pub fn option_order(draw: Draw<'_>, question: &str, options: usize) -> Vec<usize> {
@@ -165,6 +181,8 @@ struct Context<'a> {
     clips: &'a [Clip],
     by_id: BTreeMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
+    /// Whether the orders that prove feasibility are sought, not the participant's.
+    prove: bool,
 }
 
 impl Context<'_> {
@@ -272,12 +290,17 @@ impl Context<'_> {
             }
             OrderRule::Random => {
                 let mut stream = self.draw.stream(&format!("order{pointer}"));
-                let rules = sequence
+                let rules: Vec<constrained::Rule> = sequence
                     .constraints
                     .iter()
                     .map(|constraint| self.rule(constraint, parts))
                     .collect();
-                arrange(count, rules, &mut stream).map_err(|search| match search {
+                let arranged = if self.prove {
+                    prove_arrangement(count, &rules)
+                } else {
+                    arrange(count, &rules, &mut stream)
+                };
+                arranged.map_err(|search| match search {
                     Search::Impossible => {
                         OrderError::Unsatisfiable { pointer: pointer.to_owned(), parts: count }
                     }

@@ -10,6 +10,7 @@ mod general;
 mod hypotheses;
 mod local_text;
 mod method;
+mod paths;
 mod questions;
 mod sequence;
 mod stimuli;
@@ -26,6 +27,7 @@ pub use general::{
 pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
 pub use local_text::LocalText;
 pub use method::{MethodEntry, method_keys};
+pub use paths::{PathError, resolve_path};
 pub use questions::{
     AttentionCheck, Choice, Condition, Grid, Likert, Matrix, MultipleChoice, NumberField,
     OptionOrder, Question, QuestionKind, Ranking, SingleChoice, Slider, TextField,
@@ -140,13 +142,69 @@ impl Study {
 /// Parses the text of a study file: JSON, comments and trailing commas allowed.
 pub fn parse(text: &str) -> Result<serde_json::Value, StudyFileError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if let Some(line) = nested_too_deeply(text) {
+        return Err(StudyFileError::Syntax {
+            place: format!("line {line}"),
+            message: format!("brackets nested more than {DEEPEST} deep"),
+        });
+    }
     json5::from_str(text).map_err(|error| StudyFileError::Syntax {
         place: error.position().map_or_else(
             || "study file".to_owned(),
             |position| format!("line {}, column {}", position.line + 1, position.column + 1),
         ),
-        message: error.to_string(),
+        message: match error.to_string().split_once(" at line ") {
+            Some((message, _)) => message.to_owned(),
+            None => error.to_string(),
+        },
     })
+}
+
+/// Deepest nesting of brackets; the parser calls itself for each.
+const DEEPEST: usize = 100;
+
+/// The line at which brackets outside of strings and comments are nested too deeply.
+fn nested_too_deeply(text: &str) -> Option<usize> {
+    let (mut depth, mut line) = (0_usize, 1);
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\n' => line += 1,
+            '[' | '{' => {
+                depth += 1;
+                if depth > DEEPEST {
+                    return Some(line);
+                }
+            }
+            ']' | '}' => depth = depth.saturating_sub(1),
+            '"' | '\'' => {
+                while let Some(inside) = letters.next() {
+                    match inside {
+                        '\\' => drop(letters.next()),
+                        '\n' => line += 1,
+                        _ if inside == letter => break,
+                        _ => {}
+                    }
+                }
+            }
+            '/' if letters.peek() == Some(&'/') => {
+                while letters.next_if(|inside| *inside != '\n').is_some() {}
+            }
+            '/' if letters.peek() == Some(&'*') => {
+                let mut before = ' ';
+                letters.next();
+                for inside in letters.by_ref() {
+                    line += usize::from(inside == '\n');
+                    if before == '*' && inside == '/' {
+                        break;
+                    }
+                    before = inside;
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 impl Study {

@@ -14,6 +14,7 @@ use super::LocalText;
 /// One question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
+#[schemars(extend("unevaluatedProperties" = false))]
 pub struct Question {
     /// Name of the response in the export.
     pub id: String,

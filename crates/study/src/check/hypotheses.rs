@@ -1,0 +1,112 @@
+//! Hypotheses: that the test fits the response and the factors that it names.
+
+use std::collections::BTreeSet;
+
+use super::Subject;
+use super::issue::{Issues, below};
+use super::nearest::suggestion;
+use crate::study_file::{Hypothesis, Measure, Question, QuestionKind, TestName};
+
+pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
+    let hypotheses = &subject.study.hypotheses;
+    for (index, hypothesis) in hypotheses.iter().enumerate() {
+        let pointer = below("/hypotheses", index);
+        if hypotheses[..index].iter().any(|each| each.id == hypothesis.id) {
+            let message = format!("two hypotheses \"{}\"", hypothesis.id);
+            issues.error(below(&pointer, "id"), "duplicate", message, "give it another name");
+        }
+        response(subject, hypothesis, &pointer, issues);
+        factors(subject, hypothesis, &pointer, issues);
+    }
+}
+
+fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
+    let known: Vec<&str> =
+        subject.study.all_questions().map(|question| question.id.as_str()).collect();
+    let Some(question) =
+        subject.study.all_questions().find(|question| question.id == hypothesis.response)
+    else {
+        let message = format!("there is no question \"{}\"", hypothesis.response);
+        let hint = suggestion(&hypothesis.response, &known);
+        issues.error(below(pointer, "response"), "unknown-reference", message, hint);
+        return;
+    };
+    let has_truth =
+        matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
+    if hypothesis.measure == Measure::Correct && !has_truth {
+        let message = format!("\"{}\" has no right answer", question.id);
+        let hint = "give the question \"truth\", or test another measure";
+        issues.error(below(pointer, "measure"), "no-truth", message, hint);
+    }
+    let wants_numbers = !matches!(hypothesis.test, TestName::ChiSquare);
+    if hypothesis.measure == Measure::Answer && wants_numbers && !is_number(question) {
+        let message = format!("the answers to \"{}\" are not numbers", question.id);
+        let hint = "test \"measure\": \"correct\" or \"rt\", or take chi-square";
+        issues.error(below(pointer, "response"), "not-a-number", message, hint);
+    }
+}
+
+fn is_number(question: &Question) -> bool {
+    matches!(
+        question.kind,
+        QuestionKind::Likert(_) | QuestionKind::Slider(_) | QuestionKind::Number(_)
+    )
+}
+
+fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
+    let place = below(pointer, "factors");
+    let wanted = match hypothesis.test {
+        TestName::ScheirerRayHare => 2..=2,
+        TestName::AlignedRankTransform => 2..=3,
+        _ => 1..=1,
+    };
+    if !wanted.contains(&hypothesis.factors.len()) {
+        let message = format!("{} factors for this test", hypothesis.factors.len());
+        let hint = if wanted.start() == wanted.end() {
+            format!("name {}", wanted.start())
+        } else {
+            format!("name {} to {}", wanted.start(), wanted.end())
+        };
+        issues.error(&place, "wrong-length", message, hint);
+    }
+    let mut names: BTreeSet<String> = subject.study.factor_names().into_iter().collect();
+    // People differ by what they say of themselves.
+    names.extend(
+        subject.study.demographics.iter().flat_map(|page| &page.questions).map(|q| q.id.clone()),
+    );
+    names.extend(["avatar", "segment"].map(str::to_owned));
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    for (index, factor) in hypothesis.factors.iter().enumerate() {
+        if !names.contains(&factor.as_str()) {
+            let message = format!("there is no factor \"{factor}\"");
+            issues.error(
+                below(&place, index),
+                "unknown-reference",
+                message,
+                suggestion(factor, &names),
+            );
+        }
+    }
+    let Some(factor) = hypothesis.factors.first() else { return };
+    let values: BTreeSet<String> =
+        subject.clips.iter().filter_map(|clip| clip.factor_text(factor)).collect();
+    if values.is_empty() {
+        return;
+    }
+    let known: Vec<&str> = values.iter().map(String::as_str).collect();
+    for (index, level) in hypothesis.levels.iter().enumerate() {
+        let level = level.to_string();
+        if !known.contains(&level.as_str()) {
+            let message = format!("no clip has {factor} \"{level}\"");
+            let place = below(&below(pointer, "levels"), index);
+            issues.error(place, "unknown-reference", message, suggestion(&level, &known));
+        }
+    }
+    let count = if hypothesis.levels.is_empty() { values.len() } else { hypothesis.levels.len() };
+    let two = matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney);
+    if (two && count != 2) || count < 2 {
+        let message = format!("{count} levels of \"{factor}\" to compare");
+        let hint = if two { "name two in \"levels\"" } else { "compare at least two" };
+        issues.error(below(pointer, "levels"), "wrong-length", message, hint);
+    }
+}

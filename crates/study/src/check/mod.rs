@@ -1,0 +1,123 @@
+//! Every problem of a study file at once, each with its place and a remedy.
+//!
+//! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
+//! raw types -> [`general`], [`questions`], [`stimuli`], [`sequence`], [`hypotheses`] (what no type
+//! can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
+
+mod general;
+mod hypotheses;
+mod issue;
+mod nearest;
+mod questions;
+mod schema;
+mod sequence;
+mod stimuli;
+mod structure;
+
+use serde_json::Value;
+
+use crate::canonical::config_hash;
+use crate::study_file::{Clip, Study, parse};
+use issue::Issues;
+pub use issue::{Issue, Severity};
+pub use schema::{SCHEMA_ADDRESS, json_schema};
+
+/// A study that was checked and has no errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckedStudy {
+    study: Study,
+    value: Value,
+    config_hash: String,
+}
+
+impl CheckedStudy {
+    /// The study.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// The file as JSON (what [`crate::wire::Bundle`] carries).
+    pub fn value(&self) -> &Value {
+        &self.value
+    }
+
+    /// SHA-256 of the canonical file, hexadecimal.
+    pub fn config_hash(&self) -> &str {
+        &self.config_hash
+    }
+}
+
+/// What the check found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Every problem, in the order of the file's sections.
+    pub issues: Vec<Issue>,
+    /// The study, if no issue is an error.
+    pub study: Option<CheckedStudy>,
+}
+
+impl Report {
+    /// Number of errors.
+    pub fn errors(&self) -> usize {
+        self.issues.iter().filter(|issue| issue.severity == Severity::Error).count()
+    }
+
+    /// Number of warnings.
+    pub fn warnings(&self) -> usize {
+        self.issues.len() - self.errors()
+    }
+}
+
+/// Whether a file that the study names is there: `Err` says what is wrong and what to do,
+/// `("no such file /studies/a.glb", "put the file there, or mend the path")`.
+pub type FileLookup<'a> = dyn Fn(&str) -> Result<(), (String, String)> + 'a;
+
+/// Checks the text of a study file. `lookup` is asked for every file that the study names.
+pub fn check(text: &str, lookup: &FileLookup<'_>) -> Report {
+    let mut issues = Issues::default();
+    let study = examine(text, lookup, &mut issues);
+    let issues = issues.into_sorted();
+    let errors = issues.iter().any(|issue| issue.severity == Severity::Error);
+    Report { issues, study: study.filter(|_| !errors) }
+}
+
+fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<CheckedStudy> {
+    let value = match parse(text) {
+        Ok(value) => value,
+        Err(error) => {
+            let text = error.to_string();
+            let (message, hint) = text.split_once("; ").unwrap_or((&text, "write JSON"));
+            issues.error("", "syntax", message, hint);
+            return None;
+        }
+    };
+    let texts = structure::examine(&value, issues);
+    if issues.has_errors() {
+        return None;
+    }
+    let study = match Study::from_value(&value) {
+        Ok(study) => study,
+        Err(error) => {
+            // The structure is sound, so this is a rule that only the reader knows.
+            issues.error("", "shape", error.to_string(), "mend what the message names");
+            return None;
+        }
+    };
+    let config_hash = config_hash(&value);
+    let clips = study.clips();
+    let subject = Subject { study: &study, value: &value, clips: &clips, hash: &config_hash };
+    general::examine(&subject, &texts, issues);
+    questions::examine(&subject, issues);
+    stimuli::examine(&subject, lookup, issues);
+    sequence::examine(&subject, issues);
+    hypotheses::examine(&subject, issues);
+    Some(CheckedStudy { study, value, config_hash })
+}
+
+/// What is checked.
+struct Subject<'a> {
+    study: &'a Study,
+    value: &'a Value,
+    clips: &'a [Clip],
+    hash: &'a str,
+}

@@ -1,0 +1,245 @@
+//! Components and their order: references, blocks without clips, constraints that cannot be met.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Subject;
+use super::issue::{Issues, below};
+use super::nearest::suggestion;
+use crate::order::{Draw, prove};
+use crate::study_file::{Component, OrderRule, Sequence, SequenceItem, TrialsComponent};
+
+/// Names of steps that are no components.
+const RESERVED: [&str; 5] = ["consent", "demographics", "instructions", "training", "debriefing"];
+/// Most trials of a study: far beyond what a person can do, and small enough to plan at once.
+const MOST_TRIALS: usize = 10_000;
+
+pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
+    let study = subject.study;
+    let questions: Vec<&str> = study.questions.iter().map(|each| each.id.as_str()).collect();
+    for (name, component) in &study.components {
+        let pointer = below("/components", name);
+        let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+        if name.is_empty() || !name.chars().all(plain) || RESERVED.contains(&name.as_str()) {
+            let message = format!("\"{name}\" cannot be the name of a component");
+            let hint = "use letters, digits, _ and -, and none of the names of the file's sections";
+            issues.error(&pointer, "bad-id", message, hint);
+        }
+        match component {
+            Component::Trials(block) => trials(subject, block, &questions, &pointer, issues),
+            Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
+                let message = format!("a break of {} s", rest.minimum_seconds);
+                let place = below(&pointer, "minimumSeconds");
+                issues.error(place, "out-of-range", message, "take 0 to 3600");
+            }
+            _ => {}
+        }
+    }
+    if let Some(training) = &study.training {
+        references(&training.questions, &questions, "/training/questions", "question", issues);
+        let clips: Vec<&str> = subject.clips.iter().map(|clip| clip.id.as_str()).collect();
+        references(&training.clips, &clips, "/training/clips", "clip", issues);
+    }
+    let mut named = BTreeMap::new();
+    sequence(subject, &study.sequence, "/sequence", &mut named, issues);
+    for name in study.components.keys().filter(|name| !named.contains_key(name.as_str())) {
+        let message = format!("component \"{name}\" is never shown");
+        let hint = "name it in /sequence, or remove it";
+        issues.warning(below("/components", name), "unused", message, hint);
+    }
+    let total = trial_count(subject, &study.sequence);
+    if total == 0 {
+        let message = "no trial is shown";
+        issues.error("/sequence", "empty", message, "name a component of type \"trials\"");
+    } else if total > MOST_TRIALS {
+        let message = format!("{total} trials");
+        let hint = format!("show at most {MOST_TRIALS}");
+        issues.error("/sequence", "too-many", message, hint);
+    } else if !issues.has_errors() {
+        feasible(subject, issues);
+    }
+}
+
+fn references(given: &[String], known: &[&str], pointer: &str, what: &str, issues: &mut Issues) {
+    for (index, name) in given.iter().enumerate() {
+        if !known.contains(&name.as_str()) {
+            let message = format!("there is no {what} \"{name}\"");
+            let hint = suggestion(name, known);
+            issues.error(below(pointer, index), "unknown-reference", message, hint);
+        } else if what == "question" && given[..index].contains(name) {
+            let message = format!("\"{name}\" is asked twice");
+            issues.error(below(pointer, index), "duplicate", message, "name it once");
+        }
+    }
+}
+
+fn trials(
+    subject: &Subject<'_>,
+    block: &TrialsComponent,
+    questions: &[&str],
+    pointer: &str,
+    issues: &mut Issues,
+) {
+    references(&block.questions, questions, &below(pointer, "questions"), "question", issues);
+    if block.questions.is_empty() {
+        let message = "trials that ask nothing";
+        let hint = "name questions of /questions";
+        issues.warning(below(pointer, "questions"), "empty", message, hint);
+    }
+    if block.repetitions == 0 {
+        let message = "each clip is shown 0 times";
+        issues.error(below(pointer, "repetitions"), "out-of-range", message, "write 1 or more");
+    }
+    let ids: Vec<&str> = subject.clips.iter().map(|clip| clip.id.as_str()).collect();
+    references(&block.clips.ids, &ids, &format!("{pointer}/clips/ids"), "clip", issues);
+    let factors = all_factors(subject);
+    let names: Vec<&str> = factors.keys().map(String::as_str).collect();
+    for (factor, wanted) in &block.clips.factors {
+        let place = below(&format!("{pointer}/clips/where"), factor);
+        let Some(values) = factors.get(factor) else {
+            let message = format!("there is no factor \"{factor}\"");
+            issues.error(place, "unknown-reference", message, suggestion(factor, &names));
+            continue;
+        };
+        let values: Vec<&str> = values.iter().map(String::as_str).collect();
+        for (index, value) in wanted.iter().enumerate() {
+            let value = value.to_string();
+            if !values.contains(&value.as_str()) {
+                let message = format!("no clip has {factor} \"{value}\"");
+                let hint = suggestion(&value, &values);
+                issues.error(below(&place, index), "unknown-reference", message, hint);
+            }
+        }
+    }
+    if !subject.clips.iter().any(|clip| block.clips.takes(clip)) {
+        let message = "no clip is chosen";
+        issues.error(below(pointer, "clips"), "empty", message, "loosen the choice");
+    }
+}
+
+/// Every factor with its values as text, `clip`, `avatar` and `segment` among them.
+fn all_factors(subject: &Subject<'_>) -> BTreeMap<String, BTreeSet<String>> {
+    let mut factors: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for clip in subject.clips {
+        let named = ["clip", "avatar", "segment"];
+        for name in clip.factors.keys().map(String::as_str).chain(named) {
+            if let Some(value) = clip.factor_text(name) {
+                factors.entry(name.to_owned()).or_default().insert(value);
+            }
+        }
+    }
+    factors
+}
+
+fn sequence<'a>(
+    subject: &Subject<'a>,
+    here: &'a Sequence,
+    pointer: &str,
+    named: &mut BTreeMap<&'a str, String>,
+    issues: &mut Issues,
+) {
+    let components: Vec<&str> = subject.study.components.keys().map(String::as_str).collect();
+    if here.components.is_empty() {
+        let message = "an empty sequence";
+        issues.error(below(pointer, "components"), "empty", message, "name a component");
+    }
+    for (index, item) in here.components.iter().enumerate() {
+        let place = format!("{pointer}/components/{index}");
+        match item {
+            SequenceItem::Sequence(nested) => sequence(subject, nested, &place, named, issues),
+            SequenceItem::Component(name) => {
+                if !components.contains(&name.as_str()) {
+                    let message = format!("there is no component \"{name}\"");
+                    issues.error(
+                        &place,
+                        "unknown-reference",
+                        message,
+                        suggestion(name, &components),
+                    );
+                }
+                if let Some(first) = named.insert(name, place.clone()) {
+                    let message = format!("\"{name}\" is shown at {first} already");
+                    let hint = "give its trials \"repetitions\", or write a second component";
+                    issues.error(place, "duplicate", message, hint);
+                }
+            }
+        }
+    }
+    for (index, interruption) in here.interruptions.iter().enumerate() {
+        let place = format!("{pointer}/interruptions/{index}");
+        let name = &interruption.component;
+        match subject.study.components.get(name) {
+            None => {
+                let message = format!("there is no component \"{name}\"");
+                let hint = suggestion(name, &components);
+                issues.error(below(&place, "component"), "unknown-reference", message, hint);
+            }
+            Some(Component::Trials(_)) => {
+                let message = format!("\"{name}\" is a block of trials");
+                let hint = "interrupt by a break, a page or a questionnaire";
+                issues.error(below(&place, "component"), "bad-interruption", message, hint);
+            }
+            Some(_) => {
+                named.entry(name).or_insert(place.clone());
+            }
+        }
+        if interruption.spacing == 0 {
+            let message = "after every 0 trials";
+            issues.error(below(&place, "spacing"), "out-of-range", message, "write 1 or more");
+        }
+    }
+    constraints(subject, here, pointer, issues);
+}
+
+fn constraints(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Issues) {
+    if here.num_samples == Some(0) {
+        let message = "0 of the parts are shown";
+        issues.error(below(pointer, "numSamples"), "out-of-range", message, "write 1 or more");
+    }
+    if !here.constraints.is_empty() && here.order != OrderRule::Random {
+        let message = "constraints on an order that is not random";
+        let hint = "write \"order\": \"random\", or remove the constraints";
+        issues.error(below(pointer, "constraints"), "not-needed", message, hint);
+    }
+    let factors = all_factors(subject);
+    let names: Vec<&str> = factors.keys().map(String::as_str).collect();
+    for (index, constraint) in here.constraints.iter().enumerate() {
+        let place = format!("{pointer}/constraints/{index}");
+        if !names.contains(&constraint.factor.as_str()) {
+            let message = format!("there is no factor \"{}\"", constraint.factor);
+            let hint = suggestion(&constraint.factor, &names);
+            issues.error(below(&place, "factor"), "unknown-reference", message, hint);
+        }
+        if constraint.at_most_alike.is_none() && constraint.minimum_distance.is_none() {
+            let message = "a constraint that asks for nothing";
+            issues.error(place, "empty", message, "add atMostAlike or minimumDistance");
+        } else if constraint.at_most_alike == Some(0) || constraint.minimum_distance == Some(0) {
+            let message = "0 in a row, or at a distance of 0";
+            issues.error(place, "out-of-range", message, "write 1 or more");
+        }
+    }
+}
+
+fn trial_count(subject: &Subject<'_>, sequence: &Sequence) -> usize {
+    let count = |item: &SequenceItem| match item {
+        SequenceItem::Sequence(nested) => trial_count(subject, nested),
+        SequenceItem::Component(name) => match subject.study.components.get(name) {
+            Some(Component::Trials(block)) => {
+                let chosen = subject.clips.iter().filter(|clip| block.clips.takes(clip)).count();
+                chosen.saturating_mul(block.repetitions as usize)
+            }
+            _ => 0,
+        },
+    };
+    sequence.components.iter().map(count).fold(0, usize::saturating_add)
+}
+
+/// Proves that an order exists for every participant, or says which constraints cannot be met.
+fn feasible(subject: &Subject<'_>, issues: &mut Issues) {
+    let draw = Draw { seed: subject.study.seed, config_hash: subject.hash, participant: 0 };
+    if let Err(error) = prove(subject.study, draw) {
+        let text = error.to_string();
+        let (pointer, message) = text.split_once(": ").unwrap_or(("/sequence", &text));
+        let (message, hint) = message.split_once("; ").unwrap_or((message, "loosen one of them"));
+        issues.error(pointer, "unsatisfiable-order", message, hint);
+    }
+}

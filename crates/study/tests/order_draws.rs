@@ -1,0 +1,299 @@
+//! Orders: golden, never against a constraint, uniform where the design says random.
+
+mod support;
+
+use std::collections::BTreeMap;
+
+use mimique_study::{Draw, OrderedItem, Study, config_hash, order, parse};
+use proptest::prelude::*;
+use support::study_text;
+
+/// The clips in the order of a participant.
+fn clips(study: &Study, hash: &str, participant: u64) -> Vec<String> {
+    let draw = Draw { seed: study.seed, config_hash: hash, participant };
+    let items = order(study, draw).unwrap();
+    items
+        .into_iter()
+        .filter_map(|item| match item {
+            OrderedItem::Trial { clip, .. } => Some(clip),
+            OrderedItem::Component { .. } => None,
+        })
+        .collect()
+}
+
+/// A study of `segments` x `methods` whose sequence is given.
+fn small_study(segments: &[(&str, &str)], methods: &[&str], sequence: &str) -> Study {
+    let segments: Vec<String> = segments
+        .iter()
+        .map(|(id, kind)| {
+            format!(
+                "{{ id: '{id}', capture: 'c', first: 0, end: 9, factors: {{ kind: '{kind}' }} }}"
+            )
+        })
+        .collect();
+    let methods: Vec<String> = methods
+        .iter()
+        .map(|id| format!("{id}: {{ method: 'box', factors: {{ method: '{id}' }} }}"))
+        .collect();
+    let text = format!(
+        "{{ id: 's', studyMetadata: {{ title: 't', version: '1' }}, languages: ['en'], seed: 5,
+            components: {{
+              faces: {{ type: 'trials', questions: [] }},
+              some: {{ type: 'trials', questions: [], clips: {{ where: {{ kind: ['a'] }} }} }},
+              others: {{ type: 'trials', questions: [], clips: {{ where: {{ kind: ['b'] }} }} }},
+              rest: {{ type: 'break', heading: 'h', text: 't' }},
+            }},
+            sequence: {sequence},
+            stimuli: {{ avatars: {{ h: {{ builtin: {{}} }} }}, captures: {{ c: {{ file: 'x' }} }},
+              segments: [{}], methods: {{ {} }} }} }}",
+        segments.join(", "),
+        methods.join(", ")
+    );
+    Study::from_value(&parse(&text).unwrap()).unwrap()
+}
+
+/// The orders of four participants, kept in the repository: they must never change, natively or in
+/// the browser, or an old study could not be replayed.
+#[test]
+fn orders_are_those_of_the_golden_file() {
+    let text = study_text("demo.json");
+    let hash = config_hash(&parse(&text).unwrap());
+    let study = Study::from_text(&text).unwrap();
+    let mut lines = String::new();
+    // The hash is fixed, so that a new wording in the demo does not draw new orders.
+    let fixed = "0".repeat(64);
+    for participant in [0, 1, 7, 9_007_199_254_740_991] {
+        lines += &format!("{participant}: {}\n", clips(&study, &fixed, participant).join(" "));
+    }
+    assert_eq!(hash.len(), 64);
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/order.txt");
+    if std::env::var_os("MIMIQUE_UPDATE").is_some() {
+        std::fs::write(&file, &lines).unwrap();
+    }
+    assert_eq!(lines, std::fs::read_to_string(&file).unwrap());
+}
+
+#[test]
+fn order_depends_on_seed_hash_and_participant() {
+    let study = Study::from_text(&study_text("demo.json")).unwrap();
+    let draw = Draw { seed: 1, config_hash: "a", participant: 1 };
+    let first = order(&study, draw).unwrap();
+    assert_eq!(order(&study, draw).unwrap(), first);
+    assert_ne!(order(&study, Draw { seed: 2, ..draw }).unwrap(), first);
+    assert_ne!(order(&study, Draw { config_hash: "b", ..draw }).unwrap(), first);
+    assert_ne!(order(&study, Draw { participant: 2, ..draw }).unwrap(), first);
+}
+
+#[test]
+fn ten_thousand_orders_of_the_demo_keep_its_constraints() {
+    let study = Study::from_text(&study_text("demo.json")).unwrap();
+    for participant in 0..10_000 {
+        let order = clips(&study, "hash", participant);
+        assert_eq!(order.len(), 12);
+        let parts: Vec<(&str, &str)> =
+            order.iter().map(|clip| clip.split_once('.').unwrap()).collect();
+        for pair in parts.windows(2) {
+            assert_ne!(pair[0].0, pair[1].0, "participant {participant}: {order:?}");
+        }
+        for four in parts.windows(4) {
+            assert!(four.iter().any(|part| part.1 != four[0].1), "{participant}: {order:?}");
+        }
+        let mut sorted = order.clone();
+        sorted.sort();
+        sorted.dedup();
+        assert_eq!(sorted.len(), 12, "each clip once");
+    }
+}
+
+/// Tight constraints, where shuffling hopes in vain: nine clips of three kinds, no kind within
+/// three places of itself, so that only 3! x (3!)^3 of 9! orders are right (1 in 280).
+#[test]
+fn tight_constraints_are_kept_too() {
+    let segments = [
+        ("p", "x"),
+        ("q", "x"),
+        ("r", "x"),
+        ("s", "y"),
+        ("t", "y"),
+        ("u", "y"),
+        ("v", "z"),
+        ("w", "z"),
+        ("o", "z"),
+    ];
+    let study = small_study(
+        &segments,
+        &["box"],
+        "{ order: 'random', components: ['faces'],
+           constraints: [{ factor: 'kind', minimumDistance: 3 }] }",
+    );
+    let kinds: BTreeMap<&str, &str> = segments.into_iter().collect();
+    let mut different = std::collections::BTreeSet::new();
+    for participant in 0..500 {
+        let order = clips(&study, "h", participant);
+        let kind: Vec<&str> =
+            order.iter().map(|clip| kinds[clip.split_once('.').unwrap().0]).collect();
+        for (place, value) in kind.iter().enumerate() {
+            assert!(!kind[place + 1..].iter().take(2).any(|later| later == value), "{kind:?}");
+        }
+        different.insert(order);
+    }
+    assert!(different.len() > 300, "{} different orders of 1,296", different.len());
+}
+
+#[test]
+fn impossible_constraints_are_an_error_and_no_hang() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "x"), ("s", "y")],
+        &["box"],
+        "{ order: 'random', components: ['faces'], constraints: [{ factor: 'kind', atMostAlike: 1 }] }",
+    );
+    let draw = Draw { seed: 1, config_hash: "h", participant: 1 };
+    let error = order(&study, draw).unwrap_err().to_string();
+    assert!(error.starts_with("/sequence/constraints: no order of its 4 parts"), "{error}");
+}
+
+fn chi_square(counts: impl Iterator<Item = usize>, expected: f64) -> f64 {
+    counts.map(|count| (count as f64 - expected).powi(2) / expected).sum()
+}
+
+/// Every order of four clips equally often (23 degrees of freedom; 49.73 is the 0.999 quantile).
+#[test]
+fn random_order_is_uniform() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "y"), ("s", "y")],
+        &["box"],
+        "{ order: 'random', components: ['faces'] }",
+    );
+    let mut counts: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+    for participant in 0..12_000 {
+        *counts.entry(clips(&study, "h", participant)).or_default() += 1;
+    }
+    assert_eq!(counts.len(), 24);
+    let statistic = chi_square(counts.into_values(), 500.0);
+    assert!(statistic < 49.73, "{statistic}");
+}
+
+/// Under constraints too, every order that fits is equally likely: x and y alternate in 2 x 3! x 3!
+/// = 72 of the 720 orders (71 degrees of freedom; 112.3 is the 0.999 quantile).
+#[test]
+fn constrained_order_is_uniform_over_the_orders_that_fit() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "x"), ("s", "y"), ("t", "y"), ("u", "y")],
+        &["box"],
+        "{ order: 'random', components: ['faces'], constraints: [{ factor: 'kind', atMostAlike: 1 }] }",
+    );
+    let mut counts: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+    for participant in 0..14_400 {
+        *counts.entry(clips(&study, "h", participant)).or_default() += 1;
+    }
+    assert_eq!(counts.len(), 72);
+    let statistic = chi_square(counts.into_values(), 200.0);
+    assert!(statistic < 112.3, "{statistic}");
+}
+
+#[test]
+fn latin_square_shows_each_clip_at_each_place_equally_often() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "y"), ("s", "y")],
+        &["box"],
+        "{ order: 'latinSquare', components: ['faces'] }",
+    );
+    let mut places: BTreeMap<(usize, String), usize> = BTreeMap::new();
+    for participant in 0..8 {
+        for (place, clip) in clips(&study, "h", participant).into_iter().enumerate() {
+            *places.entry((place, clip)).or_default() += 1;
+        }
+    }
+    assert_eq!(places.len(), 16);
+    assert!(places.values().all(|&times| times == 2), "{places:?}");
+}
+
+#[test]
+fn samples_show_each_clip_equally_often() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "y"), ("s", "y"), ("t", "y")],
+        &["box", "other"],
+        "{ order: 'random', components: ['faces'], numSamples: 4 }",
+    );
+    let mut shown: BTreeMap<String, usize> = BTreeMap::new();
+    for participant in 0..5 {
+        let order = clips(&study, "h", participant);
+        assert_eq!(order.len(), 4);
+        for clip in order {
+            *shown.entry(clip).or_default() += 1;
+        }
+    }
+    assert_eq!(shown.len(), 10);
+    assert!(shown.values().all(|&times| times == 2), "{shown:?}");
+}
+
+#[test]
+fn nested_sequences_stay_together_and_breaks_come_between() {
+    let study = small_study(
+        &[("p", "a"), ("q", "a"), ("r", "b"), ("s", "b"), ("t", "b")],
+        &["box"],
+        "{ order: 'random', interruptions: [{ component: 'rest', spacing: 2 }], components: [
+           { id: 'first', order: 'random', components: ['some'] },
+           { id: 'second', order: 'fixed', components: ['others'] } ] }",
+    );
+    let mut beginnings = std::collections::BTreeSet::new();
+    for participant in 0..40 {
+        let draw = Draw { seed: 5, config_hash: "h", participant };
+        let items = order(&study, draw).unwrap();
+        let mut line = String::new();
+        for item in &items {
+            match item {
+                OrderedItem::Trial { condition, .. } => line.push_str(&condition[..1]),
+                OrderedItem::Component { component } => {
+                    assert_eq!(component, "rest");
+                    line.push('-');
+                }
+            }
+        }
+        assert!(line == "ff-ss-s" || line == "ss-sf-f", "{line}");
+        beginnings.insert(line);
+    }
+    assert_eq!(beginnings.len(), 2, "both come up");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Any small design with any constraint gives an order that keeps it, or an error; never a hang.
+    #[test]
+    fn any_order_keeps_its_constraints(
+        kinds in proptest::collection::vec(0_usize..4, 1..14),
+        methods in 1_usize..4,
+        alike in 1_usize..4,
+        distance in 1_usize..5,
+        participant in any::<u64>(),
+    ) {
+        let names = ["a", "b", "x", "y"];
+        let ids: Vec<String> = (0..kinds.len()).map(|index| format!("s{index}")).collect();
+        let segments: Vec<(&str, &str)> =
+            ids.iter().zip(&kinds).map(|(id, &kind)| (id.as_str(), names[kind])).collect();
+        let sequence = format!(
+            "{{ order: 'random', components: ['faces'], constraints: [
+               {{ factor: 'kind', minimumDistance: {distance} }},
+               {{ factor: 'method', atMostAlike: {alike} }} ] }}"
+        );
+        let study = small_study(&segments, &["m0", "m1", "m2"][..methods], &sequence);
+        let draw = Draw { seed: 3, config_hash: "h", participant };
+        let Ok(items) = order(&study, draw) else { return Ok(()) };
+        let kind_of: BTreeMap<&str, &str> = segments.iter().copied().collect();
+        let trials: Vec<(&str, String)> = items.iter().filter_map(|item| match item {
+            OrderedItem::Trial { clip, .. } => {
+                let (segment, method) = clip.split_once('.')?;
+                Some((kind_of[segment], method.to_owned()))
+            }
+            OrderedItem::Component { .. } => None,
+        }).collect();
+        prop_assert_eq!(trials.len(), kinds.len() * methods);
+        for (place, (kind, _)) in trials.iter().enumerate() {
+            prop_assert!(!trials[place + 1..].iter().take(distance - 1).any(|later| later.0 == *kind));
+        }
+        for run in trials.windows(alike + 1) {
+            prop_assert!(run.iter().any(|(_, method)| *method != run[0].1));
+        }
+    }
+}
