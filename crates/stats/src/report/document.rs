@@ -1,0 +1,112 @@
+//! A report as blocks: headings, paragraphs, tables, figures. HTML, Markdown and files are made of it.
+
+/// A report.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Document {
+    pub title: String,
+    pub subtitle: String,
+    pub blocks: Vec<Block>,
+}
+
+/// One part of a report.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Block {
+    /// Level 2 or 3.
+    Heading(u8, String),
+    /// Running text.
+    Paragraph(String),
+    /// What a result means, in plain words.
+    Reading(String),
+    /// What to mind.
+    Caution(String),
+    Table(DataTable),
+    Figure(Figure),
+}
+
+/// A table of text cells; `id` names its file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct DataTable {
+    pub id: String,
+    pub caption: String,
+    pub columns: Vec<String>,
+    pub rows: Vec<Vec<String>>,
+    /// A first line of headings over groups of columns: text and number of columns.
+    pub groups: Vec<(String, usize)>,
+}
+
+/// A drawing with its caption, its description for those who do not see it, and its data.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Figure {
+    pub id: String,
+    pub caption: String,
+    pub alt: String,
+    pub svg: String,
+    pub data: DataTable,
+}
+
+impl DataTable {
+    pub(crate) fn new(
+        id: impl Into<String>,
+        caption: impl Into<String>,
+        columns: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Self {
+        Self {
+            id: id.into(),
+            caption: caption.into(),
+            columns: columns.into_iter().map(Into::into).collect(),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// As CSV with commas.
+    pub(crate) fn to_csv(&self) -> String {
+        let mut text = String::new();
+        for row in std::iter::once(&self.columns).chain(&self.rows) {
+            let cells: Vec<String> = row.iter().map(|cell| csv_cell(cell)).collect();
+            text.push_str(&cells.join(","));
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn csv_cell(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r', ';']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+/// Letters, digits and hyphens: part of a file name.
+pub(crate) fn slug(text: &str) -> String {
+    let mut slug = String::new();
+    for c in text.chars() {
+        if c.is_ascii_alphanumeric() {
+            slug.push(c.to_ascii_lowercase());
+        } else if !slug.ends_with('-') && !slug.is_empty() {
+            slug.push('-');
+        }
+    }
+    slug.trim_end_matches('-').to_owned()
+}
+
+/// Text that is safe between tags and in quoted attributes.
+pub(crate) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}

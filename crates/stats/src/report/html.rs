@@ -1,0 +1,158 @@
+//! A report as one HTML file: no network, light, dark and print, for wide and narrow screens.
+
+use std::fmt::Write;
+
+use super::document::{Block, DataTable, Document, Figure, escape};
+use super::language::Language;
+
+pub(crate) fn html(document: &Document, language: Language) -> String {
+    let mut body = String::new();
+    let mut contents = String::new();
+    let mut section = 0;
+    for block in &document.blocks {
+        match block {
+            Block::Heading(level, text) => {
+                section += 1;
+                let _ = writeln!(body, r#"<h{level} id="s{section}">{}</h{level}>"#, escape(text));
+                if *level == 2 {
+                    let _ = write!(contents, r##"<a href="#s{section}">{}</a>"##, escape(text));
+                }
+            }
+            Block::Paragraph(text) => {
+                let _ = writeln!(body, "<p>{}</p>", escape(text));
+            }
+            Block::Reading(text) => {
+                let _ = writeln!(body, r#"<p class="reading">{}</p>"#, escape(text));
+            }
+            Block::Caution(text) => {
+                let _ = writeln!(body, r#"<p class="caution">{}</p>"#, escape(text));
+            }
+            Block::Table(data) => table(&mut body, data),
+            Block::Figure(drawing) => figure(&mut body, drawing, language),
+        }
+    }
+    let code = language.code();
+    let skip = language.pick("Contents", "Sommaire");
+    format!(
+        r#"<!doctype html>
+<html lang="{code}">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{title}</title>
+<style>
+{STYLE}</style>
+</head>
+<body>
+<header>
+<h1>{title}</h1>
+<p class="subtitle">{subtitle}</p>
+<nav aria-label="{skip}">{contents}</nav>
+</header>
+<main>
+{body}</main>
+</body>
+</html>
+"#,
+        title = escape(&document.title),
+        subtitle = escape(&document.subtitle),
+    )
+}
+
+fn table(body: &mut String, data: &DataTable) {
+    let _ = writeln!(
+        body,
+        r#"<div class="scroll" role="region" tabindex="0" aria-label="{0}"><table><caption>{0}</caption><thead>"#,
+        escape(&data.caption)
+    );
+    if !data.groups.is_empty() {
+        body.push_str("<tr>");
+        for (text, columns) in &data.groups {
+            let scope = if text.is_empty() { "td" } else { "th" };
+            let _ = write!(
+                body,
+                r#"<{scope} colspan="{columns}" class="group">{}</{scope}>"#,
+                escape(text)
+            );
+        }
+        body.push_str("</tr>\n");
+    }
+    body.push_str("<tr>");
+    for column in &data.columns {
+        let _ = write!(body, r#"<th scope="col">{}</th>"#, escape(column));
+    }
+    body.push_str("</tr></thead>\n<tbody>\n");
+    for row in &data.rows {
+        body.push_str("<tr>");
+        for (i, cell) in row.iter().enumerate() {
+            if i == 0 {
+                let _ = write!(body, r#"<th scope="row">{}</th>"#, escape(cell));
+            } else {
+                let class = if is_number(cell) { r#" class="number""# } else { "" };
+                let _ = write!(body, "<td{class}>{}</td>", escape(cell));
+            }
+        }
+        body.push_str("</tr>\n");
+    }
+    body.push_str("</tbody></table></div>\n");
+}
+
+fn is_number(cell: &str) -> bool {
+    cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−' | '<'))
+        && cell.chars().filter(|c| c.is_alphabetic() && *c != 'e').count() == 0
+}
+
+fn figure(body: &mut String, drawing: &Figure, language: Language) {
+    // The drawing brings its description as its label.
+    let svg = drawing.svg.replacen(
+        &format!("aria-label=\"{}\"", escape(&drawing.caption)),
+        &format!("aria-label=\"{}\"", escape(&drawing.alt)),
+        1,
+    );
+    let _ = writeln!(
+        body,
+        "<figure>\n{svg}<figcaption>{}</figcaption>\n<details><summary>{}</summary>",
+        escape(&drawing.caption),
+        language.pick("Data of this figure", "Données de cette figure")
+    );
+    table(body, &drawing.data);
+    body.push_str("</details>\n</figure>\n");
+}
+
+const STYLE: &str = "\
+:root{--ink:#1c2126;--soft:#555e68;--paper:#fff;--panel:#f4f6f8;--rule:#d5dae0;--link:#0a4f86;--warn:#8a4b00;--warn-bg:#fff6e8;--ok-bg:#eef5fb}
+@media screen and (prefers-color-scheme:dark){:root{--ink:#e8ebee;--soft:#a9b2bc;--paper:#15191e;--panel:#1d2329;--rule:#3a434d;--link:#8cc4f2;--warn:#f0b35e;--warn-bg:#2b2317;--ok-bg:#18242f}}
+*{box-sizing:border-box}
+html{-webkit-text-size-adjust:100%}
+body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
+header,main{max-width:56rem;margin:0 auto;padding:0 1.25rem}
+header{padding-top:2.5rem}
+main{padding-bottom:4rem}
+h1{font-size:1.9rem;line-height:1.2;margin:0 0 .4rem}
+h2{font-size:1.35rem;margin:2.8rem 0 .6rem;padding-top:1rem;border-top:1px solid var(--rule)}
+h3{font-size:1.08rem;margin:2rem 0 .4rem}
+.subtitle{color:var(--soft);margin:0 0 1rem}
+nav{display:flex;flex-wrap:wrap;gap:.3rem 1.1rem}
+a{color:var(--link)}
+nav a{padding:.2rem 0;min-height:1.75rem}
+p{max-width:42rem;margin:.6rem 0}
+.reading{background:var(--ok-bg);border-left:4px solid var(--link);padding:.7rem 1rem;border-radius:0 4px 4px 0}
+.caution{background:var(--warn-bg);border-left:4px solid var(--warn);padding:.7rem 1rem;border-radius:0 4px 4px 0}
+.scroll{overflow-x:auto;margin:1rem 0;max-width:100%}
+.scroll:focus-visible,summary:focus-visible,a:focus-visible{outline:2px solid var(--link);outline-offset:2px}
+table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}
+caption{text-align:left;color:var(--soft);padding:0 0 .4rem}
+th,td{padding:.32rem .7rem;text-align:left;border-bottom:1px solid var(--rule);vertical-align:top}
+thead th{border-bottom:2px solid var(--rule);font-weight:600;vertical-align:bottom}
+tbody th{font-weight:500}
+td.number{text-align:right;white-space:nowrap}
+.group{font-weight:600;background:var(--panel);border-left:2px solid var(--paper)}
+td.group{background:none}
+figure{margin:1.5rem 0;padding:0}
+figure svg{display:block;max-width:100%;height:auto}
+figcaption{color:var(--soft);font-size:.9rem;max-width:36rem;margin:.4rem 0}
+summary{cursor:pointer;color:var(--link);font-size:.9rem;padding:.2rem 0}
+@media (min-width:40rem){figure svg{width:34rem}}
+@media print{body{font-size:10.5pt}header,main{max-width:none;padding:0}nav,details{display:none}h2,h3{break-after:avoid}figure,tr,.reading,.caution{break-inside:avoid}.scroll{overflow:visible}}
+";

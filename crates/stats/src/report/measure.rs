@@ -1,0 +1,220 @@
+//! A measure of the study: one number a trial, with its person and its factors.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::export::{AskedQuestion, Export};
+use super::language::Language;
+use crate::factor::Factor;
+use crate::friedman::Blocks;
+use crate::table::Numbers;
+
+/// What kind of number a measure is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MeasureKind {
+    /// A rating or another number.
+    Rating,
+    /// 1 for a right answer, 0 for a wrong one.
+    Recognition,
+    /// Seconds.
+    ResponseTime,
+}
+
+/// One number a trial.
+#[derive(Debug, Clone)]
+pub(crate) struct Measure {
+    /// Identifier of the question, `.rt` behind it for its response time.
+    pub id: String,
+    /// What people read.
+    pub label: String,
+    pub kind: MeasureKind,
+    pub scale: Option<(i64, i64)>,
+    pub values: Vec<f64>,
+    pub person: Vec<usize>,
+    pub trial: Vec<usize>,
+}
+
+impl Measure {
+    /// Answers to a question as numbers: ratings as they are, right answers as 1. None if the question
+    /// gives no numbers.
+    pub(crate) fn of_question(
+        export: &Export,
+        asked: &AskedQuestion<'_>,
+        language: Language,
+    ) -> Option<Self> {
+        let recognition = asked.is_recognition();
+        let mut measure = Self {
+            id: asked.id.clone(),
+            label: asked.label(language.code()),
+            kind: if recognition { MeasureKind::Recognition } else { MeasureKind::Rating },
+            scale: asked.scale(),
+            values: Vec::new(),
+            person: Vec::new(),
+            trial: Vec::new(),
+        };
+        for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
+            let value = if recognition {
+                answer.correct.map(|correct| f64::from(u8::from(correct)))
+            } else {
+                // One answer that is no number makes the question one of words.
+                Some(answer.number?)
+            };
+            if let Some(value) = value {
+                measure.values.push(value);
+                measure.person.push(answer.person);
+                measure.trial.push(answer.trial);
+            }
+        }
+        (!measure.values.is_empty()).then_some(measure)
+    }
+
+    /// Response times of a question, seconds.
+    pub(crate) fn response_time(
+        export: &Export,
+        asked: &AskedQuestion<'_>,
+        language: Language,
+    ) -> Option<Self> {
+        let mut measure = Self {
+            id: format!("{}.rt", asked.id),
+            label: language.pick("Response time (s)", "Temps de réponse (s)").to_owned(),
+            kind: MeasureKind::ResponseTime,
+            scale: None,
+            values: Vec::new(),
+            person: Vec::new(),
+            trial: Vec::new(),
+        };
+        for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
+            if let Some(rt) = answer.rt_ms {
+                measure.values.push(rt / 1000.0);
+                measure.person.push(answer.person);
+                measure.trial.push(answer.trial);
+            }
+        }
+        (!measure.values.is_empty()).then_some(measure)
+    }
+
+    /// The values as a column.
+    pub(crate) fn numbers(&self) -> Numbers {
+        Numbers { name: self.id.clone(), values: self.values.clone() }
+    }
+
+    /// A factor of the trials, a code a value; only `levels` if any are given.
+    pub(crate) fn factor(&self, export: &Export, name: &str, levels: &[String]) -> Factor {
+        let place = export.factors.iter().position(|factor| factor == name);
+        let cells = self.trial.iter().map(|&trial| export.trials[trial].levels[place?].as_deref());
+        let factor = Factor::from_cells(name, cells, |level| level.parse().ok());
+        let known: Vec<String> =
+            levels.iter().filter(|level| factor.levels.contains(level)).cloned().collect();
+        if known.is_empty() { factor } else { factor.restricted(&known).unwrap_or(factor) }
+    }
+
+    /// An answer about the person, a code a value.
+    pub(crate) fn trait_factor(&self, export: &Export, name: &str) -> Option<Factor> {
+        let (_, cells) = export.about.iter().find(|(column, _)| column == name)?;
+        let cells = self.person.iter().map(|&person| cells[person].as_deref());
+        Some(Factor::from_cells(name, cells, |level| level.parse().ok()))
+    }
+
+    /// Mean of each person at each level of a factor; people without a value at some level are
+    /// incomplete.
+    pub(crate) fn person_means(&self, export: &Export, factor: &Factor) -> Blocks {
+        let k = factor.levels.len();
+        let mut sums: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+        for (i, &value) in self.values.iter().enumerate() {
+            if let Some(cell) = sums
+                .entry(self.person[i])
+                .or_insert_with(|| vec![(0.0, 0.0); k])
+                .get_mut(factor.codes[i] as usize)
+            {
+                cell.0 += value;
+                cell.1 += 1.0;
+            }
+        }
+        let people = sums.len();
+        let (mut blocks, mut responses) = (Vec::new(), Vec::new());
+        for (person, cells) in sums {
+            if cells.iter().all(|(_, count)| *count > 0.0) {
+                blocks.push(export.people[person].id.clone());
+                responses.push(cells.iter().map(|(sum, count)| sum / count).collect());
+            }
+        }
+        Blocks {
+            groups: factor.levels.clone(),
+            incomplete: people - blocks.len(),
+            blocks,
+            responses,
+            dropped: 0,
+        }
+    }
+
+    /// Mean of each person over all trials.
+    pub(crate) fn overall_person_means(&self) -> BTreeMap<usize, f64> {
+        let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+        for (&person, &value) in self.person.iter().zip(&self.values) {
+            let cell = sums.entry(person).or_insert((0.0, 0.0));
+            cell.0 += value;
+            cell.1 += 1.0;
+        }
+        sums.into_iter().map(|(person, (sum, count))| (person, sum / count)).collect()
+    }
+
+    /// Trials of one person that differ in the tested factor only, as blocks: the pairs of trial-level
+    /// tests. What else must be equal is every other factor that occurs at each of its levels.
+    pub(crate) fn matched_trials(&self, export: &Export, factor: &Factor) -> Blocks {
+        let others: Vec<usize> = (0..export.factors.len())
+            .filter(|&place| {
+                export.factors[place] != factor.name && self.is_crossed(export, factor, place)
+            })
+            .collect();
+        let k = factor.levels.len();
+        let mut cells: BTreeMap<(usize, Vec<&str>), Vec<(f64, f64)>> = BTreeMap::new();
+        for (i, &value) in self.values.iter().enumerate() {
+            let levels = &export.trials[self.trial[i]].levels;
+            let key: Vec<&str> =
+                others.iter().map(|&place| levels[place].as_deref().unwrap_or_default()).collect();
+            if let Some(cell) = cells
+                .entry((self.person[i], key))
+                .or_insert_with(|| vec![(0.0, 0.0); k])
+                .get_mut(factor.codes[i] as usize)
+            {
+                cell.0 += value;
+                cell.1 += 1.0;
+            }
+        }
+        let all = cells.len();
+        let (mut blocks, mut responses) = (Vec::new(), Vec::new());
+        for ((person, key), cells) in cells {
+            if cells.iter().all(|(_, count)| *count > 0.0) {
+                blocks.push(format!("{} {}", export.people[person].id, key.join(" ")));
+                responses.push(cells.iter().map(|(sum, count)| sum / count).collect());
+            }
+        }
+        Blocks {
+            groups: factor.levels.clone(),
+            incomplete: all - blocks.len(),
+            blocks,
+            responses,
+            dropped: 0,
+        }
+    }
+
+    fn is_crossed(&self, export: &Export, factor: &Factor, place: usize) -> bool {
+        let mut found: BTreeSet<(u32, &str)> = BTreeSet::new();
+        let mut levels: BTreeSet<&str> = BTreeSet::new();
+        for (i, &code) in factor.codes.iter().enumerate() {
+            let Some(level) = export.trials[self.trial[i]].levels[place].as_deref() else {
+                if code != Factor::MISSING {
+                    return false;
+                }
+                continue;
+            };
+            if code != Factor::MISSING {
+                found.insert((code, level));
+                levels.insert(level);
+            }
+        }
+        levels.len() * factor.levels.len() == found.len()
+    }
+}

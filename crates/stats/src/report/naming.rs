@@ -1,0 +1,56 @@
+//! What people read for factors and their levels.
+
+use mimique_study::{QuestionKind, Study};
+
+use super::language::Language;
+
+/// Names of factors and levels in the report's language, from the study file.
+pub(crate) struct Naming<'s> {
+    pub language: Language,
+    pub study: &'s Study,
+}
+
+impl Naming<'_> {
+    /// A factor.
+    pub(crate) fn factor(&self, factor: &str) -> String {
+        let known = match factor {
+            "method" => self.language.pick("method", "méthode"),
+            "expression" => self.language.pick("emotion", "émotion"),
+            "intensity" => self.language.pick("intensity", "intensité"),
+            other => other,
+        };
+        known.to_owned()
+    }
+
+    /// A level of a factor: the label of the option or method that it is.
+    pub(crate) fn level(&self, factor: &str, level: &str) -> String {
+        let code = self.language.code();
+        for question in self.study.all_questions() {
+            if let QuestionKind::SingleChoice(choice) = &question.kind
+                && (choice.truth.as_deref() == Some(factor) || question.id == factor)
+                && let Some(option) = choice.options.iter().find(|option| option.value == level)
+            {
+                return option.label.in_language(code).to_owned();
+            }
+        }
+        if factor == "method" {
+            let labels = self.study.stimuli.methods.values().filter(|entry| {
+                let own = entry.factors.get("method").map(ToString::to_string);
+                own.unwrap_or_else(|| entry.word()) == level
+            });
+            let labels: Vec<&str> = labels
+                .filter_map(|entry| entry.label.as_ref())
+                .map(|label| label.in_language(code))
+                .collect();
+            if let [one] = labels.as_slice() {
+                return (*one).to_owned();
+            }
+        }
+        level.to_owned()
+    }
+
+    /// `a − b` of two levels.
+    pub(crate) fn pair(&self, factor: &str, a: &str, b: &str) -> String {
+        format!("{} − {}", self.level(factor, a), self.level(factor, b))
+    }
+}

@@ -1,0 +1,263 @@
+//! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
+//! for more than a number.
+
+use super::comparison::{Comparison, Pair, PersonLevel, TestLine};
+use super::language::Language;
+use super::measure::MeasureKind;
+use super::naming::Naming;
+use crate::outcome::Outcome;
+
+/// The level of a test.
+const LEVEL: f64 = 0.05;
+
+/// What a comparison within people says.
+pub(crate) fn comparison(naming: &Naming<'_>, result: &Comparison, label: &str) -> String {
+    person_level(naming, &result.recommended, result.kind, &result.factor, label)
+}
+
+/// What tests on one value a person say.
+pub(crate) fn person_level(
+    naming: &Naming<'_>,
+    result: &PersonLevel,
+    kind: MeasureKind,
+    factor: &str,
+    label: &str,
+) -> String {
+    let language = naming.language;
+    let mut sentences = Vec::new();
+    for overall in &result.overall {
+        sentences.push(overall_sentence(naming, overall, factor, label));
+    }
+    let tested = result.pairs.len();
+    if tested <= 3 {
+        let words = result
+            .pairs
+            .iter()
+            .map(|pair| pair_sentence(naming, pair, kind, factor, label, tested));
+        sentences.extend(words);
+        return sentences.join(" ");
+    }
+    let different: Vec<&Pair> =
+        result.pairs.iter().filter(|pair| p_of(pair).is_some_and(|p| p < LEVEL)).collect();
+    sentences.push(if different.is_empty() {
+        language.pick(
+            format!("None of the {tested} pairs differs after Holm’s correction."),
+            format!("Aucune des {tested} paires ne diffère après correction de Holm."),
+        )
+    } else {
+        language.pick(
+            format!("{} of {tested} pairs differ after Holm’s correction:", different.len()),
+            format!("{} paires sur {tested} diffèrent après correction de Holm :", different.len()),
+        )
+    });
+    let words: Vec<String> = different
+        .iter()
+        .map(|pair| {
+            let (high, low, difference) = oriented(pair);
+            format!(
+                "{} > {} ({})",
+                naming.level(factor, high),
+                naming.level(factor, low),
+                difference.map_or_else(String::new, |d| language.number(d))
+            )
+        })
+        .collect();
+    if !words.is_empty() {
+        sentences.push(format!("{}.", words.join(", ")));
+    }
+    sentences.join(" ")
+}
+
+fn p_of(pair: &Pair) -> Option<f64> {
+    match &pair.wilcoxon {
+        Outcome::Ok(line) => Some(line.p_holm.unwrap_or(line.p_value)),
+        Outcome::Undefined { .. } => None,
+    }
+}
+
+/// The higher level first, and by how much.
+fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
+    let estimate = pair.difference.map(|difference| difference.estimate);
+    let effect = match &pair.wilcoxon {
+        Outcome::Ok(line) => line.effect.unwrap_or(0.0),
+        Outcome::Undefined { .. } => 0.0,
+    };
+    if effect < 0.0 {
+        (&pair.b, &pair.a, estimate.map(|e| -e))
+    } else {
+        (&pair.a, &pair.b, estimate)
+    }
+}
+
+fn pair_sentence(
+    naming: &Naming<'_>,
+    pair: &Pair,
+    kind: MeasureKind,
+    factor: &str,
+    label: &str,
+    tested: usize,
+) -> String {
+    let language = naming.language;
+    let (a, b) = (naming.level(factor, &pair.a), naming.level(factor, &pair.b));
+    let topic = topic(language, kind, label);
+    let line = match &pair.wilcoxon {
+        Outcome::Ok(line) => line,
+        Outcome::Undefined { .. } if pair.n == 0 => {
+            return language.pick(
+                format!(
+                    "{topic}, nobody has answers for both {a} and {b}: nothing can be compared."
+                ),
+                format!(
+                    "{topic}, personne n’a de réponses à la fois pour {a} et {b} : rien à comparer."
+                ),
+            );
+        }
+        Outcome::Undefined { .. } => {
+            return language.pick(
+                format!("{topic}, each of the {} people has the same mean for {a} and {b}: no test is defined.", pair.n),
+                format!("{topic}, chacune des {} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini.", pair.n),
+            );
+        }
+    };
+    let difference = pair.difference.map_or_else(String::new, |d| {
+        let sign = if line.effect.unwrap_or(0.0) < 0.0 { -1.0 } else { 1.0 };
+        let mut ends = [d.ci_low * sign, d.ci_high * sign];
+        ends.sort_unstable_by(f64::total_cmp);
+        let [estimate, low, high] =
+            [d.estimate * sign, ends[0], ends[1]].map(|v| amount(language, kind, v));
+        let interval = if d.level_reached {
+            language.pick("95 % interval", "intervalle à 95 %")
+        } else {
+            language.pick("widest interval", "intervalle le plus large")
+        };
+        language.pick(
+            format!("median difference {estimate} ({interval} {low} to {high})"),
+            format!("différence médiane {estimate} ({interval} : {low} à {high})"),
+        )
+    });
+    if pair.least_p > LEVEL {
+        return language.pick(
+            format!(
+                "{topic}, {} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {}. Observed: {difference}.",
+                pair.n, language.fixed(pair.least_p.min(1.0), 3)
+            ),
+            format!(
+                "{topic}, {} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {}. Observé : {difference}.",
+                pair.n, language.fixed(pair.least_p.min(1.0), 3)
+            ),
+        );
+    }
+    let p = language.p(line.p_holm.unwrap_or(line.p_value));
+    let corrected = match (tested > 1, language) {
+        (false, _) => "",
+        (true, Language::English) => " after Holm’s correction",
+        (true, Language::French) => " après correction de Holm",
+    };
+    if p_of(pair).is_some_and(|p| p < LEVEL) {
+        let (high, low, _) = oriented(pair);
+        let first_higher = high == pair.a;
+        let (for_high, for_low) = if first_higher {
+            (pair.a_higher, pair.b_higher)
+        } else {
+            (pair.b_higher, pair.a_higher)
+        };
+        let (high, low) = (naming.level(factor, high), naming.level(factor, low));
+        let higher = higher(language, kind);
+        return language.pick(
+            format!("{topic}, {high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {difference}, {p}{corrected}.", pair.n),
+            format!("{topic}, {high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {difference}, {p}{corrected}.", pair.n),
+        );
+    }
+    language.pick(
+        format!("{topic}, no difference between {a} and {b} was shown: {difference}, {p}{corrected}, {} people. That is no proof that there is none; the interval says how large it may be.", pair.n),
+        format!("{topic}, aucune différence entre {a} et {b} n’a été montrée : {difference}, {p}{corrected}, {} personnes. Cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.", pair.n),
+    )
+}
+
+fn topic(language: Language, kind: MeasureKind, label: &str) -> String {
+    match kind {
+        MeasureKind::Recognition => language.pick("In recognition", "En reconnaissance").to_owned(),
+        MeasureKind::ResponseTime => {
+            language.pick("In response time", "En temps de réponse").to_owned()
+        }
+        MeasureKind::Rating => language.pick(format!("On “{label}”"), format!("Pour « {label} »")),
+    }
+}
+
+fn higher(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Recognition => {
+            language.pick("was recognised more often than", "a été mieux reconnue que")
+        }
+        MeasureKind::ResponseTime => {
+            language.pick("was answered more slowly than", "a demandé plus de temps que")
+        }
+        MeasureKind::Rating => language.pick("was rated higher than", "a été notée plus haut que"),
+    }
+}
+
+/// A difference in its own unit.
+fn amount(language: Language, kind: MeasureKind, value: f64) -> String {
+    match kind {
+        MeasureKind::Recognition => {
+            let points = language.pick("points of percent", "points de pourcentage");
+            format!("{} {points}", language.fixed(value * 100.0, 1))
+        }
+        MeasureKind::ResponseTime => format!("{} s", language.fixed(value, 2)),
+        MeasureKind::Rating => language.fixed(value, 2),
+    }
+}
+
+fn overall_sentence(
+    naming: &Naming<'_>,
+    outcome: &Outcome<TestLine>,
+    factor: &str,
+    label: &str,
+) -> String {
+    let language = naming.language;
+    let line = match outcome {
+        Outcome::Undefined { reason } => {
+            return language.pick(
+                format!("“{label}”: no test is defined ({reason})."),
+                format!("« {label} » : aucun test n’est défini ({reason})."),
+            );
+        }
+        Outcome::Ok(line) => line,
+    };
+    let interaction = line.term.contains(':');
+    let what = if line.term.is_empty() { factor.to_owned() } else { line.term.clone() };
+    let what = what.split(':').map(|part| naming.factor(part)).collect::<Vec<_>>().join(" × ");
+    let degrees = if line.df.is_empty() { String::new() } else { format!("({})", line.df) };
+    let numbers = format!(
+        "{}{degrees} = {}, {}, {} = {}",
+        line.statistic_name,
+        language.number(line.statistic),
+        language.p(line.p_value),
+        line.effect_name,
+        line.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
+    );
+    if line.p_value < LEVEL {
+        if interaction {
+            return language.pick(
+                format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it."),
+                format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier."),
+            );
+        }
+        return language.pick(
+            format!("The levels of {what} differ: {numbers}, {} people.", line.n),
+            format!("Les niveaux de {what} diffèrent : {numbers}, {} personnes.", line.n),
+        );
+    }
+    language.pick(
+        format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.n),
+        format!("Aucun effet de {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.n),
+    )
+}
+
+/// Said wherever trial-level tests stand.
+pub(crate) fn trial_level_caution(language: Language) -> &'static str {
+    language.pick(
+        "The columns “as in the thesis” treat every trial as if it came from another person, although each person answered many. Their p counts one opinion several times: it is printed for comparison with the thesis and supports no conclusion here.",
+        "Les colonnes « comme dans la thèse » traitent chaque essai comme s’il venait d’une autre personne, alors que chacune en a fait plusieurs. Leur p compte une même opinion plusieurs fois : il est imprimé pour comparaison avec la thèse et n’autorise ici aucune conclusion.",
+    )
+}

@@ -1,0 +1,134 @@
+//! A study's export with simulated raters, written as `mimique export --format csv` writes it.
+
+use mimique_study::{Study, responses::FIXED_COLUMNS};
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [0, 1).
+    pub fn uniform(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Standard normal (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.uniform(), self.uniform());
+        (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
+    }
+}
+
+/// What the raters are like.
+pub struct Raters {
+    pub people: usize,
+    /// Added to ratings of the first method.
+    pub effect: f64,
+    pub seed: u64,
+}
+
+/// One row a participant, trial and response; the last person stops half-way.
+pub fn export(study: &Study, raters: &Raters) -> String {
+    let factors = study.factor_names();
+    let about: Vec<&str> = study
+        .demographics
+        .iter()
+        .flat_map(|page| &page.questions)
+        .map(|question| question.id.as_str())
+        .collect();
+    let mut names: Vec<&str> = Vec::new();
+    for (name, ..) in FIXED_COLUMNS {
+        names.push(name);
+        if name == "stimulus" {
+            names.extend(factors.iter().map(String::as_str));
+        }
+    }
+    names.extend(&about);
+    let mut text = names.join(",") + "\n";
+    let mut random = Random::new(raters.seed);
+    let clips = study.clips();
+    let emotions = ["anger", "disgust", "fear", "joy", "sadness", "surprise"];
+    let first_method = "lsts";
+    for person in 0..raters.people {
+        let (level, liking) = (0.6 * random.normal(), 0.3 * random.normal());
+        let status = if person + 1 == raters.people { "active" } else { "completed" };
+        let trials = if status == "active" { clips.len() / 2 } else { clips.len() };
+        let age = 19 + (random.uniform() * 40.0) as u32;
+        let familiarity = 1 + (random.uniform() * 7.0) as u32;
+        for (order, clip) in clips.iter().take(trials).enumerate() {
+            let lsts = clip.factors["method"].to_string() == first_method;
+            let expression = clip.factors["expression"].to_string();
+            let place = emotions.iter().position(|e| *e == expression).unwrap_or(0);
+            let right = 0.45 + 0.08 * place as f64 + if lsts { 0.08 * raters.effect } else { 0.0 };
+            let answer = if random.uniform() < right {
+                expression.clone()
+            } else {
+                emotions[(place + 1 + (random.uniform() * 4.99) as usize) % 6].to_owned()
+            };
+            let mut rating = |shift: f64| {
+                let method = if lsts { raters.effect + liking } else { 0.0 };
+                let value = 4.0 + shift + level + method + random.normal();
+                value.round().clamp(1.0, 7.0).to_string()
+            };
+            let answers = [
+                ("emotion", answer.clone()),
+                ("perceived_intensity", rating(0.3 * (place as f64 - 2.5))),
+                ("believability", rating(0.0)),
+            ];
+            let frames = 90 + (random.uniform() * 30.0) as u32;
+            let late =
+                if random.uniform() < 0.06 { frames / 3 } else { (random.uniform() * 3.0) as u32 };
+            for (question, answer) in answers {
+                let rt = 1500.0 + 2500.0 * (0.6 * random.normal()).exp();
+                let cells: Vec<String> = names
+                    .iter()
+                    .map(|name| match *name {
+                        "participant_id" => format!("p{:04}", person + 1),
+                        "participant" => (person + 1).to_string(),
+                        "trial_id" => format!("faces/{}", clip.id),
+                        "trial_index" | "trial_order" => (order + 1).to_string(),
+                        "trial_type" => "trial".to_owned(),
+                        "condition" => "faces".to_owned(),
+                        "stage" => "live".to_owned(),
+                        "status" => status.to_owned(),
+                        "stimulus" => clip.id.clone(),
+                        "response_id" => question.to_owned(),
+                        "answer" | "response" => answer.clone(),
+                        "truth" if question == "emotion" => expression.clone(),
+                        "correct" if question == "emotion" => (answer == expression).to_string(),
+                        "rt" => format!("{rt:.3}"),
+                        "frames" => frames.to_string(),
+                        "frames_late" => late.to_string(),
+                        "frame_longest_ms" => format!("{:.1}", 17.0 + 3.0 * f64::from(late)),
+                        "refresh_hz" => "60".to_owned(),
+                        "age" => age.to_string(),
+                        "familiarity" => familiarity.to_string(),
+                        factor => {
+                            clip.factors.get(factor).map(ToString::to_string).unwrap_or_default()
+                        }
+                    })
+                    .collect();
+                text.push_str(&cells.join(","));
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// The built-in demonstration study.
+pub fn demo_study() -> Study {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/demo.json");
+    Study::from_text(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
