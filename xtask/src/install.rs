@@ -3,13 +3,13 @@
 //! Debian-like systems with root or sudo are served by apt. Elsewhere the step says what to install
 //! by hand and the command goes on with what it can.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 
-use crate::process::{cargo, has, output, root, run, say, target};
+use crate::process::{cargo, has, output, root, run, say};
 
 /// Whether something asked for is there (perhaps since now), or not and why.
 pub enum Found {
@@ -92,13 +92,6 @@ pub const POSTGRESQL: Package = Package {
     ]),
     elsewhere: "PostgreSQL 14 or newer",
 };
-/// Virtual environments of Python.
-pub const PYTHON_VENV: Package = Package {
-    name: "python3-venv",
-    sign: Sign::Program("python3"),
-    elsewhere: "Python 3.10 or newer with venv",
-};
-
 impl Package {
     fn present(&self) -> bool {
         match self.sign {
@@ -179,27 +172,4 @@ pub fn npm(folder: &Path) -> Result<Found> {
         .current_dir(folder))?;
     std::fs::write(&stamp, wanted)?;
     Ok(Found::Yes)
-}
-
-/// A Python environment with the pinned packages of `requirements`; its interpreter.
-pub fn python(requirements: &Path) -> Result<PathBuf> {
-    if let Found::No(remedy) = PYTHON_VENV.ensure() {
-        bail!("no python3: {remedy}");
-    }
-    let venv = target().join("tools/venv");
-    let interpreter = venv.join("bin/python");
-    let wanted = std::fs::read(requirements).with_context(|| requirements.display().to_string())?;
-    let stamp = venv.join(".installed-requirements");
-    if std::fs::read(&stamp).ok().as_deref() == Some(&wanted) {
-        return Ok(interpreter);
-    }
-    say("installing the Python packages of the tests");
-    if !interpreter.exists() {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
-    }
-    run(Command::new(&interpreter)
-        .args(["-m", "pip", "install", "-q", "--disable-pip-version-check", "-r"])
-        .arg(requirements))?;
-    std::fs::write(&stamp, wanted)?;
-    Ok(interpreter)
 }
