@@ -3,12 +3,14 @@
 //! `contact_sheet OUT.png [key=value ...] [/ key=value ...]...` draws one cell for each `/`; what
 //! stands before the first `/` holds for all of them. Keys: `seed`, `density` (0-3), `yaw`, `pitch`
 //! (degrees), `zoom`, `cx`, `cy` (mm), `size` (pixels), `columns`, `grid=1` for mesh lines, and any
-//! blendshape (`mouthSmile=1` moves both sides).
+//! blendshape (`mouthSmile=1` moves both sides), or `emotion=joy3` for a performance at its apex.
 
 #[path = "support/raster.rs"]
 mod raster;
 
-use mimique_face::{Density, HeadSpec, Identity, build_head};
+use mimique_face::{
+    Avatar, Clip, Density, Emotion, HeadSpec, Identity, build_head, performance_weights,
+};
 use raster::{Camera, Canvas};
 use std::error::Error;
 
@@ -18,6 +20,7 @@ struct Cell {
     camera: Camera,
     lines: bool,
     pose: Vec<(String, f64)>,
+    emotion: Option<Clip>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -43,6 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "cy" => cell.camera.target[1] = value.parse::<f32>()? * 1e-3,
             "size" => size = value.parse()?,
             "columns" => columns = value.parse()?,
+            "emotion" => cell.emotion = Some(clip(value)?),
             "grid" => cell.lines = value == "1",
             name => cell.pose.push((name.to_string(), value.parse()?)),
         }
@@ -54,7 +58,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut canvas = Canvas::new(columns * size, cells.len().div_ceil(columns) * size);
     for (i, cell) in cells.iter().enumerate() {
         let head = build_head(&cell.spec);
-        let mut weights = vec![0.0; head.shape_names.len()];
+        let mut weights = cell
+            .emotion
+            .as_ref()
+            .map_or_else(|| vec![0.0; head.shape_names.len()], |clip| apex(&head, clip));
         for (name, w) in &cell.pose {
             let mut found = false;
             for (k, shape) in head.shape_names.iter().enumerate() {
@@ -74,4 +81,34 @@ fn main() -> Result<(), Box<dyn Error>> {
         canvas.draw_head(&head, &weights, &cell.camera, rect, cell.lines);
     }
     canvas.save(&out)
+}
+
+/// A clip by its short name, as `joy3`.
+fn clip(name: &str) -> Result<Clip, Box<dyn Error>> {
+    let (word, digit) = name.split_at(name.len().saturating_sub(1));
+    let emotion = Emotion::ALL
+        .into_iter()
+        .find(|e| e.name() == word)
+        .ok_or_else(|| format!("no emotion `{word}`"))?;
+    Ok(Clip { emotion, intensity: digit.parse()?, seed: 1 })
+}
+
+/// The strongest frame of a clip, eyes open and ahead.
+fn apex(head: &Avatar, clip: &Clip) -> Vec<f64> {
+    let played = performance_weights(&head.shape_names, clip, 60.0, 4.0);
+    let strength = |f: usize| {
+        let mut sum = 0.0;
+        for (name, w) in head.shape_names.iter().zip(played.frame(f)) {
+            sum += if name.starts_with("eyeBlink") { -3.0 * w } else { *w };
+        }
+        sum
+    };
+    let best = (0..played.frames()).max_by(|&a, &b| strength(a).total_cmp(&strength(b)));
+    let mut weights = played.frame(best.unwrap_or(0)).to_vec();
+    for (name, w) in head.shape_names.iter().zip(&mut weights) {
+        if name.starts_with("eyeLookIn") || name.starts_with("eyeLookOut") {
+            *w = 0.0;
+        }
+    }
+    weights
 }

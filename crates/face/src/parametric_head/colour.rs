@@ -13,7 +13,8 @@ pub(crate) fn cage_tints(cage: &Cage, who: &Identity) -> Vec<Vec3> {
     let flushed = v3(r * 0.97, g * 0.74, b * 0.74);
     let lip = v3(r * 0.80, g * 0.48, b * 0.52);
     let shade = v3(r * 0.72, g * 0.62, b * 0.64);
-    let inner = v3(0.35 * r + 0.1, 0.08, 0.07);
+    let inner = v3(0.30 * r, 0.16 * g, 0.16 * b);
+    let dark = v3(0.03 * r + 0.004, 0.02 * g + 0.002, 0.02 * b + 0.002);
     let at = &cage.at;
     cage.topology
         .sites
@@ -28,23 +29,25 @@ pub(crate) fn cage_tints(cage: &Cage, who: &Identity) -> Vec<Vec3> {
             let mut blush = 0.55 * near(40.0, -32.0, 14.0, 11.0)
                 + 0.5 * near(0.0, at.nose_tip.y, 9.0, 8.0)
                 + 0.2 * near(0.0, at.chin_y + 14.0, 12.0, 8.0);
-            let mut dusk = 0.25 * near(at.eye.x, -12.0, 14.0, 5.0);
+            let mut dusk = 0.12 * near(at.eye.x, -12.0, 14.0, 5.0);
             let mut red = 0.0;
             let mut deep = 0.0;
+            let mut hollow = 0.0;
             match site {
                 Site::Ring(Feature::Mouth, ring, _) => {
-                    red = [0.0, 0.0, 0.12, 0.9, 1.0, 1.0, 1.0, 0.8, 0.4][(ring as usize).min(8)];
+                    red = [0.0, 0.0, 0.10, 0.8, 1.0, 1.0, 1.0, 0.9, 0.6][(ring as usize).min(8)];
                     deep = if ring >= 7 { 0.7 } else { 0.0 };
                 }
                 Site::Fill(Feature::Mouth, ..) => deep = 1.0,
                 Site::Ring(Feature::EyeLeft | Feature::EyeRight, ring, _) => {
-                    dusk = [0.0, 0.05, 0.2, 0.45, 0.4, 0.5, 0.2, 0.2][(ring as usize).min(7)];
+                    let lid = [0.0, 0.05, 0.2, 0.45, 0.4, 0.5, 0.2, 0.2][(ring as usize).min(7)];
+                    dusk = dusk.max(lid * if p.y > at.eye.y - 3.0 { 1.0 } else { 0.4 });
                     blush = [0.0, 0.0, 0.1, 0.2, 0.2, 0.5, 1.0, 1.0][(ring as usize).min(7)];
                 }
                 Site::Ring(Feature::NostrilLeft | Feature::NostrilRight, ring, _) => {
-                    deep = [0.0, 0.12, 0.75, 1.0][(ring as usize).min(3)];
+                    hollow = [0.0, 0.30, 1.0, 1.0][(ring as usize).min(3)];
                 }
-                Site::Fill(Feature::NostrilLeft | Feature::NostrilRight, ..) => deep = 1.0,
+                Site::Fill(Feature::NostrilLeft | Feature::NostrilRight, ..) => hollow = 1.0,
                 Site::Ring(Feature::EarLeft | Feature::EarRight, ..)
                 | Site::Fill(Feature::EarLeft | Feature::EarRight, ..) => blush = 0.55,
                 _ => {}
@@ -56,7 +59,7 @@ pub(crate) fn cage_tints(cage: &Cage, who: &Identity) -> Vec<Vec3> {
             let mut c = skin.lerp(flushed, blush.min(1.0));
             c = c.lerp(shade, (dusk + 0.35 * stubble).min(1.0));
             c = c.lerp(lip, red * mix(1.0, 0.6, who.masculinity));
-            c.lerp(inner, deep)
+            c.lerp(inner, deep).lerp(dark, hollow)
         })
         .collect()
 }

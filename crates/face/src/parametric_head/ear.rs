@@ -48,7 +48,8 @@ pub(crate) fn place_ear(t: &Topology, sculpt: &Sculpt, at: &Landmarks, p: &mut [
         let (s, c) = (libm::sin(a), libm::cos(a));
         let breadth = if s > 0.0 { 17.5 * (1.0 + 0.22 * c) } else { 10.0 };
         let height = if c > 0.0 { 31.0 } else { 30.0 };
-        (breadth * s * at.ear_scale, height * c * at.ear_scale)
+        let round = if c < 0.0 { libm::pow(s.abs(), 0.72).copysign(s) } else { s };
+        (breadth * round * at.ear_scale, height * c * at.ear_scale)
     };
     for (ring, l) in (1..).zip(&LOOPS) {
         for k in 0..feature.ring_length() {

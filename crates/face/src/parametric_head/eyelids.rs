@@ -37,7 +37,7 @@ pub(crate) struct LidLoop {
 
 /// Rings 2 to 7: fold, crease, lid, outer margin, inner margin, tucked under.
 pub(crate) const LID_LOOPS: [LidLoop; 6] = [
-    LidLoop { beyond: [19.0, 17.0], above: [3.6, 2.4], follows: [0.30, 0.30] },
+    LidLoop { beyond: [19.0, 19.0], above: [3.6, 1.6], follows: [0.30, 0.30] },
     LidLoop { beyond: [11.5, 10.0], above: [1.7, 1.9], follows: [0.72, 0.65] },
     LidLoop { beyond: [6.0, 5.0], above: [1.9, 2.0], follows: [0.92, 0.9] },
     LidLoop { beyond: [1.2, 1.2], above: [1.9, 1.8], follows: [1.0, 1.0] },
@@ -62,8 +62,8 @@ impl Eye {
             centre: at.eye,
             radius: at.eye_radius,
             tilt: 3.5 + 1.2 * who.eye_tilt - 2.0 * who.age,
-            upper: 25.0 - 2.0 * who.masculinity - 2.5 * who.age,
-            lower: 20.5 - 1.5 * who.masculinity,
+            upper: 23.5 - 2.0 * who.masculinity - 2.5 * who.age,
+            lower: 19.5 - 1.5 * who.masculinity,
             brow_y: at.brow_y,
             hood: 0.5 * who.masculinity + 1.2 * who.age,
         }

@@ -67,7 +67,7 @@ pub(crate) fn place_lips(t: &Topology, sculpt: &Sculpt, at: &Landmarks, p: &mut 
         let sign = if upper { 1.0 } else { -1.0 };
         let line = at.mouth_y + meeting_line(along);
         let border = border_height(at, along, upper);
-        let swell = libm::pow(c, 0.6);
+        let swell = libm::pow(c, 0.8);
         let loops = if upper { &UPPER } else { &LOWER };
         for (ring, l) in (2..).zip(loops) {
             let x = (at.mouth_half + l.corner_out) * s;
@@ -97,7 +97,7 @@ pub(crate) fn place_lips(t: &Topology, sculpt: &Sculpt, at: &Landmarks, p: &mut 
 
 /// Height of the line where the lips meet, relative to the mouth's height.
 fn meeting_line(t: f64) -> f64 {
-    -0.7 * bump(t / 0.22) + 0.5 * bump((t.abs() - 0.45) / 0.25) + 0.2 * t * t
+    -0.7 * bump(t / 0.22) + 0.5 * bump((t.abs() - 0.45) / 0.25) + 1.7 * t * t * t * t
 }
 
 /// Height of the red of a lip.
@@ -105,9 +105,9 @@ fn border_height(at: &Landmarks, t: f64, upper: bool) -> f64 {
     let c = libm::cos(FRAC_PI_2 * t).max(0.0);
     if upper {
         let bow = 1.0 - 0.13 * bump(t / 0.10) + 0.03 * bump((t.abs() - 0.24) / 0.12);
-        at.lip_upper * libm::pow(c, 0.9) * bow
+        at.lip_upper * libm::pow(c, 1.55) * bow
     } else {
-        at.lip_lower * libm::pow(c, 0.75)
+        at.lip_lower * libm::pow(c, 1.35)
     }
 }
 

@@ -6,7 +6,9 @@ mod colour;
 mod ear;
 mod eyeball;
 mod eyelids;
+mod hair;
 mod identity;
+mod lashes;
 mod layout;
 mod lips;
 mod mouth_parts;
@@ -25,6 +27,7 @@ pub use sites::{MarkerSites, marker_sites};
 
 use crate::avatar::{Avatar, Mesh, Part, SparseShape};
 use eyelids::Eye;
+use hair::SkinLayer;
 use sculpt::{Landmarks, Sculpt};
 use subdivide::Step;
 use topology::Topology;
@@ -131,7 +134,7 @@ impl Subdivided {
     }
 
     /// A channel of the cage on the finest vertices.
-    fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
+    pub(crate) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
         self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values))
     }
 
@@ -197,7 +200,8 @@ pub fn build_head(spec: &HeadSpec) -> Avatar {
     let cage = Cage::new(who);
     let fine = Subdivided::new(&cage.topology, spec.density);
     let neutral = fine.refine(&cage.control);
-    let shapes: Vec<Vec<Vec3>> = muscles::all(&cage).iter().map(|d| fine.refine(d)).collect();
+    let actions = muscles::all(&cage);
+    let shapes: Vec<Vec<Vec3>> = actions.iter().map(|d| fine.refine(d)).collect();
     let (mut skin, from) = fine.mesh(false, &neutral, &shapes);
     let tints = fine.refine(&colour::cage_tints(&cage, who));
     skin.name = "skin".to_string();
@@ -215,6 +219,10 @@ pub fn build_head(spec: &HeadSpec) -> Avatar {
         eyeballs: Vec::new(),
     };
     mouth_parts::add(&mut avatar, &cage);
+    let layer = SkinLayer::new(&neutral, &fine.quads, &shapes);
+    hair::add_brows(&mut avatar, &layer, who, &cage.at);
+    hair::add_cap(&mut avatar, &layer, &fine, &cage.topology, who);
+    lashes::add(&mut avatar, &cage, &actions, who);
     eyeball::add(&mut avatar, &cage.eye, who);
     avatar
 }

@@ -29,17 +29,19 @@ pub(crate) fn pin_nose(sculpt: &Sculpt, at: &Landmarks, pin: &mut dyn FnMut(i32,
         pin(r, 4, seen(x4, y - 2.0));
     }
     let low = |x: f64, y: f64, z: f64| sculpt.project(v3(x, y, z));
-    pin(12, 0, low(0.0, tip.y - 6.5, tip.z - 3.5));
-    pin(13, 0, low(0.0, base + 1.5, tip.z - 10.0));
-    pin(14, 0, seen(0.0, base - 2.2));
-    pin(12, 1, low(4.2, tip.y - 6.3, tip.z - 4.5));
-    pin(12, 2, low(8.5, tip.y - 5.5, tip.z - 6.5));
-    pin(12, 3, low(w - 1.2, tip.y - 5.5, tip.z - 13.0));
-    pin(13, 3, low(w - 1.0, base + 1.8, tip.z - 17.5));
-    pin(14, 3, low(w - 2.5, base - 0.8, tip.z - 20.5));
-    pin(14, 2, low(8.6, base - 0.8, tip.z - 18.0));
-    pin(14, 1, low(4.0, base - 1.4, tip.z - 15.5));
-    pin(13, 1, low(3.6, base + 1.2, tip.z - 10.0));
+    // The underside: its front edge hangs a little below its back edge, so that the nostrils look
+    // down and hardly forward.
+    pin(12, 0, low(0.0, tip.y - 7.0, tip.z - 4.0));
+    pin(13, 0, low(0.0, base - 0.3, tip.z - 10.0));
+    pin(14, 0, seen(0.0, base - 2.6));
+    pin(12, 1, low(4.2, tip.y - 8.2, tip.z - 5.5));
+    pin(12, 2, low(8.6, tip.y - 8.2, tip.z - 8.0));
+    pin(12, 3, low(w - 1.2, tip.y - 7.6, tip.z - 13.5));
+    pin(13, 3, low(w - 1.2, base + 0.6, tip.z - 17.0));
+    pin(14, 3, low(w - 3.2, base + 0.6, tip.z - 19.5));
+    pin(14, 2, low(8.6, base + 1.4, tip.z - 18.0));
+    pin(14, 1, low(4.4, base + 0.4, tip.z - 15.0));
+    pin(13, 1, low(3.6, base - 0.4, tip.z - 10.0));
     pin(12, 4, seen(w + 3.0, tip.y - 7.0));
     pin(13, 4, seen(w + 2.8, base + 0.5));
     pin(14, 4, seen(w + 2.4, base - 4.0));
@@ -57,7 +59,7 @@ pub(crate) fn place_nostril(t: &Topology, sculpt: &Sculpt, p: &mut [Vec3]) {
     let normal = sculpt.normal(sculpt.project(centre));
     let inward = v3(0.05, 0.85, -0.35).unit();
     for (ring, shrink, depth, lift) in
-        [(1, 0.34, 0.0, 0.5), (2, 0.46, 2.2, 0.0), (3, 0.52, 7.0, 0.0)]
+        [(1, 0.40, 0.0, 0.6), (2, 0.46, 2.0, 0.0), (3, 0.50, 7.0, 0.0)]
     {
         for (k, &q) in rim.iter().enumerate() {
             let to = q.lerp(centre, shrink) + inward * depth + normal * lift;

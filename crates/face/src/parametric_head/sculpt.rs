@@ -67,17 +67,17 @@ impl Landmarks {
         let nose_base_y = -46.0 - 2.0 * who.nose_length - 1.0 * m;
         let mouth_y = nose_base_y - 21.0 - 0.8 * m;
         Landmarks {
-            eye: v3(31.5 + 1.0 * who.eye_spacing, 0.0, 71.5),
-            eye_radius: 15.6 + 0.45 * who.eye_size - 0.6 * m,
+            eye: v3(31.5 + 1.0 * who.eye_spacing, 0.0, 70.2),
+            eye_radius: 16.6 + 0.45 * who.eye_size - 0.6 * m,
             mouth_y,
             mouth_half: 24.5 + 1.3 * who.mouth_width + 1.0 * m,
-            lip_upper: (7.0 + 0.9 * who.lip_fullness - 1.0 * m - 1.5 * who.age).max(3.5),
-            lip_lower: (8.8 + 1.0 * who.lip_fullness - 0.8 * m - 1.5 * who.age).max(4.5),
+            lip_upper: (8.2 + 0.9 * who.lip_fullness - 1.0 * m - 1.5 * who.age).max(3.5),
+            lip_lower: (10.2 + 1.0 * who.lip_fullness - 0.8 * m - 1.5 * who.age).max(4.5),
             lip_swell: 1.0 + 0.06 * who.lip_fullness - 0.08 * m - 0.12 * who.age,
             nose_tip: v3(0.0, nose_base_y + 8.5, 112.5 + 1.2 * who.nose_bridge),
             nose_base_y,
             wing_half: 16.5 + 1.1 * who.nose_width + 0.8 * m,
-            chin_y: mouth_y - 41.0 - 2.0 * who.chin - 3.0 * m,
+            chin_y: mouth_y - 40.0 - 2.0 * who.chin - 3.0 * m,
             ear: v3(70.0, -17.0, -6.0),
             ear_scale: 1.0 + 0.06 * who.ear_size + 0.05 * m + 0.06 * who.age,
             brow_y: 22.5 + 1.2 * who.brow_height - 2.0 * m - 1.0 * who.age,
@@ -95,23 +95,20 @@ impl Sculpt {
         let chin = at.chin_y;
         let tip = at.nose_tip;
         // Skull and face.
-        s.ellipsoid(v3(0.0, 27.0, -3.0), v3(75.0, 84.0, 95.0), 1.0);
-        s.ellipsoid(v3(0.0, -28.0, 26.0), v3(61.0 * width, 74.0, 60.0), 26.0);
+        s.ellipsoid(v3(0.0, 25.0, -3.0), v3(74.5, 80.0, 94.0), 1.0);
+        s.ellipsoid(v3(0.0, -24.0, 26.0), v3(59.0 * width, 64.0, 58.0), 26.0);
         // Jaw: body from angle to chin, muzzle, chin.
-        s.pair_cone(
-            v3(46.0 * jaw, at.mouth_y + 2.0, 14.0),
-            v3(14.0, chin + 15.0, 78.0),
-            14.0,
-            13.0,
-            26.0,
-        );
+        let angle = v3(43.5 * jaw, at.mouth_y + 3.0, 14.0);
+        let body = v3(24.5 * jaw, mix(at.mouth_y, chin, 0.50), 63.0);
+        s.pair_cone(angle, body, 13.0, 11.5, 26.0);
+        s.pair_cone(body, v3(14.0, chin + 16.5, 78.0), 11.5, 11.5, 22.0);
         s.ellipsoid(v3(0.0, at.mouth_y + 1.0, 62.0), v3(37.0, 33.0, 37.5), 16.0);
-        let chin_half = mix(7.0, 11.0, m);
+        let chin_half = mix(5.5, 10.5, m);
         s.pair_cone(
-            v3(chin_half, chin + 13.5, 86.0 + 1.5 * who.chin),
-            v3(-chin_half, chin + 13.5, 86.0 + 1.5 * who.chin),
-            13.0,
-            13.0,
+            v3(chin_half, chin + 15.5, 87.0 + 1.5 * who.chin),
+            v3(-chin_half, chin + 15.5, 87.0 + 1.5 * who.chin),
+            11.5,
+            11.5,
             14.0,
         );
         // Cheeks.
@@ -121,35 +118,35 @@ impl Sculpt {
             16.0,
         );
         s.pair_ellipsoid(
-            v3(38.0 * width, -56.0, 50.0),
+            v3(35.0 * width, -51.0, 51.0),
             v3(22.0 + 1.2 * who.fullness, 27.0, 29.0 + 0.8 * who.fullness - 2.5 * who.age),
             18.0,
         );
-        s.pair_cone(v3(56.0 * width, -20.0, 44.0), v3(66.0, -14.0, 4.0), 9.0, 7.0, 14.0);
+        s.pair_cone(v3(54.0 * width, -20.0, 44.0), v3(62.0, -14.0, 6.0), 8.0, 7.0, 24.0);
         // Brow ridge and sockets.
         s.pair_cone(
-            v3(9.0, at.brow_y - 5.0, 82.0 + 2.0 * m),
-            v3(42.0, at.brow_y - 2.0, 67.0 + 1.5 * m),
+            v3(11.0, at.brow_y - 4.0, 79.5 + 2.5 * m),
+            v3(42.0, at.brow_y - 1.0, 66.0 + 1.5 * m),
             8.5,
             8.5,
-            12.0,
+            16.0,
         );
-        s.carve_pair(v3(at.eye.x + 0.5, -2.0, 97.0), v3(18.0, 14.5, 16.0), 12.0);
+        s.carve_pair(v3(at.eye.x + 1.0, 0.0, 98.5), v3(18.0, 13.0, 15.0), 14.0);
         // Nose: bridge, tip, wings, base.
-        s.cone(v3(0.0, 8.0, 83.0), tip + v3(0.0, 6.0, -8.0), 7.5, 8.0, 9.0);
-        s.pair_cone(v3(7.0, -12.0, 84.0), v3(10.0, tip.y, 94.0), 6.0, 8.0, 8.0);
-        s.ellipsoid(tip + v3(0.0, 0.5, -10.5), v3(9.5, 9.0, 10.5), 6.0);
-        s.pair_ellipsoid(v3(at.wing_half - 7.0, tip.y - 2.0, tip.z - 15.5), v3(7.0, 6.8, 9.5), 4.5);
+        s.cone(v3(0.0, 7.0, 83.5), tip + v3(0.0, 5.0, -8.5), 6.5, 7.0, 10.0);
+        s.pair_cone(v3(6.0, -14.0, 84.0), v3(8.0, tip.y + 2.0, 93.0), 5.0, 7.0, 9.0);
+        s.ellipsoid(tip + v3(0.0, -0.3, -9.5), v3(8.8, 8.8, 9.5), 6.0);
+        s.pair_ellipsoid(v3(at.wing_half - 6.0, tip.y - 1.6, tip.z - 16.0), v3(6.0, 6.6, 9.0), 5.0);
         s.cone(
-            tip + v3(0.0, -5.5, -9.0),
-            v3(0.0, at.nose_base_y + 1.0, tip.z - 17.0),
+            tip + v3(0.0, -4.8, -8.0),
+            v3(0.0, at.nose_base_y + 1.5, tip.z - 17.0),
             4.0,
             5.0,
             5.0,
         );
         // Neck.
         let neck = 1.0 + 0.16 * (m - 0.35);
-        s.cone(v3(0.0, -40.0, -18.0), v3(0.0, -220.0, -26.0), 50.0 * neck, 58.0 * neck, 22.0);
+        s.cone(v3(0.0, -40.0, -19.0), v3(0.0, -220.0, -27.0), 44.0 * neck, 52.0 * neck, 20.0);
         s
     }
 

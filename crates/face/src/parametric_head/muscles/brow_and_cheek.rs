@@ -8,7 +8,7 @@ pub(super) fn brow_inner_up(flesh: &Flesh) -> Vec<Vec3> {
     flesh.map(|bit| {
         let inner = flesh.spot(bit, (14.0, y + 1.0), (12.0, 13.0));
         let forehead = flesh.spot(bit, (15.0, y + 22.0), (18.0, 14.0));
-        v3(-1.0, 8.5, 0.8) * inner + v3(0.0, 2.4, 0.9) * forehead
+        v3(-1.2, 9.5, 0.8) * inner + v3(0.0, 2.4, 0.9) * forehead
     })
 }
 
@@ -17,7 +17,7 @@ pub(super) fn brow_outer_up(flesh: &Flesh) -> Vec<Vec3> {
     flesh.map(|bit| {
         let outer = flesh.spot(bit, (42.0, y + 1.0), (15.0, 13.0));
         let forehead = flesh.spot(bit, (42.0, y + 22.0), (16.0, 13.0));
-        v3(0.5, 8.0, -0.8) * outer + v3(0.0, 2.2, -0.4) * forehead
+        v3(0.5, 9.5, -0.8) * outer + v3(0.0, 2.2, -0.4) * forehead
     })
 }
 
@@ -27,7 +27,7 @@ pub(super) fn brow_down(flesh: &Flesh) -> Vec<Vec3> {
         let inner = flesh.spot(bit, (13.0, y), (11.0, 11.0));
         let middle = flesh.spot(bit, (31.0, y), (13.0, 10.0));
         let root = flesh.spot(bit, (5.0, 8.0), (8.0, 8.0));
-        v3(-3.4, -6.6, 2.0) * inner + v3(-1.6, -4.2, 1.2) * middle + v3(-0.6, -2.0, 1.2) * root
+        v3(-3.6, -7.8, 2.2) * inner + v3(-1.6, -4.8, 1.2) * middle + v3(-0.6, -2.0, 1.2) * root
     })
 }
 
@@ -36,13 +36,13 @@ pub(super) fn cheek_squint(flesh: &Flesh) -> Vec<Vec3> {
     flesh.map(|bit| {
         let cheek = flesh.spot(bit, (at.x + 6.0, at.y - 27.0), (17.0, 11.0));
         let outer = flesh.spot(bit, (at.x + 25.0, at.y - 4.0), (8.0, 12.0));
-        let mut d = v3(0.8, 5.2, 2.6) * cheek + v3(-1.0, 0.8, 0.6) * outer;
+        let mut d = v3(0.8, 5.6, 3.4) * cheek + v3(-1.0, 0.8, 0.6) * outer;
         if let Some(lid) = bit.lid
             && !lid.upper
             && lid.ring >= 2
         {
             let arch = libm::sin(std::f64::consts::PI * lid.along);
-            d += v3(0.0, 1.4 * arch, if lid.ring <= 4 { 0.5 * arch } else { 0.0 });
+            d += v3(0.0, 1.7 * arch, if lid.ring <= 4 { 0.5 * arch } else { 0.0 });
         }
         d
     })
@@ -70,7 +70,7 @@ pub(super) fn nose_sneer(flesh: &Flesh) -> Vec<Vec3> {
             + v3(-1.4, -2.6, 0.9) * brow;
         if let Some(near) = flesh.near_lips(bit, 9.0) {
             let lift = super::super::vec3::bump((near.along - 0.45) / 0.4);
-            d += v3(0.0, 3.6, 0.4) * (near.weight * near.upper * lift);
+            d += v3(0.0, 2.6, 0.4) * (near.weight * near.upper * lift);
         }
         d
     })
