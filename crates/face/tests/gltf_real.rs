@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mimique_face::pack::{decode_pack, encode_pack};
 use mimique_face::{Part, read_avatar};
 
 /// The real data, or `None` after saying that the test is skipped.
@@ -64,21 +65,31 @@ fn ict_facekit_has_its_parts_shapes_and_turning_eyes() {
 }
 
 #[test]
-fn size() {
-    let Some(root) = data("size") else { return };
-    let read = read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap();
-    let n: usize =
-        read.avatar.meshes.iter().flat_map(|m| &m.shapes).map(|s| s.vertices.len()).sum();
-    let t = std::time::Instant::now();
-    let pack = mimique_face::pack::encode_pack(&read.avatar);
-    eprintln!(
-        "{n} entries {} bytes bound {} in {:?}",
-        pack.bytes.len(),
-        pack.error_bound,
-        t.elapsed()
-    );
-    let t = std::time::Instant::now();
-    let back = mimique_face::pack::decode_pack(&pack.bytes).unwrap();
-    eprintln!("decode {:?}", t.elapsed());
-    assert_eq!(back.shape_names, read.avatar.shape_names);
+fn ict_facekit_packs_small_and_true() {
+    let Some(root) = data("ict_facekit_packs_small_and_true") else { return };
+    let avatar = read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap().avatar;
+    let pack = encode_pack(&avatar);
+    eprintln!("{} bytes, {:.2} um at most", pack.bytes.len(), pack.error_bound * 1e6);
+    assert!(pack.bytes.len() <= 2_500_000);
+    assert!(pack.error_bound <= 1e-5);
+    let back = decode_pack(&pack.bytes).unwrap();
+    assert_eq!(back.shape_names, avatar.shape_names);
+    assert_eq!(back.eyeballs, avatar.eyeballs);
+    // Every shape alone, and some mixtures.
+    let mut poses: Vec<Vec<f64>> =
+        (0..53).map(|k| (0..53).map(|j| f64::from(u8::from(j == k))).collect()).collect();
+    for m in 1..6 {
+        poses.push((0..53).map(|j| f64::from((j * m * 7) % 11) / 10.0).collect());
+    }
+    let mut worst = 0f64;
+    for weights in &poses {
+        for (a, b) in avatar.meshes.iter().zip(&back.meshes) {
+            for (p, q) in a.posed(weights).iter().zip(&b.posed(weights)) {
+                let square: f64 = (0..3).map(|k| f64::from(p[k] - q[k]).powi(2)).sum();
+                worst = worst.max(square.sqrt());
+            }
+        }
+    }
+    eprintln!("{:.2} um at most in {} poses", worst * 1e6, poses.len());
+    assert!(worst < 1e-5);
 }

@@ -11,6 +11,8 @@
 
 mod marker_map;
 mod operators_pack;
+#[cfg(feature = "prepare")]
+mod prepare;
 mod provenance;
 mod report;
 mod skin;
@@ -21,10 +23,12 @@ mod weights_file;
 
 pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
 pub use operators_pack::{decode_operators, encode_operators};
+#[cfg(feature = "prepare")]
+pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
 pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
 pub use report::{FrameRow, FrameStatistics, SolveReport, StageSeconds};
 pub use skin::AvatarSkin;
-pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_unpacked};
+pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 pub use solve_take::{JoinedTake, SolveError, SolvedCapture, TakeOptions, solve_take};
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
 pub use weights_file::{WeightsFileError, WeightsTable};

@@ -55,7 +55,8 @@ impl SolvedTake {
     }
 }
 
-/// Solves a take pack with an operators pack by a method.
+/// Solves a take pack with an operators pack by a method. A take of recorded weights is unpacked as
+/// it is; its operators are not looked at.
 ///
 /// # Errors
 /// [`SolvePacksError`]: a damaged pack, packs that do not belong together, a method that does not
@@ -65,33 +66,39 @@ pub fn solve_packs(
     take: &[u8],
     spec: &MethodSpec,
 ) -> Result<SolvedTake, SolvePacksError> {
-    solve_unpacked(&decode_operators(operators)?, &decode_take(take)?, spec)
+    let take = decode_take(take)?;
+    match &take.content {
+        TakeContent::Markers(markers) => {
+            solve_markers(&decode_operators(operators)?, &take, markers, spec)
+        }
+        TakeContent::Weights { shape_names, weights } => {
+            let n = shape_names.len();
+            let weights = weights[take.played.start * n..take.played.end * n].to_vec();
+            Ok(SolvedTake {
+                shape_names: shape_names.clone(),
+                rate_hz: take.rate_hz,
+                weights_hash: weights_hash(&weights),
+                weights,
+                statistics: None,
+                warnings: vec![],
+            })
+        }
+    }
 }
 
-/// The same with packs that are open already.
+/// Solves the markers of a take that is open already.
 ///
 /// # Errors
 /// As [`solve_packs`].
-pub fn solve_unpacked(
+pub fn solve_segment(
     operators: &Operators,
     take: &TakePack,
     spec: &MethodSpec,
 ) -> Result<SolvedTake, SolvePacksError> {
-    let shape_names = operators.parts().shape_names.clone();
-    let mut warnings = Vec::new();
-    let (weights, statistics) = match &take.content {
-        TakeContent::Weights { shape_names: columns, weights } => {
-            (recorded(&shape_names, columns, weights, take, &mut warnings), None)
-        }
-        TakeContent::Markers(markers) => {
-            let (weights, statistics) = solve_markers(operators, take, markers, spec)?;
-            warnings.extend(statistics.warnings(take.first_frame));
-            (weights, Some(statistics))
-        }
-    };
-    let weights_hash = weights_hash(&weights);
-    let rate_hz = take.rate_hz;
-    Ok(SolvedTake { shape_names, rate_hz, weights, weights_hash, statistics, warnings })
+    match &take.content {
+        TakeContent::Markers(markers) => solve_markers(operators, take, markers, spec),
+        TakeContent::Weights { .. } => Err(FitError::Recorded.into()),
+    }
 }
 
 fn solve_markers(
@@ -99,7 +106,7 @@ fn solve_markers(
     take: &TakePack,
     markers: &SegmentMarkers,
     spec: &MethodSpec,
-) -> Result<(Vec<f64>, FrameStatistics), SolvePacksError> {
+) -> Result<SolvedTake, SolvePacksError> {
     let parts = operators.parts();
     // The operators' order of markers, whatever the take's.
     let mut face = Vec::new();
@@ -123,7 +130,15 @@ fn solve_markers(
     let width = 3 * parts.marker_labels.len();
     let played = &displacements[take.played.start * width..take.played.end * width];
     let solution = Fit::new(operators, spec)?.solve_take(played)?;
-    Ok((solution.weights, FrameStatistics::of(&solution.reports)))
+    let statistics = FrameStatistics::of(&solution.reports);
+    Ok(SolvedTake {
+        shape_names: parts.shape_names.clone(),
+        rate_hz: take.rate_hz,
+        weights_hash: weights_hash(&solution.weights),
+        weights: solution.weights,
+        warnings: statistics.warnings(take.first_frame),
+        statistics: Some(statistics),
+    })
 }
 
 /// The head's low-pass that a method asks for.
@@ -132,29 +147,4 @@ pub(crate) fn lowpass(spec: &MethodSpec, rate_hz: f64) -> Result<Option<Lowpass>
         None | Some(0.0) => Ok(None),
         Some(cutoff) => Ok(Some(Lowpass::new(cutoff, rate_hz)?)),
     }
-}
-
-/// Recorded weights in the avatar's order; what the avatar lacks is said, what the recording lacks
-/// stays 0.
-fn recorded(
-    shape_names: &[String],
-    columns: &[String],
-    weights: &[f64],
-    take: &TakePack,
-    warnings: &mut Vec<String>,
-) -> Vec<f64> {
-    let lost: Vec<&str> =
-        columns.iter().filter(|c| !shape_names.contains(c)).map(String::as_str).collect();
-    if !lost.is_empty() {
-        warnings.push(format!("the avatar has no shape {}: left out", lost.join(", ")));
-    }
-    let source: Vec<Option<usize>> =
-        shape_names.iter().map(|n| columns.iter().position(|c| c == n)).collect();
-    take.played
-        .clone()
-        .flat_map(|frame| {
-            let row = &weights[frame * columns.len()..(frame + 1) * columns.len()];
-            source.iter().map(|s| s.map_or(0.0, |column| row[column])).collect::<Vec<_>>()
-        })
-        .collect()
 }

@@ -269,6 +269,17 @@ impl<'a> JoinedTake<'a> {
         self.frames().len()
     }
 
+    /// A hash of the face markers and their vertices.
+    #[cfg(feature = "prepare")]
+    pub(crate) fn marker_key(&self) -> String {
+        let labels: Vec<&str> = self.markers.iter().map(|(label, _)| label.as_str()).collect();
+        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
+        Provenance::default()
+            .text("labels", &labels.join("\n"))
+            .numbers("vertices", &vertices)
+            .hash()
+    }
+
     /// D, H and l for a method.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, SolvedCapture, TakeOptions, WeightsTable, decode_operators,
-    encode_operators, encode_take, solve_packs, solve_take, solve_unpacked,
+    encode_operators, encode_take, solve_packs, solve_segment, solve_take,
 };
 
 /// The real data, or `None` after saying that the test is skipped.
@@ -117,7 +117,7 @@ fn a_segment_s_packs_give_the_take_s_weights() {
     let operators = joined.operators(&spec).unwrap();
     let take = joined.segment(&operators, &spec, 80..310).unwrap();
     // Unrounded markers: only the settling of the low-pass at the margins differs.
-    let exact = solve_unpacked(&operators, &take, &spec).unwrap();
+    let exact = solve_segment(&operators, &take, &spec).unwrap();
     let (operators, take) = (encode_operators(&operators), encode_take(&take));
     eprintln!("operators {} bytes, take {} bytes", operators.len(), take.len());
     let packed = solve_packs(&operators, &take, &spec).unwrap();

@@ -42,9 +42,7 @@ pub(super) fn mesh_to(out: &mut PackWriter, mesh: &Mesh) -> f64 {
     }
     out.u8(u8::from(!mesh.vertex_colours.is_empty()));
     for axis in 0..3 {
-        mesh.vertex_colours
-            .iter()
-            .for_each(|c| out.u8((c[axis].clamp(0.0, 1.0) * 255.0).round() as u8));
+        mesh.vertex_colours.iter().for_each(|c| out.u8(colour_to_byte(c[axis])));
     }
 
     let prediction = Prediction::new(mesh.positions.len(), &mesh.triangles);
@@ -168,7 +166,7 @@ pub(super) fn mesh_from(r: &mut PackReader<'_>, shapes: usize) -> Result<Mesh, P
         0 => vec![],
         1 => {
             let planes = [r.raw(vertices)?, r.raw(vertices)?, r.raw(vertices)?];
-            (0..vertices).map(|v| planes.map(|p| f32::from(p[v]) / 255.0)).collect()
+            (0..vertices).map(|v| planes.map(|p| colour_of_byte(p[v]))).collect()
         }
         other => return r.refuse(format!("colour flag {other}")),
     };
@@ -234,6 +232,15 @@ fn residuals_from(
         plane[prediction.order[i as usize] as usize] = guess.wrapping_add(residual);
     }
     Ok(())
+}
+
+/// Linear colour to a byte by its square root: dark tones need the finer steps, as in sRGB.
+fn colour_to_byte(c: f32) -> u8 {
+    (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8
+}
+
+fn colour_of_byte(byte: u8) -> f32 {
+    (f32::from(byte) / 255.0).powi(2)
 }
 
 /// Small numbers of either sign to small numbers without.

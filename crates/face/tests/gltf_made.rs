@@ -1,0 +1,237 @@
+//! glTF files made here, feature by feature, and damaged ones.
+
+use mimique_face::{Part, ReadError, read_gltf};
+use serde_json::{Value, json};
+
+/// Bytes of a GLB file of a document and its binary chunk.
+fn glb(document: &Value, binary: &[u8]) -> Vec<u8> {
+    let mut json = serde_json::to_vec(document).unwrap();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut out = b"glTF".to_vec();
+    let total = 12 + 8 + json.len() + 8 + binary.len();
+    for word in [2, total as u32, json.len() as u32] {
+        out.extend(word.to_le_bytes());
+    }
+    out.extend(b"JSON");
+    out.extend(json);
+    out.extend((binary.len() as u32).to_le_bytes());
+    out.extend(b"BIN\0");
+    out.extend(binary);
+    out
+}
+
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// A triangle with a dense shape `open` and a sparse normalised one `smile`.
+fn triangle() -> (Value, Vec<u8>) {
+    let mut binary = floats(&[0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.2, 0.0]);
+    binary.extend(floats(&[0.0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0, 0.0, 0.0]));
+    binary.extend([0u8, 1, 2, 0]); // Indices, a byte each, at 72.
+    binary.extend([2u8, 0, 0, 0]); // Sparse index at 76.
+    for x in [i16::MAX, -i16::MAX, 0, 0] {
+        binary.extend(x.to_le_bytes()); // Sparse value at 80.
+    }
+    let document = json!({
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": "Head"}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 1]}}],
+        "meshes": [{
+            "primitives": [{
+                "attributes": {"POSITION": 0}, "indices": 2, "material": 0,
+                "targets": [{"POSITION": 1}, {"POSITION": 3}]
+            }],
+            "extras": {"targetNames": ["open", "smile"]}
+        }],
+        "buffers": [{"byteLength": binary.len()}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 72, "byteLength": 3},
+            {"buffer": 0, "byteOffset": 76, "byteLength": 1},
+            {"buffer": 0, "byteOffset": 80, "byteLength": 6}
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+             "min": [0, 0, 0], "max": [0.1, 0.2, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 2, "componentType": 5121, "count": 3, "type": "SCALAR"},
+            {"componentType": 5122, "normalized": true, "count": 3, "type": "VEC3",
+             "sparse": {"count": 1, "indices": {"bufferView": 3, "componentType": 5121},
+                        "values": {"bufferView": 4}}}
+        ]
+    });
+    (document, binary)
+}
+
+fn refusal(document: &Value, binary: &[u8]) -> String {
+    match read_gltf(&glb(document, binary), "test", None) {
+        Err(error) => error.to_string(),
+        Ok(read) => panic!("read as {:?}", read.avatar),
+    }
+}
+
+#[test]
+fn dense_and_sparse_shapes_colours_and_names_are_read() {
+    let (document, binary) = triangle();
+    let read = read_gltf(&glb(&document, &binary), "Ada", None).unwrap();
+    let mesh = &read.avatar.meshes[0];
+    assert_eq!(read.avatar.name, "Ada");
+    assert_eq!(read.avatar.shape_names, ["open", "smile"]);
+    assert_eq!(mesh.part, Part::Skin);
+    assert_eq!(mesh.triangles, [[0, 1, 2]]);
+    assert_eq!(mesh.base_colour, [0.5, 0.25, 0.125]);
+    assert_eq!(mesh.shapes[0].vertices, [1]);
+    assert_eq!(mesh.shapes[0].deltas, [[0.0, -0.01, 0.0]]);
+    assert_eq!(mesh.shapes[1].vertices, [2]);
+    assert_eq!(mesh.shapes[1].deltas, [[1.0, -1.0, 0.0]]);
+    assert_eq!(read.notes, ["unit: metres, as glTF says"]);
+}
+
+#[test]
+fn a_plain_gltf_with_its_buffer_inside_is_read() {
+    use base64::Engine as _;
+    let (mut document, binary) = triangle();
+    let data = base64::engine::general_purpose::STANDARD.encode(&binary);
+    document["buffers"][0]["uri"] = json!(format!("data:application/octet-stream;base64,{data}"));
+    let text = serde_json::to_vec(&document).unwrap();
+    let read = read_gltf(&text, "Ada", None).unwrap();
+    assert_eq!(read.avatar.meshes[0].positions[2], [0.0, 0.2, 0.0]);
+}
+
+#[test]
+fn a_buffer_in_a_file_of_its_own_must_lie_beside_the_avatar() {
+    let (mut document, binary) = triangle();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a b.bin"), &binary).unwrap();
+    document["buffers"][0]["uri"] = json!("a%20b.bin");
+    let text = serde_json::to_vec(&document).unwrap();
+    assert!(read_gltf(&text, "Ada", Some(folder.path())).is_ok());
+    assert!(read_gltf(&text, "Ada", None).is_err());
+    for outside in ["../a b.bin", "/etc/hostname"] {
+        document["buffers"][0]["uri"] = json!(outside);
+        let text = serde_json::to_vec(&document).unwrap();
+        let error = read_gltf(&text, "Ada", Some(folder.path())).unwrap_err().to_string();
+        assert!(error.contains("not in the folder"), "{error}");
+    }
+    document["buffers"][0]["uri"] = json!("absent.bin");
+    let text = serde_json::to_vec(&document).unwrap();
+    let error = read_gltf(&text, "Ada", Some(folder.path())).unwrap_err();
+    assert!(matches!(error, ReadError::Io { .. }), "{error}");
+}
+
+#[test]
+fn nodes_place_their_meshes_and_mirrors_turn_triangles() {
+    let (mut document, binary) = triangle();
+    document["nodes"] = json!([
+        {"children": [1], "translation": [0, 1, 0]},
+        {"mesh": 0, "scale": [-1, 2, 1], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]}
+    ]);
+    let read = read_gltf(&glb(&document, &binary), "test", None).unwrap();
+    let mesh = &read.avatar.meshes[0];
+    // (0.1, 0, 0) scaled to (-0.1, 0, 0), turned a quarter about z to (0, -0.1, 0), lifted by 1.
+    let near = |p: [f32; 3], q: [f32; 3]| (0..3).all(|a| (p[a] - q[a]).abs() < 1e-6);
+    assert!(near(mesh.positions[1], [0.0, 0.9, 0.0]), "{:?}", mesh.positions);
+    assert!(near(mesh.positions[2], [-0.4, 1.0, 0.0]), "{:?}", mesh.positions);
+    assert!(near(mesh.shapes[0].deltas[0], [0.02, 0.0, 0.0]), "{:?}", mesh.shapes[0].deltas);
+    assert_eq!(mesh.triangles, [[0, 2, 1]]);
+}
+
+#[test]
+fn units_are_recognised_by_the_size_of_the_face() {
+    for (scale, metres) in [(1.0, 1.0), (100.0, 0.01), (1000.0, 0.001)] {
+        let (mut document, binary) = triangle();
+        document["nodes"][0]["scale"] = json!([scale, scale, scale]);
+        let read = read_gltf(&glb(&document, &binary), "test", None).unwrap();
+        assert_eq!(read.unit_metres, metres);
+        let p = read.avatar.meshes[0].positions[2];
+        assert!((p[1] - 0.2).abs() < 1e-6, "{p:?}");
+        assert_eq!(read.notes.len(), 1);
+    }
+}
+
+#[test]
+fn materials_of_one_mesh_become_one_skin_with_colours() {
+    let (mut document, binary) = triangle();
+    document["materials"].as_array_mut().unwrap().push(json!({"name": "lips"}));
+    let mut second = document["meshes"][0]["primitives"][0].clone();
+    second["material"] = json!(1);
+    document["meshes"][0]["primitives"].as_array_mut().unwrap().push(second);
+    let read = read_gltf(&glb(&document, &binary), "test", None).unwrap();
+    assert_eq!(read.avatar.meshes.len(), 1);
+    let mesh = &read.avatar.meshes[0];
+    assert_eq!(mesh.positions.len(), 6);
+    assert_eq!(mesh.triangles[1], [3, 4, 5]);
+    assert_eq!(mesh.shapes[0].vertices, [1, 4]);
+    assert_eq!(mesh.vertex_colours[0], [0.5, 0.25, 0.125]);
+    assert_eq!(mesh.vertex_colours[5], [1.0, 1.0, 1.0]);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_place() {
+    type Damage = fn(&mut Value, &mut Vec<u8>);
+    let cases: [(&str, Damage); 16] = [
+        ("extensionsRequired", |d, _| d["extensionsRequired"] = json!(["EXT_meshopt_compression"])),
+        ("meshes[0].primitives[0].attributes.POSITION", |d, _| {
+            d["accessors"][0]["count"] = json!(4)
+        }),
+        ("accessor 9 does not exist", |d, _| {
+            d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9);
+        }),
+        ("targets[0]", |d, _| d["accessors"][1]["count"] = json!(2)),
+        ("4294967295 elements", |d, _| d["accessors"][3]["count"] = json!(4294967295u32)),
+        ("sparse index 200", |_, b| b[76] = 200),
+        ("not a finite number", |_, b| b[0..4].copy_from_slice(&f32::NAN.to_le_bytes())),
+        ("vertex 7 of 3", |_, b| b[74] = 7),
+        ("extras.targetNames", |d, _| d["meshes"][0]["extras"]["targetNames"] = json!(["open"])),
+        ("names two", |d, _| d["meshes"][0]["extras"]["targetNames"] = json!(["a", "a"])),
+        ("no blendshapes", |d, _| {
+            d["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("targets");
+        }),
+        ("below two others or itself", |d, _| d["nodes"][0]["children"] = json!([0])),
+        ("node 5 does not exist", |d, _| d["scenes"][0]["nodes"] = json!([5])),
+        ("mesh 3 does not exist", |d, _| d["nodes"][0]["mesh"] = json!(3)),
+        ("no mesh", |d, _| d["scenes"][0]["nodes"] = json!([])),
+        ("not made of triangles", |d, _| d["meshes"][0]["primitives"][0]["mode"] = json!(1)),
+    ];
+    for (says, damage) in cases {
+        let (mut document, mut binary) = triangle();
+        damage(&mut document, &mut binary);
+        let error = refusal(&document, &binary);
+        assert!(error.contains(says), "{says}: {error}");
+        assert!(error.contains("; "), "no remedy: {error}");
+    }
+}
+
+#[test]
+fn containers_that_lie_about_their_length_are_refused() {
+    let (document, binary) = triangle();
+    let whole = glb(&document, &binary);
+    for (at, value) in [(4, 1u32), (8, u32::MAX), (8, 0), (12, 1 << 30), (16, 0)] {
+        let mut damaged = whole.clone();
+        damaged[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        // A length of 0 in the header only says less than there is.
+        let read = read_gltf(&damaged, "test", None);
+        assert!(read.is_err() || (at, value) == (8, 0), "{at} {value}");
+    }
+    for length in 0..whole.len() {
+        assert!(read_gltf(&whole[..length], "test", None).is_err(), "cut to {length}");
+    }
+    assert!(read_gltf(b"PK\x03\x04", "test", None).unwrap_err().to_string().contains("byte 0"));
+}
+
+#[test]
+fn every_single_byte_may_be_wrong() {
+    let (document, binary) = triangle();
+    let whole = glb(&document, &binary);
+    for at in 0..whole.len() {
+        for value in [0, 1, 0x7f, 0xff, b'9', b'-', b'"', b'}'] {
+            let mut damaged = whole.clone();
+            damaged[at] = value;
+            let _ = read_gltf(&damaged, "test", None);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The built-in head and its actors as avatar, capture and marker map.
+
+use std::ops::Range;
+
+use mimique_face::{
+    Avatar, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
+};
+use mimique_mocap::{Capture, LengthUnit};
+use mimique_study::{BuiltinAvatar, BuiltinCapture, BuiltinExpression};
+
+use crate::provenance::Provenance;
+use crate::{MappedMarker, MarkerMap, MarkerPlace};
+
+/// Noise of the built-in actors' sensors where the study gives none, millimetres.
+const NOISE_MM: f64 = 0.1;
+/// Actors are other people than the avatars of the same seed.
+const ACTORS: u64 = 0x6163_746f_7273_0000;
+
+/// A take of one performance.
+pub(super) struct BuiltinTake {
+    pub capture: Capture,
+    /// Labels of the markers on the skull.
+    pub head: Vec<String>,
+    /// Frames of the neutral face.
+    pub neutral: Range<usize>,
+    /// Frames of the performance.
+    pub played: Range<usize>,
+}
+
+/// A person of the built-in head, and where markers sit on it.
+pub(super) fn avatar(who: &BuiltinAvatar) -> (Avatar, MarkerMap) {
+    let spec = HeadSpec {
+        identity: Identity::from_seed(who.seed),
+        density: who.vertices.map_or_else(Density::default, |v| Density::nearest(v as usize)),
+    };
+    let sites = marker_sites(&spec);
+    let face = sites.face_labels().iter().zip(&sites.vertices).map(|(label, &vertex)| {
+        MappedMarker { label: label.clone(), place: MarkerPlace::Vertex(vertex) }
+    });
+    let map = MarkerMap { face: face.collect(), ..MarkerMap::default() };
+    (build_head(&spec), map)
+}
+
+/// What an avatar made by code is known by: all its numbers.
+pub(super) fn avatar_key(avatar: &Avatar) -> String {
+    // Debug text of a float is exact; the avatar's own pack would be rounded.
+    Provenance::default().text("avatar", &format!("{avatar:?}")).hash()
+}
+
+/// An actor's take of one performance: always the same for the same actor and performance.
+pub(super) fn take(actor: &BuiltinCapture, what: mimique_study::Performance) -> BuiltinTake {
+    let spec = HeadSpec {
+        identity: Identity::from_seed(actor.actor ^ ACTORS),
+        density: Density::default(),
+    };
+    let emotion = match what.expression {
+        BuiltinExpression::Anger => Emotion::Anger,
+        BuiltinExpression::Disgust => Emotion::Disgust,
+        BuiltinExpression::Fear => Emotion::Fear,
+        BuiltinExpression::Joy => Emotion::Joy,
+        BuiltinExpression::Sadness => Emotion::Sadness,
+        BuiltinExpression::Surprise => Emotion::Surprise,
+    };
+    let clip = mimique_face::Clip { emotion, intensity: what.intensity, seed: actor.actor };
+    let noise_mm = actor.noise_mm.unwrap_or(NOISE_MM);
+    // Every performance has noise of its own.
+    let seed = actor.actor ^ ((emotion as u64 + 1) << 40) ^ (u64::from(what.intensity) << 48);
+    let take = synthetic_take(&build_head(&spec), &marker_sites(&spec), &[clip], seed, noise_mm);
+    let frames = take.frames();
+    let [first, end] = take.neutral;
+    BuiltinTake {
+        head: take.head_labels,
+        neutral: first..end,
+        played: take.segments.first().map_or(0..frames, |s| s.first..s.end),
+        capture: Capture {
+            labels: take.labels,
+            rate_hz: take.rate_hz,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions: take.positions,
+            notes: vec![],
+        },
+    }
+}
+
+/// What a take made by code is known by: its numbers.
+pub(super) fn take_key(capture: &Capture) -> String {
+    Provenance::default()
+        .numbers("positions", capture.positions.as_flattened())
+        .numbers("rate", &[capture.rate_hz])
+        .text("labels", &capture.labels.join("\n"))
+        .hash()
+}

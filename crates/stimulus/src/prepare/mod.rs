@@ -1,0 +1,256 @@
+//! A study file's stimuli in; packs in a folder, and where each clip's are, out.
+//!
+//! Every pack is a file named by the SHA-256 of its bytes. What was made before from the same
+//! inputs is taken from the folder; the weights are solved anew each time, by the function that the
+//! browsers run, so that their hash is that of this program.
+
+mod builtin;
+mod cache;
+mod sources;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use mimique_solver::{Method, MethodSpec, OperatorOptions};
+use mimique_study::wire::ClipSource;
+use mimique_study::{Clip, Study};
+
+use self::cache::{Cache, StoredPack};
+use self::sources::{Performance, Recording, Sources};
+use crate::provenance::Provenance;
+use crate::report::unseen_shapes;
+use crate::{TakeContent, TakePack, encode_operators, encode_take, solve_packs};
+
+/// Cut-off of the head's low-pass where the study file gives none, Hz.
+const HEAD_LOWPASS_HZ: f64 = 10.0;
+
+/// Where things are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Places {
+    /// Folder of the study file: its paths are relative to it.
+    pub study: PathBuf,
+    /// What `${MIMIQUE_DATA}` stands for.
+    pub data: Option<PathBuf>,
+    /// Folder of the packs; made when it is not there.
+    pub packs: PathBuf,
+}
+
+/// How far the preparation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// Clips that are ready.
+    pub done: usize,
+    /// Clips in all.
+    pub total: usize,
+    /// What is being worked at.
+    pub what: &'a str,
+}
+
+/// The clips of a study, ready to be served.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prepared {
+    /// Every clip, by its identifier in the study.
+    pub clips: BTreeMap<String, ClipSource>,
+    /// JSON pointer and sentence of what should be said.
+    pub warnings: Vec<(String, String)>,
+}
+
+/// The stimuli cannot be prepared.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{pointer}: {message}")]
+pub struct PrepareError {
+    /// JSON pointer into the study file; empty when the folder of packs is at fault.
+    pub pointer: String,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+impl PrepareError {
+    pub(crate) fn new(pointer: impl Into<String>, message: impl std::fmt::Display) -> Self {
+        Self { pointer: pointer.into(), message: message.to_string() }
+    }
+}
+
+impl Places {
+    /// The study file's own folder; the data folder as `MIMIQUE_DATA` names it.
+    pub fn of(study_file: &std::path::Path, packs: impl Into<PathBuf>) -> Self {
+        let folder = study_file.parent().filter(|p| !p.as_os_str().is_empty());
+        Self {
+            study: folder.map_or_else(|| PathBuf::from("."), PathBuf::from),
+            data: std::env::var_os("MIMIQUE_DATA").map(PathBuf::from),
+            packs: packs.into(),
+        }
+    }
+}
+
+/// Prepares every clip of a study that `mimique check` has found free of errors.
+///
+/// # Errors
+/// [`PrepareError`] with the JSON pointer of the part at fault: a file that is absent or damaged, a
+/// marker map that does not fit, frames outside the capture, a method that does not solve.
+pub fn prepare(
+    study: &Study,
+    places: &Places,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Prepared, PrepareError> {
+    let cache = Cache::open(&places.packs)?;
+    let sources = Sources::new(study, places);
+    let clips = study.clips();
+    let mut prepared = Prepared { clips: BTreeMap::new(), warnings: Vec::new() };
+    for (done, clip) in clips.iter().enumerate() {
+        progress(Progress { done, total: clips.len(), what: &clip.id });
+        let source = prepare_clip(study, clip, &sources, &cache, &mut prepared.warnings)?;
+        prepared.clips.insert(clip.id.clone(), source);
+    }
+    progress(Progress { done: clips.len(), total: clips.len(), what: "packs" });
+    let mut said = std::collections::BTreeSet::new();
+    prepared.warnings.retain(|warning| said.insert(warning.clone()));
+    Ok(prepared)
+}
+
+fn prepare_clip(
+    study: &Study,
+    clip: &Clip,
+    sources: &Sources<'_>,
+    cache: &Cache,
+    warnings: &mut Vec<(String, String)>,
+) -> Result<ClipSource, PrepareError> {
+    let avatar = sources.avatar(&clip.avatar)?;
+    let entry = study.stimuli.methods.get(&clip.method).ok_or_else(|| {
+        PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
+    })?;
+    let method_pointer = pointer(&["stimuli", "methods", &clip.method]);
+    let avatar_pack = cache.pack(&["avatar", &avatar.key], || Ok(avatar.pack()))?;
+    let (spec, operators, take, segment_pointer) = if entry.spec.method == Method::Recorded {
+        let recording = sources.recording(&clip.segment)?;
+        let take = cache.store(recorded(&recording, &avatar.avatar.shape_names, warnings)?)?;
+        // Nothing is solved: the page needs no operators, and loads the one pack once.
+        (entry.spec.clone(), take.clone(), take, recording.pointer)
+    } else {
+        let performance = sources.performance(&clip.segment, &avatar)?;
+        let spec = with_lowpass(&entry.spec, &performance);
+        spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
+        let (operators, take) = to_solve(&spec, &performance, &avatar.key, cache, warnings)?;
+        (spec, operators, take, performance.pointer)
+    };
+    let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
+        .map_err(|e| PrepareError::new(&method_pointer, e))?;
+    warnings.extend(solved.warnings.iter().map(|w| (segment_pointer.clone(), w.clone())));
+    let provenance = Provenance::new()
+        .text("avatar", &avatar_pack.hash)
+        .text("operators", &operators.hash)
+        .text("take", &take.hash)
+        .method(&spec)
+        .text("weights", &solved.weights_hash)
+        .hash();
+    let packs = BTreeMap::from([&avatar_pack, &operators, &take].map(|p| (&p.hash, p.bytes.len())));
+    Ok(ClipSource {
+        bytes: packs.values().map(|&bytes| bytes as u64).sum(),
+        duration_ms: solved.frames() as f64 / solved.rate_hz * 1e3,
+        avatar: avatar_pack.hash,
+        operators: operators.hash,
+        take: take.hash,
+        method: spec,
+        provenance,
+        weights_hash: solved.weights_hash,
+    })
+}
+
+/// Operators and take of a clip that is solved from markers.
+fn to_solve(
+    spec: &MethodSpec,
+    performance: &Performance,
+    avatar_key: &str,
+    cache: &Cache,
+    warnings: &mut Vec<(String, String)>,
+) -> Result<(StoredPack, StoredPack), PrepareError> {
+    let joined = performance.joined()?;
+    let said = joined.warnings().iter().cloned();
+    warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
+    let options = format!("{:?}", OperatorOptions::of(spec));
+    let markers = joined.marker_key();
+    let operators = cache.pack(&["operators", avatar_key, &markers, &options], || {
+        let operators = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
+        Ok(encode_operators(&operators))
+    })?;
+    let opened = crate::decode_operators(&operators.bytes)
+        .map_err(|e| PrepareError::new(&performance.capture_pointer, e))?;
+    let unseen = unseen_shapes(&opened, spec);
+    warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
+    let lowpass = format!("{:?}", spec.head_lowpass_hz);
+    let take = cache.pack(&["take", &markers, &performance.key, &lowpass], || {
+        let take = joined
+            .segment(&opened, spec, performance.frames.clone())
+            .map_err(|e| performance.error(e))?;
+        Ok(encode_take(&take))
+    })?;
+    Ok((operators, take))
+}
+
+/// The take pack of recorded weights, in the avatar's order of shapes.
+fn recorded(
+    recording: &Recording,
+    shape_names: &[String],
+    warnings: &mut Vec<(String, String)>,
+) -> Result<Vec<u8>, PrepareError> {
+    let table = &recording.table;
+    let columns: Vec<Option<usize>> = shape_names
+        .iter()
+        .map(|name| table.shape_names.iter().position(|column| same_shape(name, column)))
+        .collect();
+    let lost: Vec<&str> = (0..table.shape_names.len())
+        .filter(|column| !columns.contains(&Some(*column)))
+        .map(|column| table.shape_names[column].as_str())
+        .collect();
+    if !lost.is_empty() {
+        let message = format!("the avatar has no shape {}: left out", lost.join(", "));
+        warnings.push((recording.pointer.clone(), message));
+    }
+    let rate_hz = table.rate_hz().ok_or_else(|| {
+        PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
+    })?;
+    let weights = recording
+        .frames
+        .clone()
+        .flat_map(|frame| columns.iter().map(move |c| c.map_or(0.0, |c| table.row(frame)[c])));
+    Ok(encode_take(&TakePack {
+        rate_hz,
+        first_frame: table.frames[recording.frames.start],
+        played: 0..recording.frames.len(),
+        content: TakeContent::Weights {
+            shape_names: shape_names.to_vec(),
+            weights: weights.collect(),
+        },
+    }))
+}
+
+/// Whether two names mean one shape: `browDown_L`, `browDownLeft`, `BrowDownLeft`.
+fn same_shape(a: &str, b: &str) -> bool {
+    let plain = |name: &str| {
+        let name: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+        let name = name.to_lowercase();
+        match (name.strip_suffix("left"), name.strip_suffix("right")) {
+            // `mouthLeft` and `jawLeft` are whole names.
+            (Some("mouth" | "jaw"), _) | (_, Some("mouth" | "jaw")) => name,
+            (Some(stem), _) => format!("{stem}l"),
+            (_, Some(stem)) => format!("{stem}r"),
+            _ => name,
+        }
+    };
+    a == b || plain(a) == plain(b)
+}
+
+/// The head's low-pass of a clip: the method's own, or the capture's, or 10 Hz.
+fn with_lowpass(spec: &MethodSpec, performance: &Performance) -> MethodSpec {
+    let mut spec = spec.clone();
+    if spec.head_lowpass_hz.is_none() && spec.method.parameters().contains(&"headLowpassHz") {
+        let usual = (2.0 * HEAD_LOWPASS_HZ < performance.rate_hz()).then_some(HEAD_LOWPASS_HZ);
+        spec.head_lowpass_hz = performance.head_lowpass_hz.or(usual);
+    }
+    spec
+}
+
+/// A JSON pointer (RFC 6901) of its parts.
+pub(crate) fn pointer(parts: &[&str]) -> String {
+    parts.iter().map(|part| format!("/{}", part.replace('~', "~0").replace('/', "~1"))).collect()
+}

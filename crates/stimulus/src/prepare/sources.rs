@@ -1,0 +1,318 @@
+//! The avatars, captures and marker maps that a study file names, each read once.
+
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use mimique_face::Avatar;
+use mimique_face::pack::encode_pack;
+use mimique_mocap::{Capture, LengthUnit, ReadOptions};
+use mimique_solver::FrontEndError;
+use mimique_study::{AvatarSource, CaptureSource, DATA_PREFIX, Segment, Span, Study};
+
+use super::{Places, PrepareError, builtin, pointer};
+use crate::provenance::sha256_hex;
+use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, WeightsTable};
+
+/// Everything that a study file names.
+pub(super) struct Sources<'a> {
+    study: &'a Study,
+    places: &'a Places,
+    avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
+    captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
+}
+
+/// An avatar, and what its bytes or its making are known by.
+pub(super) struct AvatarFile {
+    pub key: String,
+    pub avatar: Avatar,
+    /// The marker map of the built-in head.
+    sites: Option<MarkerMap>,
+    skin: OnceCell<AvatarSkin>,
+    pointer: String,
+}
+
+/// A capture, likewise.
+struct CaptureFile {
+    key: String,
+    capture: Capture,
+    head: Vec<String>,
+    /// Neutral and played frames of a built-in performance.
+    known: Option<(Range<usize>, Range<usize>)>,
+}
+
+/// A segment of a capture, to be played by an avatar.
+pub(super) struct Performance {
+    /// Pointer of the segment.
+    pub pointer: String,
+    /// Pointer of its capture.
+    pub capture_pointer: String,
+    /// Frames played.
+    pub frames: Range<usize>,
+    /// Cut-off that the capture asks for, Hz.
+    pub head_lowpass_hz: Option<f64>,
+    /// What markers, head, neutral and capture are known by.
+    pub key: String,
+    avatar: Rc<AvatarFile>,
+    capture: Rc<CaptureFile>,
+    map: MarkerMap,
+    options: TakeOptions,
+}
+
+/// A segment whose weights were recorded.
+pub(super) struct Recording {
+    /// Pointer of the segment.
+    pub pointer: String,
+    /// Weights in the file's own columns.
+    pub table: WeightsTable,
+    /// Frames played.
+    pub frames: Range<usize>,
+}
+
+impl<'a> Sources<'a> {
+    pub fn new(study: &'a Study, places: &'a Places) -> Self {
+        let (avatars, captures) = Default::default();
+        Self { study, places, avatars, captures }
+    }
+
+    /// The avatar of that identifier.
+    pub fn avatar(&self, id: &str) -> Result<Rc<AvatarFile>, PrepareError> {
+        if let Some(found) = self.avatars.borrow().get(id) {
+            return Ok(found.clone());
+        }
+        let at = |field: &str| pointer(&["stimuli", "avatars", id, field]);
+        let source = self.study.stimuli.avatars.get(id).and_then(|a| a.source());
+        let (key, avatar, sites, pointer) = match source {
+            Some(AvatarSource::Builtin(who)) => {
+                let (avatar, sites) = builtin::avatar(who);
+                (builtin::avatar_key(&avatar), avatar, Some(sites), at("builtin"))
+            }
+            Some(AvatarSource::File(file)) => {
+                let (path, bytes) = self.read(file, &at("file"))?;
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let read = mimique_face::read_gltf(&bytes, &name, path.parent()).map_err(|e| {
+                    PrepareError::new(at("file"), format!("{}: {e}", path.display()))
+                })?;
+                (sha256_hex(&bytes), read.avatar, None, at("file"))
+            }
+            None => {
+                let message = "give exactly one of builtin and file";
+                return Err(PrepareError::new(pointer(&["stimuli", "avatars", id]), message));
+            }
+        };
+        let file = Rc::new(AvatarFile { key, avatar, sites, skin: OnceCell::new(), pointer });
+        self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
+        Ok(file)
+    }
+
+    /// The segment of that identifier, with the marker map for an avatar.
+    pub fn performance(
+        &self,
+        segment: &str,
+        avatar: &Rc<AvatarFile>,
+    ) -> Result<Performance, PrepareError> {
+        let (segment, at) = self.segment(segment)?;
+        let capture_pointer = pointer(&["stimuli", "captures", &segment.capture]);
+        let file = self.capture(segment, &at)?;
+        let entry = &self.study.stimuli.captures[&segment.capture];
+        let (map, map_key) = match (&entry.markers, &avatar.sites) {
+            (Some(path), _) => {
+                let at = format!("{capture_pointer}/markers");
+                let (path, bytes) = self.read(path, &at)?;
+                let map = MarkerMap::from_text(&String::from_utf8_lossy(&bytes))
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                (map, sha256_hex(&bytes))
+            }
+            (None, Some(sites)) if file.known.is_some() => (sites.clone(), "sites".to_owned()),
+            (None, _) => {
+                return Err(PrepareError::new(
+                    format!("{capture_pointer}/markers"),
+                    "no marker map; name the file that says where each marker sits on the avatar",
+                ));
+            }
+        };
+        let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
+        let neutral = entry.neutral.map(|[first, end]| first..end);
+        let known = file.known.as_ref().map(|(neutral, _)| neutral.clone());
+        let options =
+            TakeOptions { neutral: neutral.or(known), head: (!head.is_empty()).then_some(head) };
+        let frames = match (segment.span(), &file.known) {
+            (Some(Span::Frames { first, end }), None) => first..end,
+            (Some(Span::Performance(_)), Some((_, played))) => played.clone(),
+            _ => {
+                return Err(PrepareError::new(
+                    at,
+                    "give first and end for a file, performance for a built-in actor",
+                ));
+            }
+        };
+        let key = format!("{} {map_key} {options:?} {frames:?}", file.key);
+        Ok(Performance {
+            pointer: at,
+            capture_pointer,
+            frames,
+            head_lowpass_hz: entry.head_lowpass_hz,
+            key,
+            avatar: avatar.clone(),
+            capture: file,
+            map,
+            options,
+        })
+    }
+
+    /// The segment of that identifier as recorded weights.
+    pub fn recording(&self, segment: &str) -> Result<Recording, PrepareError> {
+        let (segment, at) = self.segment(segment)?;
+        let pointer = format!("{}/file", pointer(&["stimuli", "captures", &segment.capture]));
+        let entry = self.study.stimuli.captures.get(&segment.capture);
+        let Some(CaptureSource::File(file)) = entry.and_then(|c| c.source()) else {
+            let message = "the method recorded takes weights from a file; name a CSV of weights";
+            return Err(PrepareError::new(pointer, message));
+        };
+        let (path, bytes) = self.read(file, &pointer)?;
+        let table = WeightsTable::from_csv(&String::from_utf8_lossy(&bytes), None)
+            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
+        match segment.span() {
+            Some(Span::Frames { first, end }) if end <= table.frames.len() => {
+                Ok(Recording { pointer: at, table, frames: first..end })
+            }
+            _ => Err(PrepareError::new(
+                at,
+                format!("give first and end within the {} frames of the file", table.frames.len()),
+            )),
+        }
+    }
+
+    fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
+        let segments = &self.study.stimuli.segments;
+        let index = segments.iter().position(|s| s.id == id).ok_or_else(|| {
+            PrepareError::new("/stimuli/segments", format!("no segment {id:?}; add it"))
+        })?;
+        Ok((&segments[index], pointer(&["stimuli", "segments", &index.to_string()])))
+    }
+
+    /// The capture of a segment; for a built-in actor the take of its performance.
+    fn capture(&self, segment: &Segment, at: &str) -> Result<Rc<CaptureFile>, PrepareError> {
+        let id = &segment.capture;
+        let of = |field: &str| pointer(&["stimuli", "captures", id, field]);
+        let entry = self.study.stimuli.captures.get(id);
+        let (name, file) = match (entry.and_then(|c| c.source()), segment.span()) {
+            (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
+                let name = format!("{id} {:?}", what);
+                if let Some(found) = self.captures.borrow().get(&name) {
+                    return Ok(found.clone());
+                }
+                let take = builtin::take(actor, what);
+                let file = CaptureFile {
+                    key: builtin::take_key(&take.capture),
+                    capture: take.capture,
+                    head: take.head,
+                    known: Some((take.neutral, take.played)),
+                };
+                (name, file)
+            }
+            (Some(CaptureSource::File(path)), Some(Span::Frames { .. })) => {
+                if let Some(found) = self.captures.borrow().get(id) {
+                    return Ok(found.clone());
+                }
+                let (path, bytes) = self.read(path, &of("file"))?;
+                let unit = entry.and_then(|c| c.unit.as_deref());
+                let options = ReadOptions { unit: unit_of(unit, &of("unit"))?, rate_hz: None };
+                let recording =
+                    mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
+                        .map_err(|e| {
+                            PrepareError::new(of("file"), format!("{}: {e}", path.display()))
+                        })?;
+                let key = format!("{} {unit:?}", sha256_hex(&bytes));
+                let capture = recording.capture;
+                (id.clone(), CaptureFile { key, capture, head: vec![], known: None })
+            }
+            (None, _) => {
+                let message = "give exactly one of builtin and file";
+                return Err(PrepareError::new(pointer(&["stimuli", "captures", id]), message));
+            }
+            _ => {
+                let message = "give first and end for a file, performance for a built-in actor";
+                return Err(PrepareError::new(at, message));
+            }
+        };
+        let file = Rc::new(file);
+        self.captures.borrow_mut().insert(name, file.clone());
+        Ok(file)
+    }
+
+    /// The file that a path of the study names.
+    fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
+        let path = match (file.strip_prefix(DATA_PREFIX), &self.places.data) {
+            (None, _) => self.places.study.join(file),
+            (Some(rest), Some(data)) => data.join(rest),
+            (Some(_), None) => {
+                let message = format!("{file:?}: set MIMIQUE_DATA to the folder of the data");
+                return Err(PrepareError::new(at, message));
+            }
+        };
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok((path, bytes)),
+            Err(e) => {
+                let message = format!("{}: {e}; check the path", path.display());
+                Err(PrepareError::new(at, message))
+            }
+        }
+    }
+}
+
+fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
+    match unit {
+        None => Ok(None),
+        Some("mm") => Ok(Some(LengthUnit::Millimetre)),
+        Some("cm") => Ok(Some(LengthUnit::Centimetre)),
+        Some("m") => Ok(Some(LengthUnit::Metre)),
+        Some(other) => Err(PrepareError::new(at, format!("unit {other:?}; write m, cm or mm"))),
+    }
+}
+
+impl AvatarFile {
+    /// The avatar pack.
+    pub fn pack(&self) -> Vec<u8> {
+        encode_pack(&self.avatar).bytes
+    }
+
+    fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
+        if let Some(skin) = self.skin.get() {
+            return Ok(skin);
+        }
+        let skin = AvatarSkin::of(&self.avatar).map_err(|e| PrepareError::new(&self.pointer, e))?;
+        Ok(self.skin.get_or_init(|| skin))
+    }
+}
+
+impl Performance {
+    /// Frames a second of the capture.
+    pub fn rate_hz(&self) -> f64 {
+        self.capture.capture.rate_hz
+    }
+
+    /// Avatar, map and capture brought together.
+    pub fn joined(&self) -> Result<JoinedTake<'_>, PrepareError> {
+        JoinedTake::new(self.avatar.skin()?, &self.capture.capture, &self.map, &self.options)
+            .map_err(|e| self.error(e))
+    }
+
+    /// An error of the solve, at the part of the study file that it comes from.
+    pub fn error(&self, error: SolveError) -> PrepareError {
+        let field = match &error {
+            SolveError::Map(_) | SolveError::NoCommonLabel { .. } => "/markers",
+            SolveError::NoHeadMarker { .. } => "/head",
+            SolveError::FrontEnd(FrontEndError::Head { .. }) => "/head",
+            SolveError::FrontEnd(
+                FrontEndError::NeutralRange { .. } | FrontEndError::NeutralUnseen { .. },
+            ) => "/neutral",
+            SolveError::FrontEnd(FrontEndError::Lowpass(_)) => "/headLowpassHz",
+            SolveError::Segment { .. } => return PrepareError::new(&self.pointer, error),
+            _ => "",
+        };
+        PrepareError::new(format!("{}{field}", self.capture_pointer), error)
+    }
+}

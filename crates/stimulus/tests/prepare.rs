@@ -1,0 +1,211 @@
+//! A study file's stimuli to packs: built-in ones and real ones, reuse, refusals.
+
+use std::path::{Path, PathBuf};
+
+use mimique_face::pack::decode_pack;
+use mimique_stimulus::{Places, Prepared, prepare, sha256_hex, solve_packs};
+use mimique_study::Study;
+use serde_json::{Value, json};
+
+fn repository() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// The real data, or `None` after saying that the test is skipped.
+fn data(test: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("MIMIQUE_DATA")
+        .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
+    if root.is_dir() {
+        return Some(root);
+    }
+    assert!(
+        std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"),
+        "{test}: real data not found at {}",
+        root.display()
+    );
+    eprintln!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", root.display());
+    None
+}
+
+/// A study of the given stimuli and nothing else.
+fn study(stimuli: Value) -> Study {
+    Study::from_value(&json!({
+        "id": "test",
+        "studyMetadata": {"title": "Test", "version": "1"},
+        "languages": ["en"],
+        "components": {},
+        "sequence": {"order": "fixed", "components": []},
+        "stimuli": stimuli,
+    }))
+    .unwrap()
+}
+
+fn builtin() -> Value {
+    json!({
+        "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+        "captures": {"actor": {"builtin": {"actor": 1}}},
+        "segments": [
+            {"id": "joy2", "capture": "actor",
+             "performance": {"expression": "joy", "intensity": 2}},
+            {"id": "fear3", "capture": "actor",
+             "performance": {"expression": "fear", "intensity": 3}},
+        ],
+        "methods": {"lsts30": {"method": "lsts", "alpha": 0.3}, "box": {"method": "box"}},
+    })
+}
+
+fn places(packs: &Path, data: Option<PathBuf>) -> Places {
+    Places { study: repository().join("study-config"), data, packs: packs.to_owned() }
+}
+
+/// What a browser does with a clip: fetch, unpack, solve; returns how far the face moves, metres.
+fn played(prepared: &Prepared, packs: &Path, clip: &str) -> f64 {
+    let source = &prepared.clips[clip];
+    let fetch = |hash: &str| {
+        let bytes = std::fs::read(packs.join(hash)).unwrap();
+        assert_eq!(sha256_hex(&bytes), hash);
+        bytes
+    };
+    let avatar = decode_pack(&fetch(&source.avatar)).unwrap();
+    let solved =
+        solve_packs(&fetch(&source.operators), &fetch(&source.take), &source.method).unwrap();
+    assert_eq!(solved.weights_hash, source.weights_hash);
+    assert_eq!(solved.shape_names, avatar.shape_names);
+    let duration = solved.frames() as f64 / solved.rate_hz * 1e3;
+    assert!((duration - source.duration_ms).abs() < 1e-6);
+    let n = solved.shape_names.len();
+    let skin = avatar.skin().unwrap();
+    solved
+        .weights
+        .chunks_exact(n)
+        .step_by(20)
+        .flat_map(|weights| skin.posed(weights).into_iter().zip(&skin.positions))
+        .map(|(p, q)| (0..3).map(|a| f64::from(p[a] - q[a]).powi(2)).sum::<f64>().sqrt())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn built_in_stimuli_are_prepared_once_and_play() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study(builtin());
+    let mut steps = Vec::new();
+    let places = places(folder.path(), None);
+    let prepared =
+        prepare(&study, &places, &mut |p| steps.push((p.done, p.what.to_owned()))).unwrap();
+    assert_eq!(steps.len(), 5);
+    assert_eq!(steps[4], (4, "packs".to_owned()));
+    assert_eq!(prepared.clips.len(), 4);
+    for (id, source) in &prepared.clips {
+        let moved = played(&prepared, folder.path(), id);
+        eprintln!("{id}: {moved:.4} m, {} bytes", source.bytes);
+        assert!((0.002..0.08).contains(&moved), "{id} moves by {moved} m");
+        assert_eq!(source.duration_ms, 4000.0);
+        assert_eq!(source.method.head_lowpass_hz, Some(10.0));
+    }
+    // One avatar, one set of operators (both methods ask for the same), one take a performance.
+    let packs = |of: fn(&mimique_study::wire::ClipSource) -> &String| {
+        prepared.clips.values().map(of).collect::<std::collections::BTreeSet<_>>().len()
+    };
+    assert_eq!((packs(|c| &c.avatar), packs(|c| &c.operators), packs(|c| &c.take)), (1, 1, 2));
+    assert_eq!(packs(|c| &c.provenance), 4);
+
+    // Again: everything is there, nothing changes, not even a file.
+    let files = |folder: &Path| {
+        let mut files: Vec<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap())
+            .map(|e| (e.file_name(), e.metadata().unwrap().modified().unwrap()))
+            .collect();
+        files.sort();
+        files
+    };
+    let before = files(folder.path());
+    assert_eq!(prepare(&study, &places, &mut |_| {}).unwrap(), prepared);
+    assert_eq!(files(folder.path()), before);
+}
+
+#[test]
+fn recorded_weights_are_played_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut csv = "frame,time,jawOpen,mouthSmileLeft,noSuchShape\n".to_owned();
+    for f in 0..30 {
+        csv += &format!("{f},{},{},0.25,1\n", f as f64 / 30.0, f as f64 / 30.0);
+    }
+    std::fs::write(folder.path().join("weights.csv"), csv).unwrap();
+    let study = study(json!({
+        "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+        "captures": {"phone": {"file": "weights.csv"}},
+        "segments": [{"id": "s", "capture": "phone", "first": 10, "end": 20}],
+        "methods": {"phone": {"method": "recorded"}},
+    }));
+    let places = Places { study: folder.path().into(), data: None, packs: folder.path().into() };
+    let prepared = prepare(&study, &places, &mut |_| {}).unwrap();
+    assert_eq!(prepared.warnings.len(), 1);
+    assert!(prepared.warnings[0].1.contains("noSuchShape"), "{:?}", prepared.warnings);
+    let clip = &prepared.clips["s.phone"];
+    assert!(played(&prepared, folder.path(), "s.phone") > 0.005);
+    let take = std::fs::read(folder.path().join(&clip.take)).unwrap();
+    let solved = solve_packs(&take, &take, &clip.method).unwrap();
+    let jaw = solved.shape_names.iter().position(|n| n == "jawOpen").unwrap();
+    assert_eq!(solved.frames(), 10);
+    assert!((solved.rate_hz - 30.0).abs() < 1e-9);
+    assert!((solved.weights[jaw] - 10.0 / 30.0).abs() <= 0.5e-4);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_pointer() {
+    type Change = fn(&mut Value);
+    let cases: [(&str, &str, Change); 9] = [
+        ("/stimuli/avatars/ada/file", "absent.glb", |s| {
+            s["avatars"]["ada"] = json!({"file": "absent.glb"});
+        }),
+        ("/stimuli/avatars/ada/file", "demo.json: byte 0", |s| {
+            s["avatars"]["ada"] = json!({"file": "demo.json"});
+        }),
+        ("/stimuli/avatars/ada/file", "set MIMIQUE_DATA", |s| {
+            s["avatars"]["ada"] = json!({"file": "${MIMIQUE_DATA}/a.glb"});
+        }),
+        ("/stimuli/avatars/ada", "exactly one", |s| s["avatars"]["ada"] = json!({})),
+        ("/stimuli/captures/actor/file", "absent.c3d", |s| {
+            s["captures"]["actor"] = json!({"file": "absent.c3d"});
+            s["segments"] = json!([{"id": "a", "capture": "actor", "first": 0, "end": 9}]);
+        }),
+        ("/stimuli/segments/0", "performance for a built-in", |s| {
+            s["segments"] = json!([{"id": "a", "capture": "actor", "first": 0, "end": 9}]);
+        }),
+        ("/stimuli/captures/actor/head", "no_such_marker", |s| {
+            s["captures"]["actor"]["head"] = json!(["no_such_marker"]);
+        }),
+        ("/stimuli/captures/actor/headLowpassHz", "500", |s| {
+            s["captures"]["actor"]["headLowpassHz"] = json!(500);
+        }),
+        ("/stimuli/methods/box", "alpha", |s| {
+            s["methods"] = json!({"box": {"method": "box", "alpha": 0.3}});
+        }),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    for (pointer, says, change) in cases {
+        let mut stimuli = builtin();
+        change(&mut stimuli);
+        let places = places(folder.path(), None);
+        let error = prepare(&study(stimuli), &places, &mut |_| {}).unwrap_err();
+        assert_eq!(error.pointer, pointer, "{error}");
+        assert!(error.message.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn the_study_of_real_motion_capture_is_prepared() {
+    let Some(data) = data("the_study_of_real_motion_capture_is_prepared") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(repository().join("study-config/animface.json")).unwrap();
+    let study = Study::from_text(&text).unwrap();
+    let prepared = prepare(&study, &places(folder.path(), Some(data)), &mut |_| {}).unwrap();
+    assert_eq!(prepared.clips.len(), 8);
+    for (id, source) in &prepared.clips {
+        let moved = played(&prepared, folder.path(), id);
+        eprintln!("{id}: {moved:.4} m, {} bytes", source.bytes);
+        assert!((0.004..0.08).contains(&moved), "{id} moves by {moved} m");
+        assert!(source.bytes < 2_500_000);
+    }
+}
