@@ -52,7 +52,7 @@ mod tests {
     fn agrees_with_counting_all_pairs() {
         let x: Vec<f64> = (0..60).map(|i| f64::from(i * 37 % 11)).collect();
         let y: Vec<f64> = (0..60).map(|i| f64::from(i * 53 % 7)).collect();
-        let (mut sum, mut untied_x, mut untied_y) = (0.0, 0.0, 0.0);
+        let (mut sum, mut untied_x, mut untied_y) = (0.0f64, 0.0f64, 0.0f64);
         for i in 0..60 {
             for j in 0..i {
                 let (dx, dy) = (x[i] - x[j], y[i] - y[j]);
@@ -61,7 +61,7 @@ mod tests {
                 untied_y += f64::from(u8::from(dy != 0.0));
             }
         }
-        let direct = sum / (untied_x * untied_y as f64).sqrt();
+        let direct = sum / (untied_x * untied_y).sqrt();
         assert!((kendall_tau_b(&Ranks::of(&x), &Ranks::of(&y)) - direct).abs() < 1e-14);
     }
 }

@@ -170,7 +170,7 @@ mod tests {
         assert!((tail.ln_p + 2000.0).abs() < 1e-9);
         let tail = normal_upper(50.0);
         assert_eq!(tail.p, 0.0);
-        assert!((tail.ln_p + 1254.831_360_8).abs() < 1e-6, "{}", tail.ln_p);
+        assert!((tail.ln_p + 1_254.831_360_8).abs() < 1e-6, "{}", tail.ln_p);
     }
 
     #[test]

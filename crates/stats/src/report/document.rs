@@ -62,10 +62,24 @@ impl DataTable {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
+    /// Columns with the heading of their group in front, where there are groups.
+    pub(crate) fn full_columns(&self) -> Vec<String> {
+        let groups = self.groups.iter().flat_map(|(text, columns)| vec![text.as_str(); *columns]);
+        self.columns
+            .iter()
+            .zip(groups.chain(std::iter::repeat("")))
+            .map(|(column, group)| match (group, column.as_str()) {
+                ("", _) => column.clone(),
+                (_, "") => group.to_owned(),
+                _ => format!("{group}: {column}"),
+            })
+            .collect()
+    }
+
     /// As CSV with commas.
     pub(crate) fn to_csv(&self) -> String {
         let mut text = String::new();
-        for row in std::iter::once(&self.columns).chain(&self.rows) {
+        for row in std::iter::once(&self.full_columns()).chain(&self.rows) {
             let cells: Vec<String> = row.iter().map(|cell| csv_cell(cell)).collect();
             text.push_str(&cells.join(","));
             text.push('\n');

@@ -10,8 +10,8 @@ use crate::outcome::Outcome;
 use crate::proportion::Proportion;
 
 /// Left edge of the plotting area beside row labels.
-const LEFT: f64 = 132.0;
-const RIGHT: f64 = WIDTH - 20.0;
+const LEFT: f64 = 116.0;
+const RIGHT: f64 = WIDTH - 10.0;
 
 /// Shown against answered: the share of each row.
 pub(crate) fn confusion(
@@ -23,7 +23,7 @@ pub(crate) fn confusion(
 ) -> Figure {
     let shown = result.shown();
     let columns = result.labels.len();
-    let size = ((WIDTH - LEFT - 20.0) / columns as f64).min(64.0);
+    let size = ((RIGHT - LEFT) / columns as f64).min(64.0);
     let (top, height) = (58.0, 40.0);
     let caption = language.pick(
         format!("{of}: emotion played (rows) and recognised (columns), percent of each row"),
@@ -49,7 +49,7 @@ pub(crate) fn confusion(
     let mut best = Vec::new();
     for (i, label) in shown.iter().enumerate() {
         let y = top + height * i as f64;
-        svg.text(LEFT - 10.0, y + height / 2.0 + 4.0, "", Anchor::End, &clipped(&name(label), 17));
+        svg.text(LEFT - 10.0, y + height / 2.0 + 4.0, "", Anchor::End, &clipped(&name(label), 15));
         let row: u64 = result.labels.iter().map(|answer| result.count(label, answer)).sum();
         let mut cells = vec![name(label)];
         for (j, answer) in result.labels.iter().enumerate() {
@@ -102,7 +102,7 @@ pub(crate) fn likert(
 ) -> Figure {
     let points: Vec<i64> = (first..=last).collect();
     let (top, height, gap) = (44.0, 26.0, 12.0);
-    let right = WIDTH - 62.0;
+    let right = WIDTH - 48.0;
     let mut svg = Svg::new(caption, top + (height + gap) * rows.len() as f64 + 28.0);
     let tone = |i: usize| {
         if points.len() > 1 { i as f64 / (points.len() - 1) as f64 } else { 0.5 }
@@ -130,7 +130,7 @@ pub(crate) fn likert(
     let mut spoken = Vec::new();
     for (place, (label, values)) in rows.iter().enumerate() {
         let y = top + (height + gap) * place as f64;
-        svg.text(LEFT - 10.0, y + height / 2.0 + 4.5, "", Anchor::End, &clipped(label, 17));
+        svg.text(LEFT - 10.0, y + height / 2.0 + 4.5, "", Anchor::End, &clipped(label, 15));
         let n = values.len() as f64;
         let mut x = LEFT;
         let mut cells = vec![label.clone()];
@@ -221,7 +221,7 @@ pub(crate) fn differences(
         for (line, part) in label.split(" − ").enumerate() {
             let text = if line == 0 { part.to_owned() } else { format!("− {part}") };
             let dy = if label.contains(" − ") { line as f64 * 17.0 - 4.0 } else { 4.0 };
-            svg.text(LEFT - 12.0, y + dy, "", Anchor::End, &clipped(&text, 17));
+            svg.text(LEFT - 12.0, y + dy, "", Anchor::End, &clipped(&text, 15));
         }
         // People with the same difference stand beside each other, above the estimate.
         let mut sorted = pair.differences.clone();
@@ -315,12 +315,12 @@ pub(crate) fn shares(
     let mut y = top;
     for (title, rows) in groups {
         if titled {
-            svg.text(LEFT - 12.0, y + 16.0, "strong", Anchor::End, &clipped(title, 17));
+            svg.text(LEFT - 12.0, y + 16.0, "strong", Anchor::End, &clipped(title, 15));
         }
         y += heading;
         for (label, share) in rows {
             let middle = y + line / 2.0;
-            svg.text(LEFT - 12.0, middle + 4.5, "", Anchor::End, &clipped(label, 17));
+            svg.text(LEFT - 12.0, middle + 4.5, "", Anchor::End, &clipped(label, 15));
             let mut cells = vec![
                 title.clone(),
                 label.clone(),
@@ -383,7 +383,7 @@ pub(crate) fn boxes(
     let mut spoken = Vec::new();
     for (place, (label, values)) in sorted.iter().enumerate() {
         let y = top + height * (place as f64 + 0.5);
-        svg.text(LEFT - 12.0, y + 4.5, "", Anchor::End, &clipped(label, 17));
+        svg.text(LEFT - 12.0, y + 4.5, "", Anchor::End, &clipped(label, 15));
         let quantiles = [0.05, 0.25, 0.5, 0.75, 0.95].map(|q| quantile_sorted(values, q));
         let [p5, q1, median, q3, p95] = quantiles.map(|value| axis.place(value));
         svg.line([p5, y], [q1, y], "whisker");

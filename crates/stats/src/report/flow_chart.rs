@@ -47,7 +47,7 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
         caption.clone(),
         language.pick(["step", "number", "left out"], ["étape", "nombre", "écartés"]),
     );
-    let (left, width, height) = (10.0, 250.0, 44.0);
+    let (left, width, height) = (4.0, 262.0, 44.0);
     let mut y = 8.0;
     let tops: Vec<f64> = steps
         .iter()
@@ -62,7 +62,7 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
     for (place, ((count, label, out), top)) in steps.iter().zip(&tops).enumerate() {
         svg.class_rect([left, *top, width, height], "empty");
         svg.text(left + 14.0, top + 27.5, "strong", Anchor::Start, &count.to_string());
-        svg.text(left + 62.0, top + 27.5, "", Anchor::Start, label);
+        svg.text(left + 58.0, top + 27.5, "", Anchor::Start, label);
         if let Some(next) = tops.get(place + 1) {
             let x = left + 30.0;
             svg.line([x, top + height], [x, *next], "whisker");

@@ -79,8 +79,16 @@ fn table(body: &mut String, data: &DataTable) {
         body.push_str("</tr>\n");
     }
     body.push_str("<tr>");
-    for column in &data.columns {
-        let _ = write!(body, r#"<th scope="col">{}</th>"#, escape(column));
+    for (place, column) in data.columns.iter().enumerate() {
+        // Headings stand where the cells below them stand.
+        let numbers = place > 0
+            && data
+                .rows
+                .iter()
+                .filter_map(|row| row.get(place))
+                .all(|cell| is_number(cell) || cell.is_empty());
+        let class = if numbers { r#" class="number""# } else { "" };
+        let _ = write!(body, r#"<th scope="col"{class}>{}</th>"#, escape(column));
     }
     body.push_str("</tr></thead>\n<tbody>\n");
     for row in &data.rows {
@@ -146,7 +154,8 @@ caption{text-align:left;color:var(--soft);padding:0 0 .4rem}
 th,td{padding:.32rem .7rem;text-align:left;border-bottom:1px solid var(--rule);vertical-align:top}
 thead th{border-bottom:2px solid var(--rule);font-weight:600;vertical-align:bottom}
 tbody th{font-weight:500}
-td.number{text-align:right;white-space:nowrap}
+td.number,th.number{text-align:right}
+td.number{white-space:nowrap}
 .group{font-weight:600;background:var(--panel);border-left:2px solid var(--paper)}
 td.group{background:none}
 figure{margin:1.5rem 0;padding:0}

@@ -58,13 +58,19 @@ impl Language {
         if p < 0.001 {
             return format!("p < {}", self.mark("0.001".to_owned()));
         }
-        format!("p = {}", self.fixed(p, 3))
+        // Rounding must not carry a p over the border.
+        let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
+        format!("p = {}", self.fixed(p, decimals))
     }
 
     /// A p-value in a table: three decimals, or its order of magnitude.
     pub(crate) fn p_cell(self, p: f64, ln_p: f64) -> String {
         if p >= 0.001 {
-            return self.fixed(p, 3);
+            let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
+            return self.fixed(p, decimals);
+        }
+        if p > 1e-300 {
+            return self.mark(format!("{p:.1e}"));
         }
         self.mark(crate::words::format_p(p, ln_p).trim_start_matches("= ").to_owned())
     }

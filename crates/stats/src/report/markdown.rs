@@ -37,7 +37,7 @@ fn table(text: &mut String, data: &DataTable) {
         format!("| {} |\n", cells.join(" | "))
     };
     let _ = writeln!(text, "*{}*\n", plain(&data.caption));
-    text.push_str(&line(&data.columns));
+    text.push_str(&line(&data.full_columns()));
     text.push_str(&line(&vec!["---".to_owned(); data.columns.len()]));
     for row in &data.rows {
         text.push_str(&line(row));

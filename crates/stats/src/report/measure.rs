@@ -169,7 +169,9 @@ impl Measure {
             })
             .collect();
         let k = factor.levels.len();
-        let mut cells: BTreeMap<(usize, Vec<&str>), Vec<(f64, f64)>> = BTreeMap::new();
+        // Person and other levels -> sum and count at each level of the factor.
+        type Sums = Vec<(f64, f64)>;
+        let mut cells: BTreeMap<(usize, Vec<&str>), Sums> = BTreeMap::new();
         for (i, &value) in self.values.iter().enumerate() {
             let levels = &export.trials[self.trial[i]].levels;
             let key: Vec<&str> =

@@ -25,6 +25,12 @@ pub(crate) fn person_level(
 ) -> String {
     let language = naming.language;
     let mut sentences = Vec::new();
+    if result.people > 0 && result.incomplete * 4 > result.people {
+        sentences.push(language.pick(
+            format!("{} people could be used; {} have no trial at some level and could not.", result.people, result.incomplete),
+            format!("{} personnes ont pu être utilisées ; {} n’ont pas d’essai à certains niveaux et n’ont pu l’être.", result.people, result.incomplete),
+        ));
+    }
     for overall in &result.overall {
         sentences.push(overall_sentence(naming, overall, factor, label));
     }
@@ -119,30 +125,31 @@ fn pair_sentence(
             );
         }
     };
-    let difference = pair.difference.map_or_else(String::new, |d| {
+    let observed = pair.difference.map_or_else(String::new, |d| {
         let sign = if line.effect.unwrap_or(0.0) < 0.0 { -1.0 } else { 1.0 };
         let mut ends = [d.ci_low * sign, d.ci_high * sign];
         ends.sort_unstable_by(f64::total_cmp);
         let [estimate, low, high] =
-            [d.estimate * sign, ends[0], ends[1]].map(|v| amount(language, kind, v));
+            [d.estimate * sign, ends[0], ends[1]].map(|v| difference(language, kind, v));
+        let unit = unit(language, kind);
         let interval = if d.level_reached {
             language.pick("95 % interval", "intervalle à 95 %")
         } else {
             language.pick("widest interval", "intervalle le plus large")
         };
         language.pick(
-            format!("median difference {estimate} ({interval} {low} to {high})"),
-            format!("différence médiane {estimate} ({interval} : {low} à {high})"),
+            format!("median difference {estimate}{unit} ({interval} {low} to {high})"),
+            format!("différence médiane {estimate}{unit} ({interval} : {low} à {high})"),
         )
     });
     if pair.least_p > LEVEL {
         return language.pick(
             format!(
-                "{topic}, {} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {}. Observed: {difference}.",
+                "{topic}, {} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {}. Observed: {observed}.",
                 pair.n, language.fixed(pair.least_p.min(1.0), 3)
             ),
             format!(
-                "{topic}, {} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {}. Observé : {difference}.",
+                "{topic}, {} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {}. Observé : {observed}.",
                 pair.n, language.fixed(pair.least_p.min(1.0), 3)
             ),
         );
@@ -164,13 +171,13 @@ fn pair_sentence(
         let (high, low) = (naming.level(factor, high), naming.level(factor, low));
         let higher = higher(language, kind);
         return language.pick(
-            format!("{topic}, {high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {difference}, {p}{corrected}.", pair.n),
-            format!("{topic}, {high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {difference}, {p}{corrected}.", pair.n),
+            format!("{topic}, {high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {observed}, {p}{corrected}.", pair.n),
+            format!("{topic}, {high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", pair.n),
         );
     }
     language.pick(
-        format!("{topic}, no difference between {a} and {b} was shown: {difference}, {p}{corrected}, {} people. That is no proof that there is none; the interval says how large it may be.", pair.n),
-        format!("{topic}, aucune différence entre {a} et {b} n’a été montrée : {difference}, {p}{corrected}, {} personnes. Cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.", pair.n),
+        format!("{topic}, no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {} people. That is no proof that there is none; the interval says how large it may be.", pair.n),
+        format!("{topic}, aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes. Cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.", pair.n),
     )
 }
 
@@ -196,15 +203,20 @@ fn higher(language: Language, kind: MeasureKind) -> &'static str {
     }
 }
 
-/// A difference in its own unit.
-fn amount(language: Language, kind: MeasureKind, value: f64) -> String {
+/// A difference in the unit that people read: points of percent, seconds, points of the scale.
+pub(crate) fn difference(language: Language, kind: MeasureKind, value: f64) -> String {
     match kind {
-        MeasureKind::Recognition => {
-            let points = language.pick("points of percent", "points de pourcentage");
-            format!("{} {points}", language.fixed(value * 100.0, 1))
-        }
-        MeasureKind::ResponseTime => format!("{} s", language.fixed(value, 2)),
-        MeasureKind::Rating => language.fixed(value, 2),
+        MeasureKind::Recognition => language.fixed(value * 100.0, 1),
+        MeasureKind::ResponseTime | MeasureKind::Rating => language.fixed(value, 2),
+    }
+}
+
+/// That unit.
+fn unit(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Recognition => language.pick(" percentage points", " points de pourcentage"),
+        MeasureKind::ResponseTime => " s",
+        MeasureKind::Rating => "",
     }
 }
 
@@ -251,6 +263,22 @@ fn overall_sentence(
     language.pick(
         format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.n),
         format!("Aucun effet de {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.n),
+    )
+}
+
+/// What the correction for all hypotheses of the study leaves of one.
+pub(crate) fn over_hypotheses(language: Language, p: f64, p_holm: f64, tested: usize) -> String {
+    let corrected = language.p(p_holm);
+    let lost = p < LEVEL && p_holm >= LEVEL;
+    if lost {
+        return language.pick(
+            format!("Corrected for the {tested} hypotheses of this study: {corrected}, no longer below 0.05."),
+            format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}, qui n’est plus sous 0,05."),
+        );
+    }
+    language.pick(
+        format!("Corrected for the {tested} hypotheses of this study: {corrected}."),
+        format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}."),
     )
 }
 

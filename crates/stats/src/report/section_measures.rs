@@ -12,6 +12,7 @@ use super::sections::{LateFrames, NamedConfusion, TwoWay, Writer};
 use super::tables;
 use crate::confusion::confusion;
 use crate::factor::Factor;
+use crate::proportion::Proportion;
 
 impl Writer<'_> {
     /// Forced choice against the right answer.
@@ -202,15 +203,30 @@ impl Writer<'_> {
                 language.pick(format!("By {shown}"), format!("Par {shown}")),
             ));
             let id = format!("{}-by-{}", slug(&measure.id), slug(&name));
-            self.blocks.push(Block::Table(tables::descriptions(
-                &self.naming,
-                format!("{id}-described"),
-                language.pick(
-                    format!("{} by {shown}", measure.label),
-                    format!("{} par {shown}", measure.label),
-                ),
-                &result,
-            )));
+            let caption = language.pick(
+                format!("{} by {shown}", measure.label),
+                format!("{} par {shown}", measure.label),
+            );
+            let table = if measure.kind == MeasureKind::Recognition {
+                let shares: Vec<(String, Proportion)> = (0..factor.levels.len())
+                    .map(|code| {
+                        let share = self.shares_by(measure, |i| factor.codes[i] as usize == code);
+                        (factor.levels[code].clone(), share)
+                    })
+                    .collect();
+                let means = &result.person_means;
+                tables::recognition(
+                    &self.naming,
+                    format!("{id}-described"),
+                    caption,
+                    &name,
+                    &shares,
+                    means,
+                )
+            } else {
+                tables::descriptions(&self.naming, format!("{id}-described"), caption, &result)
+            };
+            self.blocks.push(Block::Table(table));
             if result.recommended.people > 0 && (1..=3).contains(&result.recommended.pairs.len()) {
                 let pairs: Vec<(String, &super::comparison::Pair)> = result
                     .recommended

@@ -203,8 +203,14 @@ fn hypotheses(writer: &Writer<'_>) -> Vec<HypothesisResult> {
         .map(|hypothesis| test_hypothesis(&writer.naming, writer.export, writer.study, hypothesis))
         .collect();
     let p: Vec<Option<f64>> = results.iter().map(|result| result.p).collect();
+    let tested = p.iter().flatten().count();
     for (result, corrected) in results.iter_mut().zip(Adjustment::Holm.apply(&p)) {
         result.p_holm_over_hypotheses = corrected;
+        if let (Some(p), Some(corrected), true) = (result.p, corrected, tested > 1) {
+            let language = writer.naming.language;
+            result.reading.push(' ');
+            result.reading += &reading::over_hypotheses(language, p, corrected, tested);
+        }
     }
     results
 }
@@ -366,7 +372,7 @@ impl Writer<'_> {
                     format!("{} : comme dans la thèse et recommandé", result.id),
                 ),
                 result.factors.first().map_or("", String::as_str),
-                super::measure::MeasureKind::Rating,
+                result.kind,
                 &result.as_in_the_thesis,
                 &result.recommended,
             );

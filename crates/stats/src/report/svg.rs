@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::document::escape;
 
 /// Width of every figure, so that text has the same size in all of them.
-pub(crate) const WIDTH: f64 = 520.0;
+pub(crate) const WIDTH: f64 = 440.0;
 
 /// Blues from light to dark, even steps of lightness: readable in grey and by the colour-blind.
 const LIGHTEST: [f64; 3] = [227.0, 238.0, 249.0];

@@ -5,10 +5,12 @@ use super::document::DataTable;
 use super::language::Language;
 use super::measure::MeasureKind;
 use super::naming::Naming;
-use crate::outcome::Outcome;
+use super::reading;
+use crate::outcome::{Labelled, Outcome};
+use crate::proportion::Proportion;
 
 /// Cells of one test: what was computed, p, effect.
-fn line(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String; 3] {
+fn cells(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String; 3] {
     match outcome {
         Outcome::Undefined { reason } => [
             language.pick(format!("undefined: {reason}"), format!("non défini : {reason}")),
@@ -17,45 +19,57 @@ fn line(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String;
         ],
         Outcome::Ok(line) => {
             let df = if line.df.is_empty() { String::new() } else { format!("({})", line.df) };
-            let p = if holm { line.p_holm.unwrap_or(line.p_value) } else { line.p_value };
-            let ln_p = if holm { p.ln() } else { line.ln_p };
+            let (p, ln_p) = match line.p_holm {
+                Some(p) if holm => (p, p.ln()),
+                _ => (line.p_value, line.ln_p),
+            };
             [
                 format!(
-                    "{}{df} = {}; n = {}",
-                    line.statistic_name,
+                    "{} {}{df} = {}, n = {}",
+                    short_name(&line.test),
+                    line.statistic_name.replace("chi-square", "χ²"),
                     language.number(line.statistic),
                     line.n
                 ),
                 language.p_cell(p, ln_p),
                 line.effect.map_or_else(String::new, |effect| {
-                    format!("{} {}", line.effect_name, language.fixed(effect, 2))
+                    format!("{} = {}", effect_symbol(line.effect_name), language.fixed(effect, 2))
                 }),
             ]
         }
     }
 }
 
-fn name_of(outcome: &Outcome<TestLine>) -> String {
-    match outcome {
-        Outcome::Ok(line) if line.term.is_empty() => line.test.clone(),
-        Outcome::Ok(line) => format!("{} [{}]", line.test, line.term),
-        Outcome::Undefined { .. } => String::new(),
+/// A test without its variant: `Wilcoxon`.
+fn short_name(test: &str) -> &str {
+    let name = test.split(" on ").next().unwrap_or(test);
+    match name.split(" of ").next().unwrap_or(name) {
+        "aligned rank transform" => "ART",
+        other => other,
+    }
+}
+
+fn effect_symbol(name: &str) -> &str {
+    match name {
+        "rank-biserial" => "r",
+        "Cramer's V" => "V",
+        "Kendall's W" => "W",
+        "epsilon squared" => "ε²",
+        "eta squared H" => "η²H",
+        "partial eta squared" => "ηp²",
+        other => other,
     }
 }
 
 fn difference(language: Language, kind: MeasureKind, pair: &Pair) -> String {
-    let decimals = if kind == MeasureKind::Recognition { 3 } else { 2 };
     pair.difference.map_or_else(String::new, |d| {
-        format!(
-            "{} [{}; {}]",
-            language.fixed(d.estimate, decimals),
-            language.fixed(d.ci_low, decimals),
-            language.fixed(d.ci_high, decimals)
-        )
+        let [estimate, low, high] = [d.estimate, d.ci_low, d.ci_high]
+            .map(|value| reading::difference(language, kind, value));
+        format!("{estimate} [{low}; {high}]")
     })
 }
 
-/// Both kinds of test of one measure and factor in one table.
+/// Both kinds of test of one measure and factor, line by line beside each other.
 pub(crate) fn two_columns(
     naming: &Naming<'_>,
     id: String,
@@ -66,11 +80,19 @@ pub(crate) fn two_columns(
     people: &PersonLevel,
 ) -> DataTable {
     let language = naming.language;
+    let unit = match kind {
+        MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
+        MeasureKind::ResponseTime => " (s)",
+        MeasureKind::Rating => "",
+    };
     let heading = language.pick(
-        ["", "statistic", "p", "effect", "statistic", "p (Holm)", "effect", "difference [95 %]"],
-        ["", "statistique", "p", "effet", "statistique", "p (Holm)", "effet", "différence [95 %]"],
+        ["", "test", "p", "effect", "test", "p (Holm)", "effect"],
+        ["", "test", "p", "effet", "test", "p (Holm)", "effet"],
     );
-    let mut table = DataTable::new(id, caption, heading);
+    let last =
+        language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"));
+    let mut table =
+        DataTable::new(id, caption, heading.into_iter().map(str::to_owned).chain([last]));
     table.groups = vec![
         (String::new(), 1),
         (
@@ -89,27 +111,93 @@ pub(crate) fn two_columns(
             4,
         ),
     ];
-    let empty = || [String::new(), String::new(), String::new()];
-    for outcome in &trials.tests {
-        let mut cells = vec![name_of(outcome)];
-        cells.extend(line(language, outcome, false));
-        cells.extend(empty());
-        cells.push(String::new());
-        table.row(cells);
+    // The two kinds of test answer the same question in the same order: overall first, then pairs.
+    let overall = people
+        .overall
+        .iter()
+        .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
+    let pairs = people.pairs.iter().map(|pair| {
+        (naming.pair(factor, &pair.a, &pair.b), &pair.wilcoxon, difference(language, kind, pair))
+    });
+    let recommended: Vec<(String, &Outcome<TestLine>, String)> = overall.chain(pairs).collect();
+    // With two levels the paired test of trials stands beside the pair.
+    let mut of_trials: Vec<&Outcome<TestLine>> = trials.tests.iter().collect();
+    if people.overall.is_empty() {
+        of_trials.reverse();
     }
-    for outcome in &people.overall {
-        let mut cells = vec![name_of(outcome)];
-        cells.extend(empty());
-        cells.extend(line(language, outcome, true));
-        cells.push(String::new());
-        table.row(cells);
+    for place in 0..of_trials.len().max(recommended.len()) {
+        let label = match (recommended.get(place), of_trials.get(place)) {
+            (Some((label, ..)), _) => label.clone(),
+            (None, Some(outcome)) => term_of(naming, factor, outcome),
+            (None, None) => String::new(),
+        };
+        let mut row = vec![label];
+        match of_trials.get(place) {
+            Some(outcome) => row.extend(cells(language, outcome, false)),
+            None => row.extend([String::new(), String::new(), String::new()]),
+        }
+        match recommended.get(place) {
+            Some((_, outcome, difference)) => {
+                row.extend(cells(language, outcome, true));
+                row.push(difference.clone());
+            }
+            None => row.extend(["", "", "", ""].map(str::to_owned)),
+        }
+        table.row(row);
     }
-    for pair in &people.pairs {
-        let mut cells = vec![naming.pair(factor, &pair.a, &pair.b)];
-        cells.extend(empty());
-        cells.extend(line(language, &pair.wilcoxon, true));
-        cells.push(difference(language, kind, pair));
-        table.row(cells);
+    table
+}
+
+/// What a line is about: the factor, or the effect of two.
+fn term_of(naming: &Naming<'_>, factor: &str, outcome: &Outcome<TestLine>) -> String {
+    match outcome {
+        Outcome::Ok(line) if line.statistic_name == "rho" || line.term.is_empty() => {
+            naming.factor(factor)
+        }
+        Outcome::Ok(line) if line.term.contains(" | ") => line.term.replace(" | ", " − "),
+        Outcome::Ok(line) => {
+            line.term.split(':').map(|part| naming.factor(part)).collect::<Vec<_>>().join(" × ")
+        }
+        Outcome::Undefined { .. } => naming.factor(factor),
+    }
+}
+
+/// Right answers of each level.
+pub(crate) fn recognition(
+    naming: &Naming<'_>,
+    id: String,
+    caption: String,
+    factor: &str,
+    shares: &[(String, Proportion)],
+    person_means: &Labelled<Option<f64>>,
+) -> DataTable {
+    let language = naming.language;
+    let heading = language.pick(
+        ["", "trials", "right", "share", "95 % interval (Wilson)", "mean share of people"],
+        [
+            "",
+            "essais",
+            "justes",
+            "part",
+            "intervalle à 95 % (Wilson)",
+            "part moyenne des personnes",
+        ],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    for (level, share) in shares {
+        let percent = |value: f64| format!("{} %", language.fixed(value * 100.0, 1));
+        let mean = person_means.get(level).copied().flatten();
+        table.row([
+            naming.level(factor, level),
+            share.n.to_string(),
+            share.successes.to_string(),
+            share.proportion.map_or_else(|| "–".to_owned(), percent),
+            share.wilson.map_or_else(
+                || "–".to_owned(),
+                |[low, high]| format!("{} – {}", percent(low), percent(high)),
+            ),
+            mean.map_or_else(|| "–".to_owned(), percent),
+        ]);
     }
     table
 }
