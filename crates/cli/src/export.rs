@@ -1,10 +1,80 @@
-//! `mimique export`.
+//! `mimique export`: what was answered, as files, from the database alone.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use mimique_server::Storage;
+use mimique_server::export::{Format, export};
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Where the answers are: sqlite:FILE or postgres://USER@HOST/NAME
+    #[arg(long, default_value = "sqlite:mimique-data/answers.sqlite")]
+    database: String,
+    /// csv: one row a participant x trial x response; wide: one row a participant; json: the rows of
+    /// csv as JSON lines; events: all that was stored, as JSON lines; psych-ds: a Psych-DS data set
+    #[arg(long, default_value = "csv", value_parser = parse_format)]
+    format: Format,
+    /// Study to export, where the database holds several
+    #[arg(long)]
+    study: Option<String>,
+    /// File to write (for psych-ds a folder, or a file ending in .zip); standard output if not given
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Add the identifiers of the recruitment platform
+    #[arg(long)]
+    with_identifiers: bool,
+}
 
 /// Runs the command.
-pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
-    anyhow::bail!("this command is being written")
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        args.out.is_some() || args.format != Format::PsychDs,
+        "psych-ds: the data set is a folder; say where by --out"
+    );
+    anyhow::ensure!(
+        args.out.is_some() || !json,
+        "--json: the export itself goes to standard output; write it to a file by --out"
+    );
+    let runtime = tokio::runtime::Runtime::new().context("the export's threads")?;
+    let exported = runtime.block_on(async {
+        let storage = Storage::open_existing(&args.database).await?;
+        let exported =
+            export(&storage, args.study.as_deref(), args.format, args.with_identifiers).await;
+        storage.close().await;
+        anyhow::Ok(exported?)
+    });
+    let exported = exported.with_context(|| Storage::without_password(&args.database))?;
+    let mut stdout = std::io::stdout().lock();
+    let Some(out) = args.out else {
+        for (_, bytes) in &exported.files {
+            stdout.write_all(bytes)?;
+        }
+        return Ok(());
+    };
+    let (study_id, participants, rows) =
+        (exported.study_id.clone(), exported.participants, exported.rows);
+    let written = exported.write(&out)?;
+    if json {
+        let written: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        let line = serde_json::json!({
+            "study": study_id, "participants": participants, "rows": rows, "files": written,
+        });
+        writeln!(stdout, "{line}")?;
+    } else {
+        writeln!(stdout, "{study_id}: {participants} participants, {rows} rows")?;
+        for path in &written {
+            writeln!(stdout, "  {}", path.display())?;
+        }
+    }
+    Ok(())
+}
+
+fn parse_format(word: &str) -> Result<Format, String> {
+    Format::from_word(word).ok_or_else(|| {
+        let known = Format::ALL.map(Format::word).join(", ");
+        format!("there are {known}")
+    })
 }

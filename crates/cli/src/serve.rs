@@ -1,10 +1,214 @@
-//! `mimique serve`.
+//! `mimique serve`: hosts studies: questionnaire, preview and researcher's page.
+//!
+//! Every study is checked and its stimuli are prepared before the first connection is taken; all
+//! problems of all studies are said at once.
+
+use std::io::Write as _;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use indicatif::{ProgressBar, ProgressStyle};
+use mimique_server::{App, Assets, HostedStudy, PackStore, Stage, Storage};
+use mimique_stimulus::{Places, prepare};
+use mimique_study::Severity;
+use serde_json::json;
+use tokio::net::TcpListener;
+
+use crate::check::check_file;
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Study files to host
+    #[arg(required = true)]
+    studies: Vec<PathBuf>,
+    /// Address and port to listen on
+    #[arg(long, default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// Where answers are kept: sqlite:FILE or postgres://USER@HOST/NAME
+    /// [default: sqlite:DATA_DIR/answers.sqlite]
+    #[arg(long)]
+    database: Option<String>,
+    /// Folder for answers and prepared stimuli
+    #[arg(long, default_value = "mimique-data")]
+    data_dir: PathBuf,
+    /// Folder of the pages, instead of those inside the binary
+    #[arg(long)]
+    web_dir: Option<PathBuf>,
+    /// Mark the answers as those of a pilot
+    #[arg(long)]
+    pilot: bool,
+}
 
 /// Runs the command.
-pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
-    anyhow::bail!("this command is being written")
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_target(false)
+        .with_max_level(tracing::Level::INFO)
+        .init();
+    let assets = match &args.web_dir {
+        Some(folder) => Assets::from_folder(folder)?,
+        None => Assets::embedded()?,
+    };
+    let cannot_listen =
+        || format!("{}: cannot listen there; choose another address by --listen", args.listen);
+    // A port that is taken is said before the stimuli are prepared.
+    drop(std::net::TcpListener::bind(args.listen).with_context(cannot_listen)?);
+    std::fs::create_dir_all(&args.data_dir).with_context(|| {
+        format!("{}: cannot be made; choose another folder by --data-dir", args.data_dir.display())
+    })?;
+    let packs_folder = args.data_dir.join("packs");
+    let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
+    let studies = load_studies(&args.studies, &packs_folder, stage)?;
+    let mut packs = PackStore::default();
+    for clip in studies.iter().flat_map(|study| study.bundle().clips.values()) {
+        for hash in [&clip.avatar, &clip.operators, &clip.take] {
+            packs.load(&packs_folder, hash)?;
+        }
+    }
+    let runtime = tokio::runtime::Runtime::new().context("the server's threads")?;
+    runtime.block_on(host(args, studies, packs, assets, json))
+}
+
+async fn host(
+    args: Args,
+    studies: Vec<HostedStudy>,
+    mut packs: PackStore,
+    assets: Assets,
+    json: bool,
+) -> anyhow::Result<()> {
+    let database = match &args.database {
+        Some(url) => url.clone(),
+        None => format!("sqlite:{}", args.data_dir.join("answers.sqlite").display()),
+    };
+    let listener = TcpListener::bind(args.listen).await.with_context(|| {
+        format!("{}: cannot listen there; choose another address by --listen", args.listen)
+    })?;
+    let storage =
+        Storage::open(&database).await.with_context(|| Storage::without_password(&database))?;
+    packs.load_earlier_versions(&storage, &args.data_dir.join("packs")).await?;
+    let addresses: Vec<_> = studies
+        .iter()
+        .map(|study| {
+            let (id, clips) = (study.id().to_owned(), study.bundle().clips.len());
+            (id, study.config_hash().to_owned(), clips)
+        })
+        .collect();
+    let kind = storage.kind();
+    let app = App::new(studies, packs, assets, storage).await?;
+    let base = format!("http://{}", reachable(listener.local_addr()?));
+    let researcher = format!("{base}{}", app.researcher_link().await?);
+    {
+        let mut out = std::io::stdout().lock();
+        if json {
+            let studies: Vec<_> = addresses
+                .iter()
+                .map(|(id, config_hash, clips)| {
+                    json!({
+                        "id": id,
+                        "config_hash": config_hash,
+                        "clips": clips,
+                        "participant": format!("{base}/s/{id}/"),
+                        "preview": format!("{base}/preview/{id}"),
+                    })
+                })
+                .collect();
+            let line = json!({
+                "url": base, "studies": studies, "researcher": researcher, "database": kind,
+            });
+            writeln!(out, "{line}")?;
+        } else {
+            for (id, config_hash, clips) in &addresses {
+                writeln!(out, "study {id} ({clips} clips, version {})", &config_hash[..12])?;
+                writeln!(out, "  participants  {base}/s/{id}/")?;
+                writeln!(out, "  preview       {base}/preview/{id}")?;
+            }
+            writeln!(out, "researcher      {researcher}")?;
+            writeln!(out, "Answers are kept in {kind}. Stop with Ctrl-C.")?;
+        }
+        out.flush()?;
+    }
+    mimique_server::serve(app, listener, stop_signal()).await?;
+    Ok(())
+}
+
+/// Checks and prepares every study; what is wrong with any of them is said before giving up.
+fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result<Vec<HostedStudy>> {
+    let mut studies = Vec::new();
+    let mut problems = Vec::new();
+    for file in files {
+        let report = check_file(file)?;
+        for issue in &report.issues {
+            let place = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
+            let text = format!("{}: {place}: {}; {}", file.display(), issue.message, issue.hint);
+            match issue.severity {
+                Severity::Error => problems.push(text),
+                Severity::Warning => eprintln!("warning: {text}"),
+            }
+        }
+        let Some(checked) = report.study else { continue };
+        match prepare_study(file, checked.study(), packs) {
+            Ok(clips) => studies.push(HostedStudy::new(checked.value().clone(), clips, stage)?),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    anyhow::ensure!(problems.is_empty(), "{}", problems.join("\nerror: "));
+    Ok(studies)
+}
+
+type Clips = std::collections::BTreeMap<String, mimique_study::wire::ClipSource>;
+
+fn prepare_study(file: &Path, study: &mimique_study::Study, packs: &Path) -> Result<Clips, String> {
+    // Hidden where no terminal is.
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    let prepared = prepare(study, &Places::of(file, packs), &mut |progress| {
+        bar.set_length(progress.total as u64);
+        bar.set_position(progress.done as u64);
+        bar.set_message(format!("preparing {}", progress.what));
+    });
+    bar.finish_and_clear();
+    let prepared = prepared.map_err(|error| format!("{}: {error}", file.display()))?;
+    for (pointer, text) in &prepared.warnings {
+        eprintln!("warning: {}: {pointer}: {text}", file.display());
+    }
+    Ok(prepared.clips)
+}
+
+/// An address that a browser on this machine can open.
+fn reachable(mut address: SocketAddr) -> SocketAddr {
+    if address.ip().is_unspecified() {
+        address.set_ip(match address {
+            SocketAddr::V4(_) => std::net::Ipv4Addr::LOCALHOST.into(),
+            SocketAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
+        });
+    }
+    address
+}
+
+/// Resolves at Ctrl-C, or when the system asks the process to end.
+async fn stop_signal() {
+    let interrupted = async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    let terminated = async {
+        match tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()) {
+            Ok(mut signal) => drop(signal.recv().await),
+            Err(_) => std::future::pending().await,
+        }
+    };
+    #[cfg(not(unix))]
+    let terminated = std::future::pending::<()>();
+    tokio::select! {
+        () = interrupted => {}
+        () = terminated => {}
+    }
+    tracing::info!("stopping: requests in progress end first");
 }
