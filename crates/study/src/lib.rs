@@ -1,4 +1,4 @@
-//! The study: its file, its order of trials, its flow as a state machine, its responses. Pure.
+#![doc = include_str!("../README.md")]
 
 mod answer;
 mod canonical;

@@ -275,3 +275,79 @@ fn unknown_events_of_another_version_are_counted_and_skipped() {
     assert_eq!(state.record.unexpected, 1);
     assert_eq!(state.record.step, 1);
 }
+
+#[test]
+fn template_goes_to_its_end_with_every_question_type_training_and_break() {
+    let mut page = Page::open(&study_text("template.json"), 1);
+    let mut kinds = std::collections::HashSet::new();
+    let mut waited = false;
+    loop {
+        if let View::Page { button, .. } = page.view()
+            && !button.can_submit
+        {
+            assert!(button.hint.is_some(), "a break says how long it lasts");
+            page.send(Input::Next);
+            let View::Page { .. } = page.view() else { panic!("a break cannot be skipped") };
+            waited = true;
+        }
+        let mut choose = |id: &str, kind: &_| {
+            kinds.insert(std::mem::discriminant(kind));
+            if id == "gender" { json!("other") } else { first_answer(id, kind) }
+        };
+        if !page.act(&mut choose) {
+            break;
+        }
+    }
+    assert!(matches!(page.view(), View::End(_)));
+    assert_eq!(kinds.len(), 9, "every type of question was answered");
+    assert!(waited);
+    assert_eq!(page.state.record.unexpected, 0);
+    let ids: Vec<&str> = page.plan.steps.iter().map(|step| step.id.as_str()).collect();
+    assert!(ids.contains(&"training/1/joy3.lsts30") && ids.contains(&"rest"), "{ids:?}");
+    // First of the drop-down's two options is the wrong one.
+    let study = &page.plan.study;
+    assert_eq!(mimique_study::responses::failed_attention_checks(study, &page.stored), 1);
+}
+
+#[test]
+fn question_is_asked_only_if_an_earlier_answer_says_so() {
+    let mut page = Page::open(&study_text("template.json"), 2);
+    page.send(Input::Consent);
+    let asks = |page: &Page| {
+        let View::Questions { questions, .. } = page.view() else { panic!() };
+        questions.iter().any(|question| question.id == "gender_words")
+    };
+    assert!(!asks(&page));
+    page.send(Input::Answer { question: "gender".into(), value: json!("other") });
+    assert!(asks(&page));
+    page.send(Input::Answer { question: "gender_words".into(), value: json!("words") });
+    page.send(Input::Answer { question: "gender".into(), value: json!("woman") });
+    assert!(!asks(&page));
+    page.finish();
+    let body = page.stored.iter().find(|event| {
+        event.body["step"] == "demographics" && event.body["type"] == "page_finished"
+    });
+    let answers = &body.unwrap().body["answers"];
+    assert!(answers.get("gender_words").is_none(), "an answer no longer asked is not sent");
+}
+
+#[test]
+fn replays_are_limited_and_counted() {
+    let mut page = Page::open(&study_text("template.json"), 3);
+    let block =
+        |page: &Page| page.plan.step(page.state.record.step).unwrap().id.starts_with("faces/");
+    while !block(&page) || page.state.record.trial.plays == 0 {
+        page.act(&mut first_answer);
+    }
+    for replay in 1..=3 {
+        let View::Trial(trial) = page.view() else { panic!() };
+        assert!(trial.can_replay, "replay {replay}");
+        page.send(Input::Play);
+    }
+    let View::Trial(trial) = page.view() else { panic!() };
+    assert!(!trial.can_replay && trial.can_answer);
+    while page.stored.last().unwrap().body["type"] != "trial_finished" {
+        page.act(&mut first_answer);
+    }
+    assert_eq!(page.stored.last().unwrap().body["replays"], 3);
+}

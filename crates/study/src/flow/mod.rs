@@ -15,6 +15,7 @@
 mod effect;
 mod input;
 mod plan;
+mod render;
 mod state;
 mod update;
 mod view;
@@ -22,9 +23,10 @@ mod view;
 pub use effect::Effect;
 pub use input::Input;
 pub use plan::{Plan, Step, StepKind, TrialStep};
+pub use render::view;
 pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
     ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,
-    QuestionView, SectionView, TrialView, View, view,
+    QuestionView, SectionView, TrialView, View,
 };

@@ -9,6 +9,7 @@
 
 mod cells;
 mod column;
+mod fixed_columns;
 mod psych_ds;
 mod session;
 mod tidy;
@@ -16,7 +17,8 @@ mod wide;
 
 pub use cells::iso_time;
 pub use column::{Column, ColumnKind, Table};
+pub use fixed_columns::FIXED_COLUMNS;
 pub use psych_ds::psych_ds_description;
-pub use session::{SessionRecord, session_status};
-pub use tidy::{FIXED_COLUMNS, tidy};
+pub use session::{SessionRecord, failed_attention_checks, session_status};
+pub use tidy::tidy;
 pub use wide::wide;

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use crate::answer::alike;
 use crate::event::{Answers, Client, EventKind, PlayLog};
+use crate::study_file::Study;
 use crate::wire::{Event, SessionStarted};
 
 /// One session as the server keeps it.
@@ -134,4 +136,18 @@ impl Walk {
         step.client = self.client.clone();
         self.steps.push(step);
     }
+}
+
+/// How many attention checks of a session were failed: answered otherwise than expected, or not at
+/// all where their page was finished.
+pub fn failed_attention_checks(study: &Study, events: &[Event]) -> u32 {
+    let mut failed = 0;
+    for step in Walk::of(events).steps {
+        for question in study.questions_of(&step.id) {
+            let Some(check) = &question.attention_check else { continue };
+            let answer = step.answers.get(&question.id);
+            failed += u32::from(!answer.is_some_and(|answer| alike(answer, &check.expected)));
+        }
+    }
+    failed
 }

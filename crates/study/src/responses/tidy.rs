@@ -6,89 +6,11 @@ use serde_json::Value;
 
 use super::cells::{answer_cells, iso_time, milliseconds, number, plain};
 use super::column::{Column, ColumnKind, Table};
+use super::fixed_columns::FIXED_COLUMNS;
 use super::session::{FinishedStep, SessionRecord, Walk, session_status};
 use crate::answer::alike;
-use crate::study_file::{Clip, Component, Question, QuestionKind, SequenceItem, Study};
+use crate::study_file::{Clip, Question, QuestionKind, SequenceItem, Study, component_of};
 use crate::wire::ClipSource;
-
-/// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
-/// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
-    use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
-    [
-        ("participant_id", Text, "", "Public identifier of the participant"),
-        (
-            "participant",
-            Integer,
-            "",
-            "Participant number; with seed and config_hash it decides the order",
-        ),
-        ("trial_id", Text, "", "Identifier of the trial or page"),
-        ("trial_index", Integer, "", "Place among all pages and trials of the session, from 0"),
-        (
-            "trial_order",
-            Integer,
-            "",
-            "Place among the trials (or among the practice trials), from 1",
-        ),
-        ("trial_type", Text, "", "trial, training, demographics or questionnaire"),
-        ("condition", Text, "", "Sequence or block that the trial belongs to"),
-        ("stage", Text, "", "pilot or live"),
-        ("status", Text, "", "How the session stands: completed, active, withdrawn, declined"),
-        ("stimulus", Text, "", "Identifier of the clip"),
-        ("response_id", Text, "", "Identifier of the question"),
-        ("answer", Any, "", "The answer; scales are coded as shown, several choices joined by |"),
-        ("response", Any, "", "The same as answer"),
-        ("truth", Any, "", "The right answer, where the clip has one"),
-        ("correct", Boolean, "", "Whether the answer is the right one"),
-        ("attention_passed", Boolean, "", "Whether an attention check was passed"),
-        (
-            "rt",
-            Number,
-            "ms",
-            "From the first frame of the first whole play (of a page: from its showing) to the last change of this answer",
-        ),
-        ("duration", Number, "ms", "From the start of the trial or page to its end"),
-        (
-            "time_elapsed",
-            Number,
-            "ms",
-            "From the opening of the session to the end of the trial or page",
-        ),
-        ("replays", Integer, "", "Whole plays after the first"),
-        ("interruptions", Integer, "", "Reloads and plays cut short within the trial or page"),
-        ("focus_losses", Integer, "", "Times the page lost the focus or was hidden"),
-        (
-            "onset_ms",
-            Number,
-            "ms",
-            "First frame of the first whole play, after the opening of the session",
-        ),
-        ("frames", Integer, "", "Frames shown in that play"),
-        ("frames_late", Integer, "", "Frames of it that came late"),
-        ("frame_longest_ms", Number, "ms", "Longest time between two of its frames"),
-        ("refresh_hz", Number, "Hz", "Rate of the display as measured"),
-        ("backend", Text, "", "What drew the clip: webgpu or webgl2"),
-        ("clip_width", Number, "px", "Width of the clip as shown, CSS pixels"),
-        ("clip_height", Number, "px", "Height of the clip as shown, CSS pixels"),
-        ("viewport", Text, "px", "Width x height of the window, CSS pixels"),
-        ("device_pixel_ratio", Number, "", "Device pixels per CSS pixel"),
-        ("weights_hash", Text, "", "SHA-256 of the weights as the browser solved them"),
-        (
-            "provenance",
-            Text,
-            "",
-            "SHA-256 over avatar, capture, marker map, method, parameters and solver",
-        ),
-        ("start_time", Time, "", "Start of the trial or page, UTC, the participant's clock"),
-        ("end_time", Time, "", "Its end"),
-        ("language", Text, "", "Language of the pages"),
-        ("consent_version", Text, "", "Version of the agreement"),
-        ("seed", Integer, "", "Seed of the study's random streams"),
-        ("config_hash", Text, "", "SHA-256 of the canonical study file"),
-        ("browser", Text, "", "Browser name, major version and platform class"),
-    ]
-};
 
 /// The tidy form. `clips` are the study's clips as the server prepared them; a session of another
 /// version of the study keeps its rows, with the factors that are still known.
@@ -174,7 +96,7 @@ impl<'a> Layout<'a> {
             self.step_cells(&walk, step, kind, &mut cells);
             cells.insert("trial_index".to_owned(), index.into());
             cells.insert("trial_order".to_owned(), order);
-            self.answer_rows(step, kind, &cells, rows);
+            self.answer_rows(step, &cells, rows);
         }
     }
 
@@ -187,16 +109,11 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Name of the component, from the step's identifier.
-    fn component<'s>(&self, step: &'s FinishedStep) -> &'s str {
-        step.id.split(['/', '#']).next().unwrap_or(&step.id)
-    }
-
     fn step_cells(&self, walk: &Walk, step: &FinishedStep, kind: StepType, cells: &mut Cells) {
         let mut put = |name: &str, value: Value| cells.insert(name.to_owned(), value);
         put("trial_id", step.id.as_str().into());
         put("trial_type", kind.word().into());
-        let component = self.component(step);
+        let component = component_of(&step.id);
         if kind == StepType::Trial {
             let condition = self.conditions.get(component).map_or(component, String::as_str);
             put("condition", condition.into());
@@ -236,34 +153,8 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// The questions that the step asks, as the study says now.
-    fn questions(&self, step: &FinishedStep, kind: StepType) -> Vec<&Question> {
-        let shared = |ids: &[String]| -> Vec<&Question> {
-            ids.iter()
-                .filter_map(|id| self.study.questions.iter().find(|question| question.id == *id))
-                .collect()
-        };
-        match kind {
-            StepType::Demographics => self.demographics.clone(),
-            StepType::Training => {
-                self.study.training.as_ref().map_or_else(Vec::new, |each| shared(&each.questions))
-            }
-            _ => match self.study.components.get(self.component(step)) {
-                Some(Component::Trials(block)) => shared(&block.questions),
-                Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
-                _ => Vec::new(),
-            },
-        }
-    }
-
-    fn answer_rows(
-        &self,
-        step: &FinishedStep,
-        kind: StepType,
-        cells: &Cells,
-        rows: &mut Vec<Vec<Value>>,
-    ) {
-        let questions = self.questions(step, kind);
+    fn answer_rows(&self, step: &FinishedStep, cells: &Cells, rows: &mut Vec<Vec<Value>>) {
+        let questions = self.study.questions_of(&step.id);
         let earlier = BTreeMap::new();
         for question in &questions {
             let answer = step.answers.get(&question.id);

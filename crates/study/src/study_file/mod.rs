@@ -220,4 +220,29 @@ impl Study {
             .flat_map(|page| &page.questions)
             .chain(&self.questions)
     }
+
+    /// The questions that a step asks, by the step's identifier (`demographics`, `faces/joy2.box`).
+    pub fn questions_of(&self, step: &str) -> Vec<&Question> {
+        let shared = |ids: &[String]| -> Vec<&Question> {
+            ids.iter()
+                .filter_map(|id| self.questions.iter().find(|question| question.id == *id))
+                .collect()
+        };
+        match component_of(step) {
+            "demographics" => self.demographics.iter().flat_map(|page| &page.questions).collect(),
+            "training" => {
+                self.training.as_ref().map_or_else(Vec::new, |each| shared(&each.questions))
+            }
+            name => match self.components.get(name) {
+                Some(Component::Trials(block)) => shared(&block.questions),
+                Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
+                _ => Vec::new(),
+            },
+        }
+    }
+}
+
+/// Name of the component (or of the section of the file) that a step comes from.
+pub(crate) fn component_of(step: &str) -> &str {
+    step.split(['/', '#']).next().unwrap_or(step)
 }

@@ -1,0 +1,337 @@
+//! From state to screen: decisions made, texts in the participant's language.
+
+use super::plan::{Plan, Step, StepKind, TrialStep};
+use super::state::{Play, State, Status};
+use super::update::{break_seconds_left, can_play, can_submit, is_saving, shown_questions};
+use super::view::{
+    ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,
+    QuestionView, SectionView, TrialView, View,
+};
+use crate::answer::{LONG_TEXT, SHORT_TEXT};
+use crate::study_file::{Choice, LocalText, Question, QuestionKind, Section};
+use crate::text::Words;
+
+/// What stands on the screen.
+pub fn view(plan: &Plan, state: &State) -> View {
+    let screen = Screen { plan, state, words: plan.words(&state.record.language) };
+    let words = screen.words;
+    if state.record.status == Status::Withdrawn || state.live.withdrawing {
+        let confirmed = state.live.withdrawal_confirmed;
+        let (heading, text) = if confirmed {
+            (words.withdrawn, words.withdrawn_text)
+        } else {
+            (words.withdrawing, "")
+        };
+        return View::Withdrawn { heading: heading.into(), text: text.into(), confirmed };
+    }
+    if state.record.status == Status::Declined {
+        let (heading, text) = (words.declined.into(), words.declined_text.into());
+        return View::Declined { heading, text };
+    }
+    match plan.step(state.record.step) {
+        Some(step) => screen.step(step),
+        None => screen.end(),
+    }
+}
+
+struct Screen<'a> {
+    plan: &'a Plan,
+    state: &'a State,
+    words: &'static Words,
+}
+
+impl Screen<'_> {
+    fn text(&self, text: &LocalText) -> String {
+        text.in_language(&self.state.record.language).to_owned()
+    }
+
+    fn paragraphs(&self, text: &LocalText) -> Vec<String> {
+        let text = text.in_language(&self.state.record.language);
+        let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
+        paragraphs.map(str::to_owned).collect()
+    }
+
+    fn section(&self, section: &Section) -> SectionView {
+        SectionView { heading: self.text(&section.heading), text: self.paragraphs(&section.text) }
+    }
+
+    fn progress(&self) -> ProgressView {
+        ProgressView { done: self.state.record.step, total: self.plan.steps.len() }
+    }
+
+    fn button(&self, label: &str) -> ButtonView {
+        ButtonView {
+            label: label.to_owned(),
+            can_submit: can_submit(self.plan, self.state),
+            hint: None,
+        }
+    }
+
+    fn step(&self, step: &Step) -> View {
+        match &step.kind {
+            StepKind::Consent => self.consent(step),
+            StepKind::Questions { page, .. } => View::Questions {
+                step: step.id.clone(),
+                title: page
+                    .title
+                    .as_ref()
+                    .map_or_else(|| self.words.about_you.to_owned(), |title| self.text(title)),
+                text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
+                questions: self.questions(step),
+                button: self.button(self.words.next),
+                progress: self.progress(),
+            },
+            StepKind::Page(section) => {
+                let next = self.plan.step(self.state.record.step + 1);
+                let before_trial = next.is_some_and(|step| step.trial().is_some());
+                let label = if before_trial { self.words.begin } else { self.words.next };
+                self.page(step, section, self.button(label))
+            }
+            StepKind::Debriefing(section) => self.page(step, section, self.button(self.words.next)),
+            StepKind::Break(rest) => {
+                let section = Section { heading: rest.heading.clone(), text: rest.text.clone() };
+                let left = break_seconds_left(self.plan, self.state);
+                let mut button = self.button(self.words.next);
+                button.hint = (left > 0).then(|| self.words.wait_seconds(left));
+                self.page(step, &section, button)
+            }
+            StepKind::Trial(trial) => View::Trial(Box::new(self.trial(step, trial))),
+        }
+    }
+
+    fn page(&self, step: &Step, section: &Section, button: ButtonView) -> View {
+        let SectionView { heading, text } = self.section(section);
+        View::Page { step: step.id.clone(), heading, text, button, progress: self.progress() }
+    }
+
+    fn consent(&self, step: &Step) -> View {
+        let study = &self.plan.study;
+        let words = self.words;
+        let mut sections = Vec::new();
+        if let Some(consent) = &study.consent {
+            sections.extend(consent.sections.iter().map(|section| self.section(section)));
+            if let Some(retention) = &consent.retention {
+                let text = self.paragraphs(retention);
+                sections.push(SectionView { heading: words.retention.into(), text });
+            }
+            if let Some(years) = consent.minimum_age {
+                let text = vec![words.minimum_age(years)];
+                sections.push(SectionView { heading: words.age.into(), text });
+            }
+        }
+        let contact = study.contact.as_ref();
+        let people = [
+            (words.investigator, contact.map(|contact| &contact.investigator)),
+            (words.ethics_board, contact.and_then(|contact| contact.ethics_board.as_ref())),
+        ];
+        let contacts = people.into_iter().filter_map(|(role, person)| {
+            person.map(|person| ContactView {
+                role: role.to_owned(),
+                name: self.text(&person.name),
+                email: person.email.clone(),
+                reference: person.reference.clone(),
+            })
+        });
+        let languages = if study.languages.len() > 1 {
+            let name = |code: &String| (code.clone(), self.plan.words(code).language_name.into());
+            study.languages.iter().map(name).collect()
+        } else {
+            Vec::new()
+        };
+        View::Consent {
+            step: step.id.clone(),
+            title: self.text(&study.study_metadata.title),
+            description: self.text(&study.study_metadata.description),
+            sections,
+            contacts: contacts.collect(),
+            languages,
+            agree: words.agree.to_owned(),
+            decline: words.decline.to_owned(),
+        }
+    }
+
+    fn trial(&self, step: &Step, trial: &TrialStep) -> TrialView {
+        let (state, words) = (self.state, self.words);
+        let progress = &state.record.trial;
+        let playing = state.live.play == Play::Running;
+        let saving = is_saving(state);
+        let phase = if playing {
+            Phase::Playing
+        } else if let Some(reason) = state.live.failed.get(&trial.clip) {
+            Phase::Failed { reason: reason.clone(), retry: words.retry.to_owned() }
+        } else if progress.plays > 0 {
+            Phase::Answering
+        } else if !state.live.prepared.contains(&trial.clip) {
+            let fraction = state.live.progress.get(&trial.clip).copied().unwrap_or(0.0);
+            Phase::Loading { fraction }
+        } else if saving {
+            Phase::Loading { fraction: 1.0 }
+        } else {
+            Phase::Ready
+        };
+        let message = match &phase {
+            Phase::Playing => words.playing,
+            Phase::Failed { .. } => words.clip_failed,
+            Phase::Answering => words.answer_now,
+            Phase::Loading { .. } if saving && state.live.prepared.contains(&trial.clip) => {
+                words.saving
+            }
+            Phase::Loading { .. } => words.loading,
+            Phase::Ready if progress.cut_short => words.play_interrupted,
+            Phase::Ready => words.watch_first,
+        };
+        let of = self.plan.trial_count(trial.training);
+        let heading = if trial.training {
+            words.training_of(trial.number, of)
+        } else {
+            words.trial_of(trial.number, of)
+        };
+        let can_play = can_play(self.plan, state);
+        let can_answer = progress.plays > 0 && !playing;
+        let mut button = self.button(words.submit);
+        button.hint = (!can_answer).then(|| words.watch_first.to_owned());
+        let play_label = if progress.plays > 0 { words.play_again } else { words.play };
+        TrialView {
+            step: step.id.clone(),
+            clip: trial.clip.clone(),
+            heading,
+            instruction: trial.instruction.as_ref().map(|text| self.text(text)),
+            phase,
+            message: message.to_owned(),
+            can_play,
+            play_label: play_label.to_owned(),
+            can_replay: can_play && progress.plays > 0,
+            questions: self.questions(step),
+            can_answer,
+            button,
+            progress: self.progress(),
+        }
+    }
+
+    fn end(&self) -> View {
+        let (live, words) = (&self.state.live, self.words);
+        let Some(receipt) = &live.receipt else {
+            return View::ReceiptPending {
+                heading: words.sending.to_owned(),
+                text: words.sending_text.to_owned(),
+                stored: live.stored.min(self.state.record.events),
+                total: self.state.record.events,
+            };
+        };
+        let labelled = |label: &str, value: &Option<String>| {
+            value.as_ref().map(|value| (label.to_owned(), value.clone()))
+        };
+        View::End(Box::new(EndView {
+            heading: words.thanks.to_owned(),
+            text: words.thanks_text.to_owned(),
+            completion_code: labelled(words.completion_code, &receipt.completion_code),
+            redirect: labelled(words.go_back, &receipt.redirect),
+            receipt: (words.receipt.to_owned(), receipt.receipt.clone()),
+            withdrawal_code: (
+                words.withdrawal_code.to_owned(),
+                self.plan.started.withdrawal_code.clone(),
+                words.withdrawal_code_text.to_owned(),
+            ),
+        }))
+    }
+
+    fn questions(&self, step: &Step) -> Vec<QuestionView> {
+        shown_questions(step, self.state).map(|question| self.question(question)).collect()
+    }
+
+    fn question(&self, question: &Question) -> QuestionView {
+        let value = self.state.record.draft(&question.id).cloned();
+        let problem = question.accept(value.as_ref()).err();
+        let problem = problem.filter(|_| self.state.live.show_problems);
+        QuestionView {
+            id: question.id.clone(),
+            prompt: self.text(&question.prompt),
+            help: question.help.as_ref().map(|help| self.text(help)),
+            video: question.video.clone(),
+            required: question.required,
+            optional_mark: (!question.required).then(|| self.words.optional.to_owned()),
+            kind: self.kind(question),
+            value,
+            problem: problem.map(|problem| self.words.problem(&problem)),
+        }
+    }
+
+    fn kind(&self, question: &Question) -> QuestionKindView {
+        let label = |text: &Option<LocalText>| {
+            text.as_ref().map_or_else(String::new, |text| self.text(text))
+        };
+        let options = || self.options(question);
+        match &question.kind {
+            QuestionKind::SingleChoice(_) => QuestionKindView::SingleChoice { options: options() },
+            QuestionKind::MultipleChoice(choice) => {
+                QuestionKindView::MultipleChoice { options: options(), maximum: choice.maximum }
+            }
+            QuestionKind::Likert(scale) => QuestionKindView::Likert {
+                points: (scale.start..=scale.end())
+                    .enumerate()
+                    .map(|(index, number)| {
+                        let label = scale.labels.get(index).map(|text| self.text(text));
+                        (number, label.unwrap_or_default())
+                    })
+                    .collect(),
+                left: label(&scale.left_label),
+                right: label(&scale.right_label),
+            },
+            QuestionKind::Slider(slider) => QuestionKindView::Slider {
+                minimum: slider.minimum,
+                maximum: slider.maximum,
+                step: slider.step,
+                left: label(&slider.left_label),
+                right: label(&slider.right_label),
+            },
+            QuestionKind::Number(field) => QuestionKindView::Number {
+                minimum: field.minimum,
+                maximum: field.maximum,
+                integer: field.integer,
+                unit: field.unit.as_ref().map(|unit| self.text(unit)),
+            },
+            QuestionKind::ShortText(field) => {
+                let max_length = field.max_length.unwrap_or(SHORT_TEXT);
+                QuestionKindView::Text { long: false, max_length }
+            }
+            QuestionKind::LongText(field) => {
+                let max_length = field.max_length.unwrap_or(LONG_TEXT);
+                QuestionKindView::Text { long: true, max_length }
+            }
+            QuestionKind::Matrix(matrix) => QuestionKindView::Matrix {
+                rows: matrix.rows.iter().map(|row| self.choice(row)).collect(),
+                options: options(),
+            },
+            QuestionKind::Ranking(_) => QuestionKindView::Ranking { options: options() },
+            QuestionKind::ValenceArousal(grid) => QuestionKindView::ValenceArousal {
+                num_items: grid.num_items,
+                left: self.text(&grid.left_label),
+                right: self.text(&grid.right_label),
+                bottom: self.text(&grid.bottom_label),
+                top: self.text(&grid.top_label),
+            },
+        }
+    }
+
+    /// The options in the order shown to this participant.
+    fn options(&self, question: &Question) -> Vec<ChoiceView> {
+        let options = question.kind.options();
+        match self.plan.option_orders.get(&question.id) {
+            None => options.iter().map(|choice| self.choice(choice)).collect(),
+            Some(order) => order
+                .iter()
+                .filter_map(|&index| options.get(index))
+                .map(|choice| self.choice(choice))
+                .collect(),
+        }
+    }
+
+    fn choice(&self, choice: &Choice) -> ChoiceView {
+        ChoiceView {
+            value: choice.value.clone(),
+            label: self.text(&choice.label),
+            image: choice.image.clone(),
+            video: choice.video.clone(),
+        }
+    }
+}
