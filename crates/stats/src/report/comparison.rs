@@ -439,10 +439,9 @@ pub(crate) fn person_level_two_way(
 /// One value a person against something about the person.
 pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
     let means = measure.overall_person_means();
-    let first_row: Vec<usize> = means
-        .keys()
-        .filter_map(|person| measure.person.iter().position(|other| other == person))
-        .collect();
+    let first_rows = measure.first_rows();
+    let first_row: Vec<usize> =
+        means.keys().filter_map(|person| first_rows.get(person).copied()).collect();
     let factor = factor.rows(&first_row);
     let values = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
     let overall = if factor.levels.len() == 2 {

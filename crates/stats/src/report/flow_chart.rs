@@ -31,11 +31,7 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
             language.pick("people in the analysis", "personnes dans l’analyse"),
             Vec::new(),
         ),
-        (
-            flow.trials,
-            language.pick("trials they answered", "essais auxquels elles ont répondu"),
-            trials_out,
-        ),
+        (flow.trials, language.pick("trials they answered", "essais de ces personnes"), trials_out),
         (
             flow.trials_used,
             language.pick("trials in the analysis", "essais dans l’analyse"),

@@ -13,19 +13,19 @@ pub(crate) fn html(document: &Document, language: Language) -> String {
         match block {
             Block::Heading(level, text) => {
                 section += 1;
-                let _ = writeln!(body, r#"<h{level} id="s{section}">{}</h{level}>"#, escape(text));
+                let _ = writeln!(body, r#"<h{level} id="s{section}">{}</h{level}>"#, typeset(text));
                 if *level == 2 {
-                    let _ = write!(contents, r##"<a href="#s{section}">{}</a>"##, escape(text));
+                    let _ = write!(contents, r##"<a href="#s{section}">{}</a>"##, typeset(text));
                 }
             }
             Block::Paragraph(text) => {
-                let _ = writeln!(body, "<p>{}</p>", escape(text));
+                let _ = writeln!(body, "<p>{}</p>", typeset(text));
             }
             Block::Reading(text) => {
-                let _ = writeln!(body, r#"<p class="reading">{}</p>"#, escape(text));
+                let _ = writeln!(body, r#"<p class="reading">{}</p>"#, typeset(text));
             }
             Block::Caution(text) => {
-                let _ = writeln!(body, r#"<p class="caution">{}</p>"#, escape(text));
+                let _ = writeln!(body, r#"<p class="caution">{}</p>"#, typeset(text));
             }
             Block::Table(data) => table(&mut body, data),
             Block::Figure(drawing) => figure(&mut body, drawing, language),
@@ -55,16 +55,35 @@ pub(crate) fn html(document: &Document, language: Language) -> String {
 </body>
 </html>
 "#,
-        title = escape(&document.title),
-        subtitle = escape(&document.subtitle),
+        title = typeset(&document.title),
+        subtitle = typeset(&document.subtitle),
     )
 }
 
+/// Text for people: safe, and without line breaks inside `p = 0.01`, `95 %` or before French marks.
+fn typeset(text: &str) -> String {
+    const JOINED: [(&str, &str); 10] = [
+        (" = ", "\u{a0}=\u{a0}"),
+        (" < ", "\u{a0}<\u{a0}"),
+        (" %", "\u{a0}%"),
+        (" :", "\u{a0}:"),
+        (" ;", "\u{a0};"),
+        (" ?", "\u{a0}?"),
+        (" !", "\u{a0}!"),
+        (" »", "\u{a0}»"),
+        ("« ", "«\u{a0}"),
+        (" – ", "\u{a0}–\u{a0}"),
+    ];
+    let joined = JOINED.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to));
+    escape(&joined)
+}
+
 fn table(body: &mut String, data: &DataTable) {
+    let class = if data.groups.is_empty() { "" } else { r#" class="tests""# };
     let _ = writeln!(
         body,
-        r#"<div class="scroll" role="region" tabindex="0" aria-label="{0}"><table><caption>{0}</caption><thead>"#,
-        escape(&data.caption)
+        r#"<div class="scroll" role="region" tabindex="0" aria-label="{0}"><table{class}><caption>{0}</caption><thead>"#,
+        typeset(&data.caption)
     );
     if !data.groups.is_empty() {
         body.push_str("<tr>");
@@ -73,7 +92,7 @@ fn table(body: &mut String, data: &DataTable) {
             let _ = write!(
                 body,
                 r#"<{scope} colspan="{columns}" class="group">{}</{scope}>"#,
-                escape(text)
+                typeset(text)
             );
         }
         body.push_str("</tr>\n");
@@ -88,17 +107,17 @@ fn table(body: &mut String, data: &DataTable) {
                 .filter_map(|row| row.get(place))
                 .all(|cell| is_number(cell) || cell.is_empty());
         let class = if numbers { r#" class="number""# } else { "" };
-        let _ = write!(body, r#"<th scope="col"{class}>{}</th>"#, escape(column));
+        let _ = write!(body, r#"<th scope="col"{class}>{}</th>"#, typeset(column));
     }
     body.push_str("</tr></thead>\n<tbody>\n");
     for row in &data.rows {
         body.push_str("<tr>");
         for (i, cell) in row.iter().enumerate() {
             if i == 0 {
-                let _ = write!(body, r#"<th scope="row">{}</th>"#, escape(cell));
+                let _ = write!(body, r#"<th scope="row">{}</th>"#, typeset(cell));
             } else {
                 let class = if is_number(cell) { r#" class="number""# } else { "" };
-                let _ = write!(body, "<td{class}>{}</td>", escape(cell));
+                let _ = write!(body, "<td{class}>{}</td>", typeset(cell));
             }
         }
         body.push_str("</tr>\n");
@@ -112,16 +131,11 @@ fn is_number(cell: &str) -> bool {
 }
 
 fn figure(body: &mut String, drawing: &Figure, language: Language) {
-    // The drawing brings its description as its label.
-    let svg = drawing.svg.replacen(
-        &format!("aria-label=\"{}\"", escape(&drawing.caption)),
-        &format!("aria-label=\"{}\"", escape(&drawing.alt)),
-        1,
-    );
+    let svg = &drawing.svg;
     let _ = writeln!(
         body,
         "<figure>\n{svg}<figcaption>{}</figcaption>\n<details><summary>{}</summary>",
-        escape(&drawing.caption),
+        typeset(&drawing.caption),
         language.pick("Data of this figure", "Données de cette figure")
     );
     table(body, &drawing.data);
@@ -134,7 +148,7 @@ const STYLE: &str = "\
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
-header,main{max-width:56rem;margin:0 auto;padding:0 1.25rem}
+header,main{max-width:62rem;margin:0 auto;padding:0 1.25rem}
 header{padding-top:2.5rem}
 main{padding-bottom:4rem}
 h1{font-size:1.9rem;line-height:1.2;margin:0 0 .4rem}
@@ -155,7 +169,7 @@ th,td{padding:.32rem .7rem;text-align:left;border-bottom:1px solid var(--rule);v
 thead th{border-bottom:2px solid var(--rule);font-weight:600;vertical-align:bottom}
 tbody th{font-weight:500}
 td.number,th.number{text-align:right}
-td.number{white-space:nowrap}
+td.number,.tests td{white-space:nowrap}
 .group{font-weight:600;background:var(--panel);border-left:2px solid var(--paper)}
 td.group{background:none}
 figure{margin:1.5rem 0;padding:0}

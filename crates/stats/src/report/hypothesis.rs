@@ -58,8 +58,12 @@ pub(crate) fn test_hypothesis(
     let factor = hypothesis.factors.first().map_or("", String::as_str);
     let (trials, people, reading) = match (tested, &measure) {
         (Ok((trials, people)), Some(measure)) => {
-            let words =
-                reading::person_level(naming, &people, measure.kind, factor, &measure.label);
+            // A hypothesis of two factors is about their interaction, which stands last.
+            let mut read = people.clone();
+            if two_way(hypothesis.test) {
+                read.overall = read.overall.split_off(read.overall.len().saturating_sub(1));
+            }
+            let words = reading::person_level(naming, &read, measure.kind, factor, &measure.label);
             (trials, people, words)
         }
         (Ok((trials, people)), None) => (trials, people, String::new()),
@@ -88,6 +92,10 @@ pub(crate) fn test_hypothesis(
         recommended: people,
         reading,
     }
+}
+
+fn two_way(test: TestName) -> bool {
+    matches!(test, TestName::ScheirerRayHare | TestName::AlignedRankTransform)
 }
 
 fn measure_of(
@@ -136,15 +144,13 @@ fn tests(
             ));
         }
     }
-    let two_way =
-        matches!(hypothesis.test, TestName::ScheirerRayHare | TestName::AlignedRankTransform);
     match factors.as_slice() {
-        [(first, _), (second, _), ..] if two_way => {
+        [(first, _), (second, _), ..] if two_way(hypothesis.test) => {
             let both = [first, second];
             Ok((trial_level_two_way(measure, both), person_level_two_way(export, measure, both)))
         }
         [(factor, true), ..] => Ok(within_people(export, hypothesis, measure, factor)),
-        [(factor, false), ..] => Ok(between_people(export, hypothesis, measure, factor)),
+        [(factor, false), ..] => Ok(between_people(hypothesis, measure, factor)),
         [] => Err(language.pick("no factor is named", "aucun facteur n’est nommé").to_owned()),
     }
 }
@@ -210,7 +216,6 @@ fn within_people(
 }
 
 fn between_people(
-    export: &Export,
     hypothesis: &Hypothesis,
     measure: &Measure,
     factor: &Factor,
@@ -222,10 +227,9 @@ fn between_people(
             name: measure.id.clone(),
             values: means.iter().map(|(&person, &mean)| of(person, mean)).collect(),
         };
-        let trait_of = |person: usize| {
-            let row = measure.person.iter().position(|other| *other == person);
-            row.map_or(f64::NAN, |row| x.values[row])
-        };
+        let first_row = measure.first_rows();
+        let trait_of =
+            |person: usize| first_row.get(&person).map_or(f64::NAN, |&row| x.values[row]);
         let mut trait_values = values(&|person, _| trait_of(person));
         trait_values.name.clone_from(&factor.name);
         let people = PersonLevel {
@@ -245,7 +249,6 @@ fn between_people(
         TestName::MannWhitney => trial_level_mann_whitney(measure, factor),
         _ => trial_level_overall(measure, factor),
     };
-    let _ = export;
     (vec![trials], people)
 }
 

@@ -160,6 +160,15 @@ impl Measure {
         sums.into_iter().map(|(person, (sum, count))| (person, sum / count)).collect()
     }
 
+    /// The first value of each person.
+    pub(crate) fn first_rows(&self) -> BTreeMap<usize, usize> {
+        let mut first = BTreeMap::new();
+        for (row, &person) in self.person.iter().enumerate() {
+            first.entry(person).or_insert(row);
+        }
+        first
+    }
+
     /// Trials of one person that differ in the tested factor only, as blocks: the pairs of trial-level
     /// tests. What else must be equal is every other factor that occurs at each of its levels.
     pub(crate) fn matched_trials(&self, export: &Export, factor: &Factor) -> Blocks {

@@ -5,6 +5,7 @@ use super::comparison::{Comparison, Pair, PersonLevel, TestLine};
 use super::language::Language;
 use super::measure::MeasureKind;
 use super::naming::Naming;
+use super::tables::effect_symbol;
 use crate::outcome::Outcome;
 
 /// The level of a test.
@@ -236,7 +237,7 @@ fn overall_sentence(
         }
         Outcome::Ok(line) => line,
     };
-    let interaction = line.term.contains(':');
+    let interaction = line.term.split_once(':');
     let what = if line.term.is_empty() { factor.to_owned() } else { line.term.clone() };
     let what = what.split(':').map(|part| naming.factor(part)).collect::<Vec<_>>().join(" × ");
     let degrees = if line.df.is_empty() { String::new() } else { format!("({})", line.df) };
@@ -245,11 +246,11 @@ fn overall_sentence(
         line.statistic_name,
         language.number(line.statistic),
         language.p(line.p_value),
-        line.effect_name,
+        effect_symbol(line.effect_name),
         line.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
     );
     if line.p_value < LEVEL {
-        if interaction {
+        if interaction.is_some() {
             return language.pick(
                 format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it."),
                 format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier."),
@@ -257,12 +258,19 @@ fn overall_sentence(
         }
         return language.pick(
             format!("The levels of {what} differ: {numbers}, {} people.", line.n),
-            format!("Les niveaux de {what} diffèrent : {numbers}, {} personnes.", line.n),
+            format!("Les niveaux du facteur {what} diffèrent : {numbers}, {} personnes.", line.n),
+        );
+    }
+    if let Some((first, second)) = interaction {
+        let (first, second) = (naming.factor(first), naming.factor(second));
+        return language.pick(
+            format!("That the effect of {first} depends on {second} was not shown: {numbers}, {} people; that is no proof that it does not.", line.n),
+            format!("Que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’en dépend pas.", line.n),
         );
     }
     language.pick(
         format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.n),
-        format!("Aucun effet de {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.n),
+        format!("Aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.n),
     )
 }
 

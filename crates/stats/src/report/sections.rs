@@ -405,6 +405,10 @@ impl Writer<'_> {
             "Recommandé : les réponses de chaque personne à un niveau sont moyennées, de sorte qu’une personne compte une fois. Plusieurs niveaux : test de Friedman, F d’Iman et Davenport, W de Kendall. Paires : test des rangs signés de Wilcoxon, exact et conditionnel aux rangs observés, zéros selon Pratt, correction de Holm, corrélation bisériale des rangs, estimation de Hodges-Lehmann et intervalle à 95 % par les moyennes de Walsh. Interactions : transformation des rangs alignés sur les moyennes des personnes.",
         );
         self.paragraph(
+            "Effect sizes: r is the matched rank-biserial correlation, W Kendall’s coefficient of concordance, V Cramér’s, ε² is H / (n − 1) of Kruskal-Wallis, η²H the same of Scheirer-Ray-Hare (SRH), ηp² the partial eta squared of the aligned rank transform (ART).",
+            "Tailles d’effet : r est la corrélation bisériale des rangs appariés, W le coefficient de concordance de Kendall, V celui de Cramér, ε² est H / (n − 1) de Kruskal-Wallis, η²H le même de Scheirer-Ray-Hare (SRH), ηp² l’êta carré partiel de la transformation des rangs alignés (ART).",
+        );
+        self.paragraph(
             "As in the thesis: Kruskal-Wallis, Wilcoxon (R of 2019: zeros dropped, exact only below 50 differences without ties and zeros, else normal with continuity correction), Scheirer-Ray-Hare (type I sums of squares, corrected for ties) and chi-square (Yates’s correction for two by two) on single trials.",
             "Comme dans la thèse : Kruskal-Wallis, Wilcoxon (R de 2019 : zéros supprimés, exact seulement sous 50 différences sans ex æquo ni zéros, sinon normal avec correction de continuité), Scheirer-Ray-Hare (sommes de carrés de type I, corrigées des ex æquo) et khi-deux (correction de Yates pour deux par deux) sur les essais pris un à un.",
         );

@@ -30,7 +30,9 @@ fn cells(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String
                     line.statistic_name.replace("chi-square", "χ²"),
                     language.number(line.statistic),
                     line.n
-                ),
+                )
+                .trim_start()
+                .to_owned(),
                 language.p_cell(p, ln_p),
                 line.effect.map_or_else(String::new, |effect| {
                     format!("{} = {}", effect_symbol(line.effect_name), language.fixed(effect, 2))
@@ -45,11 +47,15 @@ fn short_name(test: &str) -> &str {
     let name = test.split(" on ").next().unwrap_or(test);
     match name.split(" of ").next().unwrap_or(name) {
         "aligned rank transform" => "ART",
+        "Scheirer-Ray-Hare" => "SRH",
+        // its statistic says it
+        "chi-square" => "",
         other => other,
     }
 }
 
-fn effect_symbol(name: &str) -> &str {
+/// The letter by which an effect size is known; the report's notes name them all.
+pub(crate) fn effect_symbol(name: &str) -> &str {
     match name {
         "rank-biserial" => "r",
         "Cramer's V" => "V",
