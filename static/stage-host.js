@@ -38,21 +38,34 @@ class Stage {
   constructor(canvas, look) {
     this.#canvas = canvas;
     this.#look = { background: "", variant: "stimulus", width: 640, height: 640, ...look };
-    canvas.style.width = `${this.#look.width}px`;
-    canvas.style.maxWidth = "100%";
-    canvas.style.aspectRatio = `${this.#look.width} / ${this.#look.height}`;
-    canvas.style.height = "auto";
+    const { width, height } = this.#look;
+    const frame = canvas.closest(".stage");
+    if (frame) {
+      // style.css lays the canvas out in its frame.
+      frame.style.setProperty("--stage-width", `${width}px`);
+      frame.style.setProperty("--stage-aspect", `${width} / ${height}`);
+    } else {
+      Object.assign(canvas.style, { width: `${width}px`, maxWidth: "100%", height: "auto" });
+      canvas.style.aspectRatio = `${width} / ${height}`;
+    }
     canvas.addEventListener("webglcontextlost", this.#onContextLost);
   }
 
-  /// Draws one frame of a prepared clip. Resolves when it is drawn.
+  /// Draws one frame of a prepared clip; resolves when it is drawn. A lost canvas is opened again.
   async show(clipId, timeMs) {
+    if (this.#lost !== null) await this.reopen();
+    while (!this.drawNow(clipId, timeMs)) await new Promise(requestAnimationFrame);
+  }
+
+  /// Draws one frame at once, for loops of animation frames. False when the adapter is still busy
+  /// with earlier frames; throws when the canvas is lost.
+  drawNow(clipId, timeMs) {
     const clip = preparedClip(clipId);
     this.#shown = { clipId, timeMs };
-    if (this.#lost !== null) await this.reopen();
-    this.#fit();
+    if (this.#lost !== null) throw new Error(this.#lost);
     try {
-      this.#draw(clip, timeMs);
+      this.#fit();
+      return this.#draw(clip, timeMs);
     } catch (error) {
       this.#fail(error.message);
       throw error;
@@ -136,7 +149,7 @@ class Stage {
     const { background, variant } = this.#look;
     this.#gpu = await module.Canvas.open(this.#canvas, width, height, background, variant);
     this.#lost = null;
-    if (this.#shown && !this.#playback) await this.show(this.#shown.clipId, this.#shown.timeMs);
+    if (this.#shown && !this.#playback) this.drawNow(this.#shown.clipId, this.#shown.timeMs);
   }
 
   #free() {

@@ -1,4 +1,5 @@
-//! Draws an avatar file: `portrait AVATAR.glb OUT.png [WIDTHxHEIGHT] [YAW] [shape=weight ...]`.
+//! Draws an avatar file or the built-in head (or packs it, when OUT ends in `.mmav`):
+//! `portrait AVATAR.glb|builtin OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]`.
 
 use std::path::Path;
 
@@ -9,13 +10,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [file, out, rest @ ..] = arguments.as_slice() else {
         return Err(
-            "usage: portrait AVATAR.glb OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]"
+            "usage: portrait AVATAR.glb|builtin OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]"
                 .into(),
         );
     };
-    let avatar = mimique_face::read_avatar(Path::new(file))?.avatar;
+    let avatar = match file.as_str() {
+        "builtin" => mimique_face::build_head(&mimique_face::HeadSpec::default()),
+        file => mimique_face::read_avatar(Path::new(file))?.avatar,
+    };
+    if out.ends_with(".mmav") {
+        std::fs::write(out, mimique_face::pack::encode_pack(&avatar).bytes)?;
+        return Ok(());
+    }
     let mut weights = vec![0.0_f32; avatar.shape_names.len()];
     let mut size = [640, 800];
+    let mut repeat = 0;
     let mut view = View::FRONT;
     let mut look = Look::STIMULUS;
     for word in rest {
@@ -25,6 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "yaw" => view.yaw = value,
                 "pitch" => view.pitch = value,
                 "zoom" => view.zoom = value,
+                "repeat" => repeat = value as u32,
                 "reference" => look = Look::REFERENCE,
                 _ => {
                     let shape = avatar
@@ -45,12 +55,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let picture = stage.picture(&renderer, &head, view, &weights)?;
     let first = started.elapsed() - loaded;
     let again = std::time::Instant::now();
-    let _ = stage.picture(&renderer, &head, view, &weights)?;
-    eprintln!(
-        "{}: load {loaded:.1?}, first picture {first:.1?}, second {:.1?}",
-        stage.adapter(),
-        again.elapsed()
-    );
+    for _ in 0..repeat {
+        stage.picture(&renderer, &head, view, &weights)?;
+    }
+    let each = again.elapsed() / repeat.max(1);
+    let adapter = stage.adapter();
+    eprintln!("{adapter}: load {loaded:.1?}, first picture {first:.1?}, then {each:.1?} each");
     std::fs::write(out, picture.png())?;
     Ok(())
 }

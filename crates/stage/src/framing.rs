@@ -135,23 +135,23 @@ fn mouth(avatar: &Avatar, guess: Vec3, span: f32) -> (Vec3, Option<[f32; 3]>) {
     let mut rim = Vec::new();
     for mesh in avatar.meshes.iter().filter(|m| m.part == Part::Skin) {
         let place = |v: u32| mesh.positions[v as usize].map(f32::to_bits);
-        let near = |v: u32| {
-            let off = (Vec3::from(mesh.positions[v as usize]) - guess).abs() / span;
-            off.x < 0.7 && off.y < 0.4 && off.z < 0.7
+        let near = |p: Vec3| {
+            let off = (p - guess).abs() / span;
+            off.x < 0.6 && off.y < 0.3 && off.z < 0.6
         };
+        let near_vertex = |v: u32| mesh.positions.get(v as usize).is_some_and(|&p| near(p.into()));
         let mut edges: Vec<[[u32; 3]; 2]> = (mesh.triangles.iter())
-            .filter(|t| t.iter().all(|&v| (v as usize) < mesh.positions.len() && near(v)))
+            .filter(|t| t.iter().any(|&v| near_vertex(v)))
+            .filter(|t| t.iter().all(|&v| (v as usize) < mesh.positions.len()))
             .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
             .map(|e| e.map(place))
             .map(|[a, b]| if a < b { [a, b] } else { [b, a] })
             .collect();
         edges.sort_unstable();
-        let alone = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).flatten();
-        // The border of the region itself is alone too: keep what lies well inside.
-        rim.extend(alone.flatten().map(|p| Vec3::from(p.map(f32::from_bits))).filter(|p| {
-            let off = (*p - guess).abs() / span;
-            off.x < 0.6 && off.y < 0.3 && off.z < 0.6
-        }));
+        let alone = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+        // The border of the region itself is alone too, but has an end outside.
+        let ends = alone.map(|same| same[0].map(|p| Vec3::from(p.map(f32::from_bits))));
+        rim.extend(ends.filter(|e| e.iter().all(|&p| near(p))).flatten());
     }
     let Some(corner) = rim.iter().copied().reduce(|a, b| if b.x > a.x { b } else { a }) else {
         return (guess, None);

@@ -63,6 +63,9 @@ pub(crate) struct Eye {
     /// Direction of the pupil in the neutral pose.
     pub forward: Vec3,
     pub looks: Vec<mimique_face::Look>,
+    /// Colours of iris and white, where the mesh is coloured.
+    pub iris: Option<[f32; 3]>,
+    pub white: Option<[f32; 3]>,
 }
 
 impl Geometry {
@@ -156,7 +159,10 @@ impl Geometry {
         let lashes =
             if mesh.part == Part::Lashes { lash_length(mesh, landmarks) } else { Vec::new() };
         for v in 0..count {
-            let colour = mesh.vertex_colours.get(v).copied().unwrap_or(mesh.base_colour);
+            let own = mesh.vertex_colours.get(v).copied();
+            // The iris of an eye is drawn a pixel, not a vertex.
+            let own = eye.map_or(own, |e| self.eyes[e].white);
+            let colour = own.unwrap_or(mesh.base_colour);
             let root = colour.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
             self.colours.push([root[0], root[1], root[2], material]);
             if let Some(&length) = lashes.get(v) {
@@ -303,7 +309,19 @@ fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye
         .fold(Vec3::ZERO, |sum, d| sum + d.normalize_or_zero());
     let seen = bulge.normalize_or_zero();
     let forward = if far > 1.03 * radius && seen.z > 0.8 { seen } else { Vec3::Z };
-    Eye { centre, radius, forward, looks }
+    let within = |low: f32, high: f32| {
+        let of_vertex = |(p, c): (&[f32; 3], &[f32; 3])| {
+            let lean = 1.0 - (Vec3::from(*p) - centre).normalize_or_zero().dot(forward);
+            (low..high).contains(&lean).then_some(Vec3::from(*c))
+        };
+        let colours: Vec<Vec3> =
+            mesh.positions.iter().zip(&mesh.vertex_colours).filter_map(of_vertex).collect();
+        let count = colours.len() as f32;
+        (count > 0.0).then(|| (colours.iter().sum::<Vec3>() / count).to_array())
+    };
+    // 1 - cosine: the iris lies between 11 and 22 degrees off the axis, the white beyond 40.
+    let (iris, white) = (within(0.018, 0.073), within(0.25, 0.7));
+    Eye { centre, radius, forward, looks, iris, white }
 }
 
 /// How far along a lash each vertex lies: 0 at the lid, 1 at the longest tip, measured as distance

@@ -165,10 +165,13 @@ impl Head {
         pose
     }
 
-    /// The eyes' own frames at the given weights, as `shade.wgsl` reads them.
-    pub(crate) fn gaze(&self, weights: &[f32]) -> [Gaze; MAX_EYEBALLS] {
+    /// The eyes' own frames at the given weights, as `shade.wgsl` reads them; `iris` colours those
+    /// that came without a colour.
+    pub(crate) fn gaze(&self, weights: &[f32], iris: [f32; 3]) -> [Gaze; MAX_EYEBALLS] {
         let mut out: [Gaze; MAX_EYEBALLS] = bytemuck::Zeroable::zeroed();
         for (slot, eye) in out.iter_mut().zip(&self.eyes) {
+            let [r, g, b] = eye.iris.unwrap_or(iris);
+            slot.iris = [r, g, b, 0.0];
             let head_from_eye = turn(eye, weights) * frame(eye.forward);
             for (row, (axis, c)) in
                 [head_from_eye.x_axis, head_from_eye.y_axis, head_from_eye.z_axis]

@@ -50,8 +50,8 @@ pub(crate) struct Scene {
     pub skin: [f32; 4],
     /// Colour; 1 where painted.
     pub brows: [f32; 4],
-    /// Colour; exposure.
-    pub iris: [f32; 4],
+    /// Exposure.
+    pub light: [f32; 4],
     pub gaze: [Gaze; MAX_EYEBALLS],
 }
 
@@ -61,6 +61,8 @@ pub(crate) struct Scene {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct Gaze {
     pub rows: [[f32; 4]; 3],
+    /// Colour of the iris.
+    pub iris: [f32; 4],
 }
 
 /// `shade.wgsl`: constants `MATERIAL_...`; the fourth number of a vertex's colour.

@@ -11,7 +11,8 @@
 //! | 4 picture | `shade.wgsl` | pixel, 4x MSAA | colour |
 //!
 //! Colours are computed in linear light, pass a filmic response and are stored in an sRGB format,
-//! so that the resolve of the samples is linear too.
+//! so that the resolve of the samples is linear too; a target that does not encode sRGB by itself
+//! gets one more pass (`encode.wgsl`). At loading, `occlusion.wgsl` finds how open each vertex lies.
 
 mod error;
 mod framing;
@@ -24,6 +25,7 @@ pub mod offscreen;
 mod pipelines;
 mod renderer;
 mod tables;
+mod targets;
 
 pub use error::StageError;
 pub use framing::{Landmarks, View};

@@ -23,7 +23,8 @@ pub struct Picture {
     pub rgba: Vec<u8>,
 }
 
-const FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Formats of pictures: the second as of canvases that store bytes as they are.
+const FORMATS: [TextureFormat; 2] = [TextureFormat::Rgba8UnormSrgb, TextureFormat::Rgba8Unorm];
 
 impl Offscreen {
     /// Takes an adapter of this machine. With `software` one that computes on the processor, which
@@ -57,7 +58,12 @@ impl Offscreen {
 
     /// A renderer on this device, for many pictures of one size.
     pub fn renderer(&self, size: [u32; 2], look: Look) -> Renderer {
-        Renderer::new(&self.device, &self.queue, FORMAT, size, look)
+        Renderer::new(&self.device, &self.queue, FORMATS[0], size, look)
+    }
+
+    /// The same, drawing as on a canvas that does not encode sRGB by itself.
+    pub fn renderer_as_on_canvas(&self, size: [u32; 2], look: Look) -> Renderer {
+        Renderer::new(&self.device, &self.queue, FORMATS[1], size, look)
     }
 
     /// Draws one picture of an avatar.
@@ -90,7 +96,8 @@ impl Offscreen {
     ) -> Result<Picture, StageError> {
         let [width, height] = renderer.size();
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
-        let texture = tables::empty(&self.device, "picture", FORMAT, width, height, usage);
+        let texture =
+            tables::empty(&self.device, "picture", renderer.target_format(), width, height, usage);
         renderer.render(
             &texture.create_view(&wgpu::TextureViewDescriptor::default()),
             head,

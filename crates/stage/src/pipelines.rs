@@ -43,13 +43,7 @@ pub(crate) struct Pipelines {
 impl Pipelines {
     /// For pictures of the given colour format.
     pub fn new(device: &Device, format: TextureFormat) -> Self {
-        let scene = include_str!("shaders/scene.wgsl");
-        let module = |label, source| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl([scene, source].concat().into()),
-            })
-        };
+        let module = |label, source| shader(device, label, source);
         let deform_module = module("deform.wgsl", include_str!("shaders/deform.wgsl"));
         let surface_module = module("surface.wgsl", include_str!("shaders/surface.wgsl"));
         let occlusion_module = module("occlusion.wgsl", include_str!("shaders/occlusion.wgsl"));
@@ -150,6 +144,32 @@ impl Pipelines {
     }
 }
 
+/// What [`encode_pass`] reads.
+pub(crate) fn picture_layout(device: &Device) -> BindGroupLayout {
+    let float = TextureSampleType::Float { filterable: false };
+    layout(device, "encode", &[table(0, ShaderStages::FRAGMENT, float)])
+}
+
+/// The pass from a picture in linear light to a target of `format`, which stores bytes as they are.
+pub(crate) fn encode_pass(
+    device: &Device,
+    group: &BindGroupLayout,
+    format: TextureFormat,
+) -> RenderPipeline {
+    let module = shader(device, "encode.wgsl", include_str!("shaders/encode.wgsl"));
+    table_pass(device, &module, group, ["cover_picture", "encode"], &format.into())
+}
+
+/// A shader module, with the shared declarations before it.
+fn shader(device: &Device, label: &str, source: &str) -> ShaderModule {
+    let scene = include_str!("shaders/scene.wgsl");
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl([scene, source].concat().into()),
+    })
+}
+
+/// A pass of one triangle over every texel of a table.
 fn table_pass(
     device: &Device,
     module: &ShaderModule,

@@ -7,8 +7,9 @@ use wgpu::{Device, LoadOp, Operations, Queue, StoreOp, TextureFormat, TextureUsa
 use crate::framing::{Camera, View};
 use crate::head::Head;
 use crate::layouts::{SHADOW_SIZE, Scene};
-use crate::pipelines::{DEPTH_FORMAT, Pipelines, SAMPLES};
+use crate::pipelines::{DEPTH_FORMAT, Pipelines};
 use crate::tables;
+use crate::targets::{self, Encoder, Targets};
 use crate::{Look, StageError};
 
 /// Towards the key light; `scene.wgsl`, constant `KEY`.
@@ -20,17 +21,20 @@ pub struct Renderer {
     queue: Queue,
     pipelines: Pipelines,
     look: Look,
+    #[cfg(feature = "native")]
+    target_format: TextureFormat,
+    /// Format of the samples.
     format: TextureFormat,
     size: [u32; 2],
-    samples: TextureView,
-    depth: TextureView,
+    encoder: Option<Encoder>,
+    targets: Targets,
     shadow: TextureView,
     shadow_sampler: wgpu::Sampler,
 }
 
 impl Renderer {
-    /// A renderer for pictures of `format` (an sRGB one, so that light is stored as it should be)
-    /// and `size` pixels, width and height.
+    /// A renderer for pictures of `format` (encoded as sRGB whether the format does so by itself or
+    /// not) and `size` pixels, width and height.
     pub fn new(
         device: &Device,
         queue: &Queue,
@@ -50,16 +54,19 @@ impl Renderer {
             ..wgpu::SamplerDescriptor::default()
         });
         let size = size.map(|s| s.max(1));
-        let (samples, depth) = targets(device, format, size);
+        let encoder = Encoder::new(device, format);
+        let samples = targets::light_format(format);
         Self {
-            pipelines: Pipelines::new(device, format),
+            #[cfg(feature = "native")]
+            target_format: format,
+            targets: Targets::new(device, samples, size, encoder.as_ref()),
+            encoder,
+            pipelines: Pipelines::new(device, samples),
             device: device.clone(),
             queue: queue.clone(),
             look,
-            format,
+            format: samples,
             size,
-            samples,
-            depth,
             shadow,
             shadow_sampler,
         }
@@ -81,13 +88,19 @@ impl Renderer {
         let size = size.map(|s| s.max(1));
         if size != self.size {
             self.size = size;
-            (self.samples, self.depth) = targets(&self.device, self.format, size);
+            self.targets = Targets::new(&self.device, self.format, size, self.encoder.as_ref());
         }
     }
 
     /// Size of the pictures, pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// Format of the targets.
+    #[cfg(feature = "native")]
+    pub(crate) fn target_format(&self) -> TextureFormat {
+        self.target_format
     }
 
     /// Changes the look of the frames to come.
@@ -112,7 +125,13 @@ impl Renderer {
         fill_table(&mut encoder, &head.positions, &passes.deform, &head.deform_group, clear);
         self.light_pass(&mut encoder, head);
         fill_table(&mut encoder, &head.surfaces, &passes.surface, &head.surface_group, clear);
-        self.picture_pass(&mut encoder, head, target);
+        match (&self.encoder, &self.targets.resolved) {
+            (Some(encode), Some((resolved, group))) => {
+                self.picture_pass(&mut encoder, head, resolved);
+                fill_table(&mut encoder, target, &encode.pipeline, group, clear);
+            }
+            _ => self.picture_pass(&mut encoder, head, target),
+        }
         self.queue.submit([encoder.finish()]);
     }
 
@@ -179,7 +198,7 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.samples,
+                view: &self.targets.samples,
                 depth_slice: None,
                 resolve_target: Some(target),
                 ops: Operations {
@@ -188,7 +207,7 @@ impl Renderer {
                 },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
+                view: &self.targets.depth,
                 depth_ops: Some(Operations { load: LoadOp::Clear(1.0), store: StoreOp::Discard }),
                 stencil_ops: None,
             }),
@@ -219,8 +238,8 @@ impl Renderer {
             lips: self.lips(head),
             skin: with(self.look.skin_tint, self.look.skin_roughness),
             brows: with(self.look.brows, if self.look.paint { 1.0 } else { 0.0 }),
-            iris: with(self.look.iris, self.look.exposure),
-            gaze: head.gaze(weights),
+            light: [self.look.exposure, 0.0, 0.0, 0.0],
+            gaze: head.gaze(weights, self.look.iris),
         }
     }
 
@@ -270,23 +289,4 @@ fn sky() -> impl Iterator<Item = Vec3> {
             Vec3::new(radius * cos, y, radius * sin)
         })
         .filter(|d| d.z > -0.25)
-}
-
-/// The multisampled picture and its depth.
-fn targets(device: &Device, format: TextureFormat, size: [u32; 2]) -> (TextureView, TextureView) {
-    let view = |label, format| {
-        device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: SAMPLES,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
-            .create_view(&wgpu::TextureViewDescriptor::default())
-    };
-    (view("samples", format), view("depth", DEPTH_FORMAT))
 }

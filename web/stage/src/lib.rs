@@ -5,6 +5,7 @@
 #![cfg(target_arch = "wasm32")]
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use mimique_stage::wgpu;
@@ -21,15 +22,18 @@ type Lost = Arc<Mutex<Option<String>>>;
 pub struct Canvas {
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
-    /// sRGB twin of the canvas' format, in which light is stored as it should be.
-    view_format: wgpu::TextureFormat,
     device: wgpu::Device,
     queue: wgpu::Queue,
     renderer: Renderer,
     heads: HashMap<String, Head>,
     adapter: String,
     lost: Lost,
+    /// Frames given to the graphics adapter that it has not finished.
+    in_flight: Arc<AtomicU32>,
 }
+
+/// Frames that may wait at the graphics adapter. More would be shown long after their time.
+const MOST_IN_FLIGHT: u32 = 2;
 
 #[wasm_bindgen]
 impl Canvas {
@@ -85,24 +89,20 @@ impl Canvas {
             .copied()
             .find(wgpu::TextureFormat::is_srgb)
             .unwrap_or(configuration.format);
-        let view_format = configuration.format.add_srgb_suffix();
-        if view_format != configuration.format {
-            configuration.view_formats = vec![view_format];
-        }
         configuration.alpha_mode = wgpu::CompositeAlphaMode::Opaque;
         surface.configure(&device, &configuration);
-        let renderer = Renderer::new(&device, &queue, view_format, [width, height], look);
+        let renderer = Renderer::new(&device, &queue, configuration.format, [width, height], look);
         let info = adapter.get_info();
         Ok(Self {
             surface,
             configuration,
-            view_format,
             device,
             queue,
             renderer,
             heads: HashMap::new(),
-            adapter: [info.name, info.driver].join(" ").trim().to_owned(),
+            adapter: info.name,
             lost,
+            in_flight: Arc::default(),
         })
     }
 
@@ -126,7 +126,8 @@ impl Canvas {
     }
 
     /// Draws one frame of the head under `key`; `yaw` and `pitch` in radians, `zoom` 1 for the
-    /// standard portrait. Answers false when the browser has no frame to draw on just now.
+    /// standard portrait. Answers false when nothing was drawn, because the adapter is still busy with
+    /// earlier frames or the browser has no frame to draw on just now.
     ///
     /// # Errors
     /// When there is no such head, or the device or the surface is lost: open the canvas anew.
@@ -143,6 +144,11 @@ impl Canvas {
         }
         let head = (self.heads.get(key))
             .ok_or_else(|| JsError::new(&format!("avatar {key}: not loaded; load it first")))?;
+        // WebGL2 tells of finished work only when asked.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        if self.in_flight.load(Ordering::Relaxed) >= MOST_IN_FLIGHT {
+            return Ok(false);
+        }
         let frame = match self.surface.get_current_texture() {
             Frame::Success(frame) | Frame::Suboptimal(frame) => frame,
             Frame::Outdated => {
@@ -154,11 +160,13 @@ impl Canvas {
                 return Err(JsError::new("canvas: its surface is lost; open the stage again"));
             }
         };
-        let view = frame.texture.create_view(&wgpu::TextureViewDescriptor {
-            format: Some(self.view_format),
-            ..Default::default()
-        });
+        let view = frame.texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.renderer.render(&view, head, View { yaw, pitch, zoom }, weights);
+        self.in_flight.fetch_add(1, Ordering::Relaxed);
+        let in_flight = self.in_flight.clone();
+        self.queue.on_submitted_work_done(move || {
+            in_flight.fetch_sub(1, Ordering::Relaxed);
+        });
         self.queue.present(frame);
         Ok(true)
     }

@@ -4,6 +4,7 @@ const LIST_TABLE_WIDTH: u32 = 1024u;
 
 struct Gaze {
     rows: array<vec4f, 3>,
+    iris: vec4f,
 }
 
 struct Scene {
@@ -15,7 +16,7 @@ struct Scene {
     lips: vec4f,
     skin: vec4f,
     brows: vec4f,
-    iris: vec4f,
+    light: vec4f,
     gaze: array<Gaze, 4>,
 }
 

@@ -93,28 +93,30 @@ fn wrapped(ndl: f32, wrap: vec3f) -> vec3f {
     return x * x * (1.0 / (1.0 + wrap)) * (0.35 + 0.65 * wrap) + x * (1.0 - wrap) / (1.0 + wrap);
 }
 
-fn one_light(f: Finish, n: vec3f, v: vec3f, l: vec3f, light: vec3f, visible: vec3f) -> vec3f {
-    let ndl = dot(n, l);
-    let shine = gloss(n, v, l, f.roughness, f.specular) * max(ndl, 0.0) * PI;
-    return light * visible * (f.albedo * wrapped(ndl, f.wrap) + vec3f(shine));
-}
-
 fn all_lights(f: Finish, n: vec3f, v: vec3f, key_visible: f32) -> vec3f {
+    let to_key = dot(n, KEY);
     // Where the surface turns from the light the wrapped falloff shades it already.
-    let toward = smoothstep(-0.05, 0.30, dot(n, KEY));
-    let shade = clamp(mix(1.0, key_visible, toward), 0.0, 1.0);
-    // Blood scatters red into a shadow's edge.
-    let key = pow(vec3f(shade), vec3f(1.0) / (1.0 + 1.6 * f.wrap));
-    var sum = one_light(f, n, v, KEY, KEY_LIGHT, key);
-    sum += one_light(f, n, v, FILL, FILL_LIGHT, vec3f(f.open));
-    let edge = 1.0 - max(dot(n, v), 0.0);
-    let rim = vec3f(edge * edge * f.open);
-    sum += one_light(f, n, v, RIM_LEFT, RIM_LIGHT, rim);
-    sum += one_light(f, n, v, RIM_RIGHT, RIM_LIGHT, rim);
-    let around = mix(GROUND, SKY, n.y * 0.5 + 0.5) * f.open;
+    let shade = clamp(mix(1.0, key_visible, smoothstep(-0.05, 0.30, to_key)), 0.0, 1.0);
+    var key = vec3f(shade);
+    if shade < 1.0 {
+        // Blood scatters red into a shadow's edge.
+        key = pow(key, 1.0 / (1.0 + 1.6 * f.wrap));
+    }
+    let shine = gloss(n, v, KEY, f.roughness, f.specular) * max(to_key, 0.0) * PI;
+    var sum = KEY_LIGHT * key * (f.albedo * wrapped(to_key, f.wrap) + shine);
+    sum += FILL_LIGHT * f.open * f.albedo * wrapped(dot(n, FILL), f.wrap);
+
+    let edge = clamp(1.0 - dot(n, v), 0.0, 1.0);
     let e2 = edge * edge;
     let mirror = f.specular + (1.0 - f.roughness) * (1.0 - f.specular) * e2 * e2 * edge;
-    return sum + around * (f.albedo + mirror * 0.6);
+    sum += mix(GROUND, SKY, n.y * 0.5 + 0.5) * f.open * (f.albedo + mirror * 0.6);
+    if edge > 0.25 {
+        // The rims come from behind: they graze, and shine the more.
+        let left = max(dot(n, RIM_LEFT) + 0.15, 0.0);
+        let right = max(dot(n, RIM_RIGHT) + 0.15, 0.0);
+        sum += RIM_LIGHT * ((left + right) * (e2 - 0.0625) * f.open) * (f.albedo + 0.35 * edge * e2);
+    }
+    return sum;
 }
 
 // ---- paint for skins without colours, placed in the neutral pose ----
@@ -146,9 +148,13 @@ fn painted(plain: vec3f, at: vec4f) -> vec3f {
     let nose = exp(-dot(vec2f(side, p.y + 0.70), vec2f(side, p.y + 0.70)) * 22.0);
     var colour = base * mix(vec3f(1.0), vec3f(1.06, 0.84, 0.82), (0.75 * cheek + 0.55 * nose) * front);
     colour *= 0.96 + 0.08 * noise(p.xy * 26.0);
-    colour = mix(colour, base * vec3f(0.74, 0.43, 0.43), 0.85 * lips(at.xyz));
-    let brow = brows(p) * front * scene.brows.w;
-    return mix(colour, scene.brows.rgb, brow);
+    if p.y < -0.6 && side < 0.6 {
+        colour = mix(colour, base * vec3f(0.74, 0.43, 0.43), 0.85 * lips(at.xyz));
+    }
+    if p.y > 0.15 && p.y < 0.65 && p.z > 0.0 {
+        colour = mix(colour, scene.brows.rgb, brows(p) * scene.brows.w);
+    }
+    return colour;
 }
 
 // Lips: from the line where they part up to a bow and down to an arc.
@@ -190,6 +196,7 @@ fn brows(p: vec3f) -> f32 {
 
 fn eye(p: Point, v: vec3f, index: u32) -> vec3f {
     let rows = scene.gaze[index].rows;
+    let iris_colour = scene.gaze[index].iris.rgb;
     let arm = p.position - vec3f(rows[0].w, rows[1].w, rows[2].w);
     let local = vec3f(dot(rows[0].xyz, arm), dot(rows[1].xyz, arm), dot(rows[2].xyz, arm));
     let seen = vec3f(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
@@ -212,8 +219,8 @@ fn eye(p: Point, v: vec3f, index: u32) -> vec3f {
 
     let angle = atan2(at.y, at.x);
     let fibres = 0.6 * noise(vec2f(angle * 14.0, s * 4.0)) + 0.4 * noise(vec2f(angle * 37.0 + 9.0, s * 8.0));
-    var iris = scene.iris.rgb * (0.55 + 0.95 * fibres) * mix(1.4, 0.9, smoothstep(0.4, 0.95, s));
-    iris = mix(iris, scene.iris.rgb * vec3f(1.9, 1.45, 0.8), 0.45 * (1.0 - smoothstep(0.42, 0.62, s)));
+    var iris = iris_colour * (0.55 + 0.95 * fibres) * mix(1.4, 0.9, smoothstep(0.4, 0.95, s));
+    iris = mix(iris, iris_colour * vec3f(1.9, 1.45, 0.8), 0.45 * (1.0 - smoothstep(0.42, 0.62, s)));
     iris *= 1.0 - 0.85 * smoothstep(0.78, 1.0, s);
     iris *= smoothstep(pupil_radius, pupil_radius + 0.03, r);
     // Light that entered the cornea from above gathers on the lower half of the iris.
@@ -264,7 +271,7 @@ fn film(x: vec3f) -> vec3f {
 }
 
 fn developed(light: vec3f) -> vec3f {
-    return clamp(film(light * scene.iris.w * 0.42), vec3f(0.0), vec3f(1.0));
+    return clamp(film(light * scene.light.x * 0.42), vec3f(0.0), vec3f(1.0));
 }
 
 @fragment

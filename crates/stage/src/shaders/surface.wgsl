@@ -27,7 +27,7 @@ fn ring_normal(position: vec3f, start: u32, count: u32) -> vec3f {
     return select(vec3f(0.0, 0.0, 1.0), sum / size, size > 0.0);
 }
 
-// Sixteen comparisons on a disc of 5 mm: the penumbra of a large soft box.
+// Sixteen comparisons on a disc of 9 mm: the penumbra of a large soft box.
 fn key_visibility(position: vec3f, normal: vec3f) -> f32 {
     let unit = scene.eyes_middle.w;
     let lit = scene.light_from_world * vec4f(position + normal * (0.030 * unit), 1.0);
@@ -35,7 +35,7 @@ fn key_visibility(position: vec3f, normal: vec3f) -> f32 {
     var open = 0.0;
     for (var i = 0u; i < 16u; i++) {
         // Vogel's disc: equal areas, golden angle.
-        let radius = sqrt((f32(i) + 0.5) / 16.0) * 0.0135;
+        let radius = sqrt((f32(i) + 0.5) / 16.0) * 0.024;
         let angle = f32(i) * 2.3999632;
         let tap = at + radius * vec2f(cos(angle), sin(angle));
         open += textureSampleCompareLevel(shadow, shadow_sampler, tap, lit.z);

@@ -1,0 +1,60 @@
+//! The picture stays what it was. Tolerance: mean difference of a colour byte at most 0.75 of 255,
+//! at most 0.5 % of the pixels off by more than 12 (edges, between rasterisers).
+//!
+//! `MIMIQUE_UPDATE_GOLDEN=1` writes the golden pictures anew; look at them before committing.
+
+mod support;
+
+use std::path::PathBuf;
+
+use mimique_stage::offscreen::Picture;
+use mimique_stage::{Look, View};
+
+const MOST_MEAN: f64 = 0.75;
+const MOST_OUTLIERS: f64 = 0.005;
+const MOST_BYTES: usize = 60_000;
+
+#[test]
+fn golden_egg_neutral() {
+    check("egg-neutral", Look::STIMULUS, View::FRONT, [0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn golden_egg_posed_three_quarter() {
+    check("egg-posed", Look::STIMULUS, View::THREE_QUARTER, [1.0, 0.8, 1.0]);
+}
+
+#[test]
+fn golden_egg_reference_look() {
+    check("egg-reference", Look::REFERENCE, View::FRONT, [0.5, 0.0, -1.0]);
+}
+
+fn check(name: &str, look: Look, view: View, weights: [f32; 3]) {
+    let Some(stage) = support::adapter(name) else { return };
+    let picture =
+        stage.render(&support::egg(), look, view, &weights, [192, 240]).expect("the egg is drawn");
+    let path =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("{name}.png"));
+    if std::env::var_os("MIMIQUE_UPDATE_GOLDEN").is_some_and(|v| v == "1") {
+        let png = picture.png();
+        assert!(png.len() <= MOST_BYTES, "{name}: {} bytes, at most {MOST_BYTES}", png.len());
+        std::fs::write(&path, png).expect("golden picture is written");
+        return;
+    }
+    let golden = read(&path);
+    let found = support::difference(&picture, &golden);
+    if found.mean > MOST_MEAN || found.outliers > MOST_OUTLIERS {
+        let actual = std::env::temp_dir().join(format!("{name}-actual.png"));
+        std::fs::write(&actual, picture.png()).expect("actual picture is written");
+        panic!("{name}: {found:?} on {}; see {}", stage.adapter(), actual.display());
+    }
+}
+
+fn read(path: &PathBuf) -> Picture {
+    let file = std::fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG file");
+    let mut rgba = vec![0; reader.output_buffer_size().expect("a small picture")];
+    let info = reader.next_frame(&mut rgba).expect("a whole picture");
+    Picture { width: info.width, height: info.height, rgba }
+}
