@@ -4,12 +4,41 @@
 //! changing one of them) or sums in an order written here; no fused multiply-add. So the bits are
 //! the same on every processor and in WebAssembly, whatever the width of its vectors.
 
+/// Compile a function twice on x86-64, for the vectors that every processor has and for AVX's of
+/// twice the width, and choose at run time. Without the feature `fma` the bits are the same.
+macro_rules! widest {
+    ($(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*) $(-> $out:ty)? $body:block) => {
+        $(#[$doc])*
+        #[inline]
+        #[allow(unsafe_code)]
+        pub(crate) fn $name($($arg: $type),*) $(-> $out)? {
+            #[inline(always)]
+            fn any($($arg: $type),*) $(-> $out)? $body
+
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx")]
+                fn avx($($arg: $type),*) $(-> $out)? {
+                    any($($arg),*)
+                }
+                if std::arch::is_x86_feature_detected!("avx") {
+                    // SAFETY: the processor has AVX, as was just asked.
+                    return unsafe { avx($($arg),*) };
+                }
+            }
+            any($($arg),*)
+        }
+    };
+}
+pub(crate) use widest;
+
 /// Length of a packed triangle of an n x n matrix.
 pub(crate) fn packed_len(n: usize) -> usize {
     n * (n + 1) / 2
 }
 
 /// Sum of x_i y_i in four interleaved partial sums, then (0 + 1) + (2 + 3), then the rest.
+#[inline(always)]
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len().min(y.len());
     let (x, y) = (&x[..n], &y[..n]);
@@ -28,25 +57,113 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     sum
 }
 
+/// [`dot`] of four rows with one x, side by side: a processor adds the next row while it waits for
+/// the last one.
+#[inline(always)]
+pub(crate) fn dot4(rows: [&[f64]; 4], x: &[f64]) -> [f64; 4] {
+    let n = x.len();
+    let rows = rows.map(|row| &row[..n]);
+    let mut lanes = [[0.0; 4]; 4];
+    let (xs, x_rest) = x.as_chunks::<4>();
+    let chunks = rows.map(|row| &row.as_chunks::<4>().0[..xs.len()]);
+    for (i, x) in xs.iter().enumerate() {
+        for r in 0..4 {
+            let row = &chunks[r][i];
+            for k in 0..4 {
+                lanes[r][k] += row[k] * x[k];
+            }
+        }
+    }
+    let mut sums = lanes.map(|l| (l[0] + l[1]) + (l[2] + l[3]));
+    for (i, x) in x_rest.iter().enumerate() {
+        for r in 0..4 {
+            sums[r] += rows[r][4 * xs.len() + i] * x;
+        }
+    }
+    sums
+}
+
 /// y += a x.
+#[inline(always)]
 pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
     }
 }
 
-/// y = M x for a row-major matrix of `y.len()` rows.
-pub(crate) fn mul(m: &[f64], x: &[f64], y: &mut [f64]) {
-    for (row, y) in m.chunks_exact(x.len()).zip(y) {
-        *y = dot(row, x);
+widest! {
+    /// y = M x for a row-major matrix of `y.len()` rows.
+    fn mul(m: &[f64], x: &[f64], y: &mut [f64]) {
+        let n = x.len();
+        let (fours, rest) = y.as_chunks_mut::<4>();
+        let (blocks, last) = m.split_at(fours.len() * 4 * n);
+        for (rows, y) in blocks.chunks_exact(4 * n).zip(fours) {
+            *y = dot4([&rows[..n], &rows[n..2 * n], &rows[2 * n..3 * n], &rows[3 * n..]], x);
+        }
+        for (row, y) in last.chunks_exact(n).zip(rest) {
+            *y = dot(row, x);
+        }
     }
 }
 
-/// y = M^T x for a row-major matrix of `x.len()` rows.
-pub(crate) fn mul_transposed(m: &[f64], x: &[f64], y: &mut [f64]) {
-    y.fill(0.0);
-    for (row, &x) in m.chunks_exact(y.len()).zip(x) {
-        axpy(x, row, y);
+widest! {
+    /// y = M^T x for a row-major matrix of `x.len()` rows; four rows at a time, in their order.
+    fn mul_transposed(m: &[f64], x: &[f64], y: &mut [f64]) {
+        let n = y.len();
+        y.fill(0.0);
+        let (fours, rest) = x.as_chunks::<4>();
+        let (blocks, last) = m[..x.len() * n].split_at(fours.len() * 4 * n);
+        for (rows, x) in blocks.chunks_exact(4 * n).zip(fours) {
+            let (r0, rows) = rows.split_at(n);
+            let (r1, rows) = rows.split_at(n);
+            let (r2, r3) = rows.split_at(n);
+            for j in 0..n {
+                y[j] = (((y[j] + x[0] * r0[j]) + x[1] * r1[j]) + x[2] * r2[j]) + x[3] * r3[j];
+            }
+        }
+        for (row, &x) in last.chunks_exact(n).zip(rest) {
+            axpy(x, row, y);
+        }
+    }
+}
+
+widest! {
+    /// y = R x for an upper triangle of `y.len()` rows, row-major, zeros written out.
+    fn mul_triangle(r: &[f64], x: &[f64], y: &mut [f64]) {
+        let n = x.len();
+        let (fours, rest) = y.as_chunks_mut::<4>();
+        let done = 4 * fours.len();
+        for (block, y) in fours.iter_mut().enumerate() {
+            let i = 4 * block;
+            *y = dot4([0, 1, 2, 3].map(|k| &r[(i + k) * n + i..(i + k + 1) * n]), &x[i..]);
+        }
+        for (i, y) in (done..).zip(rest) {
+            *y = dot(&r[i * n + i..(i + 1) * n], &x[i..]);
+        }
+    }
+}
+
+widest! {
+    /// y = R^T x for an upper triangle of `x.len()` rows; four rows at a time, in their order.
+    fn mul_triangle_transposed(r: &[f64], x: &[f64], y: &mut [f64]) {
+        let n = y.len();
+        y.fill(0.0);
+        let (fours, rest) = x.as_chunks::<4>();
+        for (block, x) in fours.iter().enumerate() {
+            let i = 4 * block;
+            let y = &mut y[i..];
+            let [r0, r1, r2, r3] = [0, 1, 2, 3].map(|k| &r[(i + k) * n + i..(i + k + 1) * n]);
+            let width = n - i;
+            let (y, r0) = (&mut y[..width], &r0[..width]);
+            let (r1, r2, r3) = (&r1[..width], &r2[..width], &r3[..width]);
+            for j in 0..width {
+                y[j] = (((y[j] + x[0] * r0[j]) + x[1] * r1[j]) + x[2] * r2[j]) + x[3] * r3[j];
+            }
+        }
+        for (k, &x) in rest.iter().enumerate() {
+            let i = 4 * fours.len() + k;
+            axpy(x, &r[i * n + i..(i + 1) * n], &mut y[i..]);
+        }
     }
 }
 
@@ -68,12 +185,14 @@ pub(crate) fn gram(m: &[f64], n: usize) -> Vec<f64> {
     g
 }
 
-/// U of A = U^T U, upper triangle, row-major; keeps its memory between uses.
+/// U of A = U^T U, upper triangle; keeps its memory between uses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Cholesky {
     n: usize,
-    /// The upper triangle holds A before, U after [`Cholesky::factor`].
+    /// The upper triangle holds A before, U after [`Cholesky::factor`]. Rows are `stride` apart, so
+    /// that blocks of four begin at multiples of four; what is left of the diagonal means nothing.
     u: Vec<f64>,
+    stride: usize,
     /// 1 / U_kk, or 0 where the pivot vanished.
     inverse_diagonal: Vec<f64>,
 }
@@ -85,68 +204,181 @@ const VANISHED_PIVOT: f64 = 1e-13;
 impl Cholesky {
     /// Room for an n x n matrix; fill its upper triangle with [`Cholesky::row_mut`].
     pub(crate) fn reset(&mut self, n: usize) {
-        self.n = n;
-        self.u.resize(n * n, 0.0);
-        self.inverse_diagonal.resize(n, 0.0);
+        if n != self.n {
+            self.n = n;
+            self.stride = n.next_multiple_of(4);
+            // Zeros right of the last column, and nothing that could be a NaN anywhere.
+            self.u.clear();
+            self.u.resize(self.stride * self.stride, 0.0);
+            self.inverse_diagonal.resize(n, 0.0);
+        }
     }
 
     /// Entries i.. of row i.
     pub(crate) fn row_mut(&mut self, i: usize) -> &mut [f64] {
-        &mut self.u[i * self.n + i..(i + 1) * self.n]
+        &mut self.u[i * self.stride + i..i * self.stride + self.n]
     }
 
     /// Factor in place. A variable that depends on those before it is taken out: its row of U and
     /// its solution are 0. Returns how many were.
     pub(crate) fn factor(&mut self) -> usize {
-        let n = self.n;
-        let mut vanished = 0;
-        for k in 0..n {
-            self.inverse_diagonal[k] = VANISHED_PIVOT * self.u[k * n + k];
-        }
-        for k in 0..n {
-            let (head, tail) = self.u.split_at_mut((k + 1) * n);
-            let row = &mut head[k * n + k..];
-            let smallest = self.inverse_diagonal[k];
-            if row[0] > smallest && row[0] > 0.0 {
-                let root = row[0].sqrt();
-                let inverse = 1.0 / root;
-                row[0] = root;
-                for x in &mut row[1..] {
-                    *x *= inverse;
-                }
-                self.inverse_diagonal[k] = inverse;
-                for i in k + 1..n {
-                    let factor = row[i - k];
-                    let target = &mut tail[(i - k - 1) * n + i..(i - k) * n];
-                    for (t, x) in target.iter_mut().zip(&row[i - k..]) {
-                        *t -= factor * x;
-                    }
-                }
-            } else {
-                row.fill(0.0);
-                self.inverse_diagonal[k] = 0.0;
-                vanished += 1;
-            }
-        }
-        vanished
+        factor_upper(&mut self.u, &mut self.inverse_diagonal, self.stride)
     }
 
     /// b := A^-1 b.
     pub(crate) fn solve(&self, b: &mut [f64]) {
-        let n = self.n;
+        solve_upper(&self.u, &self.inverse_diagonal, self.stride, b);
+    }
+}
+
+widest! {
+    /// U of A = U^T U in place, four rows at a time: the rows below are loaded once for four of
+    /// the subtractions that each of their numbers needs, made in the same order as one by one.
+    fn factor_upper(u: &mut [f64], inverse_diagonal: &mut [f64], stride: usize) -> usize {
+        let n = inverse_diagonal.len();
+        let mut vanished = 0;
         for k in 0..n {
-            let y = b[k] * self.inverse_diagonal[k];
-            b[k] = y;
-            let row = &self.u[k * n + k + 1..(k + 1) * n];
-            for (b, u) in b[k + 1..n].iter_mut().zip(row) {
-                *b -= u * y;
-            }
+            inverse_diagonal[k] = VANISHED_PIVOT * u[k * stride + k];
         }
-        for k in (0..n).rev() {
-            let row = &self.u[k * n + k + 1..(k + 1) * n];
-            b[k] = (b[k] - dot(row, &b[k + 1..n])) * self.inverse_diagonal[k];
+        let mut start = 0;
+        while start < n {
+            let end = (start + 4).min(n);
+            let (head, tail) = u.split_at_mut((start + 4) * stride);
+            let panel = &mut head[start * stride..];
+            for k in start..end {
+                let (above, below) = panel.split_at_mut((k + 1 - start) * stride);
+                let row = &mut above[(k - start) * stride..];
+                let pivot = row[k];
+                if pivot > inverse_diagonal[k] && pivot > 0.0 {
+                    let root = pivot.sqrt();
+                    let inverse = 1.0 / root;
+                    for x in &mut row[start..] {
+                        *x *= inverse;
+                    }
+                    row[k] = root;
+                    inverse_diagonal[k] = inverse;
+                    for i in k + 1..end {
+                        let factor = row[i];
+                        let target = &mut below[(i - k - 1) * stride + start..(i - k) * stride];
+                        for (t, x) in target.iter_mut().zip(&row[start..]) {
+                            *t -= factor * x;
+                        }
+                    }
+                } else {
+                    row[k..].fill(0.0);
+                    inverse_diagonal[k] = 0.0;
+                    vanished += 1;
+                }
+            }
+            let rows = [0, 1, 2, 3].map(|k| &panel[k * stride..(k + 1) * stride]);
+            for i in start + 4..n {
+                let [f0, f1, f2, f3] = rows.map(|row| row[i]);
+                let from = i / 4 * 4;
+                let target = &mut tail[(i - start - 4) * stride + from..(i - start - 3) * stride];
+                let width = target.len();
+                let [r0, r1, r2, r3] = rows.map(|row| &row[from..from + width]);
+                for j in 0..width {
+                    target[j] = (((target[j] - f0 * r0[j]) - f1 * r1[j]) - f2 * r2[j]) - f3 * r3[j];
+                }
+            }
+            start = end;
+        }
+        vanished
+    }
+}
+
+widest! {
+    /// b := (U^T U)^-1 b, four rows at a time.
+    fn solve_upper(u: &[f64], inverse_diagonal: &[f64], stride: usize, b: &mut [f64]) {
+        let n = inverse_diagonal.len();
+        let b = &mut b[..n];
+        let mut start = 0;
+        while start < n {
+            let end = (start + 4).min(n);
+            for k in start..end {
+                b[k] *= inverse_diagonal[k];
+                for i in k + 1..end {
+                    b[i] -= u[k * stride + i] * b[k];
+                }
+            }
+            if end < n {
+                let y = [b[start], b[start + 1], b[start + 2], b[start + 3]];
+                let rest = &mut b[end..];
+                let width = rest.len();
+                let [r0, r1, r2, r3] =
+                    [0, 1, 2, 3].map(|k| &u[(start + k) * stride + end..][..width]);
+                for j in 0..width {
+                    rest[j] = (((rest[j] - y[0] * r0[j]) - y[1] * r1[j]) - y[2] * r2[j])
+                        - y[3] * r3[j];
+                }
+            }
+            start = end;
+        }
+        let mut end = n;
+        while end > 0 {
+            let start = (end - 1) / 4 * 4;
+            if end < n {
+                let rows = [0, 1, 2, 3].map(|k| &u[(start + k) * stride + end..]);
+                let sums = dot4(rows, &b[end..n]);
+                for k in 0..4 {
+                    b[start + k] -= sums[k];
+                }
+            }
+            for k in (start..end).rev() {
+                for i in k + 1..end {
+                    b[k] -= u[k * stride + i] * b[i];
+                }
+                b[k] *= inverse_diagonal[k];
+            }
+            end = start;
         }
     }
+}
+
+/// Q and R of M = Q R by Householder's reflections; R is upper triangular.
+///
+/// M: `rows` x n, row-major. Returns Q^T (r x rows) and R (r x n), r the smaller of both. A matrix
+/// without full rank has zeros, or rounding, on the diagonal of R.
+pub(crate) fn householder(m: &[f64], rows: usize, n: usize) -> (Vec<f64>, Vec<f64>) {
+    let rank = rows.min(n);
+    let mut columns: Vec<Vec<f64>> =
+        (0..n).map(|j| (0..rows).map(|i| m[i * n + j]).collect()).collect();
+    let mut mirrors: Vec<Vec<f64>> = Vec::with_capacity(rank);
+    for k in 0..rank {
+        let mut v = columns[k][k..].to_vec();
+        let length = dot(&v, &v).sqrt();
+        v[0] += if v[0] < 0.0 { -length } else { length };
+        let square = dot(&v, &v);
+        if square > 0.0 {
+            for column in &mut columns[k..] {
+                reflect(&v, square, &mut column[k..]);
+            }
+        }
+        mirrors.push(v);
+    }
+    let mut q_transposed = vec![0.0; rank * rows];
+    for (i, row) in q_transposed.chunks_exact_mut(rows.max(1)).enumerate() {
+        row[i] = 1.0;
+        for k in (0..rank).rev() {
+            let v = &mirrors[k];
+            let square = dot(v, v);
+            if square > 0.0 {
+                reflect(v, square, &mut row[k..]);
+            }
+        }
+    }
+    let mut r = vec![0.0; rank * n];
+    for i in 0..rank {
+        for j in i..n {
+            r[i * n + j] = columns[j][i];
+        }
+    }
+    (q_transposed, r)
+}
+
+/// x - 2 v (v.x) / |v|^2.
+fn reflect(v: &[f64], square: f64, x: &mut [f64]) {
+    axpy(-2.0 * dot(v, x) / square, v, x);
 }
 
 /// Solve A X = B by Gaussian elimination with partial pivoting: A n x n, B n x m, both row-major
@@ -195,4 +427,83 @@ pub(crate) fn solve_general(a: &mut [f64], b: &mut [f64], n: usize) -> Option<()
         }
     }
     Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(count: usize, seed: f64) -> Vec<f64> {
+        (0..count).map(|i| (1e4 * (seed + 1.3 * i as f64).sin()).fract()).collect()
+    }
+
+    #[test]
+    fn cholesky_solves_and_takes_dependent_variables_out() {
+        for n in [1, 3, 4, 5, 8, 13, 53] {
+            let rows = numbers(2 * n * n, 0.4);
+            let a = gram(&rows, n);
+            let x = numbers(n, 2.0);
+            let mut b = vec![0.0; n];
+            mul(&a, &x, &mut b);
+            let mut cholesky = Cholesky::default();
+            cholesky.reset(n);
+            for i in 0..n {
+                cholesky.row_mut(i).copy_from_slice(&a[i * n + i..(i + 1) * n]);
+            }
+            assert_eq!(cholesky.factor(), 0);
+            cholesky.solve(&mut b);
+            let worst = b.iter().zip(&x).fold(0.0_f64, |s, (a, b)| s.max((a - b).abs()));
+            assert!(worst < 1e-9, "{n}: {worst:e}");
+        }
+        // The third variable is the sum of the first two.
+        let m = [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 3.0, 1.0, 4.0];
+        let mut cholesky = Cholesky::default();
+        cholesky.reset(3);
+        let a = gram(&m, 3);
+        for i in 0..3 {
+            cholesky.row_mut(i).copy_from_slice(&a[i * 3 + i..(i + 1) * 3]);
+        }
+        assert_eq!(cholesky.factor(), 1);
+        let mut b = [a[0] + 2.0 * a[1], a[3] + 2.0 * a[4], a[6] + 2.0 * a[7]];
+        cholesky.solve(&mut b);
+        assert!((b[0] - 1.0).abs() < 1e-12 && (b[1] - 2.0).abs() < 1e-12 && b[2] == 0.0);
+    }
+
+    #[test]
+    fn householder_splits_into_orthogonal_and_triangular() {
+        for (rows, n) in [(7, 4), (4, 7), (1, 1), (120, 53)] {
+            let m = numbers(rows * n, 0.7);
+            let (qt, r) = householder(&m, rows, n);
+            let rank = rows.min(n);
+            for i in 0..rows {
+                for j in 0..n {
+                    let x: f64 = (0..rank).map(|k| qt[k * rows + i] * r[k * n + j]).sum();
+                    assert!((x - m[i * n + j]).abs() < 1e-13);
+                }
+            }
+            for a in 0..rank {
+                for b in 0..rank {
+                    let x = dot(&qt[a * rows..(a + 1) * rows], &qt[b * rows..(b + 1) * rows]);
+                    assert!((x - f64::from(u8::from(a == b))).abs() < 1e-13);
+                }
+                assert!(r[a * n..a * n + a.min(n)].iter().all(|&x| x == 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn general_solve_finds_the_solution_or_says_singular() {
+        let mut a = numbers(25, 0.2);
+        let original = a.clone();
+        let x = numbers(10, 5.0);
+        let mut b = vec![0.0; 10];
+        for i in 0..5 {
+            for j in 0..2 {
+                b[i * 2 + j] = (0..5).map(|k| a[i * 5 + k] * x[k * 2 + j]).sum();
+            }
+        }
+        assert!(solve_general(&mut a, &mut b, 5).is_some());
+        assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-9), "{original:?}");
+        assert!(solve_general(&mut [1.0, 2.0, 2.0, 4.0], &mut [1.0, 1.0], 2).is_none());
+    }
 }

@@ -1,10 +1,10 @@
 //! One interface to every method: set up once, then displacements in, weights and a report out.
 
 use crate::box_qp::{BoxState, Outcome};
-use crate::dense::{axpy, dot, gram, mul, mul_transposed, packed_len};
+use crate::dense::{axpy, dot, gram, householder, mul, mul_transposed, packed_len};
 use crate::method_spec::MethodSpec;
 use crate::newton::NewtonState;
-use crate::objective::{Matrices, Objective, Term};
+use crate::objective::{Matrices, Objective, Target, Term};
 use crate::operators::Operators;
 use crate::problem::{Engine, FitError, Problem};
 use crate::svd::pseudo_inverse;
@@ -93,6 +93,9 @@ struct Seen {
     deltas: Vec<f64>,
     /// D^T D.
     gram: Vec<f64>,
+    /// Q^T and R of D = Q R (empty but for the smooth methods).
+    orthogonal: Vec<f64>,
+    triangle: Vec<f64>,
     /// Q of the quadratic programme (empty for the smooth methods), or D^+.
     system: Vec<f64>,
     /// Sum of the importances.
@@ -223,6 +226,7 @@ impl FrameSolver<'_> {
             self.weights.clear();
             self.weights.resize(n, 0.0);
         }
+        self.right.clear();
         self.right.resize(n, 0.0);
         let d = &self.displacements;
         let mut smoothed = false;
@@ -250,12 +254,22 @@ impl FrameSolver<'_> {
                 pseudo_inverse_outcome(seen, d, &self.weights, &mut self.scratch)
             }
             Engine::Smooth { objective, fallback_eps } => {
+                let rank = seen.triangle.len() / n;
+                self.right.resize(rank, 0.0);
+                mul(&seen.orthogonal, d, &mut self.right);
+                self.scratch.resize(d.len(), 0.0);
+                mul_transposed(&seen.orthogonal, &self.right, &mut self.scratch);
+                for (r, d) in self.scratch.iter_mut().zip(d) {
+                    *r -= d;
+                }
+                let target =
+                    Target { inside: &self.right, outside: dot(&self.scratch, &self.scratch) };
                 let (outcome, fell_back) = solve_smooth(
                     &mut self.newton,
                     objective,
                     *fallback_eps,
-                    Matrices { deltas: &seen.deltas, gram: &seen.gram, shell: &problem.shell },
-                    d,
+                    Matrices { triangle: &seen.triangle, gram: &seen.gram, shell: &problem.shell },
+                    target,
                     &mut self.weights,
                 );
                 smoothed = fell_back;
@@ -266,14 +280,19 @@ impl FrameSolver<'_> {
         for (&k, &c) in problem.free.iter().zip(&self.weights) {
             weights[k] = c;
         }
-        self.scratch.resize(d.len(), 0.0);
-        mul(&seen.deltas, &self.weights, &mut self.scratch);
-        for (r, d) in self.scratch.iter_mut().zip(d) {
-            *r -= d;
-        }
+        let misfit = match &problem.engine {
+            Engine::Smooth { .. } => self.newton.misfit(),
+            _ => {
+                self.scratch.resize(d.len(), 0.0);
+                mul(&seen.deltas, &self.weights, &mut self.scratch);
+                for (r, d) in self.scratch.iter_mut().zip(d) {
+                    *r -= d;
+                }
+                dot(&self.scratch, &self.scratch)
+            }
+        };
         let importance = seen.importance;
         let no_markers = !(importance > 0.0);
-        let misfit = dot(&self.scratch, &self.scratch);
         let warning = if !outcome.converged {
             // The next frame is better off with a fresh start.
             self.reset();
@@ -343,9 +362,13 @@ impl Seen {
             Engine::PseudoInverse => pseudo_inverse(&deltas, 3 * problem.marker_count, n),
             Engine::Smooth { .. } => Vec::new(),
         };
+        let (orthogonal, triangle) = match &problem.engine {
+            Engine::Smooth { .. } => householder(&deltas, 3 * problem.marker_count, n),
+            _ => (Vec::new(), Vec::new()),
+        };
         let importance = (problem.importance.iter().zip(&missing))
             .fold(0.0, |s, (w, &gone)| if gone { s } else { s + w });
-        Seen { missing, deltas, gram, system, importance }
+        Seen { missing, deltas, gram, orthogonal, triangle, system, importance }
     }
 }
 
@@ -390,11 +413,10 @@ fn solve_smooth(
     objective: &Objective,
     fallback_eps: f64,
     m: Matrices<'_>,
-    d: &[f64],
+    target: Target<'_>,
     c: &mut [f64],
 ) -> (Outcome, bool) {
-    let start = c.to_vec();
-    let outcome = newton.minimise(objective, m, d, c);
+    let outcome = newton.minimise(objective, m, target, c);
     let Term::Norm { weight, eps } = objective.data else { return (outcome, false) };
     // Below a ten-thousandth of the fallback's eps a norm is a corner to Newton.
     let corner = newton.misfit().sqrt() < 1e-4 * fallback_eps;
@@ -403,8 +425,10 @@ fn solve_smooth(
     }
     let mut smoothed = objective.clone();
     smoothed.data = Term::Norm { weight, eps: fallback_eps };
-    c.copy_from_slice(&start);
-    (newton.minimise(&smoothed, m, d, c), true)
+    if !c.iter().all(|x| x.is_finite()) {
+        c.fill(0.0);
+    }
+    (newton.minimise(&smoothed, m, target, c), true)
 }
 
 /// The normal equations' error in units of weight.

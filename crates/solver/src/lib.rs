@@ -22,13 +22,14 @@
 //! | w_i, N_i, sigma (Kouadio 4.4-4.7) | [`LinkedRows`] | P x N(N+1)/2 | m^2 |
 //!
 //! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
-//! is written down, nothing is fused, `exp` and `tan` are those of `libm`.
+//! is written down, nothing is fused, `tan` is that of `libm` and `exp` our own.
 
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
 mod box_qp;
 mod dense;
+mod exp;
 mod fit;
 mod front_end;
 mod laplacian;

@@ -4,11 +4,14 @@
 
 use crate::box_qp::Outcome;
 use crate::dense::{Cholesky, dot};
-use crate::objective::{Evaluation, Matrices, Objective};
+use crate::objective::{Evaluation, Matrices, Objective, Target};
 
 /// A Newton step below this ends the search; as Newton converges quadratically, what is left is far
 /// below.
 pub(crate) const STEP_TOLERANCE: f64 = 1e-8;
+
+/// A step with an older factor leaves up to a tenth of itself behind: it has to be smaller.
+const REFINED_TOLERANCE: f64 = 1e-12;
 
 /// Newton needs 4-8 steps from a cold start; the majorised steps of a poor start some tens.
 const MOST_STEPS: u32 = 200;
@@ -35,26 +38,28 @@ impl NewtonState {
         &mut self,
         objective: &Objective,
         m: Matrices<'_>,
-        d: &[f64],
+        target: Target<'_>,
         c: &mut [f64],
     ) -> Outcome {
-        objective.evaluate(m, d, c, &mut self.here);
+        objective.evaluate(m, target, c, &mut self.here);
         let mut iterations = 0;
         let mut converged = false;
         while !converged && iterations < MOST_STEPS {
             iterations += 1;
-            let whole = self.newton_step(objective, m, false);
-            converged = whole <= STEP_TOLERANCE;
-            if converged || self.advance(objective, m, d, c, 1) {
-                if converged {
-                    self.take_step(objective, m, d, c);
+            self.factor_hessian(objective, m, false);
+            let size = self.step_downhill();
+            if size <= STEP_TOLERANCE {
+                self.take_step(objective, m, target, c);
+                converged = true;
+            } else if self.advance(objective, m, target, c, 1) {
+                converged = self.refine(objective, m, target, c, size);
+            } else {
+                // The full Newton step overshoots: take the step of the majorising quadratic.
+                self.factor_hessian(objective, m, true);
+                self.step_downhill();
+                if !self.advance(objective, m, target, c, 40) {
+                    break;
                 }
-                continue;
-            }
-            // The full Newton step overshoots: take the step of the majorising quadratic.
-            self.newton_step(objective, m, true);
-            if !self.advance(objective, m, d, c, 40) {
-                break;
             }
         }
         let kkt_error = (self.here.gradient.iter().zip(&self.diagonal))
@@ -62,29 +67,59 @@ impl NewtonState {
         Outcome { iterations, kkt_error, converged: converged && kkt_error.is_finite() }
     }
 
-    /// The step, and its largest entry.
-    fn newton_step(&mut self, objective: &Objective, m: Matrices<'_>, majorised: bool) -> f64 {
-        let n = self.here.gradient.len();
-        self.factor.reset(n);
-        self.diagonal.resize(n, 0.0);
-        for i in 0..n {
-            let row = self.factor.row_mut(i);
-            objective.hessian_row(m, &self.here, majorised, i, row);
-            self.diagonal[i] = row[0];
+    /// After a Newton step of the given size: further steps with the same factor, a tenth of the
+    /// cost, as long as each is a tenth of the last. Whether the tolerance was reached.
+    fn refine(
+        &mut self,
+        objective: &Objective,
+        m: Matrices<'_>,
+        target: Target<'_>,
+        c: &mut [f64],
+        mut size: f64,
+    ) -> bool {
+        loop {
+            let next = self.step_downhill();
+            // `!(<)` so that NaN ends the loop. Steps above a thousandth are left to the search.
+            if !(next < 0.1 * size && next < 1e-3) {
+                return false;
+            }
+            self.take_step(objective, m, target, c);
+            if next <= REFINED_TOLERANCE {
+                return true;
+            }
+            size = next;
+        }
+    }
+
+    fn factor_hessian(&mut self, objective: &Objective, m: Matrices<'_>, majorised: bool) {
+        objective.hessian(m, &self.here, majorised, &mut self.factor);
+        self.diagonal.resize(self.here.gradient.len(), 0.0);
+        for (i, h) in self.diagonal.iter_mut().enumerate() {
+            *h = self.factor.row_mut(i)[0];
         }
         self.factor.factor();
+    }
+
+    /// The step of the factor from here, and its largest entry.
+    fn step_downhill(&mut self) -> f64 {
         self.step.clear();
         self.step.extend(self.here.gradient.iter().map(|g| -g));
         self.factor.solve(&mut self.step);
-        self.step.iter().fold(0.0, |s, x| s.max(x.abs()))
+        self.step.iter().fold(0.0, |s: f64, x| if s >= x.abs() { s } else { x.abs() })
     }
 
-    /// The last, tiny step: taken whole, without comparing values that differ by rounding.
-    fn take_step(&mut self, objective: &Objective, m: Matrices<'_>, d: &[f64], c: &mut [f64]) {
+    /// A small step, taken whole: the values on both sides differ by rounding only.
+    fn take_step(
+        &mut self,
+        objective: &Objective,
+        m: Matrices<'_>,
+        target: Target<'_>,
+        c: &mut [f64],
+    ) {
         for (c, p) in c.iter_mut().zip(&self.step) {
             *c += p;
         }
-        objective.evaluate(m, d, c, &mut self.here);
+        objective.evaluate(m, target, c, &mut self.here);
     }
 
     /// Go along the step, halved up to `tries` - 1 times until the value falls enough (Armijo).
@@ -92,7 +127,7 @@ impl NewtonState {
         &mut self,
         objective: &Objective,
         m: Matrices<'_>,
-        d: &[f64],
+        target: Target<'_>,
         c: &mut [f64],
         tries: u32,
     ) -> bool {
@@ -103,7 +138,7 @@ impl NewtonState {
         for _ in 0..tries {
             self.trial.clear();
             self.trial.extend(c.iter().zip(&self.step).map(|(c, p)| c + t * p));
-            objective.evaluate(m, d, &self.trial, &mut self.there);
+            objective.evaluate(m, target, &self.trial, &mut self.there);
             if self.there.value <= self.here.value + 1e-4 * t * slope + noise {
                 c.copy_from_slice(&self.trial);
                 std::mem::swap(&mut self.here, &mut self.there);

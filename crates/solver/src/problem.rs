@@ -147,13 +147,7 @@ fn engine(spec: &MethodSpec, scales: &Scales, names: &[&str]) -> Engine {
     };
     let box_bounds = || bounds([0.0, 1.0]);
     let smooth = |data, shell, bounds_weight| Engine::Smooth {
-        objective: Objective {
-            data,
-            shell,
-            bounds_weight,
-            soft_bounds: bounds(spec.soft_bounds()),
-            softness: spec.s(),
-        },
+        objective: Objective::new(data, shell, bounds_weight, bounds(spec.soft_bounds()), spec.s()),
         fallback_eps: 1e-4 * scales.data.sqrt(),
     };
     let (alpha, kappa) = (spec.alpha(), spec.kappa());
