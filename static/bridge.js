@@ -4,11 +4,15 @@
 let host;
 const stageHost = () => (host ??= import("./stage-host.js"));
 
+const held = new Set();
+
 /** Takes a lock for as long as this page lives. False if another tab of this browser has it. */
 export async function holdSession(name) {
-  if (!navigator.locks) return true;
+  // Plain HTTP on another machine has no locks.
+  if (!navigator.locks || held.has(name)) return true;
   return new Promise((answer) => {
     navigator.locks.request(`mimique/${name}`, { ifAvailable: true }, (lock) => {
+      if (lock !== null) held.add(name);
       answer(lock !== null);
       return lock === null ? undefined : new Promise(() => {});
     });
@@ -70,9 +74,27 @@ export async function showClip(clip) {
   await (await stage()).show(clip, 0);
 }
 
-/** Plays a clip once. Resolves with the log as JSON. */
+/** Plays a clip once. Resolves with the log as JSON, its times as `study::PlayLog` has them. */
 export async function playClip(clip) {
-  return JSON.stringify(await (await stage()).play(clip));
+  return JSON.stringify(onPageClock(await (await stage()).play(clip)));
+}
+
+// The stage's times are requestAnimationFrame's: ms since the page was opened. Onset and end become
+// ms since 1970, as every event has them; frames become ms after the onset.
+function onPageClock({ onset_ms: onset, end_ms: end, frames, ...log }) {
+  const since1970 = (ms) => (ms === null ? 0 : thousandth(performance.timeOrigin + ms));
+  return {
+    ...log,
+    onset_ms: since1970(onset),
+    end_ms: since1970(end),
+    longest_ms: thousandth(log.longest_ms),
+    frames: frames.map(([shown, clip, late]) => [thousandth(shown - onset), thousandth(clip), late]),
+  };
+}
+
+// Microseconds: browsers tell no finer.
+function thousandth(ms) {
+  return Math.round(ms * 1000) / 1000;
 }
 
 /** Aborts the play in progress. */

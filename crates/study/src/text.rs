@@ -109,6 +109,14 @@ pub struct Words {
     pub other_tab: &'static str,
     /// What to do about it.
     pub other_tab_text: &'static str,
+    /// Button: the order of a ranking is right as it stands.
+    pub confirm_order: &'static str,
+    /// Button beside an item of a ranking, before the item's name.
+    pub move_up: &'static str,
+    /// Button beside an item of a ranking, before the item's name.
+    pub move_down: &'static str,
+    /// Button: another person takes part in the same browser.
+    pub another_person: &'static str,
 }
 
 /// English.
@@ -165,6 +173,10 @@ const ENGLISH: Words = Words {
     cannot_begin: "You cannot take part now.",
     other_tab: "This study is open in another tab",
     other_tab_text: "Please go on there, or close that tab and try again here.",
+    confirm_order: "This is my order",
+    move_up: "Move up:",
+    move_down: "Move down:",
+    another_person: "Start again for another person",
 };
 
 /// French.
@@ -220,7 +232,11 @@ const FRENCH: Words = Words {
     unreachable: "L’étude est injoignable. Vérifiez la connexion et réessayez.",
     cannot_begin: "Vous ne pouvez pas participer pour l’instant.",
     other_tab: "Cette étude est ouverte dans un autre onglet",
-    other_tab_text: "Continuez dans cet onglet, ou fermez-le et réessayez ici.",
+    other_tab_text: "Continuez dans cet autre onglet, ou fermez-le et réessayez ici.",
+    confirm_order: "C’est mon classement",
+    move_up: "Monter :",
+    move_down: "Descendre :",
+    another_person: "Recommencer pour une autre personne",
 };
 
 /// Languages whose fixed texts are complete.

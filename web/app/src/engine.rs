@@ -11,7 +11,8 @@ use gloo::timers::future::TimeoutFuture;
 use leptos::prelude::*;
 use mimique_study::PlayLog;
 use mimique_study::flow::{Effect, Input, Plan, State, update};
-use mimique_study::wire::{ClipSource, Event, Refusal};
+use mimique_study::wire::{Event, Refusal};
+use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
@@ -19,7 +20,7 @@ use wasm_bindgen_futures::spawn_local;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Failure};
 use crate::outbox::{Outbox, back_off};
-use crate::{bridge, pages};
+use crate::{bridge, focus};
 
 /// What the header has to say about the connection.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -40,7 +41,7 @@ pub struct Engine {
     pub state: RwSignal<State>,
     /// What the header says.
     pub connection: RwSignal<Connection>,
-    clips: BTreeMap<String, ClipSource>,
+    clips: BTreeMap<String, Value>,
     keep: Keep,
     to_keep: RefCell<VecDeque<Event>>,
     writing: Cell<bool>,
@@ -51,6 +52,8 @@ pub struct Engine {
     to_prepare: RefCell<VecDeque<String>>,
     preparing: Cell<bool>,
     prepared: RefCell<BTreeSet<String>>,
+    /// False until the first page stands: a page that was just loaded is read from its top.
+    open: Cell<bool>,
 }
 
 /// The page's clock: milliseconds since 1970, never running backwards within one load.
@@ -64,7 +67,7 @@ impl Engine {
     pub fn new(
         plan: Plan,
         state: State,
-        clips: BTreeMap<String, ClipSource>,
+        clips: BTreeMap<String, Value>,
         keep: Keep,
         stored: u64,
         unsent: Vec<Event>,
@@ -86,6 +89,7 @@ impl Engine {
             to_prepare: RefCell::default(),
             preparing: Cell::new(false),
             prepared: RefCell::default(),
+            open: Cell::new(false),
         })
     }
 
@@ -118,10 +122,17 @@ impl Engine {
             Effect::StopClip => bridge::stop_clip(),
             Effect::Complete { events } => self.complete(events),
             Effect::Withdraw => self.withdraw(),
-            Effect::FocusHeading => pages::focus_heading(),
+            Effect::FocusHeading if self.open.get() => focus::heading(),
+            Effect::FocusHeading => {}
             // An effect of a later version of the flow: the page is older than the study.
             _ => {}
         }
+    }
+
+    /// The first page stands; what an earlier load of the page left is sent.
+    pub fn open(self: &Rc<Self>) {
+        self.open.set(true);
+        self.flush();
     }
 
     /// Sends now what waits, without the rest of a back-off.
@@ -184,6 +195,8 @@ impl Engine {
                         }
                         engine.wait(failures).await;
                     }
+                    // Whoever withdraws has nothing left to send.
+                    Err(Failure::Refused(_)) if engine.is_withdrawing() => break,
                     Err(Failure::Refused(refusal)) => {
                         // The events stay in IndexedDB; a reload or a retry sends them again.
                         engine.connection.update(|connection| connection.refused = Some(refusal));
@@ -193,6 +206,10 @@ impl Engine {
             }
             engine.sending.set(false);
         });
+    }
+
+    fn is_withdrawing(&self) -> bool {
+        self.state.with_untracked(|state| state.live.withdrawing)
     }
 
     fn connected(&self) {
@@ -237,9 +254,9 @@ impl Engine {
         if self.prepared.borrow().contains(&clip) {
             return self.dispatch(Input::ClipPrepared { clip });
         }
-        let source = match self.clips.get(&clip).map(serde_json::to_string) {
-            Some(Ok(source)) => source,
-            _ => {
+        let source = match self.clips.get(&clip) {
+            Some(source) => source.to_string(),
+            None => {
                 let message = "the server has no such clip".to_owned();
                 return self.dispatch(Input::ClipFailed { clip, message });
             }
@@ -289,6 +306,10 @@ impl Engine {
         spawn_local(async move {
             let mut failures = 0;
             loop {
+                // After a reload at the end something may still be on its way.
+                while engine.sending.get() {
+                    TimeoutFuture::new(100).await;
+                }
                 match network::complete(&engine.plan.started.session, events).await {
                     Ok(receipt) => {
                         engine.connected();
@@ -337,5 +358,5 @@ impl Engine {
 
 fn play_log(log: &JsValue) -> Result<PlayLog, String> {
     let text = log.as_string().ok_or("the stage gave no log")?;
-    serde_json::from_str(&text).map_err(|error| format!("the stage's log: {error}"))
+    crate::json::read(&text).map_err(|error| format!("the stage's log: {error}"))
 }

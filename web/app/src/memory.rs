@@ -1,12 +1,13 @@
 //! What survives a reload: who we are (localStorage) and what is not acknowledged (IndexedDB).
 
-use gloo::storage::{LocalStorage, Storage as _};
 use idb::{
     Database, DatabaseEvent as _, Factory, KeyRange, ObjectStoreParams, Query, TransactionMode,
 };
 use mimique_study::wire::{Event, SessionStarted};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::JsValue;
+
+use crate::json;
 
 /// Who we are in a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,18 +25,27 @@ impl Identity {
 
     /// The identity kept for a study.
     pub fn load(study: &str) -> Option<Self> {
-        LocalStorage::get(Self::key(study)).ok()
+        json::read(&storage()?.get_item(&Self::key(study)).ok()??).ok()
     }
 
     /// Keeps it; false where the browser keeps nothing.
     pub fn save(&self, study: &str) -> bool {
-        LocalStorage::set(Self::key(study), self).is_ok()
+        let text = serde_json::to_string(self).unwrap_or_default();
+        storage().is_some_and(|storage| storage.set_item(&Self::key(study), &text).is_ok())
     }
 
     /// Forgets it.
     pub fn forget(study: &str) {
-        LocalStorage::delete(Self::key(study));
+        if let Some(storage) = storage() {
+            // What was never kept is forgotten already.
+            let _ = storage.remove_item(&Self::key(study));
+        }
     }
+}
+
+/// The browser's storage; none where it is forbidden.
+fn storage() -> Option<web_sys::Storage> {
+    web_sys::window()?.local_storage().ok()?
 }
 
 /// The events that are not acknowledged, in IndexedDB. Where there is none (some private windows),
@@ -95,10 +105,7 @@ impl Keep {
         let Some(database) = &self.database else { return Ok(Vec::new()) };
         let transaction = database.transaction(&[STORE], TransactionMode::ReadOnly)?;
         let values = transaction.object_store(STORE)?.get_all(Some(self.range()?), None)?.await?;
-        Ok(values
-            .iter()
-            .filter_map(|value| serde_json::from_str(&value.as_string()?).ok())
-            .collect())
+        Ok(values.iter().filter_map(|value| json::read(&value.as_string()?).ok()).collect())
     }
 
     /// Forgets everything of the session.

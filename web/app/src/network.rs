@@ -1,12 +1,17 @@
 //! Talking to the server: `mimique_study::wire`, as JSON.
 
-use gloo::net::http::{Request, RequestBuilder, Response};
+use std::collections::BTreeMap;
+
+use gloo::net::http::{Request, Response};
 use mimique_study::wire::{
-    Acknowledged, AppendEvents, Bundle, Complete, Event, Receipt, Refusal, Resume, SessionStarted,
+    Acknowledged, AppendEvents, Complete, Event, Receipt, Refusal, Resume, SessionStarted,
     StartSession, Withdraw, Withdrawn,
 };
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::json;
 
 /// Why a request brought nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +20,17 @@ pub enum Failure {
     Unreachable(String),
     /// The server understood and refuses: trying again changes nothing.
     Refused(Refusal),
+}
+
+/// What the pages need of `wire::Bundle`: the clips go through to the stage as they came.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Bundle {
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub config_hash: String,
+    /// The study file.
+    pub study: Value,
+    /// `wire::ClipSource` of every clip.
+    pub clips: BTreeMap<String, Value>,
 }
 
 /// `GET /api/studies/{study}`
@@ -48,8 +64,9 @@ pub async fn withdraw(session: &str, withdrawal_code: String) -> Result<Withdraw
 }
 
 async fn post<T: DeserializeOwned>(address: &str, body: &impl Serialize) -> Result<T, Failure> {
-    let request: RequestBuilder = Request::post(address);
-    match request.json(body) {
+    let body = serde_json::to_string(body).map_err(|e| Failure::Unreachable(e.to_string()))?;
+    let request = Request::post(address).header("content-type", "application/json").body(body);
+    match request {
         Ok(request) => read(request.send().await).await,
         Err(error) => Err(Failure::Unreachable(error.to_string())),
     }
@@ -59,13 +76,14 @@ async fn read<T: DeserializeOwned>(
     answer: Result<Response, gloo::net::Error>,
 ) -> Result<T, Failure> {
     let answer = answer.map_err(|error| Failure::Unreachable(error.to_string()))?;
-    if answer.ok() {
-        return answer.json().await.map_err(|error| Failure::Unreachable(error.to_string()));
+    let (ok, status) = (answer.ok(), answer.status());
+    let text = answer.text().await.map_err(|error| Failure::Unreachable(error.to_string()))?;
+    if ok {
+        return json::read(&text).map_err(|error| Failure::Unreachable(error.to_string()));
     }
-    let status = answer.status();
     // Too early, too many, too late: the server wants us to come back.
     let later = status >= 500 || matches!(status, 408 | 425 | 429);
-    match answer.json::<Refusal>().await {
+    match json::read::<Refusal>(&text) {
         Ok(refusal) if !later => Err(Failure::Refused(refusal)),
         _ if later => Err(Failure::Unreachable(format!("HTTP {status}"))),
         _ => Err(Failure::Refused(Refusal {

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use gloo::timers::future::TimeoutFuture;
 use leptos::prelude::*;
 use mimique_study::flow::{Input, Plan, State};
-use mimique_study::wire::{Bundle, Event, SessionStarted, StartSession};
+use mimique_study::wire::{Event, SessionStarted, StartSession};
 use mimique_study::{Client, Study};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -15,7 +15,7 @@ use wasm_bindgen_futures::spawn_local;
 use crate::address::Address;
 use crate::engine::Engine;
 use crate::memory::{Identity, Keep};
-use crate::network::{self, Failure};
+use crate::network::{self, Bundle, Failure};
 use crate::outbox::back_off;
 use crate::pages::Pages;
 use crate::pages::failure::{Trouble, TroublePage};
@@ -98,7 +98,7 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
             |each| study.language_for(each).to_owned(),
         );
     pages::set_language(&language);
-    document().set_title(&study.study_metadata.title.in_language(&language));
+    document().set_title(study.study_metadata.title.in_language(&language));
 
     if !bridge::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab(language));
@@ -126,7 +126,7 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     };
     let engine = Engine::new(plan, state, bundle.clips, keep, stored, unsent);
     engine.dispatch(input(client()));
-    engine.flush();
+    engine.open();
     Ok(engine)
 }
 
@@ -219,7 +219,7 @@ fn wanted_languages(address: &Address) -> Vec<String> {
 }
 
 fn about() -> BTreeMap<String, String> {
-    serde_json::from_str(&bridge::about()).unwrap_or_default()
+    crate::json::read(&bridge::about()).unwrap_or_default()
 }
 
 /// The display and the page, as events record them.

@@ -2,6 +2,8 @@
 
 use leptos::prelude::*;
 use serde_json::json;
+use wasm_bindgen::JsCast as _;
+use web_sys::{Element, HtmlElement};
 
 use super::Answering;
 
@@ -26,6 +28,15 @@ pub fn likert(
                 && !event.meta_key()
             {
                 answering.give(json!(digit));
+                let scale =
+                    event.current_target().and_then(|scale| scale.dyn_into::<Element>().ok());
+                let point = scale.and_then(|scale| {
+                    scale.query_selector(&format!("input[value='{digit}']")).ok().flatten()
+                });
+                if let Some(point) = point.and_then(|point| point.dyn_into::<HtmlElement>().ok()) {
+                    // The arrows go on from the point that was chosen.
+                    let _ = point.focus();
+                }
             }
         }
     };

@@ -22,6 +22,7 @@ struct Answering {
     id: String,
     now: Memo<Option<QuestionView>>,
     session: Session,
+    help: bool,
 }
 
 impl Answering {
@@ -38,6 +39,24 @@ impl Answering {
     /// Whether the answer so far is this text (tracked).
     fn is(&self, wanted: &str) -> bool {
         self.value().is_some_and(|value| value.as_str() == Some(wanted))
+    }
+
+    /// What is wrong with the answer (tracked).
+    fn problem(&self) -> Option<String> {
+        self.now.with(|now| now.as_ref().and_then(|question| question.problem.clone()))
+    }
+
+    /// The identifiers of help and problem, as `aria-describedby` wants them (tracked).
+    fn described(&self) -> Option<String> {
+        let help = self.help.then(|| self.element("help"));
+        let ids: Vec<String> =
+            help.into_iter().chain(self.problem().map(|_| self.element("problem"))).collect();
+        (!ids.is_empty()).then(|| ids.join(" "))
+    }
+
+    /// `aria-invalid` (tracked).
+    fn invalid(&self) -> Option<&'static str> {
+        self.problem().map(|_| "true")
     }
 
     /// An identifier for an element of this question.
@@ -57,18 +76,20 @@ pub fn QuestionField(
     /// The question as it is now.
     now: Memo<Option<QuestionView>>,
 ) -> impl IntoView {
-    let answering = Answering { name, id: first.id.clone(), now, session: Session::here() };
-    let help_id = answering.element("help");
-    let problem_id = answering.element("problem");
-    let problem = Memo::new(move |_| now.with(|now| now.as_ref().and_then(|q| q.problem.clone())));
-    let described = {
-        let (help, problem_id) =
-            (first.help.is_some().then(|| help_id.clone()), problem_id.clone());
-        move || {
-            let ids = help.iter().cloned().chain(problem.get().map(|_| problem_id.clone()));
-            Some(ids.collect::<Vec<_>>().join(" ")).filter(|ids| !ids.is_empty())
-        }
-    };
+    let session = Session::here();
+    let answering =
+        Answering { name, id: first.id.clone(), now, session, help: first.help.is_some() };
+    let (help_id, problem_id) = (answering.element("help"), answering.element("problem"));
+    // One answer out of several is one widget; elsewhere the fields say themselves what is wrong.
+    let radios = matches!(
+        first.kind,
+        QuestionKindView::SingleChoice { .. }
+            | QuestionKindView::Likert { .. }
+            | QuestionKindView::ValenceArousal { .. }
+    );
+    let required = (radios && first.required).then_some("true");
+    let (of, wrong, tell) = (answering.clone(), answering.clone(), answering.clone());
+    let invalid = Signal::derive_local(move || wrong.invalid());
     let control = match first.kind {
         QuestionKindView::SingleChoice { options } => choice::single(answering, options).into_any(),
         QuestionKindView::MultipleChoice { options, maximum } => {
@@ -97,9 +118,9 @@ pub fn QuestionField(
         _ => view! { <p class="notice bad">"?"</p> }.into_any(),
     };
     view! {
-        <fieldset class="question" data-question=first.id
-            aria-describedby=described
-            aria-invalid=move || problem.get().map(|_| "true")>
+        <fieldset class="question" data-question=first.id role=radios.then_some("radiogroup")
+            aria-required=required aria-describedby=move || of.described()
+            aria-invalid=move || invalid.get().filter(|_| radios) data-invalid=invalid>
             <legend>
                 {first.prompt}
                 {first.optional_mark.map(|mark| view! { <span class="optional">" ("{mark}")"</span> })}
@@ -109,7 +130,7 @@ pub fn QuestionField(
             })}
             {first.help.map(|text| view! { <p class="hint" id=help_id.clone()>{text}</p> })}
             {control}
-            {move || problem.get().map(|text| view! {
+            {move || tell.problem().map(|text| view! {
                 <p class="problem" id=problem_id.clone()>{text}</p>
             })}
         </fieldset>

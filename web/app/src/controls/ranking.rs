@@ -39,28 +39,34 @@ pub fn ranking(answering: Answering, options: Vec<ChoiceView>) -> impl IntoView 
         let answering = answering.clone();
         move |_| answering.give(json!(order.get_untracked()))
     };
+    let words = untrack(|| answering.session.words());
+    // The list stands once; each place shows what is in it, so that the keyboard's place stays.
+    let places = (0..options.len()).map(|at| {
+        let option = {
+            let options = options.clone();
+            Memo::new(move |_| {
+                let value = order.with(|order| order.get(at).cloned());
+                options.iter().find(|option| Some(&option.value) == value.as_ref()).cloned()
+            })
+        };
+        let name = move |verb: &str| {
+            option.with(|option| option.as_ref().map(|option| format!("{verb} {}", option.label)))
+        };
+        let (up, down, last) = (swap.clone(), swap.clone(), at + 1 == options.len());
+        view! {
+            <li class="row">
+                <span class="what">{move || option.get().map(|option| view! { <OptionLabel option/> })}</span>
+                <button type="button" aria-label=move || name(words.move_up) disabled=at == 0
+                    on:click=move |_| up(at, at.saturating_sub(1))>"\u{2191}"</button>
+                <button type="button" aria-label=move || name(words.move_down) disabled=last
+                    on:click=move |_| down(at, at + 1)>"\u{2193}"</button>
+            </li>
+        }
+    });
     view! {
-        <ol class="ranking">
-            {move || order.get().into_iter().enumerate().map(|(at, value)| {
-                let option = options.iter().find(|option| option.value == value).cloned();
-                let (up, down) = (swap.clone(), swap.clone());
-                option.map(|option| {
-                    let label = option.label.clone();
-                    view! {
-                        <li class="row">
-                            <span class="what"><OptionLabel option/></span>
-                            <button type="button" aria-label=format!("{label} \u{2191}") disabled=at == 0
-                                on:click=move |_| up(at, at.saturating_sub(1))>"\u{2191}"</button>
-                            <button type="button" aria-label=format!("{label} \u{2193}")
-                                disabled=at + 1 == order.with_untracked(Vec::len)
-                                on:click=move |_| down(at, at + 1)>"\u{2193}"</button>
-                        </li>
-                    }
-                })
-            }).collect_view()}
-        </ol>
+        <ol class="ranking">{places.collect_view()}</ol>
         <button type="button" data-action="confirm-order"
             aria-pressed=move || if confirmed.value().is_some() { "true" } else { "false" }
-            on:click=confirm>"\u{2713}"</button>
+            on:click=confirm>{words.confirm_order}</button>
     }
 }

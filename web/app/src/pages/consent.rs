@@ -3,6 +3,7 @@
 use leptos::prelude::*;
 use mimique_study::flow::{Input, View};
 
+use crate::focus;
 use crate::session::Session;
 
 /// The agreement, with the choice of language.
@@ -28,7 +29,10 @@ pub fn ConsentPage() -> impl IntoView {
                             view! {
                                 <button type="button" class="quiet" lang=code
                                     aria-pressed=if chosen { "true" } else { "false" }
-                                    on:click=move |_| session.send(Input::ChooseLanguage(wanted.clone()))>
+                                    on:click=move |_| {
+                                        session.send(Input::ChooseLanguage(wanted.clone()));
+                                        focus::later(&[".languages [aria-pressed=true]"]);
+                                    }>
                                     {name}
                                 </button>
                             }

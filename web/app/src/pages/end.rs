@@ -3,6 +3,7 @@
 use leptos::prelude::*;
 use mimique_study::flow::View;
 
+use super::message::AnotherPerson;
 use crate::session::Session;
 
 /// Thanks, completion code, receipt, withdrawal code.
@@ -29,6 +30,7 @@ pub fn EndPage() -> impl IntoView {
                 <h2>{end.withdrawal_code.0}</h2>
                 <p><span class="code-block" data-code="withdrawal">{end.withdrawal_code.1}</span></p>
                 <p class="soft">{end.withdrawal_code.2}</p>
+                <AnotherPerson/>
             </div>
         </main>
     }

@@ -1,8 +1,10 @@
 //! Pages that only tell something.
 
 use leptos::prelude::*;
+use mimique_study::RepeatPrevention;
 use mimique_study::flow::View;
 
+use crate::memory::Identity;
 use crate::session::Session;
 
 /// The last answers are on their way.
@@ -38,10 +40,38 @@ pub fn DeclinedPage() -> impl IntoView {
     };
     view! {
         <main class="page" data-view="declined">
-            <div class="card"><h1 tabindex="-1">{heading}</h1><p>{text}</p></div>
+            <div class="card">
+                <h1 tabindex="-1">{heading}</h1>
+                <p>{text}</p>
+                <AnotherPerson/>
+            </div>
         </main>
     }
     .into_any()
+}
+
+/// Where the study lets one browser take part again: a session of its own for the next person.
+#[component]
+pub fn AnotherPerson() -> impl IntoView {
+    let session = Session::here();
+    let engine = session.engine();
+    let recruitment = &engine.plan.study.recruitment;
+    // Whoever was sent here by a recruiting site goes back there.
+    let offered =
+        recruitment.repeat_prevention == RepeatPrevention::None && recruitment.redirect.is_none();
+    let label = untrack(|| session.words().another_person);
+    let again = move |_| {
+        Identity::forget(&session.engine().plan.study.id);
+        // Where the browser does not reload, the person does.
+        let _ = window().location().reload();
+    };
+    offered.then(|| {
+        view! {
+            <div class="actions">
+                <button type="button" data-action="another-person" on:click=again>{label}</button>
+            </div>
+        }
+    })
 }
 
 /// The participant took everything back.

@@ -13,6 +13,7 @@ use leptos::prelude::*;
 use mimique_study::flow::{Input, View};
 use wasm_bindgen::JsCast as _;
 
+use crate::focus;
 use crate::session::Session;
 
 /// What has to be built anew when it changes; everything else changes in place.
@@ -65,11 +66,27 @@ pub fn Pages() -> impl IntoView {
         if let Some(step) = step.get() {
             // After the first paint of the page.
             request_animation_frame(move || {
-                request_animation_frame(move || session.send(Input::Shown { step }));
+                request_animation_frame(move || {
+                    let here = session.view.with_untracked(|view| step_of(view) == Some(&step));
+                    if here {
+                        session.send(Input::Shown { step });
+                    }
+                });
             });
         }
     });
-    Effect::new(move |_| set_language(&session.language()));
+    Effect::new(move |_| {
+        let language = session.language();
+        set_language(&language);
+        let title = &session.engine().plan.study.study_metadata.title;
+        document().set_title(title.in_language(&language));
+    });
+    Effect::new(move |before: Option<()>| {
+        shape.track();
+        if before.is_some() {
+            focus::rescue(&["main h1"]);
+        }
+    });
     view! {
         <header::Header/>
         {move || match shape.get().0 {
@@ -97,18 +114,6 @@ fn ProgressLine(
                 aria-label=move || format!("{} / {}", done.get(), total.get())></progress>
         </div>
     }
-}
-
-/// Moves the focus to the page's heading, once the page stands there.
-pub fn focus_heading() {
-    request_animation_frame(|| {
-        let heading = document().query_selector("main h1").ok().flatten();
-        if let Some(heading) = heading.and_then(|h| h.dyn_into::<web_sys::HtmlElement>().ok()) {
-            window().scroll_to_with_x_and_y(0.0, 0.0);
-            // A heading that cannot take the focus leaves it where it is.
-            let _ = heading.focus();
-        }
-    });
 }
 
 /// Tells browser and screen reader the language of the page.

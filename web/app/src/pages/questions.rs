@@ -5,6 +5,7 @@ use mimique_study::flow::{Input, QuestionView, View};
 
 use super::ProgressLine;
 use crate::controls::QuestionField;
+use crate::focus;
 use crate::session::Session;
 
 /// A page of questions.
@@ -31,7 +32,11 @@ pub fn QuestionsPage() -> impl IntoView {
         <main class="page" data-view="questions" data-step=step>
             <ProgressLine done=progress.done total=progress.total/>
             <form class="card" novalidate
-                on:submit=move |event| { event.prevent_default(); session.send(Input::Next); }>
+                on:submit=move |event| {
+                    event.prevent_default();
+                    session.send(Input::Next);
+                    focus::problem();
+                }>
                 <h1 tabindex="-1">{title}</h1>
                 {text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}
                 <QuestionList step=of_step questions/>

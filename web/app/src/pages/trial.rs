@@ -6,8 +6,8 @@ use mimique_study::flow::{Input, Phase, TrialView, View};
 
 use super::ProgressLine;
 use super::questions::QuestionList;
-use crate::bridge;
 use crate::session::Session;
+use crate::{bridge, focus};
 
 /// A trial.
 #[component]
@@ -67,6 +67,17 @@ pub fn TrialPage() -> impl IntoView {
         }
     });
 
+    Effect::new(move |before: Option<()>| {
+        phase.track();
+        if before.is_some() {
+            focus::rescue(&[
+                "main [data-action=play], main [data-action=retry]",
+                "main fieldset[data-question] input",
+                "main h1",
+            ]);
+        }
+    });
+
     view! {
         <main class="page" data-view="trial" data-step=step data-phase=phase data-clip=clip>
             <ProgressLine done total/>
@@ -77,7 +88,7 @@ pub fn TrialPage() -> impl IntoView {
                     <div class="stage"
                         style=("--stage-width", format!("{width}px"))
                         style=("--stage-aspect", format!("{width} / {height}"))>
-                        <canvas node_ref=canvas aria-hidden="true"></canvas>
+                        <canvas node_ref=canvas role="img" aria-label=heading></canvas>
                         <Show when=move || fraction.get().is_some()>
                             <div class="veil">
                                 <progress max="1" aria-label=move || message.get()
@@ -92,17 +103,25 @@ pub fn TrialPage() -> impl IntoView {
                     <button type="button" class="primary" data-action="retry"
                         on:click=move |_| session.send(Input::Retry)>{retry}</button>
                 })}
-                <Show when=move || can_play.get()>
+                // It stays while the clip is loaded and played: the keyboard's place does not vanish.
+                <Show when=move || failed.with(Option::is_none) && (can_play.get() || phase.with(|now| now != "answering"))>
                     <div class="actions centred">
                         <button type="button" data-action="play"
                             class:primary=move || !seen.get().1
-                            on:click=move |_| session.send(Input::Play)>{play_label}</button>
+                            aria-disabled=move || (!can_play.get()).then_some("true")
+                            on:click=move |_| if can_play.get_untracked() { session.send(Input::Play) }>
+                            {play_label}
+                        </button>
                     </div>
                 </Show>
             </div>
             <Show when=move || seen.get().1>
                 <form class="card" novalidate
-                    on:submit=move |event| { event.prevent_default(); session.send(Input::Next); }>
+                    on:submit=move |event| { 
+                        event.prevent_default();
+                        session.send(Input::Next);
+                        focus::problem();
+                    }>
                     <fieldset class="bare" disabled=move || !can_answer.get()>
                         <QuestionList step questions/>
                         <div class="actions">
