@@ -3,7 +3,7 @@
 //! | request | body | answer |
 //! |---|---|---|
 //! | `GET  /api/studies` | | list of [`StudySummary`] |
-//! | `GET  /api/studies/{study}` | | [`Bundle`] |
+//! | `GET  /api/studies/{study}` | | [`Bundle`]; with `?config_hash=` that of an earlier version |
 //! | `POST /api/studies/{study}/sessions` | [`StartSession`] | [`SessionStarted`] |
 //! | `GET  /api/sessions/{session}` | | [`Resume`] |
 //! | `POST /api/sessions/{session}/events` | [`AppendEvents`] | [`Acknowledged`] |
@@ -12,7 +12,9 @@
 //! | `GET  /packs/{sha256}` | | bytes of a stimulus pack, cacheable for ever |
 //!
 //! Every refusal is a [`Refusal`] with a 4xx status. An append is idempotent: an event is known by
-//! (session, sequence), and sending it again changes nothing.
+//! (session, sequence), and sending it again changes nothing. Another event under a sequence that is
+//! stored (two windows with one session) is kept apart, the rest of its request is stored, and the
+//! answer is 409 `event-conflict` with [`Refusal::sequences`]: resume, then go on.
 
 use std::collections::BTreeMap;
 

@@ -21,7 +21,8 @@ pub(crate) struct Overview {
     pub sessions: Vec<(SessionRecord, Arc<SessionView>)>,
     /// Sessions by standing, all four named.
     pub standings: Vec<(Standing, usize)>,
-    /// Finished trials of participants who completed, by factor and level.
+    /// Finished trials of participants who completed, by factor and level; factors of
+    /// one level are left out.
     pub balance: BTreeMap<String, BTreeMap<String, u64>>,
     pub distributions: Vec<Distribution>,
     /// Events that were sent with another body than is stored, by session.
@@ -56,6 +57,8 @@ impl Overview {
         for (factor, level) in complete.flat_map(|(_, view)| &view.levels) {
             *balance.entry(factor.clone()).or_default().entry(level.clone()).or_default() += 1;
         }
+        // A factor that has one level everywhere can only be in balance.
+        balance.retain(|_, levels| levels.len() > 1);
         let language = study.study().default_language();
         let answers = sessions.iter().flat_map(|(_, view)| &view.answers);
         let distributions = distributions(study.study(), language, answers);

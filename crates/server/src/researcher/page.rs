@@ -13,7 +13,7 @@ use crate::storage::SessionRecord;
 /// The page for those who may see it; the script in it brings the part with `data-live` up to date.
 pub(crate) fn dashboard(assets: &str, studies: &[(&HostedStudy, Overview)]) -> String {
     let body = html! {
-        header.site-header {
+        header.site-header.wide {
             span.title { "Mimique" }
             span.soft { "researcher’s page" }
         }
@@ -176,7 +176,7 @@ fn participant(session: &SessionRecord, view: &SessionView, conflicts: Option<&u
             td { (time(Some(session.started_ms))) }
             td { (time(session.last_event_ms)) }
             td.number { (session.event_count) }
-            td { (browser(&session.client)) }
+            td.browser { (browser(&session.client)) }
         }
     }
 }
@@ -268,16 +268,26 @@ fn time(at_ms: Option<i64>) -> Markup {
     html! { time datetime=(text) { (short) " UTC" } }
 }
 
-/// What the page said of its browser: `Firefox 140 Linux`.
+/// What the page said of its browser, name and version first: `Firefox 140, Linux`.
 fn browser(client: &str) -> String {
-    let about: std::collections::BTreeMap<String, String> =
+    let mut about: std::collections::BTreeMap<String, String> =
         serde_json::from_str(client).unwrap_or_default();
-    about.into_values().collect::<Vec<_>>().join(" ")
+    let name = [about.remove("browser"), about.remove("version")];
+    let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    let others = about.into_values();
+    [name].into_iter().chain(others).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_browser_is_named_in_the_order_people_say_it() {
+        let client = r#"{"browser":"Firefox","platform":"Linux","version":"140"}"#;
+        assert_eq!(browser(client), "Firefox 140, Linux");
+        assert_eq!(browser("{}"), "");
+    }
 
     #[test]
     fn numbers_are_written_without_idle_digits() {

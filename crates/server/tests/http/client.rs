@@ -90,6 +90,22 @@ impl TestServer {
         Self { url: url.to_owned(), app, storage, router, _folder: folder }
     }
 
+    pub fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// Runs a statement on the database behind the server's back.
+    pub async fn run_sql(&self, statement: &'static str) {
+        use sqlx::{Connection, Executor};
+        if self.url.starts_with("postgres") {
+            let mut connection = sqlx::PgConnection::connect(&self.url).await.unwrap();
+            connection.execute(statement).await.unwrap();
+        } else {
+            let mut connection = sqlx::SqliteConnection::connect(&self.url).await.unwrap();
+            connection.execute(statement).await.unwrap();
+        }
+    }
+
     /// Stops this server and starts another one on the same database.
     pub async fn restart(&self) -> Self {
         self.storage.close().await;

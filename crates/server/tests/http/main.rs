@@ -10,6 +10,7 @@ mod participant;
 mod postgres;
 mod researcher;
 mod sessions;
+mod storage;
 mod study;
 
 use client::TestServer;
@@ -62,6 +63,9 @@ topics! {
     sessions::unknown_sessions_and_studies_are_not_found,
     sessions::bad_requests_are_refusals,
     sessions::oversized_bodies_are_refused,
+    storage::one_impossible_change_does_not_take_others_with_it,
+    storage::what_was_accepted_before_the_end_is_committed,
+    storage::a_later_schema_is_refused,
     pages::pages_carry_a_strict_policy,
     pages::assets_and_packs_are_kept_for_ever,
     pages::the_study_tells_participants_no_secrets,
