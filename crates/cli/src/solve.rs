@@ -1,10 +1,413 @@
-//! `mimique solve`.
+//! `mimique solve`: avatar, capture and marker map in, weights a frame and a report out.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, anyhow, bail};
+use indicatif::ProgressBar;
+use mimique_mocap::{LengthUnit, ReadOptions};
+use mimique_solver::{FrontEndError, Method, MethodSpec};
+use mimique_stimulus::{
+    AvatarSkin, MarkerMap, SolveError, SolveReport, SolvedCapture, TakeOptions, solve_take,
+};
+use serde_json::{Value, json};
 
 /// Options.
 #[derive(clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Avatar with blendshapes: .glb or .gltf
+    #[arg(long, value_name = "FILE")]
+    avatar: PathBuf,
+    /// Capture: C3D, TRC, CSV...
+    #[arg(long, value_name = "FILE")]
+    mocap: PathBuf,
+    /// Marker map: JSON, or CSV with marker,role,vertex
+    #[arg(long, value_name = "FILE")]
+    markers: PathBuf,
+    /// Where the weights go: CSV with frame,time and a column a shape
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Where the report goes: JSON with residual, iterations and KKT error of every frame
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// lsts, lsts-soft, lsts-norm, lsts-short, thesis-literal, short-literal, bounds-only,
+    /// thin-shell-only, box, nnls, pseudo-inverse or kouadio
+    #[arg(long, default_value = "lsts")]
+    method: String,
+    /// Weight of the thin shell against the bounds, 0 to 1 (by default 0.3 for lsts, else 0.5)
+    #[arg(long)]
+    alpha: Option<f64>,
+    /// Weight of the priors against the data [default: 0.1]
+    #[arg(long)]
+    kappa: Option<f64>,
+    /// Resistance to stretching [default: 1]
+    #[arg(long)]
+    k_s: Option<f64>,
+    /// Resistance to bending [default: 1]
+    #[arg(long)]
+    k_b: Option<f64>,
+    /// Smoothing of the soft bounds [default: 0.1]
+    #[arg(long)]
+    s: Option<f64>,
+    /// Where the soft bounds begin, as LOW:HIGH [default: -0.1:1.1]
+    #[arg(long, value_name = "LOW:HIGH", allow_hyphen_values = true)]
+    soft_bounds: Option<Pair>,
+    /// Smoothing of the norms: in units of l, for literal forms in --unit
+    #[arg(long)]
+    eps: Option<f64>,
+    /// Unit of the literal forms: m, cm or mm [default: mm]
+    #[arg(long)]
+    unit: Option<String>,
+    /// uniform, umbrella, cotan-clamped or cotan-literal [default: uniform]
+    #[arg(long)]
+    laplacian: Option<String>,
+    /// Radius of kouadio's zones, with its unit [default: 12mm]
+    #[arg(long)]
+    sigma: Option<Length>,
+    /// Weight of the bounds in bounds-only [default: 0.001]
+    #[arg(long)]
+    bounds_weight: Option<f64>,
+    /// Cut-off of the zero-phase low-pass of the head's pose, Hz [default: no filter]
+    #[arg(long, value_name = "HZ")]
+    head_lowpass: Option<f64>,
+    /// Shapes held at 0
+    #[arg(long, value_name = "SHAPE,SHAPE", value_delimiter = ',')]
+    lock: Vec<String>,
+    /// Bounds of one shape; may be given again
+    #[arg(long, value_name = "SHAPE=LOW:HIGH", allow_hyphen_values = true)]
+    bounds: Vec<Named<Pair>>,
+    /// Importance of one marker, 1 if not given; may be given again
+    #[arg(long, value_name = "MARKER=NUMBER")]
+    importance: Vec<Named<f64>>,
+    /// Frames of the neutral face, counted from 0, END not included (by default the map's, or 0:60)
+    #[arg(long, value_name = "FIRST:END")]
+    neutral: Option<Span>,
+    /// Markers that move rigidly with the head (by default the map's)
+    #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
+    head: Option<Vec<String>>,
+    /// Unit of the capture where its file does not say: m, cm or mm
+    #[arg(long, value_name = "UNIT")]
+    mocap_unit: Option<String>,
+    /// Frames a second of the capture where its file does not say
+    #[arg(long, value_name = "HZ")]
+    mocap_rate: Option<f64>,
+}
+
+/// `LOW:HIGH`.
+#[derive(Debug, Clone, Copy)]
+struct Pair([f64; 2]);
+
+/// `FIRST:END`.
+#[derive(Debug, Clone)]
+struct Span(Range<usize>);
+
+/// Metres, from `12mm`, `1.2cm` or `0.012m`.
+#[derive(Debug, Clone, Copy)]
+struct Length(f64);
+
+/// `NAME=VALUE`.
+#[derive(Debug, Clone)]
+struct Named<T>(String, T);
 
 /// Runs the command.
-pub fn run(_args: Args, _json: bool) -> anyhow::Result<()> {
-    anyhow::bail!("this command is being written")
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let spec = method_spec(&args)?;
+    let options = TakeOptions {
+        neutral: args.neutral.as_ref().map(|s| s.0.clone()),
+        head: args.head.clone(),
+    };
+    let progress = ProgressBar::new_spinner();
+    progress.enable_steady_tick(Duration::from_millis(100));
+    let origin = Instant::now();
+    let seconds = || origin.elapsed().as_secs_f64();
+
+    progress.set_message("reading");
+    let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
+    let skin = AvatarSkin::of(&avatar.avatar).map_err(|e| blame(&args.avatar, e))?;
+    let bytes = std::fs::read(&args.mocap).map_err(|e| {
+        blame(&args.mocap, format!("open: {e}; check the path and its permissions"))
+    })?;
+    let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
+    let recording = mimique_mocap::read_recording(
+        &args.mocap.to_string_lossy(),
+        &bytes,
+        &ReadOptions { unit, rate_hz: args.mocap_rate },
+    )
+    .map_err(|e| blame(&args.mocap, e))?;
+    let text = std::fs::read_to_string(&args.markers)
+        .map_err(|e| blame(&args.markers, format!("open: {e}; check the path")))?;
+    let map = MarkerMap::from_text(&text).map_err(|e| blame(&args.markers, e))?;
+    let read = seconds();
+
+    progress.set_message(format!("solving {} frames", recording.capture.frames()));
+    let mut solved =
+        solve_take(&skin, &recording.capture, &map, &spec, &options, &mut || seconds())
+            .map_err(|e| blame(at_fault(&e, &args), e))?;
+    let notes = avatar.notes.iter().map(|n| (&args.avatar, n));
+    let notes = notes.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
+    let notes: Vec<String> = notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+
+    progress.set_message("writing");
+    let start = seconds();
+    std::fs::write(&args.out, solved.table.to_csv())
+        .map_err(|e| blame(&args.out, format!("{e}; check the folder and its permissions")))?;
+    solved.report.seconds.read = read;
+    solved.report.seconds.write = seconds() - start;
+    if let Some(path) = &args.report {
+        let mut report = serde_json::to_value(&solved.report).context("report")?;
+        report["notes"] = json!(notes);
+        report["files"] = json!({
+            "avatar": args.avatar, "mocap": args.mocap, "markers": args.markers, "out": args.out,
+        });
+        std::fs::write(path, serde_json::to_string_pretty(&report)? + "\n")
+            .map_err(|e| blame(path, format!("{e}; check the folder and its permissions")))?;
+    }
+    progress.finish_and_clear();
+    print(&args, &solved, &notes, json)
+}
+
+fn print(args: &Args, solved: &SolvedCapture, notes: &[String], json: bool) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let report = &solved.report;
+    if json {
+        let mut value = serde_json::to_value(report)?;
+        if let Value::Object(map) = &mut value {
+            // One object a frame is for --report.
+            map.remove("frames");
+            map.insert("notes".into(), json!(notes));
+            map.insert("out".into(), json!(args.out));
+        }
+        writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
+        return Ok(());
+    }
+    let SolveReport { summary, seconds, .. } = report;
+    writeln!(
+        out,
+        "{}: {} frames at {} Hz, {} shapes, {} markers, {} head markers, method {}",
+        args.out.display(),
+        summary.frames,
+        report.rate_hz,
+        report.shapes,
+        report.markers.len(),
+        report.head.len(),
+        report.method.method,
+    )?;
+    writeln!(
+        out,
+        "residual {:.3} mm rms, {:.3} mm at worst; {:.1} iterations a frame, {} at most; KKT error {:.1e} at worst",
+        summary.residual_rms_mm,
+        summary.residual_worst_mm,
+        summary.iterations_mean,
+        summary.iterations_most,
+        summary.kkt_worst,
+    )?;
+    writeln!(
+        out,
+        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, write {:.3}",
+        seconds.read, seconds.set_up, seconds.front_end, seconds.solve, seconds.write
+    )?;
+    writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
+    notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))?;
+    Ok(())
+}
+
+fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
+    let option =
+        |e: mimique_solver::SpecError| anyhow!("--{}: {}", option_name(&e.field), e.message);
+    let method = Method::from_str(&args.method).map_err(option)?;
+    let mut spec = MethodSpec {
+        alpha: args.alpha,
+        kappa: args.kappa,
+        k_s: args.k_s,
+        k_b: args.k_b,
+        laplacian: None,
+        soft_bounds: args.soft_bounds.map(|p| p.0),
+        s: args.s,
+        eps: args.eps,
+        sigma: args.sigma.map(|l| l.0),
+        bounds_weight: args.bounds_weight,
+        unit: None,
+        locked: args.lock.clone(),
+        importance: unique("--importance", &args.importance)?,
+        bounds: unique("--bounds", &args.bounds)?.into_iter().map(|(k, p)| (k, p.0)).collect(),
+        head_lowpass_hz: args.head_lowpass,
+        ..MethodSpec::new(method)
+    };
+    if let Some(word) = &args.laplacian {
+        spec.laplacian = Some(serde_json::from_value(json!(word)).map_err(|_| {
+            anyhow!("--laplacian: {word:?}; use uniform, umbrella, cotan-clamped or cotan-literal")
+        })?);
+    }
+    if let Some(word) = &args.unit {
+        spec.unit = Some(
+            serde_json::from_value(json!(word))
+                .map_err(|_| anyhow!("--unit: {word:?}; use m, cm or mm"))?,
+        );
+    }
+    spec.validate().map_err(option)?;
+    Ok(spec)
+}
+
+/// The command line's name of a field of the method: `headLowpassHz` is `head-lowpass`.
+fn option_name(field: &str) -> String {
+    let field = field.split('.').next().unwrap_or(field);
+    match field {
+        "headLowpassHz" => "head-lowpass".to_owned(),
+        "locked" => "lock".to_owned(),
+        _ => field
+            .chars()
+            .flat_map(|c| {
+                let dash = c.is_ascii_uppercase().then_some('-');
+                dash.into_iter().chain(c.to_lowercase())
+            })
+            .collect(),
+    }
+}
+
+fn unique<T: Clone>(option: &str, list: &[Named<T>]) -> anyhow::Result<BTreeMap<String, T>> {
+    let mut map = BTreeMap::new();
+    for Named(name, value) in list {
+        if map.insert(name.clone(), value.clone()).is_some() {
+            bail!("{option}: {name} is given twice; give it once");
+        }
+    }
+    Ok(map)
+}
+
+/// The file or option that an error of the solve comes from.
+fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
+    match error {
+        SolveError::Map(_) | SolveError::NoCommonLabel { .. } => &args.markers,
+        SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
+        SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => &args.markers,
+        SolveError::Fit(_) => Path::new("--method"),
+        _ => &args.mocap,
+    }
+}
+
+fn blame(file: &Path, error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow!("{}: {error}", file.display())
+}
+
+/// The unit of a word.
+fn length_unit(word: &str) -> anyhow::Result<LengthUnit> {
+    match word {
+        "mm" => Ok(LengthUnit::Millimetre),
+        "cm" => Ok(LengthUnit::Centimetre),
+        "m" => Ok(LengthUnit::Metre),
+        _ => bail!("--mocap-unit: {word:?}; use m, cm or mm"),
+    }
+}
+
+impl FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers =
+            text.split_once(':').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+        numbers.map(Pair).ok_or_else(|| "give two numbers as LOW:HIGH".to_owned())
+    }
+}
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers =
+            text.split_once(':').and_then(|(a, b)| Some(a.parse().ok()?..b.parse().ok()?));
+        numbers
+            .filter(|span: &Range<usize>| span.start < span.end)
+            .map(Span)
+            .ok_or_else(|| "give the first frame and the one after the last, as 0:60".to_owned())
+    }
+}
+
+impl FromStr for Length {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // Dividing keeps 12 mm the nearest number to 0.012.
+        let units = [("mm", 1000.0), ("cm", 100.0), ("m", 1.0)];
+        let metres = units.iter().find_map(|(unit, per_metre)| {
+            let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
+            Some(number / per_metre)
+        });
+        metres.map(Length).ok_or_else(|| "give a length with its unit, as 12mm".to_owned())
+    }
+}
+
+impl<T: FromStr> FromStr for Named<T> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("give it as NAME=VALUE")?;
+        let value = value.parse().map_err(|_| format!("{value:?} cannot be read"))?;
+        Ok(Named(name.to_owned(), value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn spec(words: &[&str]) -> anyhow::Result<MethodSpec> {
+        let files = ["mimique", "--avatar", "a", "--mocap", "m", "--markers", "k", "--out", "w"];
+        let line = Line::try_parse_from(files.iter().chain(words).copied())?;
+        method_spec(&line.args)
+    }
+
+    #[test]
+    fn options_become_the_method_s_parameters() {
+        let spec = spec(&[
+            "--method",
+            "kouadio",
+            "--sigma",
+            "12mm",
+            "--lock",
+            "jawOpen,jawLeft",
+            "--bounds",
+            "jawRight=-1:1",
+            "--importance",
+            "M03=0.5",
+            "--head-lowpass",
+            "10",
+        ])
+        .unwrap();
+        assert_eq!(spec.sigma, Some(0.012));
+        assert_eq!(spec.locked, ["jawOpen", "jawLeft"]);
+        assert_eq!(spec.bounds["jawRight"], [-1.0, 1.0]);
+        assert_eq!(spec.importance["M03"], 0.5);
+        assert_eq!(spec.head_lowpass_hz, Some(10.0));
+    }
+
+    #[test]
+    fn what_a_method_does_not_use_is_refused_by_its_option() {
+        for (words, option) in [
+            (vec!["--method", "box", "--bounds-weight", "1"], "--bounds-weight: "),
+            (vec!["--method", "lasso"], "--method: "),
+            (vec!["--method", "recorded", "--head-lowpass", "5"], "--head-lowpass: "),
+            (vec!["--alpha", "2"], "--alpha: "),
+            (vec!["--laplacian", "cotan"], "--laplacian: "),
+            (vec!["--importance", "A=1", "--importance", "A=2"], "--importance: "),
+        ] {
+            let error = spec(&words).unwrap_err().to_string();
+            assert!(error.starts_with(option), "{words:?}: {error}");
+        }
+        for words in [["--sigma", "12"], ["--neutral", "60:0"], ["--bounds", "jawOpen"]] {
+            assert!(spec(&words).is_err(), "{words:?}");
+        }
+    }
 }

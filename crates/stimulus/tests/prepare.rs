@@ -162,7 +162,7 @@ fn what_is_wrong_is_named_with_its_pointer() {
         ("/stimuli/avatars/ada/file", "demo.json: byte 0", |s| {
             s["avatars"]["ada"] = json!({"file": "demo.json"});
         }),
-        ("/stimuli/avatars/ada/file", "set MIMIQUE_DATA", |s| {
+        ("/stimuli/avatars/ada/file", "MIMIQUE_DATA is not set", |s| {
             s["avatars"]["ada"] = json!({"file": "${MIMIQUE_DATA}/a.glb"});
         }),
         ("/stimuli/avatars/ada", "exactly one", |s| s["avatars"]["ada"] = json!({})),

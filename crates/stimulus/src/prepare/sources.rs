@@ -3,14 +3,14 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use mimique_face::Avatar;
 use mimique_face::pack::encode_pack;
-use mimique_mocap::{Capture, LengthUnit, ReadOptions};
+use mimique_mocap::{Capture, Format, LengthUnit, ReadOptions};
 use mimique_solver::FrontEndError;
-use mimique_study::{AvatarSource, CaptureSource, DATA_PREFIX, Segment, Span, Study};
+use mimique_study::{AvatarSource, CaptureSource, Segment, Span, Study, resolve_path};
 
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
@@ -172,7 +172,7 @@ impl<'a> Sources<'a> {
             return Err(PrepareError::new(pointer, message));
         };
         let (path, bytes) = self.read(file, &pointer)?;
-        let table = WeightsTable::from_csv(&String::from_utf8_lossy(&bytes), None)
+        let table = weights(&path, &bytes)
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
             Some(Span::Frames { first, end }) if end <= table.frames.len() => {
@@ -245,14 +245,8 @@ impl<'a> Sources<'a> {
 
     /// The file that a path of the study names.
     fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
-        let path = match (file.strip_prefix(DATA_PREFIX), &self.places.data) {
-            (None, _) => self.places.study.join(file),
-            (Some(rest), Some(data)) => data.join(rest),
-            (Some(_), None) => {
-                let message = format!("{file:?}: set MIMIQUE_DATA to the folder of the data");
-                return Err(PrepareError::new(at, message));
-            }
-        };
+        let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
+            .map_err(|e| PrepareError::new(at, e))?;
         match std::fs::read(&path) {
             Ok(bytes) => Ok((path, bytes)),
             Err(e) => {
@@ -261,6 +255,16 @@ impl<'a> Sources<'a> {
             }
         }
     }
+}
+
+/// Weights from a Live Link Face export or from Mimique's own CSV.
+fn weights(path: &Path, bytes: &[u8]) -> Result<WeightsTable, String> {
+    if mimique_mocap::recognise(bytes) == Some(Format::LiveLinkCsv) {
+        let take = mimique_mocap::read_weights(&path.to_string_lossy(), bytes)
+            .map_err(|e| e.to_string())?;
+        return Ok(WeightsTable::at_rate(take.names, take.weights, 0, take.rate_hz));
+    }
+    WeightsTable::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
 }
 
 fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
