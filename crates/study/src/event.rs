@@ -8,12 +8,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::tagged::tagged_by_type;
+
 /// Answers by question identifier.
 pub type Answers = BTreeMap<String, Value>;
 
 /// What happened, tagged by `type`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
+#[serde(remote = "Self", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EventKind {
     /// The page is open for the first time. Always sequence 0.
@@ -118,6 +120,20 @@ pub enum EventKind {
         /// The step that stood on the screen.
         step: String,
     },
+}
+
+tagged_by_type!(EventKind);
+
+impl EventKind {
+    /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
+    pub fn from_body(body: &Value) -> Option<Self> {
+        serde_json::from_value(body.clone()).ok()
+    }
+
+    /// The body of a [`crate::wire::Event`].
+    pub fn to_body(&self) -> Value {
+        serde_json::to_value(self).unwrap_or(Value::Null)
+    }
 }
 
 /// The display and the page, no finer than the analysis needs.

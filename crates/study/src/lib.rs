@@ -8,6 +8,7 @@ pub mod flow;
 mod order;
 pub mod responses;
 mod study_file;
+mod tagged;
 pub mod text;
 pub mod wire;
 

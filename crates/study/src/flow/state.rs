@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Deserialize;
 use serde_json::Value;
 
 use super::plan::{Plan, StepKind};
@@ -131,9 +130,9 @@ impl State {
     pub fn replay(plan: &Plan, events: &[wire::Event]) -> Self {
         let mut state = Self::new(plan, plan.study.default_language());
         for event in events {
-            match EventKind::deserialize(&event.body) {
-                Ok(kind) => state.record.apply(plan, &kind, event.at_ms),
-                Err(_) => state.record.unexpected += 1,
+            match EventKind::from_body(&event.body) {
+                Some(kind) => state.record.apply(plan, &kind, event.at_ms),
+                None => state.record.unexpected += 1,
             }
             // The sequence is the event's own, so that a gap is never filled by another event.
             state.record.events = state.record.events.max(event.sequence + 1);

@@ -91,7 +91,7 @@ impl<'a> Turn<'a> {
 
     /// Makes an event: it is applied, and stored under the next number.
     fn record(&mut self, kind: EventKind) {
-        let body = serde_json::to_value(&kind).unwrap_or(Value::Null);
+        let body = kind.to_body();
         let sequence = self.state.record.events;
         self.state.record.apply(self.plan, &kind, self.now_ms);
         self.effects.push(Effect::Store(wire::Event { sequence, at_ms: self.now_ms, body }));

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
-
 use crate::answer::alike;
 use crate::event::{Answers, Client, EventKind, PlayLog};
 use crate::study_file::Study;
@@ -72,7 +70,7 @@ impl Walk {
         let mut begun_ms = 0.0;
         let mut started_ms = None;
         for event in events {
-            let Ok(kind) = EventKind::deserialize(&event.body) else { continue };
+            let Some(kind) = EventKind::from_body(&event.body) else { continue };
             let at_ms = event.at_ms;
             match kind {
                 EventKind::Opened { client, language } => {

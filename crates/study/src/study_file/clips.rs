@@ -3,15 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
 
 use super::{ClipEntry, Study};
+use crate::tagged;
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = BTreeMap<String, FactorValue>;
 
 /// The value of a factor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum FactorValue {
     /// `true`, `false`.
@@ -22,9 +24,23 @@ pub enum FactorValue {
     Text(String),
 }
 
+impl<'de> Deserialize<'de> for FactorValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged::read(deserializer, |value| match value {
+            Value::Bool(truth) => Ok(Self::Truth(truth)),
+            Value::String(text) => Ok(Self::Text(text)),
+            Value::Number(number) => number
+                .as_f64()
+                .map(Self::Number)
+                .ok_or_else(|| tagged::mistake("a factor is out of range")),
+            _ => Err(tagged::mistake("a factor is a word, a number, true or false")),
+        })
+    }
+}
+
 impl FactorValue {
     /// As the export writes it: whole numbers without a point.
-    pub fn to_value(&self) -> serde_json::Value {
+    pub fn to_value(&self) -> Value {
         match self {
             Self::Truth(truth) => (*truth).into(),
             Self::Number(number) if number.fract() == 0.0 && number.abs() < 9e15 => {

@@ -3,16 +3,28 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+
+use crate::tagged;
 
 /// A string for every language, or one string a language.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum LocalText {
     /// The same in every language (a name, a number, a study in one language).
     Plain(String),
     /// By language code: `{"en": "joy", "fr": "joie"}`.
     Languages(BTreeMap<String, String>),
+}
+
+impl<'de> Deserialize<'de> for LocalText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged::read(deserializer, |value| match value {
+            Value::String(text) => Ok(Self::Plain(text)),
+            other => tagged::from(other).map(Self::Languages),
+        })
+    }
 }
 
 impl LocalText {

@@ -6,13 +6,14 @@
 //! grid `{"valence": v, "arousal": a}`.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::LocalText;
+use crate::tagged::{self, tagged_by_type};
 
 /// One question.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct Question {
@@ -42,6 +43,35 @@ pub struct Question {
 
 fn yes() -> bool {
     true
+}
+
+/// What questions of every type have.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Common {
+    id: String,
+    prompt: LocalText,
+    #[serde(default)]
+    help: Option<LocalText>,
+    #[serde(default)]
+    video: Option<String>,
+    #[serde(default = "yes")]
+    required: bool,
+    #[serde(default)]
+    show_if: Option<Condition>,
+    #[serde(default)]
+    attention_check: Option<AttentionCheck>,
+}
+
+impl<'de> Deserialize<'de> for Question {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged::read(deserializer, |value| {
+            let kind = tagged::from(value.clone())?;
+            let common: Common = tagged::from(value)?;
+            let Common { id, prompt, help, video, required, show_if, attention_check } = common;
+            Ok(Self { id, prompt, help, video, required, show_if, attention_check, kind })
+        })
+    }
 }
 
 /// An earlier answer that opens a question. Every condition given must hold.
@@ -74,7 +104,8 @@ pub struct AttentionCheck {
 
 /// What kind of answer is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "type", rename_all = "camelCase")]
+#[serde(remote = "Self", rename_all = "camelCase")]
+#[schemars(tag = "type")]
 #[non_exhaustive]
 pub enum QuestionKind {
     /// One of several: radio buttons. With `truth`, a forced choice.
@@ -98,6 +129,8 @@ pub enum QuestionKind {
     /// A point on a grid of valence and arousal.
     ValenceArousal(Grid),
 }
+
+tagged_by_type!(QuestionKind);
 
 impl QuestionKind {
     /// The word of the file: `likert`...

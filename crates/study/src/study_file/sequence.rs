@@ -3,13 +3,16 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
 
 use super::{FactorValue, LocalText, Question};
+use crate::tagged::{self, tagged_by_type};
 
 /// A part of the study that a sequence names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "type", rename_all = "camelCase")]
+#[serde(remote = "Self", rename_all = "camelCase")]
+#[schemars(tag = "type")]
 #[non_exhaustive]
 pub enum Component {
     /// A block: one trial a clip.
@@ -21,6 +24,8 @@ pub enum Component {
     /// A rest.
     Break(BreakComponent),
 }
+
+tagged_by_type!(Component);
 
 /// A block of trials, one a clip. In a sequence it stands for its trials: they take their places
 /// by that sequence's order.
@@ -133,13 +138,22 @@ pub struct Sequence {
 }
 
 /// A part of a sequence.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SequenceItem {
     /// Name of a component.
     Component(String),
     /// A sequence that stays together.
     Sequence(Box<Sequence>),
+}
+
+impl<'de> Deserialize<'de> for SequenceItem {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        tagged::read(deserializer, |value| match value {
+            Value::String(name) => Ok(Self::Component(name)),
+            other => tagged::from(other).map(|sequence| Self::Sequence(Box::new(sequence))),
+        })
+    }
 }
 
 /// How the parts of a sequence are ordered.
