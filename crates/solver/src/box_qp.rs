@@ -5,7 +5,8 @@
 //! condition, until nothing does. Warm-started from the last frame's guess it takes 1-3 solves; the
 //! factor of the free part is kept while the guess stays.
 
-use crate::dense::{Cholesky, dot};
+use crate::cholesky::Cholesky;
+use crate::dense::dot;
 
 /// Where a weight is guessed to be at the optimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

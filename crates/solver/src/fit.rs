@@ -1,13 +1,14 @@
 //! One interface to every method: set up once, then displacements in, weights and a report out.
 
 use crate::box_qp::{BoxState, Outcome};
-use crate::dense::{axpy, dot, gram, householder, mul, mul_transposed, packed_len};
+use crate::dense::{axpy, dot, mul, mul_transposed};
 use crate::method_spec::MethodSpec;
 use crate::newton::NewtonState;
 use crate::objective::{Matrices, Objective, Target, Term};
 use crate::operators::Operators;
 use crate::problem::{Engine, FitError, Problem};
-use crate::svd::pseudo_inverse;
+use crate::report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
+use crate::seen::Seen;
 
 /// Frames that are solved one after the other, each from the last one's answer; the next chunk
 /// starts cold. A constant, so that results do not depend on how many threads share a take.
@@ -19,55 +20,6 @@ pub struct Fit {
     problem: Problem,
     /// What depends on which markers are seen, for all of them.
     all_seen: Seen,
-}
-
-/// What is said of a frame beside its weights.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameReport {
-    /// Root mean square distance of the markers (by importance) to where the weights put them,
-    /// metres, over the markers that were seen.
-    pub residual: f64,
-    /// Newton steps, or exchanges of the active set.
-    pub iterations: u32,
-    /// How far a single weight could still move to improve the objective, in units of weight: the
-    /// largest violation of the Karush-Kuhn-Tucker conditions divided by the curvature.
-    pub kkt_error: f64,
-    /// Face markers not seen in the frame; their rows were dropped.
-    pub missing_markers: u32,
-    /// What is to be said aloud.
-    pub warning: Option<FrameWarning>,
-}
-
-/// A frame that needs saying.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum FrameWarning {
-    /// The tolerance was not reached.
-    #[error("the solver did not reach its tolerance; the weights are its best")]
-    NotConverged,
-    /// No marker was seen: the weights are those of the priors alone.
-    #[error("no marker is seen; the weights follow from the priors alone")]
-    NoMarkers,
-    /// The residual vanished and the norm had to be smoothed with eps = 1e-4 l.
-    #[error("the markers are met exactly, where the norm has no slope; smoothed with eps = 1e-4 l")]
-    Smoothed,
-}
-
-/// The answer of one frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrameSolution {
-    /// N weights, in the avatar's order of shapes.
-    pub weights: Vec<f64>,
-    /// How it went.
-    pub report: FrameReport,
-}
-
-/// The answer of a take.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TakeSolution {
-    /// frames x N.
-    pub weights: Vec<f64>,
-    /// One a frame.
-    pub reports: Vec<FrameReport>,
 }
 
 /// Solves frames one after the other, each started from the one before.
@@ -82,24 +34,6 @@ pub struct FrameSolver<'a> {
     scratch: Vec<f64>,
     qp: BoxState,
     newton: NewtonState,
-}
-
-/// What is computed once for a set of seen markers.
-#[derive(Debug, Clone)]
-struct Seen {
-    /// Which markers are missing.
-    missing: Vec<bool>,
-    /// D, rows of missing markers 0.
-    deltas: Vec<f64>,
-    /// D^T D.
-    gram: Vec<f64>,
-    /// Q^T and R of D = Q R (empty but for the smooth methods).
-    orthogonal: Vec<f64>,
-    triangle: Vec<f64>,
-    /// Q of the quadratic programme (empty for the smooth methods), or D^+.
-    system: Vec<f64>,
-    /// Sum of the importances.
-    importance: f64,
 }
 
 impl Fit {
@@ -341,70 +275,6 @@ impl FrameSolver<'_> {
         }
         missing
     }
-}
-
-impl Seen {
-    fn new(problem: &Problem, missing: Vec<bool>) -> Seen {
-        let n = problem.free.len();
-        let mut deltas = problem.deltas.clone();
-        for (rows, &gone) in deltas.chunks_exact_mut(3 * n).zip(&missing) {
-            if gone {
-                rows.fill(0.0);
-            }
-        }
-        let gram = gram(&deltas, n);
-        let system = match &problem.engine {
-            Engine::Quadratic { data_weight, shell_weight, .. } => (gram.iter())
-                .zip(&problem.shell)
-                .map(|(g, h)| data_weight * g + shell_weight * h)
-                .collect(),
-            Engine::Linked { .. } => linked_system(problem, &missing),
-            Engine::PseudoInverse => pseudo_inverse(&deltas, 3 * problem.marker_count, n),
-            Engine::Smooth { .. } => Vec::new(),
-        };
-        let (orthogonal, triangle) = match &problem.engine {
-            Engine::Smooth { .. } => householder(&deltas, 3 * problem.marker_count, n),
-            _ => (Vec::new(), Vec::new()),
-        };
-        let importance = (problem.importance.iter().zip(&missing))
-            .fold(0.0, |s, (w, &gone)| if gone { s } else { s + w });
-        Seen { missing, deltas, gram, orthogonal, triangle, system, importance }
-    }
-}
-
-impl Default for FrameReport {
-    fn default() -> FrameReport {
-        FrameReport {
-            residual: 0.0,
-            iterations: 0,
-            kkt_error: 0.0,
-            missing_markers: 0,
-            warning: None,
-        }
-    }
-}
-
-fn linked_system(problem: &Problem, missing: &[bool]) -> Vec<f64> {
-    let n = problem.free.len();
-    let mut packed = vec![0.0; packed_len(n)];
-    if let Some(linked) = &problem.linked {
-        for ((gram, &gone), &importance) in
-            linked.grams.chunks_exact(packed.len()).zip(missing).zip(&problem.importance)
-        {
-            if !gone {
-                axpy(importance, gram, &mut packed);
-            }
-        }
-    }
-    let mut full = vec![0.0; n * n];
-    let mut entries = packed.into_iter();
-    for i in 0..n {
-        for (j, x) in (i..n).zip(&mut entries) {
-            full[i * n + j] = x;
-            full[j * n + i] = x;
-        }
-    }
-    full
 }
 
 /// Newton, and once more with a smoothed data norm where the residual vanishes.

@@ -28,6 +28,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
 mod box_qp;
+mod cholesky;
 mod dense;
 mod exp;
 mod fit;
@@ -41,14 +42,14 @@ mod objective;
 mod operators;
 mod problem;
 mod rbf;
+mod report;
 mod rigid_alignment;
+mod seen;
 mod skin_mesh;
 mod svd;
 mod thin_shell;
 
-pub use fit::{
-    CHUNK_FRAMES, Fit, FrameReport, FrameSolution, FrameSolver, FrameWarning, TakeSolution,
-};
+pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
 pub use front_end::{FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns, MarkerFrames};
 pub use laplacian::{Laplacian, mixed_voronoi_areas};
 pub use linked::LinkedRows;
@@ -57,6 +58,7 @@ pub use method_spec::{LaplacianKind, Method, MethodSpec, SpecError, Unit};
 pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use problem::FitError;
 pub use rbf::{Rbf, RbfError};
+pub use report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
 pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
 pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
 pub use thin_shell::{apply_shell, shell_gram};

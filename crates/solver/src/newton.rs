@@ -3,7 +3,8 @@
 //! Stops on the step, not on the gradient: a relative gradient of 1e-6 leaves 1.6e-4 in the weights.
 
 use crate::box_qp::Outcome;
-use crate::dense::{Cholesky, dot};
+use crate::cholesky::Cholesky;
+use crate::dense::dot;
 use crate::objective::{Evaluation, Matrices, Objective, Target};
 
 /// A Newton step below this ends the search; as Newton converges quadratically, what is left is far

@@ -1,6 +1,7 @@
 //! The smooth energies of the methods with soft bounds, with gradient and Hessian.
 
-use crate::dense::{Cholesky, axpy, dot, mul, mul_triangle, mul_triangle_transposed, widest};
+use crate::cholesky::Cholesky;
+use crate::dense::{axpy, dot, mul, mul_triangle, mul_triangle_transposed, widest};
 use crate::exp::exp_all;
 
 /// A term x -> w x^2 or w sqrt(x^2 + eps^2), of x^2.

@@ -127,16 +127,20 @@ impl SkinMesh {
     /// [`MeshError`] as of [`SkinMesh::check`].
     pub fn weld(&self) -> Result<Welded, MeshError> {
         self.check()?;
-        let moves = self.moves_of_vertices();
-        let mut first = HashMap::new();
+        let moves = Moves::new(self);
+        // The welded vertices at a place, each with the first vertex that it was made of.
+        let mut at_place: HashMap<[u64; 3], Vec<(u32, usize)>> =
+            HashMap::with_capacity(self.positions.len());
         let mut index_of = Vec::with_capacity(self.positions.len());
         let mut positions = Vec::new();
         for (vertex, p) in self.positions.iter().enumerate() {
-            let place: [u64; 3] = p.map(bits);
-            let new = *first.entry((place, &moves[vertex])).or_insert_with(|| {
+            let here = at_place.entry(p.map(bits)).or_default();
+            let same = here.iter().find(|(_, first)| moves.of(*first) == moves.of(vertex));
+            let new = same.map_or(positions.len() as u32, |(new, _)| *new);
+            if same.is_none() {
+                here.push((new, vertex));
                 positions.push(*p);
-                (positions.len() - 1) as u32
-            });
+            }
             index_of.push(new);
         }
         let triangles = (self.triangles.iter())
@@ -146,18 +150,41 @@ impl SkinMesh {
         let shapes = self.shapes.iter().map(|s| welded_shape(s, &index_of)).collect();
         Ok(Welded { mesh: SkinMesh { positions, triangles, shapes }, index_of })
     }
+}
 
-    /// For each vertex its non-zero deltas as (shape, bits).
-    fn moves_of_vertices(&self) -> Vec<Vec<(u32, [u64; 3])>> {
-        let mut moves = vec![Vec::new(); self.positions.len()];
-        for (shape, deltas) in self.shapes.iter().enumerate() {
-            for (&v, d) in deltas.vertices.iter().zip(&deltas.deltas) {
-                if *d != [0.0; 3] {
-                    moves[v as usize].push((shape as u32, d.map(bits)));
-                }
+/// For each vertex its non-zero deltas as (shape, bits).
+struct Moves {
+    starts: Vec<usize>,
+    entries: Vec<(u32, [u64; 3])>,
+}
+
+impl Moves {
+    fn new(mesh: &SkinMesh) -> Moves {
+        let moving = |shape: &SparseDeltas| {
+            let pairs = shape.vertices.iter().copied().zip(shape.deltas.iter().copied());
+            pairs.filter(|(_, d)| *d != [0.0; 3]).collect::<Vec<_>>()
+        };
+        let mut starts = vec![0_usize; mesh.positions.len() + 1];
+        let shapes: Vec<_> = mesh.shapes.iter().map(moving).collect();
+        for (v, _) in shapes.iter().flatten() {
+            starts[*v as usize + 1] += 1;
+        }
+        for i in 0..mesh.positions.len() {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![(0, [0; 3]); starts[mesh.positions.len()]];
+        for (k, shape) in shapes.iter().enumerate() {
+            for (v, d) in shape {
+                entries[next[*v as usize]] = (k as u32, d.map(bits));
+                next[*v as usize] += 1;
             }
         }
-        moves
+        Moves { starts, entries }
+    }
+
+    fn of(&self, vertex: usize) -> &[(u32, [u64; 3])] {
+        &self.entries[self.starts[vertex]..self.starts[vertex + 1]]
     }
 }
 

@@ -430,6 +430,10 @@ fn refusals_name_field_value_and_remedy() {
          weights file, or another method"
     );
     assert_eq!(
+        say(&|_| (), Method::Regression),
+        "method: 'regression' is not available yet; use lsts, box or kouadio"
+    );
+    assert_eq!(
         say(&|s| s.locked = (0..9).map(|k| format!("bump{k}")).collect(), Method::Box),
         "locked: all 9 shapes; leave some of them free"
     );
