@@ -28,7 +28,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut view = View::FRONT;
     let mut look = Look::STIMULUS;
     for word in rest {
-        if let Some((name, value)) = word.split_once('=') {
+        if let Some(grey) = word.strip_prefix("grey=") {
+            look = look.with_background_srgb([grey.parse()?; 3]);
+        } else if let Some((name, value)) = word.split_once('=') {
             let value: f32 = value.parse()?;
             match name {
                 "yaw" => view.yaw = value,
