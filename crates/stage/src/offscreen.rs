@@ -105,7 +105,14 @@ impl Offscreen {
             weights,
         );
 
-        let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        Ok(Picture { width, height, rgba: self.read(&texture)? })
+    }
+
+    /// The bytes of a texture, rows from the top.
+    pub(crate) fn read(&self, texture: &wgpu::Texture) -> Result<Vec<u8>, StageError> {
+        let (width, height) = (texture.width(), texture.height());
+        let line = width * texture.format().block_copy_size(None).unwrap_or(4);
+        let row = line.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
             size: u64::from(row) * u64::from(height),
@@ -137,12 +144,11 @@ impl Offscreen {
         let mapped = receiver.recv().map_err(|e| lost(e.to_string()))?;
         mapped.map_err(|e| lost(e.to_string()))?;
         let bytes = buffer.get_mapped_range(..).map_err(|e| lost(e.to_string()))?;
-        let rgba = bytes
+        Ok(bytes
             .chunks(row as usize)
-            .flat_map(|line| &line[..width as usize * 4])
+            .flat_map(|padded| &padded[..line as usize])
             .copied()
-            .collect();
-        Ok(Picture { width, height, rgba })
+            .collect())
     }
 }
 

@@ -63,7 +63,9 @@ pub(crate) fn target(
     width: u32,
     height: u32,
 ) -> TextureView {
-    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+    let mut usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+    // The tests look at what the passes computed.
+    usage.set(TextureUsages::COPY_SRC, cfg!(test));
     empty(device, name, format, width, height, usage)
         .create_view(&wgpu::TextureViewDescriptor::default())
 }
