@@ -166,6 +166,23 @@ mod changed_studies {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
+        /// Bytes cut out, doubled or changed: an answer, never a panic.
+        #[test]
+        fn broken_text_is_answered(
+            from in any::<prop::sample::Index>(),
+            length in 0_usize..60,
+            insert in "[\\[\\]{}\"':,/*\\\\a-z0-9. \n]{0,6}",
+        ) {
+            let text = super::study_text("template.json");
+            let letters: Vec<char> = text.chars().collect();
+            let from = from.index(letters.len());
+            let to = (from + length).min(letters.len());
+            let changed: String =
+                letters[..from].iter().copied().chain(insert.chars()).chain(letters[to..].iter().copied()).collect();
+            let report = check(&changed, &super::everything_is_there);
+            prop_assert_eq!(report.study.is_some(), report.errors() == 0);
+        }
+
         #[test]
         fn never_panic_and_run_if_they_pass(
             changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>(), any::<bool>()), 1..4),
