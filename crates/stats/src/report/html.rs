@@ -62,7 +62,7 @@ pub(crate) fn html(document: &Document, language: Language) -> String {
 
 /// Text for people: safe, and without line breaks inside `p = 0.01`, `95 %` or before French marks.
 fn typeset(text: &str) -> String {
-    const JOINED: [(&str, &str); 10] = [
+    const JOINED: [(&str, &str); 11] = [
         (" = ", "\u{a0}=\u{a0}"),
         (" < ", "\u{a0}<\u{a0}"),
         (" %", "\u{a0}%"),
@@ -72,6 +72,7 @@ fn typeset(text: &str) -> String {
         (" !", "\u{a0}!"),
         (" »", "\u{a0}»"),
         ("« ", "«\u{a0}"),
+        (" − ", "\u{a0}−\u{a0}"),
         (" – ", "\u{a0}–\u{a0}"),
     ];
     let joined = JOINED.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to));
@@ -80,9 +81,10 @@ fn typeset(text: &str) -> String {
 
 fn table(body: &mut String, data: &DataTable) {
     let class = if data.groups.is_empty() { "" } else { r#" class="tests""# };
+    // The caption stands outside, so that it does not scroll away on a narrow screen.
     let _ = writeln!(
         body,
-        r#"<div class="scroll" role="region" tabindex="0" aria-label="{0}"><table{class}><caption>{0}</caption><thead>"#,
+        r#"<p class="caption" aria-hidden="true">{0}</p><div class="scroll" role="region" tabindex="0" aria-label="{0}"><table{class} aria-label="{0}"><thead>"#,
         typeset(&data.caption)
     );
     if !data.groups.is_empty() {
@@ -148,7 +150,7 @@ const STYLE: &str = "\
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
-header,main{max-width:62rem;margin:0 auto;padding:0 1.25rem}
+header,main{max-width:64rem;margin:0 auto;padding:0 1.25rem}
 header{padding-top:2.5rem}
 main{padding-bottom:4rem}
 h1{font-size:1.9rem;line-height:1.2;margin:0 0 .4rem}
@@ -161,15 +163,18 @@ nav a{padding:.2rem 0;min-height:1.75rem}
 p{max-width:42rem;margin:.6rem 0}
 .reading{background:var(--ok-bg);border-left:4px solid var(--link);padding:.7rem 1rem;border-radius:0 4px 4px 0}
 .caution{background:var(--warn-bg);border-left:4px solid var(--warn);padding:.7rem 1rem;border-radius:0 4px 4px 0}
-.scroll{overflow-x:auto;margin:1rem 0;max-width:100%}
+.scroll{overflow-x:auto;margin:0 0 1.2rem;max-width:100%}
 .scroll:focus-visible,summary:focus-visible,a:focus-visible{outline:2px solid var(--link);outline-offset:2px}
-table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}
-caption{text-align:left;color:var(--soft);padding:0 0 .4rem}
+table{border-collapse:separate;border-spacing:0;font-size:.9rem;font-variant-numeric:tabular-nums}
+p.caption{color:var(--soft);font-size:.9rem;margin:1rem 0 .3rem}
 th,td{padding:.32rem .7rem;text-align:left;border-bottom:1px solid var(--rule);vertical-align:top}
 thead th{border-bottom:2px solid var(--rule);font-weight:600;vertical-align:bottom}
 tbody th{font-weight:500}
 td.number,th.number{text-align:right}
-td.number,.tests td{white-space:nowrap}
+.tests{font-size:.86rem}
+.tests th,.tests td{padding:.3rem .55rem}
+td.number,.tests td,.tests tbody th{white-space:nowrap}
+.scroll tbody th{position:sticky;left:0;background:var(--paper)}
 .group{font-weight:600;background:var(--panel);border-left:2px solid var(--paper)}
 td.group{background:none}
 figure{margin:1.5rem 0;padding:0}

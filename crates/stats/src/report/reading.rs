@@ -60,12 +60,14 @@ pub(crate) fn person_level(
     let words: Vec<String> = different
         .iter()
         .map(|pair| {
-            let (high, low, difference) = oriented(pair);
+            let (high, low, observed) = oriented(pair);
             format!(
                 "{} > {} ({})",
                 naming.level(factor, high),
                 naming.level(factor, low),
-                difference.map_or_else(String::new, |d| language.number(d))
+                observed.map_or_else(String::new, |d| {
+                    format!("{}{}", difference(language, kind, d), unit(language, kind))
+                })
             )
         })
         .collect();

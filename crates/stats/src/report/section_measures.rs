@@ -255,6 +255,10 @@ impl Writer<'_> {
                 &result.recommended,
             );
             self.blocks.push(Block::Table(table));
+            let pairs_id = format!("{id}-pairs");
+            let people = &result.recommended;
+            let pairs = tables::many_pairs(&self.naming, pairs_id, &name, measure.kind, people);
+            self.blocks.extend(pairs.map(Block::Table));
             let words = reading::comparison(&self.naming, &result, &measure.label);
             self.blocks.push(Block::Reading(words));
             self.results.comparisons.push(result);

@@ -377,6 +377,14 @@ impl Writer<'_> {
                 &result.recommended,
             );
             self.blocks.push(Block::Table(table));
+            let pairs = tables::many_pairs(
+                &self.naming,
+                format!("hypothesis-{}-pairs", slug(&result.id)),
+                result.factors.first().map_or("", String::as_str),
+                result.kind,
+                &result.recommended,
+            );
+            self.blocks.extend(pairs.map(Block::Table));
             self.blocks.push(Block::Reading(result.reading.clone()));
         }
         if hypotheses.iter().filter(|result| result.p.is_some()).count() > 1 {

@@ -75,6 +75,15 @@ fn difference(language: Language, kind: MeasureKind, pair: &Pair) -> String {
     })
 }
 
+fn difference_heading(language: Language, kind: MeasureKind) -> String {
+    let unit = match kind {
+        MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
+        MeasureKind::ResponseTime => " (s)",
+        MeasureKind::Rating => "",
+    };
+    language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"))
+}
+
 /// Both kinds of test of one measure and factor, line by line beside each other.
 pub(crate) fn two_columns(
     naming: &Naming<'_>,
@@ -86,17 +95,11 @@ pub(crate) fn two_columns(
     people: &PersonLevel,
 ) -> DataTable {
     let language = naming.language;
-    let unit = match kind {
-        MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
-        MeasureKind::ResponseTime => " (s)",
-        MeasureKind::Rating => "",
-    };
     let heading = language.pick(
         ["", "test", "p", "effect", "test", "p (Holm)", "effect"],
         ["", "test", "p", "effet", "test", "p (Holm)", "effet"],
     );
-    let last =
-        language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"));
+    let last = difference_heading(language, kind);
     let mut table =
         DataTable::new(id, caption, heading.into_iter().map(str::to_owned).chain([last]));
     table.groups = vec![
@@ -122,7 +125,8 @@ pub(crate) fn two_columns(
         .overall
         .iter()
         .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
-    let pairs = people.pairs.iter().map(|pair| {
+    let beside = if people.pairs.len() > PAIRS_BESIDE { &[] } else { people.pairs.as_slice() };
+    let pairs = beside.iter().map(|pair| {
         (naming.pair(factor, &pair.a, &pair.b), &pair.wilcoxon, difference(language, kind, pair))
     });
     let recommended: Vec<(String, &Outcome<TestLine>, String)> = overall.chain(pairs).collect();
@@ -151,7 +155,44 @@ pub(crate) fn two_columns(
         }
         table.row(row);
     }
+    // Interactions and many levels have no differences to show.
+    if table.rows.iter().all(|row| row.last().is_some_and(String::is_empty)) {
+        table.columns.pop();
+        table.rows.iter_mut().for_each(|row| drop(row.pop()));
+        table.groups[2].1 -= 1;
+    }
     table
+}
+
+/// More pairs than this stand in a table of their own, below.
+const PAIRS_BESIDE: usize = 3;
+
+/// The pairs of a factor with many levels, recommended tests only; none where there are few.
+pub(crate) fn many_pairs(
+    naming: &Naming<'_>,
+    id: String,
+    factor: &str,
+    kind: MeasureKind,
+    people: &PersonLevel,
+) -> Option<DataTable> {
+    if people.pairs.len() <= PAIRS_BESIDE {
+        return None;
+    }
+    let language = naming.language;
+    let caption = language.pick(
+        "All pairs (recommended: exact Wilcoxon on person means, Holm’s correction)",
+        "Toutes les paires (recommandé : Wilcoxon exact sur les moyennes des personnes, correction de Holm)",
+    );
+    let heading = language.pick(["p (Holm)", "effect", "test"], ["p (Holm)", "effet", "test"]);
+    let columns = [String::new(), difference_heading(language, kind)];
+    let columns = columns.into_iter().chain(heading.map(str::to_owned));
+    let mut table = DataTable::new(id, caption, columns);
+    for pair in &people.pairs {
+        let [test, p, effect] = cells(language, &pair.wilcoxon, true);
+        let label = naming.pair(factor, &pair.a, &pair.b);
+        table.row([label, difference(language, kind, pair), p, effect, test]);
+    }
+    Some(table)
 }
 
 /// What a line is about: the factor, or the effect of two.
