@@ -1,0 +1,146 @@
+//! Operators and take packs: what goes in comes out, damage is refused and never panics.
+
+use mimique_face::pack::{open_pack, seal_pack};
+use mimique_solver::{LinkedRows, Method, MethodSpec, OperatorOptions, OperatorParts, Operators};
+use mimique_stimulus::{
+    SegmentMarkers, TakeContent, TakePack, decode_operators, decode_take, encode_operators,
+    encode_take, solve_packs,
+};
+use proptest::prelude::*;
+
+/// Operators of 3 shapes and 5 markers, the numbers all different.
+fn operators(linked: bool) -> Operators {
+    let (n, p) = (3, 5);
+    let numbers = |count: usize, phase: f64| -> Vec<f64> {
+        (0..count).map(|i| 0.01 * (i as f64 * 1.7 + phase).sin()).collect()
+    };
+    let mut shell_gram = vec![0.0; n * n];
+    (0..n).for_each(|i| shell_gram[i * n + i] = 0.1 + i as f64);
+    let sigma = linked.then_some(0.012);
+    Operators::from_parts(OperatorParts {
+        options: OperatorOptions { sigma, ..OperatorOptions::default() },
+        shape_names: ["jawOpen", "smile, left", "\u{e9}"].map(str::to_owned).to_vec(),
+        marker_labels: (0..p).map(|m| format!("M{m}")).collect(),
+        marker_positions: (0..p)
+            .map(|m| [0.01 * m as f64, 0.02 * (m * m % 3) as f64, 0.03 * (m % 2) as f64])
+            .collect(),
+        vertex_count: 77,
+        marker_deltas: numbers(3 * p * n, 0.3),
+        shell_gram,
+        linked: linked.then(|| LinkedRows {
+            sigma: 0.012,
+            vertex_count: 40,
+            grams: numbers(p * n * (n + 1) / 2, 1.0),
+            sums: numbers(3 * p * n, 2.0),
+        }),
+    })
+    .unwrap()
+}
+
+/// A take of the same markers that all sway, one with a gap.
+fn take() -> TakePack {
+    let labels: Vec<String> = (0..5).map(|m| format!("M{m}")).collect();
+    let rest = operators(false).parts().marker_positions.clone();
+    let mut positions = Vec::new();
+    for frame in 0..40 {
+        for (m, p) in rest.iter().enumerate() {
+            let sway = 0.004 * (f64::from(frame) * 0.2 + m as f64).sin();
+            let hidden = m == 2 && (10..15).contains(&frame);
+            positions.extend(p.map(|x| if hidden { f64::NAN } else { x + sway }));
+        }
+    }
+    TakePack {
+        rate_hz: 59.94,
+        first_frame: 705,
+        played: 5..35,
+        content: TakeContent::Markers(SegmentMarkers {
+            labels,
+            face: vec![0, 1, 2, 3, 4],
+            head: Some(vec![0, 1, 4]),
+            head_reference: vec![rest[0], rest[1], [f64::NAN; 3]],
+            neutral: rest,
+            positions,
+        }),
+    }
+}
+
+#[test]
+fn operators_keep_every_bit() {
+    for linked in [false, true] {
+        let operators = operators(linked);
+        let bytes = encode_operators(&operators);
+        assert_eq!(decode_operators(&bytes).unwrap(), operators);
+        assert_eq!(encode_operators(&operators), bytes);
+    }
+}
+
+#[test]
+fn takes_keep_their_markers_to_a_two_hundredth_of_a_millimetre() {
+    let take = take();
+    let back = decode_take(&encode_take(&take)).unwrap();
+    assert_eq!((back.rate_hz, back.first_frame, &back.played), (59.94, 705, &(5..35)));
+    let (TakeContent::Markers(a), TakeContent::Markers(b)) = (&take.content, &back.content) else {
+        panic!("markers became weights");
+    };
+    assert_eq!(
+        (&a.labels, &a.face, &a.head, &a.neutral),
+        (&b.labels, &b.face, &b.head, &b.neutral)
+    );
+    assert_eq!(a.head_reference[..2], b.head_reference[..2]);
+    assert!(b.head_reference[2].iter().all(|x| x.is_nan()));
+    for (x, y) in a.positions.iter().zip(&b.positions) {
+        assert!(x.is_nan() == y.is_nan() && (x.is_nan() || (x - y).abs() <= 0.500001e-5));
+    }
+}
+
+#[test]
+fn recorded_weights_keep_their_range() {
+    let weights: Vec<f64> = (0..60).map(|i| 1.4 * (f64::from(i) * 0.3).sin()).collect();
+    let shape_names = vec!["a".to_owned(), "b".to_owned()];
+    let content = TakeContent::Weights { shape_names, weights: weights.clone() };
+    let take = TakePack { rate_hz: 30.0, first_frame: 0, played: 10..30, content };
+    let bytes = encode_take(&take);
+    // Operators are not looked at.
+    let solved = solve_packs(&[], &bytes, &MethodSpec::new(Method::Recorded)).unwrap();
+    assert_eq!((solved.frames(), solved.shape_names.len()), (20, 2));
+    for (x, y) in weights[20..].iter().zip(&solved.weights) {
+        assert!((x - y).abs() <= 0.500001e-4);
+    }
+}
+
+#[test]
+fn packs_that_do_not_belong_together_are_refused() {
+    let (operators, mut take) = (encode_operators(&operators(false)), take());
+    let spec = MethodSpec::new(Method::Lsts);
+    let swapped = solve_packs(&encode_take(&take), &operators, &spec).unwrap_err().to_string();
+    assert!(swapped.contains("MMTK") && swapped.contains("MMOP"), "{swapped}");
+    let TakeContent::Markers(markers) = &mut take.content else { return };
+    markers.labels[3] = "other".to_owned();
+    let error = solve_packs(&operators, &encode_take(&take), &spec).unwrap_err().to_string();
+    assert!(error.contains("marker M3"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn damage_is_refused_or_harmless(at in 0usize..5000, value: u8, cut: bool, linked: bool) {
+        let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
+        let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
+        for (kind, whole) in &packs {
+            let body = open_pack(kind, 1, whole).unwrap();
+            for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
+                let mut damaged = bytes;
+                let at = at % damaged.len();
+                if cut { damaged.truncate(at) } else { damaged[at] = value }
+                let damaged = if sealed { seal_pack(kind, 1, &damaged) } else { damaged };
+                // Neither unpacking nor solving may panic, whatever comes of it.
+                let [(_, operators), (_, take)] = &packs;
+                let _ = match *kind {
+                    "MMOP" => solve_packs(&damaged, take, &spec),
+                    _ => solve_packs(operators, &damaged, &spec),
+                };
+            }
+        }
+    }
+}
