@@ -127,7 +127,7 @@ tagged_by_type!(EventKind);
 impl EventKind {
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
-        serde_json::from_value(body.clone()).ok()
+        crate::json_reader::read_value(body.clone()).ok()
     }
 
     /// The body of a [`crate::wire::Event`].

@@ -5,6 +5,7 @@ mod canonical;
 mod check;
 mod event;
 pub mod flow;
+mod json_reader;
 mod order;
 pub mod responses;
 mod study_file;

@@ -8,6 +8,8 @@ use serde::de::{DeserializeOwned, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
+use crate::json_reader::read_value;
+
 /// `{"type": "likert", "numItems": 7}` -> `{"likert": {"numItems": 7}}`; without further keys ->
 /// `"likert"`.
 pub(crate) fn outside_from_inside(value: Value) -> Result<Value, &'static str> {
@@ -46,7 +48,7 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T>(
 
 /// Reads a value of a type.
 pub(crate) fn from<T: DeserializeOwned>(value: Value) -> Result<T, serde_json::Error> {
-    serde_json::from_value(value)
+    read_value(value)
 }
 
 /// A mistake with these words.
@@ -73,7 +75,7 @@ macro_rules! tagged_by_type {
                     let outside = crate::tagged::outside_from_inside(value)
                         .map_err(crate::tagged::mistake)?;
                     // The derived reader.
-                    <$name>::deserialize(outside)
+                    <$name>::deserialize(crate::json_reader::Json(outside))
                 })
             }
         }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use super::{Factors, LocalText};
+use crate::json_reader::read_value;
 
 /// A method, its parameters, and what the analysis calls it.
 ///
@@ -36,14 +37,14 @@ impl<'de> Deserialize<'de> for MethodEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut map = Map::deserialize(deserializer)?;
         let factors = match map.remove("factors") {
-            Some(value) => serde_json::from_value(value).map_err(D::Error::custom)?,
+            Some(value) => read_value(value).map_err(D::Error::custom)?,
             None => Factors::default(),
         };
         let label = match map.remove("label") {
-            Some(value) => Some(serde_json::from_value(value).map_err(D::Error::custom)?),
+            Some(value) => Some(read_value(value).map_err(D::Error::custom)?),
             None => None,
         };
-        let spec = serde_json::from_value(Value::Object(map)).map_err(D::Error::custom)?;
+        let spec = read_value(Value::Object(map)).map_err(D::Error::custom)?;
         Ok(Self { spec, factors, label })
     }
 }

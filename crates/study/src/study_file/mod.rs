@@ -115,7 +115,8 @@ pub enum StudyFileError {
 impl Study {
     /// Reads a study from a JSON value, stopping at the first mistake.
     pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
-        Self::deserialize(value.clone()).map_err(|error| StudyFileError::Shape(error.to_string()))
+        crate::json_reader::read_value(value.clone())
+            .map_err(|error| StudyFileError::Shape(error.to_string()))
     }
 
     /// Reads a study from text: JSON, comments allowed. Stops at the first mistake.
