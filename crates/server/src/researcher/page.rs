@@ -246,7 +246,7 @@ fn bars_with<'a>(caption: &Markup, counts: impl Iterator<Item = (&'a str, u64)>)
                 @for (label, count) in counts {
                     tr {
                         th scope="row" { (label) }
-                        td.bar { meter aria-hidden="true" min="0" max=(most) value=(count) {} }
+                        td.bar { progress aria-hidden="true" max=(most) value=(count) {} }
                         td.number { (count) }
                     }
                 }
