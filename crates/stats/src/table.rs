@@ -19,12 +19,6 @@ pub enum TableError {
     /// A header without rows.
     #[error("line 2: no rows below the header; give at least one row of data")]
     NoRows,
-    /// A header cell that names nothing.
-    #[error("line 1: column {position} has no name; name every column in the header line")]
-    UnnamedColumn {
-        /// Counted from 1.
-        position: usize,
-    },
     /// Two columns of one name.
     #[error("line 1: two columns are called \"{name}\"; rename one of them")]
     RepeatedColumn {
@@ -94,9 +88,10 @@ impl Table {
         let mut names = Vec::with_capacity(raw.width);
         let mut by_name = HashMap::new();
         for (position, &(start, end)) in raw.cells[..raw.width].iter().enumerate() {
-            let name = raw.text[start as usize..end as usize].trim().to_owned();
+            let mut name = raw.text[start as usize..end as usize].trim().to_owned();
             if name.is_empty() {
-                return Err(TableError::UnnamedColumn { position: position + 1 });
+                // Row names of `write.csv`, or separators at the end of each line.
+                name = format!("column {}", position + 1);
             }
             if by_name.insert(name.clone(), position).is_some() {
                 return Err(TableError::RepeatedColumn { name });
@@ -254,6 +249,13 @@ mod tests {
     }
 
     #[test]
+    fn columns_without_a_name_are_counted() {
+        let table = Table::parse(b"\"\",y,\n\"1\",4,\n\"2\",5,\n").unwrap();
+        assert_eq!(table.names(), ["column 1", "y", "column 3"]);
+        assert_eq!(table.numbers("y").unwrap().values, [4.0, 5.0]);
+    }
+
+    #[test]
     fn missing_cells_are_missing() {
         let values = numbers(b"y,z\n1,a\n,a\nNA,a\nNaN,a\n 2 ,a\n", "y");
         assert_eq!(values.iter().filter(|v| v.is_nan()).count(), 3);
@@ -267,7 +269,6 @@ mod tests {
         assert!(text(b"a,b\n").contains("no rows"));
         assert!(text(b"a,b\n1,2\n1,2,3\n").contains("line 3: 3 cells, the header has 2"));
         assert!(text(b"a,a\n1,2\n").contains("two columns are called \"a\""));
-        assert!(text(b"a,\n1,2\n").contains("column 2 has no name"));
         assert!(text(b"a,b\n1,\"2\n").contains("line 2: a quoted cell is opened"));
         let table = Table::parse(b"y,g\n1,a\nx,b\n").unwrap();
         assert_eq!(
