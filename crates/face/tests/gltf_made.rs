@@ -128,7 +128,7 @@ fn nodes_place_their_meshes_and_mirrors_turn_triangles() {
     let (mut document, binary) = triangle();
     document["nodes"] = json!([
         {"children": [1], "translation": [0, 1, 0]},
-        {"mesh": 0, "scale": [-1, 2, 1], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]}
+        {"mesh": 0, "scale": [-1, 2, 1], "rotation": [0, 0, 0.5f32.sqrt(), 0.5f32.sqrt()]}
     ]);
     let read = read_gltf(&glb(&document, &binary), "test", None).unwrap();
     let mesh = &read.avatar.meshes[0];

@@ -1,7 +1,7 @@
 //! The avatar pack (`MMAV`): what the stage loads of an avatar, small enough to send to a browser.
 //!
 //! Positions and displacements are integers in steps of about a micrometre; what is stored is how
-//! far each lies from the guess of its neighbours ([`predict`]), and the whole is deflated. Normals
+//! far each lies from the guess of its neighbours (`predict`), and the whole is deflated. Normals
 //! are not stored: they follow from the surface.
 //!
 //! | field | form |
