@@ -45,7 +45,7 @@ pub(crate) fn cage_tints(cage: &Cage, who: &Identity) -> Vec<Vec3> {
                     blush = [0.0, 0.0, 0.1, 0.2, 0.2, 0.5, 1.0, 1.0][(ring as usize).min(7)];
                 }
                 Site::Ring(Feature::NostrilLeft | Feature::NostrilRight, ring, _) => {
-                    hollow = [0.0, 0.30, 1.0, 1.0][(ring as usize).min(3)];
+                    hollow = [0.0, 0.75, 1.0, 1.0][(ring as usize).min(3)];
                 }
                 Site::Fill(Feature::NostrilLeft | Feature::NostrilRight, ..) => hollow = 1.0,
                 Site::Ring(Feature::EarLeft | Feature::EarRight, ..)

@@ -1,11 +1,13 @@
 //! Hair on the skull and the brows: layers over the skin, which carry the skin's own displacements.
 
 use super::identity::Identity;
+use super::muscles::SHAPE_NAMES;
 use super::sculpt::Landmarks;
 use super::topology::{Feature, Site, Topology};
 use super::vec3::{Vec3, bump, mix, smoothstep, v3};
 use super::{Subdivided, sparse};
-use crate::avatar::{Avatar, Mesh, Part};
+use crate::avatar::{Avatar, Mesh, Part, SparseShape};
+use std::f64::consts::{PI, TAU};
 
 /// The finest skin, millimetres, from which the layers are lifted.
 pub(crate) struct SkinLayer<'a> {
@@ -283,4 +285,52 @@ impl<'a> Finder<'a> {
         }
         best.1
     }
+}
+
+/// Add a knot of hair at the back of the crown.
+pub(crate) fn add_knot(avatar: &mut Avatar, who: &Identity) {
+    const RINGS: usize = 18;
+    const SEGMENTS: usize = 28;
+    let centre = v3(0.0, 96.0, -74.0);
+    let axis = v3(0.0, 0.66, -0.75);
+    let beside = v3(1.0, 0.0, 0.0);
+    let across = axis.cross(beside);
+    let mut positions = Vec::new();
+    let mut vertex_colours = Vec::new();
+    for r in 0..=RINGS {
+        let polar = PI * r as f64 / RINGS as f64;
+        for s in 0..SEGMENTS {
+            let turn = TAU * s as f64 / SEGMENTS as f64;
+            // Strands wind round the knot.
+            let strand = libm::sin(3.0 * turn + 5.0 * polar);
+            let radius = 25.0 + 0.9 * strand * libm::sin(polar);
+            let d = (beside * libm::cos(turn) + across * libm::sin(turn)) * libm::sin(polar)
+                + axis * (0.82 * libm::cos(polar));
+            positions.push((centre + d * radius).metres());
+            vertex_colours.push(who.hair_colour.map(|c| c * (1.0 + 0.22 * strand as f32)));
+        }
+    }
+    let mut triangles = Vec::new();
+    for r in 0..RINGS {
+        for s in 0..SEGMENTS {
+            let v = |r: usize, s: usize| (r * SEGMENTS + s % SEGMENTS) as u32;
+            let q = [v(r, s), v(r + 1, s), v(r + 1, s + 1), v(r, s + 1)];
+            // The poles are points: half of their quads would be empty.
+            if r + 1 < RINGS {
+                triangles.push([q[0], q[1], q[2]]);
+            }
+            if r > 0 {
+                triangles.push([q[0], q[2], q[3]]);
+            }
+        }
+    }
+    avatar.meshes.push(Mesh {
+        name: "hair_knot".to_string(),
+        part: Part::Hair,
+        positions,
+        triangles,
+        vertex_colours,
+        base_colour: who.hair_colour,
+        shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+    });
 }

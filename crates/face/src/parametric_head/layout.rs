@@ -84,6 +84,7 @@ pub(crate) fn place(t: &Topology, sculpt: &Sculpt, at: &Landmarks, eye: Eye) -> 
         pinned[m] = true;
     };
     pin_nose(sculpt, at, &mut |r, c, to| pin(Site::Grid(r, c), to, &mut p));
+    pin_chin(sculpt, at, &mut |r, c, to| pin(Site::Grid(r, c), to, &mut p));
     pin_boundaries(sculpt, at, &eye, &mut |f, k, to| {
         let (r, c) = f.boundary(k);
         pin(Site::Grid(r, c), to, &mut p);
@@ -171,6 +172,28 @@ fn pin_boundaries(
     }
 }
 
+/// Hold chin and throat: left to themselves, rows would slide off the chin into the throat's angle.
+fn pin_chin(sculpt: &Sculpt, at: &Landmarks, pin: &mut dyn FnMut(i32, i32, Vec3)) {
+    for c in 0..=3 {
+        let aside = f64::from(c);
+        pin(20, c, sculpt.front(6.4 * aside, at.chin_y + 15.0 + 0.35 * aside * aside));
+        pin(21, c, sculpt.front(5.8 * aside, at.chin_y + 7.0 + 0.35 * aside * aside));
+        for (r, x, z) in [(22, 5.2, 87.0), (23, 4.7, 72.0), (24, 4.2, 56.0), (25, 3.8, 41.0)] {
+            pin(r, c, sculpt.below(x * aside, z - 0.6 * aside * aside));
+        }
+    }
+    for c in 0..=COLUMNS / 2 {
+        for r in [26, 27] {
+            if let Some(guess) = first_guess(Site::Grid(r, c), at) {
+                let mut to = sculpt.project(guess);
+                // Rows lie level on the neck; a second step undoes what the first moved them.
+                to.y = guess.y + if r == 26 { 8.0 } else { 0.0 };
+                pin(r, c, sculpt.project(to));
+            }
+        }
+    }
+}
+
 /// Spread the free vertices evenly: tangential averaging, each step projected onto the sculpt.
 fn relax(t: &Topology, sculpt: &Sculpt, pinned: &[bool], p: &mut [Vec3]) {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); p.len()];
@@ -188,7 +211,8 @@ fn relax(t: &Topology, sculpt: &Sculpt, pinned: &[bool], p: &mut [Vec3]) {
             }
         }
     }
-    for _ in 0..40 {
+    const PASSES: usize = 60;
+    for pass in 0..PASSES {
         let before = p.to_vec();
         for v in 0..p.len() {
             if pinned[v] || before[v].x < 0.0 {
@@ -202,7 +226,9 @@ fn relax(t: &Topology, sculpt: &Sculpt, pinned: &[bool], p: &mut [Vec3]) {
             if t.mirror[v] as usize == v {
                 mean.x = 0.0;
             }
-            let mut to = sculpt.project(before[v].lerp(mean, 0.6));
+            let wanted = before[v].lerp(mean, 0.6);
+            let mut to =
+                if pass + 1 < PASSES { sculpt.towards(wanted) } else { sculpt.project(wanted) };
             if t.mirror[v] as usize == v {
                 to.x = 0.0;
             }

@@ -2,6 +2,7 @@
 //! sculpt of blended volumes, lids and lips are laid into its holes, muscles act on the cage, and
 //! Catmull-Clark subdivision carries neutral and blendshapes to the wanted density.
 
+mod clothes;
 mod colour;
 mod ear;
 mod eyeball;
@@ -222,6 +223,10 @@ pub fn build_head(spec: &HeadSpec) -> Avatar {
     let layer = SkinLayer::new(&neutral, &fine.quads, &shapes);
     hair::add_brows(&mut avatar, &layer, who, &cage.at);
     hair::add_cap(&mut avatar, &layer, &fine, &cage.topology, who);
+    if who.masculinity < 0.5 {
+        hair::add_knot(&mut avatar, who);
+    }
+    clothes::add(&mut avatar, cage.at.chin_y, cage.at.neck);
     lashes::add(&mut avatar, &cage, &actions, who);
     eyeball::add(&mut avatar, &cage.eye, who);
     avatar

@@ -77,7 +77,7 @@ fn arch(mouth: Vec3, half: f64, upper: bool) -> Painted {
     let sign = if upper { 1.0 } else { -1.0 };
     // The biting edges meet a little below the line of the lips; the upper ones stand before.
     let edge = mouth.y - if upper { 2.4 } else { 1.6 };
-    let front = mouth.z - if upper { 4.2 } else { 6.4 };
+    let front = mouth.z - if upper { 6.6 } else { 8.6 };
     let mut columns = Vec::new();
     for side in [-1.0, 1.0] {
         let mut half_columns = Vec::new();

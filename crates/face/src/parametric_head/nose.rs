@@ -59,7 +59,7 @@ pub(crate) fn place_nostril(t: &Topology, sculpt: &Sculpt, p: &mut [Vec3]) {
     let normal = sculpt.normal(sculpt.project(centre));
     let inward = v3(0.05, 0.85, -0.35).unit();
     for (ring, shrink, depth, lift) in
-        [(1, 0.40, 0.0, 0.6), (2, 0.46, 2.0, 0.0), (3, 0.50, 7.0, 0.0)]
+        [(1, 0.40, 0.0, 0.6), (2, 0.46, 2.0, 0.0), (3, 0.60, 4.2, 0.0)]
     {
         for (k, &q) in rim.iter().enumerate() {
             let to = q.lerp(centre, shrink) + inward * depth + normal * lift;
@@ -70,5 +70,5 @@ pub(crate) fn place_nostril(t: &Topology, sculpt: &Sculpt, p: &mut [Vec3]) {
     for k in 0..n {
         inner += p[t.ring(feature, NOSTRIL_RINGS, k)] * (1.0 / f64::from(n));
     }
-    p[t.at(Site::Fill(feature, 1, 1))] = inner + inward * 1.0;
+    p[t.at(Site::Fill(feature, 1, 1))] = inner + inward * 0.6;
 }

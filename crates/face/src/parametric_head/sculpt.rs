@@ -57,6 +57,8 @@ pub(crate) struct Landmarks {
     pub ear_scale: f64,
     /// Height of the brow's middle.
     pub brow_y: f64,
+    /// Breadth of the neck, 1 = average.
+    pub neck: f64,
     /// Hinge of the jaw (on the midline plane).
     pub jaw_hinge: Vec3,
 }
@@ -81,6 +83,7 @@ impl Landmarks {
             ear: v3(70.0, -17.0, -6.0),
             ear_scale: 1.0 + 0.06 * who.ear_size + 0.05 * m + 0.06 * who.age,
             brow_y: 22.5 + 1.2 * who.brow_height - 2.0 * m - 1.0 * who.age,
+            neck: 1.0 + 0.16 * (m - 0.35),
             jaw_hinge: v3(0.0, -22.0, 8.0),
         }
     }
@@ -145,7 +148,7 @@ impl Sculpt {
             5.0,
         );
         // Neck.
-        let neck = 1.0 + 0.16 * (m - 0.35);
+        let neck = at.neck;
         s.cone(v3(0.0, -40.0, -19.0), v3(0.0, -220.0, -27.0), 44.0 * neck, 52.0 * neck, 20.0);
         s
     }
@@ -193,15 +196,16 @@ impl Sculpt {
         d
     }
 
-    fn gradient(&self, p: Vec3) -> Vec3 {
-        let h = 0.05;
-        let along = |e: Vec3| (self.distance(p + e) - self.distance(p - e)) / (2.0 * h);
+    /// Forward differences from the distance `d` at `p`.
+    fn gradient(&self, p: Vec3, d: f64) -> Vec3 {
+        let h = 1e-3;
+        let along = |e: Vec3| (self.distance(p + e) - d) / h;
         v3(along(v3(h, 0.0, 0.0)), along(v3(0.0, h, 0.0)), along(v3(0.0, 0.0, h)))
     }
 
     /// Outward unit normal of the level through `p`.
     pub(crate) fn normal(&self, p: Vec3) -> Vec3 {
-        self.gradient(p).unit()
+        self.gradient(p, self.distance(p)).unit()
     }
 
     /// Onto the skin along the gradient (damped Newton steps).
@@ -212,23 +216,40 @@ impl Sculpt {
             if d.abs() < 1e-4 {
                 break;
             }
-            let g = self.gradient(p);
+            let g = self.gradient(p, d);
             let square = g.dot(g).max(0.05);
             p = p - g * (0.9 * d / square);
         }
         p
     }
 
-    /// The skin seen from the front at (x, y): marched from far before the face.
+    /// One Newton step towards the skin: enough for a place that is nearly on it.
+    pub(crate) fn towards(&self, p: Vec3) -> Vec3 {
+        let d = self.distance(p);
+        let g = self.gradient(p, d);
+        p - g * (d / g.dot(g).max(0.05))
+    }
+
+    /// The skin seen from the front at (x, y).
     pub(crate) fn front(&self, x: f64, y: f64) -> Vec3 {
-        let mut p = v3(x, y, 170.0);
+        self.march(v3(x, y, 170.0), v3(0.0, 0.0, -1.0))
+    }
+
+    /// The skin seen from below at (x, z).
+    pub(crate) fn below(&self, x: f64, z: f64) -> Vec3 {
+        self.march(v3(x, -190.0, z), v3(0.0, 1.0, 0.0))
+    }
+
+    /// The first skin on the way from outside.
+    fn march(&self, from: Vec3, direction: Vec3) -> Vec3 {
+        let mut p = from;
         for _ in 0..120 {
             let d = self.distance(p);
-            if d.abs() < 1e-3 || p.z < -50.0 {
+            if d.abs() < 1e-3 || (p - from).length() > 220.0 {
                 break;
             }
             // The blends overstate distance a little: short steps keep the march outside.
-            p.z -= 0.7 * d;
+            p += direction * (0.7 * d);
         }
         p
     }

@@ -113,6 +113,12 @@ pub(crate) fn bump(distance: f64) -> f64 {
     libm::exp(-0.5 * distance * distance)
 }
 
+/// The same, but exactly 0 beyond distance 3.
+pub(crate) fn local_bump(distance: f64) -> f64 {
+    const TAIL: f64 = 0.011_108_996_538_242_306; // exp(-4.5)
+    if distance >= 3.0 { 0.0 } else { (bump(distance) - TAIL) / (1.0 - TAIL) }
+}
+
 /// Linear interpolation.
 pub(crate) fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t

@@ -67,12 +67,12 @@ impl Emotion {
             // AU 9, 15, 16, with 4 and 10.
             Emotion::Disgust => &[
                 ("noseSneer", 1.0),
-                ("mouthUpperUp", 0.55),
+                ("mouthUpperUp", 0.40),
                 ("mouthFrown", 0.55),
-                ("mouthLowerDown", 0.20),
-                ("mouthShrugLower", 0.30),
-                ("browDown", 0.55),
-                ("eyeSquint", 0.85),
+                ("mouthLowerDown", 0.18),
+                ("mouthShrugLower", 0.45),
+                ("browDown", 0.40),
+                ("eyeSquint", 0.95),
                 ("cheekSquint", 0.60),
             ],
             // AU 1, 2, 4, 5, 20, 26.
@@ -89,7 +89,7 @@ impl Emotion {
             Emotion::Joy => &[
                 ("mouthSmile", 0.95),
                 ("cheekSquint", 0.90),
-                ("eyeSquint", 0.50),
+                ("eyeSquint", 0.60),
                 ("mouthUpperUp", 0.22),
                 ("jawOpen", 0.16),
             ],

@@ -88,7 +88,7 @@ pub fn performance_weights(
     let n = shape_names.len();
     let frames = (rate_hz * duration_s).round().max(1.0) as usize;
     let whole = main_envelope(clip, duration_s, &mut rng);
-    let courses = courses(shape_names, clip, strength, &whole, &mut rng);
+    let courses = courses(shape_names, clip, strength, &whole, duration_s, &mut rng);
     let blinks = blinks(clip, &whole, duration_s, &mut rng);
     let gaze = Gaze::new(clip, &whole, duration_s, &mut rng);
     let sway = Sway::new(clip, strength, &whole, duration_s, &mut rng);
@@ -135,11 +135,15 @@ pub fn performance_weights(
     out
 }
 
+/// Everything has room in 2.4 seconds; less than that squeezes it.
+fn squeeze(duration: f64) -> f64 {
+    (duration / 2.4).min(1.0)
+}
+
 /// The course of the whole expression; ends at rest a quarter second before the end.
 fn main_envelope(clip: &Clip, duration: f64, rng: &mut Rng) -> Envelope {
     let (attack, release) = clip.emotion.attack_release_s();
-    // Everything has room in two seconds; less than that squeezes it.
-    let squeeze = (duration / 2.4).min(1.0);
+    let squeeze = squeeze(duration);
     let attack = attack * rng.range(0.88, 1.15) * squeeze;
     let release = release * rng.range(0.9, 1.15) * squeeze;
     let start = (0.45 + rng.range(-0.06, 0.12)) * squeeze;
@@ -152,16 +156,18 @@ fn courses(
     clip: &Clip,
     strength: f64,
     whole: &Envelope,
+    duration: f64,
     rng: &mut Rng,
 ) -> Vec<Course> {
     // One side leads by a few hundredths of a second and is a little stronger (Schmidt, Liu & Cohn
     // 2006 measured such delays in smiles).
-    let lead = rng.range(0.008, 0.030);
+    let squeeze = squeeze(duration);
+    let lead = rng.range(0.008, 0.030) * squeeze;
     let left_leads = rng.unit() < 0.6;
     let uneven = rng.range(0.02, 0.07);
     let mut courses = Vec::new();
     for &(stem, weight) in clip.emotion.recipe() {
-        let late = rng.range(-0.02, 0.05);
+        let late = rng.range(-0.02, 0.05) * squeeze;
         let slower = rng.range(0.92, 1.1);
         let own = rng.range(0.94, 1.06);
         let drift = [rng.range(0.005, 0.03), rng.range(0.5, 1.1), rng.unit()];

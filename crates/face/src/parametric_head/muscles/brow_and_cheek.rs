@@ -65,7 +65,7 @@ pub(super) fn nose_sneer(flesh: &Flesh) -> Vec<Vec3> {
         let fold = flesh.spot(bit, (24.0, -28.0), (10.0, 13.0));
         let brow = flesh.spot(bit, (11.0, at.brow_y - 2.0), (10.0, 9.0));
         let mut d = v3(1.4, 4.8, -0.4) * wing
-            + v3(-0.8, 3.4, 1.8) * bridge
+            + v3(-0.8, 3.8, 2.6) * bridge
             + v3(0.2, 3.2, 2.2) * fold
             + v3(-1.4, -2.6, 0.9) * brow;
         if let Some(near) = flesh.near_lips(bit, 9.0) {

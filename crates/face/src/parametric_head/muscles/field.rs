@@ -3,7 +3,7 @@
 
 use super::super::Cage;
 use super::super::topology::{Feature, Site};
-use super::super::vec3::{Vec3, bump, mix, smoothstep};
+use super::super::vec3::{Vec3, local_bump, mix, smoothstep};
 use super::super::{eyelids, lips};
 
 /// A vertex of a loop round the mouth.
@@ -71,7 +71,7 @@ impl<'a> Flesh<'a> {
     /// Weight of a soft spot on the skin of the left side: centre and radii as seen from the front.
     pub(crate) fn spot(&self, bit: &Bit, centre: (f64, f64), radius: (f64, f64)) -> f64 {
         let (dx, dy) = ((bit.p.x - centre.0) / radius.0, (bit.p.y - centre.1) / radius.1);
-        let near = bump((dx * dx + dy * dy).sqrt());
+        let near = local_bump((dx * dx + dy * dy).sqrt());
         near * bit.loose * left_side(bit.p.x) * smoothstep(0.0, 45.0, bit.p.z)
     }
 
@@ -104,7 +104,7 @@ impl<'a> Flesh<'a> {
         let red = (if dy > 0.0 { at.lip_upper } else { at.lip_lower })
             * (1.0 - (nearest / half).powi(2)).max(0.0).sqrt();
         let beyond = ((dx * dx + dy * dy).sqrt() - red - 1.5).max(0.0);
-        let weight = bump(beyond / reach) * smoothstep(10.0, 55.0, bit.p.z) * bit.loose;
+        let weight = local_bump(beyond / reach) * smoothstep(10.0, 55.0, bit.p.z) * bit.loose;
         let blur = mix(2.0, 10.0, smoothstep(0.7 * half, 1.3 * half, bit.p.x.abs()));
         Some(NearLips { weight, along, upper: smoothstep(-blur, blur, dy) })
     }

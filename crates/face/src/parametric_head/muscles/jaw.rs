@@ -67,13 +67,10 @@ pub(super) fn open(flesh: &Flesh) -> Vec<Vec3> {
     flesh.map(|bit| {
         let share = share(flesh, bit);
         // Cheeks hollow a little as they are drawn over the opening.
-        let hollow = flesh.spot(bit, (42.0, flesh.cage.at.mouth_y + 2.0), (12.0, 16.0))
-            + flesh.spot(
-                &Bit { p: bit.p.mirrored(), ..*bit },
-                (42.0, flesh.cage.at.mouth_y + 2.0),
-                (12.0, 16.0),
-            );
-        bone.open(bit.p) * share + v3(-2.5 * bit.p.x.signum() * hollow, 0.0, -0.5 * hollow)
+        let cheek = (42.0, flesh.cage.at.mouth_y + 2.0);
+        let left = flesh.spot(bit, cheek, (12.0, 16.0));
+        let right = flesh.spot(&Bit { p: bit.p.mirrored(), ..*bit }, cheek, (12.0, 16.0));
+        bone.open(bit.p) * share + v3(2.5 * (right - left), 0.0, -0.5 * (left + right))
     })
 }
 

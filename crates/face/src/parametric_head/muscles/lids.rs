@@ -68,7 +68,7 @@ pub(super) fn look_aside(flesh: &Flesh, towards: f64) -> Vec<Vec3> {
 }
 
 pub(super) fn squint(flesh: &Flesh) -> Vec<Vec3> {
-    let mut d = slide(flesh, |u| -5.5 * arch(u), |u| 9.5 * arch(u));
+    let mut d = slide(flesh, |u| -4.5 * arch(u), |u| 12.5 * arch(u));
     let at = flesh.cage.at.eye;
     for (d, bit) in d.iter_mut().zip(&flesh.bits) {
         let below = flesh.spot(bit, (at.x + 2.0, at.y - 19.0), (15.0, 6.0));

@@ -7,7 +7,7 @@ use super::jaw::{self, CORNER_SHARE, JawMotion};
 /// Pull of the left corner: along the lips it fades towards the middle, on the skin with distance.
 fn corner_pull(flesh: &Flesh, bit: &Bit, reach: f64) -> f64 {
     flesh.near_lips(bit, reach).map_or(0.0, |near| {
-        near.weight * libm::pow(near.along.max(0.0), 1.25) * left_along(near.along)
+        near.weight * libm::pow(near.along.max(0.0), 1.5) * left_along(near.along)
     })
 }
 
@@ -21,15 +21,15 @@ fn red(bit: &Bit) -> f64 {
 pub(super) fn smile(flesh: &Flesh) -> Vec<Vec3> {
     let at = &flesh.cage.at;
     flesh.map(|bit| {
-        let corner = corner_pull(flesh, bit, 13.0);
+        let corner = corner_pull(flesh, bit, 17.0);
         let cheek = flesh.spot(bit, (at.mouth_half + 17.0, at.mouth_y + 33.0), (14.0, 12.0));
         let fold = flesh.spot(bit, (at.mouth_half + 12.0, at.mouth_y + 14.0), (9.0, 12.0));
         let mut d =
-            v3(8.5, 12.0, -5.0) * corner + v3(1.8, 4.8, 4.6) * cheek + v3(3.0, 3.6, 2.0) * fold;
+            v3(8.5, 10.5, -5.0) * corner + v3(1.8, 5.2, 5.0) * cheek + v3(2.4, 4.4, 2.6) * fold;
         if let Some(near) = flesh.near_lips(bit, 8.0) {
             // The middle is drawn flat against the teeth.
             let middle = bump(near.along / 0.5) * near.weight * left_along(near.along);
-            d += v3(0.0, mix(-0.4, 1.6, near.upper), -1.6) * middle;
+            d += v3(0.0, mix(0.2, 1.4, near.upper), -1.6) * middle;
         }
         d
     })
@@ -147,7 +147,7 @@ pub(super) fn roll(flesh: &Flesh, upper: bool) -> Vec<Vec3> {
         let own = if upper { near.upper } else { 1.0 - near.upper };
         let middle = 1.0 - libm::pow(near.along.abs(), 3.0);
         let to_line = at.mouth_y - bit.p.y;
-        d += v3(0.0, 0.62 * to_line, -5.4) * (red(bit) * own * middle);
+        d += v3(0.0, 0.62 * to_line, -3.8) * (red(bit) * own * middle);
         let skin = near.weight * (1.0 - red(bit)) * own * middle;
         d + v3(0.0, if upper { -1.8 } else { 1.8 }, -1.4) * skin
     })
@@ -181,18 +181,25 @@ pub(super) fn shrug_upper(flesh: &Flesh) -> Vec<Vec3> {
     })
 }
 
-/// Lips shut over an open jaw: both meet part of the way down.
+/// Lips shut over an open jaw: both meet part of the way down, before the upper teeth.
 pub(super) fn close(flesh: &Flesh) -> Vec<Vec3> {
     let bone = JawMotion::new(&flesh.cage.at);
     flesh.map(|bit| {
         let Some(near) = flesh.near_lips(bit, 9.0) else { return Vec3::default() };
-        let meet = mix(0.46, CORNER_SHARE, near.along.abs());
         let weight = match bit.lip {
             // The lining near the lips comes along; the throat stays with the jaw.
             Some(lip) if lip.ring >= 9 => 0.0,
             Some(lip) if lip.ring >= 3 => 1.0,
             _ => near.weight * 0.9,
         };
-        bone.open(bit.p) * ((meet - jaw::share(flesh, bit)) * weight)
+        let open = bone.open(bit.p);
+        // In the middle the seam goes straight down; the corners stay where the jaw has them.
+        let corner = near.along * near.along;
+        let seam = v3(
+            open.x,
+            open.y * mix(0.44, CORNER_SHARE, corner),
+            mix(1.2, open.z * CORNER_SHARE, corner),
+        );
+        (seam - open * jaw::share(flesh, bit)) * weight
     })
 }
