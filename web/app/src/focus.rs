@@ -3,11 +3,16 @@
 use leptos::prelude::*;
 use wasm_bindgen::JsCast as _;
 
-/// Moves the focus to the page's heading, once the page stands there.
+/// Moves the focus to the page's heading, once the page stands there; not from somebody who was
+/// quicker and is on the new page already.
 pub fn heading() {
     request_animation_frame(|| {
-        window().scroll_to_with_x_and_y(0.0, 0.0);
-        first(&["main h1"]);
+        let active = document().active_element();
+        let on_page = active.and_then(|element| element.closest("main").ok().flatten());
+        if on_page.is_none() {
+            window().scroll_to_with_x_and_y(0.0, 0.0);
+            first(&["main h1"]);
+        }
     });
 }
 

@@ -3,7 +3,7 @@
 use leptos::prelude::*;
 use serde_json::{Value, json};
 
-use super::Answering;
+use super::{Answering, plain};
 
 /// What a screen reader hears of a field beside its value.
 struct Spoken {
@@ -54,10 +54,7 @@ pub fn number(
                     let text = event_target_value(&event);
                     answering.give(match (text.trim(), text.trim().parse::<f64>()) {
                         ("", _) => Value::Null,
-                        (_, Ok(number)) if number.fract() == 0.0 && number.abs() < 9e15 => {
-                            json!(number as i64)
-                        }
-                        (_, Ok(number)) => json!(number),
+                        (_, Ok(number)) => plain(number),
                         // The flow says what is wrong with it.
                         (other, Err(_)) => json!(other),
                     });

@@ -66,6 +66,15 @@ impl Answering {
     }
 }
 
+/// A number as people write it: 51, not 51.0.
+fn plain(number: f64) -> Value {
+    if number.fract() == 0.0 && number.abs() < 9e15 {
+        Value::from(number as i64)
+    } else {
+        Value::from(number)
+    }
+}
+
 /// A question: legend, help, control, problem.
 #[component]
 pub fn QuestionField(

@@ -1,9 +1,8 @@
 //! A number on a line. Until it is touched it has no value, and shows none.
 
 use leptos::prelude::*;
-use serde_json::json;
 
-use super::Answering;
+use super::{Answering, plain};
 
 /// The line, its ends named above it.
 pub fn slider(
@@ -20,7 +19,7 @@ pub fn slider(
     let middle = (minimum + maximum) / 2.0;
     let touch = move |text: String| {
         if let Ok(number) = text.parse::<f64>() {
-            give.give(json!(number));
+            give.give(plain(number));
         }
     };
     let touched = touch.clone();

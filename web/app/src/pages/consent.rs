@@ -51,7 +51,9 @@ pub fn ConsentPage() -> impl IntoView {
                     <h2>{words.contact}</h2>
                     {contacts.into_iter().map(|contact| view! {
                         <p>
-                            {contact.role}": "{contact.name}", "
+                            <strong>{contact.role}</strong>
+                            <br/>
+                            {contact.name}", "
                             <a href=format!("mailto:{}", contact.email)>{contact.email.clone()}</a>
                             {contact.reference.map(|reference| format!(" ({reference})"))}
                         </p>

@@ -41,7 +41,7 @@ pub fn Header() -> impl IntoView {
     };
     let connection = session.connection;
     view! {
-        <header class="site-header">
+        <header class="site-header narrow">
             <span class="title">{title}</span>
             <Show when=move || can_withdraw.get()>
                 <button type="button" class="quiet" data-action="withdraw" on:click=open>

@@ -117,7 +117,7 @@ pub fn TrialPage() -> impl IntoView {
             </div>
             <Show when=move || seen.get().1>
                 <form class="card" novalidate
-                    on:submit=move |event| { 
+                    on:submit=move |event| {
                         event.prevent_default();
                         session.send(Input::Next);
                         focus::problem();
