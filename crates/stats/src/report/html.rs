@@ -80,7 +80,9 @@ fn typeset(text: &str) -> String {
 }
 
 fn table(body: &mut String, data: &DataTable) {
-    let class = if data.groups.is_empty() { "" } else { r#" class="tests""# };
+    // Rows of tests are read across: they scroll rather than break.
+    let of_tests = !data.groups.is_empty() || data.id.ends_with("-pairs");
+    let class = if of_tests { r#" class="tests""# } else { "" };
     // The caption stands outside, so that it does not scroll away on a narrow screen.
     let _ = writeln!(
         body,
