@@ -20,6 +20,8 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
   port ??= await freePort();
   const database = `sqlite:${join(folder, "answers.sqlite")}`;
   const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--json"];
+  // In development the pages may lie in a folder instead of the binary.
+  if (process.env.MIMIQUE_WEB_DIR) args.push("--web-dir", process.env.MIMIQUE_WEB_DIR);
   const child = spawn(binary, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });
   let out = "";
   let err = "";
