@@ -2,7 +2,8 @@
 #![cfg(feature = "parametric")]
 
 use mimique_face::{
-    Avatar, Density, HeadSpec, Identity, Mesh, Part, SHAPE_NAMES, build_head, marker_sites,
+    Avatar, Clip, Density, Emotion, HeadSpec, Identity, Mesh, Part, SHAPE_NAMES, build_head,
+    marker_sites, performance_weights,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -361,6 +362,39 @@ fn shapes_move_what_they_are_named_for() {
     assert!(moved("noseSneerLeft", "nose_wing_left")[1] > 2.0);
     assert!(moved("cheekPuff", "cheek_lower_left")[0] > 1.5);
     assert!(moved("mouthStretchLeft", "mouth_corner_left")[0] > 5.0);
+}
+
+fn normal(p: &[[f32; 3]], t: [u32; 3]) -> [f64; 3] {
+    let [a, b, c] = t.map(|v| p[v as usize]);
+    let (u, v) = (sub(b, a), sub(c, a));
+    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+}
+
+#[test]
+fn strong_expressions_do_not_turn_the_skin_inside_out() {
+    let avatar = head();
+    let skin = avatar.skin().expect("a skin");
+    let total: f64 = skin.triangles.iter().map(|&t| area(&skin.positions, t)).sum();
+    for emotion in Emotion::ALL {
+        let clip = Clip { emotion, intensity: 3, seed: 2 };
+        let played = performance_weights(&avatar.shape_names, &clip, 10.0, 4.0);
+        let mut worst: f64 = 0.0;
+        for f in 0..played.frames() {
+            let posed = skin.posed(played.frame(f));
+            let turned: f64 = skin
+                .triangles
+                .iter()
+                .filter(|&&t| {
+                    let (n, m) = (normal(&skin.positions, t), normal(&posed, t));
+                    n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < 0.0
+                })
+                .map(|&t| area(&skin.positions, t))
+                .sum();
+            worst = worst.max(turned / total);
+        }
+        // The rims inside lips and lids may roll over; a fold in the open skin would be far more.
+        assert!(worst < 0.0015, "{emotion:?}: {worst} of the skin is turned over");
+    }
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn brow_line(s: f64, who: &Identity, at: &Landmarks) -> (f64, f64, f64) {
     let y = at.brow_y - 1.8
         + arch * (smoothstep(0.0, 0.66, s) - 1.25 * libm::pow(((s - 0.62) / 0.38).max(0.0), 1.7));
     let half = (3.1 + 0.9 * m + 0.45 * who.brow_weight)
-        * mix(0.72, 1.0, smoothstep(0.0, 0.14, s))
+        * mix(0.42, 1.0, smoothstep(0.0, 0.16, s))
         * mix(1.0, 0.2, libm::pow(s, 2.2));
     (x, y, half)
 }
@@ -194,7 +194,8 @@ pub(crate) fn add_brows(avatar: &mut Avatar, skin: &SkinLayer, who: &Identity, a
                 let hit = finder.at(place.0, place.1);
                 let round = (1.0 - t * t) * smoothstep(0.0, 0.06, s) * smoothstep(1.0, 0.9, s);
                 let tuft = 0.5 + 0.5 * libm::sin(s * 88.0 + t * 2.2);
-                let lift = -0.35 + (1.5 + 0.5 * tuft + 0.25 * who.masculinity) * round.powf(0.6);
+                let lift =
+                    -0.35 + (1.5 + 0.5 * tuft + 0.25 * who.masculinity) * libm::pow(round, 0.6);
                 positions.push(hit.mix(skin.positions) + hit.mix(&skin.normals).unit() * lift);
                 let tone = 0.8 + 0.4 * tuft;
                 colours.push(v3(r, g, b) * tone);

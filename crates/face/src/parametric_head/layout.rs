@@ -178,8 +178,12 @@ fn pin_chin(sculpt: &Sculpt, at: &Landmarks, pin: &mut dyn FnMut(i32, i32, Vec3)
         let aside = f64::from(c);
         pin(20, c, sculpt.front(6.4 * aside, at.chin_y + 15.0 + 0.35 * aside * aside));
         pin(21, c, sculpt.front(5.8 * aside, at.chin_y + 7.0 + 0.35 * aside * aside));
-        for (r, x, z) in [(22, 5.2, 87.0), (23, 4.7, 72.0), (24, 4.2, 56.0), (25, 3.8, 41.0)] {
-            pin(r, c, sculpt.below(x * aside, z - 0.6 * aside * aside));
+    }
+    for c in 0..=3 {
+        let aside = f64::from(c);
+        for (r, x, z) in [(22, 5.3, 87.0), (23, 4.9, 72.0), (24, 4.6, 57.0), (25, 4.3, 42.0)] {
+            // The rows bend back beside the midline, as the jaw does.
+            pin(r, c, sculpt.below(x * aside, z - 0.75 * aside * aside));
         }
     }
     for c in 0..=COLUMNS / 2 {
@@ -187,7 +191,7 @@ fn pin_chin(sculpt: &Sculpt, at: &Landmarks, pin: &mut dyn FnMut(i32, i32, Vec3)
             if let Some(guess) = first_guess(Site::Grid(r, c), at) {
                 let mut to = sculpt.project(guess);
                 // Rows lie level on the neck; a second step undoes what the first moved them.
-                to.y = guess.y + if r == 26 { 8.0 } else { 0.0 };
+                to.y = guess.y + if r == 26 { 21.0 } else { 11.0 };
                 pin(r, c, sculpt.project(to));
             }
         }

@@ -25,11 +25,11 @@ pub(super) fn smile(flesh: &Flesh) -> Vec<Vec3> {
         let cheek = flesh.spot(bit, (at.mouth_half + 17.0, at.mouth_y + 33.0), (14.0, 12.0));
         let fold = flesh.spot(bit, (at.mouth_half + 12.0, at.mouth_y + 14.0), (9.0, 12.0));
         let mut d =
-            v3(8.5, 10.5, -5.0) * corner + v3(1.8, 5.2, 5.0) * cheek + v3(2.4, 4.4, 2.6) * fold;
+            v3(8.5, 9.6, -5.0) * corner + v3(1.8, 5.2, 5.0) * cheek + v3(2.4, 4.4, 2.6) * fold;
         if let Some(near) = flesh.near_lips(bit, 8.0) {
             // The middle is drawn flat against the teeth.
             let middle = bump(near.along / 0.5) * near.weight * left_along(near.along);
-            d += v3(0.0, mix(0.2, 1.4, near.upper), -1.6) * middle;
+            d += v3(0.0, mix(0.4, 2.4, near.upper), -1.6) * middle;
         }
         d
     })
