@@ -3,7 +3,8 @@
 //! `contact_sheet OUT.png [key=value ...] [/ key=value ...]...` draws one cell for each `/`; what
 //! stands before the first `/` holds for all of them. Keys: `seed`, `density` (0-3), `yaw`, `pitch`
 //! (degrees), `zoom`, `cx`, `cy` (mm), `size` (pixels), `columns`, `grid=1` for mesh lines, and any
-//! blendshape (`mouthSmile=1` moves both sides), or `emotion=joy3` for a performance at its apex.
+//! blendshape (`mouthSmile=1` moves both sides), or `emotion=joy3` for a performance at its apex. `sheet=3` draws
+//! the six emotions at intensity 3, from the front and three-quarter.
 
 #[path = "support/raster.rs"]
 mod raster;
@@ -26,7 +27,7 @@ struct Cell {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let out = args.next().ok_or("usage: contact_sheet OUT.png [key=value ...] [/ ...]")?;
-    let (mut size, mut columns) = (600, 5);
+    let (mut size, mut columns) = (600, 6);
     let mut common = Cell::default();
     let mut cells: Vec<Cell> = Vec::new();
     for arg in args {
@@ -47,6 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             "size" => size = value.parse()?,
             "columns" => columns = value.parse()?,
             "emotion" => cell.emotion = Some(clip(value)?),
+            "sheet" => {
+                let row = sheet(cell, value)?;
+                cells.extend(row);
+            }
             "grid" => cell.lines = value == "1",
             name => cell.pose.push((name.to_string(), value.parse()?)),
         }
@@ -91,6 +96,20 @@ fn clip(name: &str) -> Result<Clip, Box<dyn Error>> {
         .find(|e| e.name() == word)
         .ok_or_else(|| format!("no emotion `{word}`"))?;
     Ok(Clip { emotion, intensity: digit.parse()?, seed: 1 })
+}
+
+/// The six emotions at one intensity, a row from the front and a row three-quarter.
+fn sheet(like: &Cell, intensity: &str) -> Result<Vec<Cell>, Box<dyn Error>> {
+    let mut cells = Vec::new();
+    for yaw in [0.0, -35.0] {
+        for emotion in Emotion::ALL {
+            let mut cell = like.clone();
+            cell.camera.yaw = yaw;
+            cell.emotion = Some(clip(&format!("{}{intensity}", emotion.name()))?);
+            cells.push(cell);
+        }
+    }
+    Ok(cells)
 }
 
 /// The strongest frame of a clip, eyes open and ahead.

@@ -487,6 +487,13 @@ fn the_same_spec_is_the_same_head() {
     assert_eq!(fingerprint(&build_head(&someone)), fingerprint(&build_head(&someone)));
 }
 
+/// The same bits on every platform. A deliberate change of the head changes this number: the failing
+/// test prints the new one.
+#[test]
+fn default_head_has_the_recorded_fingerprint() {
+    assert_eq!(format!("{:016x}", fingerprint(&head())), "704d6c17b8ef99de");
+}
+
 #[test]
 fn different_seeds_are_different_people() {
     let people: Vec<Avatar> = (0..5)

@@ -134,7 +134,9 @@ impl Eye {
     pub(crate) fn orbit(&self, sculpt: &Sculpt, k: i32) -> Vec3 {
         let (upper, u) = along(k);
         let angle = PI * u;
-        let x = self.centre.x + 1.0 - 22.5 * libm::cos(angle);
+        // Its inner end keeps clear of the bridge's columns, however close the eyes stand.
+        let half = if u < 0.5 { self.centre.x + 1.0 - 10.2 } else { 22.5 };
+        let x = self.centre.x + 1.0 - half * libm::cos(angle);
         let top = self.brow_y - 4.0;
         let height = if upper { top } else { -19.0 };
         let y = height * libm::pow(libm::sin(angle), 0.9) + 1.5 * (u - 0.5);

@@ -69,7 +69,7 @@ impl Landmarks {
         let nose_base_y = -46.0 - 2.0 * who.nose_length - 1.0 * m;
         let mouth_y = nose_base_y - 21.0 - 0.8 * m;
         Landmarks {
-            eye: v3(31.5 + 1.0 * who.eye_spacing, 0.0, 70.2),
+            eye: v3(31.5 + 0.8 * who.eye_spacing, 0.0, 70.2),
             eye_radius: 16.6 + 0.45 * who.eye_size - 0.6 * m,
             mouth_y,
             mouth_half: 24.5 + 1.3 * who.mouth_width + 1.0 * m,
