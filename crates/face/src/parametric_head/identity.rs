@@ -85,7 +85,7 @@ impl Default for Identity {
     /// The house face: a young adult between the sexes, every proportion average.
     fn default() -> Self {
         Identity {
-            masculinity: 0.35,
+            masculinity: 0.25,
             age: 0.12,
             face_width: 0.0,
             jaw_width: 0.0,

@@ -79,7 +79,7 @@ impl Landmarks {
             nose_tip: v3(0.0, nose_base_y + 8.5, 112.5 + 1.2 * who.nose_bridge),
             nose_base_y,
             wing_half: 16.5 + 1.1 * who.nose_width + 0.8 * m,
-            chin_y: mouth_y - 40.0 - 2.0 * who.chin - 3.0 * m,
+            chin_y: mouth_y - 38.5 - 2.0 * who.chin - 3.0 * m,
             ear: v3(70.0, -17.0, -6.0),
             ear_scale: 1.0 + 0.06 * who.ear_size + 0.05 * m + 0.06 * who.age,
             brow_y: 22.5 + 1.2 * who.brow_height - 2.0 * m - 1.0 * who.age,
@@ -94,7 +94,7 @@ impl Sculpt {
         let m = who.masculinity;
         let mut s = Sculpt { pieces: Vec::new() };
         let width = 1.0 + 0.022 * who.face_width + 0.01 * m;
-        let jaw = 1.0 + 0.035 * who.jaw_width + 0.07 * (m - 0.35);
+        let jaw = 1.0 + 0.03 * who.jaw_width + 0.07 * (m - 0.35);
         let chin = at.chin_y;
         let tip = at.nose_tip;
         // Skull and face.
@@ -103,7 +103,7 @@ impl Sculpt {
         // Jaw: body from angle to chin, muzzle, chin.
         let angle = v3(43.5 * jaw, at.mouth_y + 3.0, 14.0);
         let body = v3(24.5 * jaw, mix(at.mouth_y, chin, 0.50), 63.0);
-        s.pair_cone(angle, body, 13.0, 11.5, 26.0);
+        s.pair_cone(angle, body, 11.5, 11.5, 34.0);
         s.pair_cone(body, v3(14.0, chin + 16.5, 78.0), 11.5, 11.5, 22.0);
         s.ellipsoid(v3(0.0, at.mouth_y + 1.0, 62.0), v3(37.0, 33.0, 37.5), 16.0);
         let chin_half = mix(5.5, 10.5, m);
