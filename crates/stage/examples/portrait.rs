@@ -1,8 +1,9 @@
 //! Draws an avatar file or the built-in head (or packs it, when OUT ends in `.mmav`):
-//! `portrait AVATAR.glb|builtin OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]`.
+//! `portrait AVATAR.glb|builtin[:SEED] OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]`.
 
 use std::path::Path;
 
+use mimique_face::{HeadSpec, Identity};
 use mimique_stage::offscreen::Offscreen;
 use mimique_stage::{Look, View};
 
@@ -10,13 +11,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [file, out, rest @ ..] = arguments.as_slice() else {
         return Err(
-            "usage: portrait AVATAR.glb|builtin OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]"
+            "usage: portrait AVATAR.glb|builtin[:SEED] OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]"
                 .into(),
         );
     };
     let avatar = match file.as_str() {
-        "builtin" => mimique_face::build_head(&mimique_face::HeadSpec::default()),
-        file => mimique_face::read_avatar(Path::new(file))?.avatar,
+        "builtin" => mimique_face::build_head(&HeadSpec::default()),
+        file => match file.strip_prefix("builtin:") {
+            Some(seed) => mimique_face::build_head(&HeadSpec {
+                identity: Identity::from_seed(seed.parse()?),
+                ..HeadSpec::default()
+            }),
+            None => mimique_face::read_avatar(Path::new(file))?.avatar,
+        },
     };
     if out.ends_with(".mmav") {
         std::fs::write(out, mimique_face::pack::encode_pack(&avatar).bytes)?;

@@ -28,10 +28,14 @@ pub struct Head {
     pub(crate) scene_buffer: Buffer,
     pub(crate) positions: TextureView,
     pub(crate) surfaces: TextureView,
+    /// `surfaces` with the visibility softened an odd number of times.
+    pub(crate) softened: TextureView,
     pub(crate) occlusions: TextureView,
     pub(crate) deform_group: BindGroup,
     pub(crate) light_group: BindGroup,
     pub(crate) surface_group: BindGroup,
+    /// From `surfaces` to `softened`, and back.
+    pub(crate) soften_groups: [BindGroup; 2],
     pub(crate) occlusion_group: BindGroup,
     pub(crate) shade_group: BindGroup,
 }
@@ -80,6 +84,7 @@ impl Head {
         let high = tables::rows(geometry.neutral.len(), wide);
         let positions = tables::target(device, "positions", float, wide, high);
         let surfaces = tables::target(device, "surfaces", float, wide, high);
+        let softened = tables::target(device, "softened", float, wide, high);
         let occlusions = tables::target(device, "occlusions", OCCLUSION_FORMAT, wide, high);
         let buffer = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -111,6 +116,9 @@ impl Head {
                 sampler.clone(),
             ],
         );
+        let soften_groups = [&surfaces, &softened].map(|from| {
+            group(&pipelines.soften_layout, &[view(&vertices), view(&rings), view(from)])
+        });
         let occlusion_group = group(
             &pipelines.occlusion_layout,
             &[scene.clone(), view(&positions), view(shadow.0), sampler, view(&surfaces)],
@@ -138,10 +146,12 @@ impl Head {
             scene_buffer,
             positions,
             surfaces,
+            softened,
             deform_group,
             light_group,
             occlusions,
             surface_group,
+            soften_groups,
             occlusion_group,
             shade_group,
         })
@@ -218,7 +228,7 @@ fn group(
 
 #[cfg(all(test, feature = "native"))]
 mod tests {
-    use glam::Vec3;
+    use glam::{Vec3, Vec4};
     use mimique_face::{Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape};
 
     use crate::offscreen::Offscreen;
@@ -273,8 +283,8 @@ mod tests {
         mesh
     }
 
-    /// Positions and normals as the passes computed them, skin first.
-    fn computed(name: &str, avatar: &Avatar, weights: &[f32]) -> Option<(Vec<Vec3>, Vec<Vec3>)> {
+    /// The tables of positions and surfaces as the passes left them, skin first.
+    fn tables(name: &str, avatar: &Avatar, weights: &[f32]) -> Option<(Vec<Vec4>, Vec<Vec4>)> {
         let stage = match Offscreen::new(true) {
             Ok(stage) => stage,
             Err(error) => {
@@ -287,12 +297,18 @@ mod tests {
         let renderer = stage.renderer([16, 16], Look::STIMULUS);
         let head = renderer.load(avatar).expect("the avatar loads");
         stage.picture(&renderer, &head, View::FRONT, weights).expect("a picture");
-        let table = |view: &wgpu::TextureView| -> Vec<Vec3> {
+        let table = |view: &wgpu::TextureView| -> Vec<Vec4> {
             let bytes = stage.read(view.texture()).expect("a table");
-            let texels: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
-            texels.iter().map(|t| Vec3::new(t[0], t[1], t[2])).collect()
+            bytemuck::cast_slice(&bytes).iter().map(|&t: &[f32; 4]| t.into()).collect()
         };
         Some((table(&head.positions), table(&head.surfaces)))
+    }
+
+    /// Positions and normals as the passes computed them, skin first.
+    fn computed(name: &str, avatar: &Avatar, weights: &[f32]) -> Option<(Vec<Vec3>, Vec<Vec3>)> {
+        let (positions, surfaces) = tables(name, avatar, weights)?;
+        let directions = |table: Vec<Vec4>| table.into_iter().map(Vec4::truncate).collect();
+        Some((directions(positions), directions(surfaces)))
     }
 
     #[test]
@@ -343,5 +359,40 @@ mod tests {
         // The upper half moved forward leaves a shelf: its normals are no sphere's.
         let Some((_, lifted)) = computed(name, &avatar, &[0.0, 1.0, 0.0]) else { return };
         assert!(normals.iter().zip(&lifted).any(|(a, b)| a.distance(*b) > 0.3));
+    }
+
+    #[test]
+    fn shadow_edge_spreads_over_coarse_triangles() {
+        let name = "shadow_edge_spreads_over_coarse_triangles";
+        let mut avatar = planted();
+        // A ball between the key light and the front of the sphere, whose rows are 10 mm apart:
+        // as wide as the light's own penumbra.
+        let ball = sphere(Vec3::new(-0.06, 0.075, 0.1), 0.025);
+        avatar.meshes.push(Mesh {
+            part: Part::Hair,
+            shapes: vec![SparseShape::default(); 3],
+            ..ball
+        });
+        let Some((_, surfaces)) = tables(name, &avatar, &[0.0; 3]) else { return };
+        let columns = 2 * ROWS;
+        // The half of the sphere that faces the light, away from the eye.
+        let key = Vec3::new(-0.4364, 0.5455, 0.7155);
+        let lit = |v: &usize| surfaces[*v].truncate().dot(key) > 0.3;
+        let (mut darkest, mut brightest, mut steepest) = (1.0_f32, 0.0_f32, 0.0_f32);
+        for (i, j) in (2..ROWS - 2).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+            let at = |i: usize, j: usize| i * (columns + 1) + j;
+            let here = at(i, j);
+            for next in [at(i + 1, j), at(i, j + 1)].iter().filter(|v| lit(v) && lit(&here)) {
+                let (a, b) = (surfaces[here].w, surfaces[*next].w);
+                darkest = darkest.min(a);
+                brightest = brightest.max(a);
+                steepest = steepest.max((a - b).abs());
+            }
+        }
+        assert!(brightest > 0.8, "nothing is lit: {brightest}");
+        assert!(darkest < 0.3, "nothing is in shadow: {darkest}");
+        assert!(steepest < 0.3, "a step of {steepest} from vertex to vertex");
+        let (first, last) = (8 * (columns + 1), 8 * (columns + 1) + columns);
+        assert_eq!(surfaces[first], surfaces[last], "the seam shows");
     }
 }

@@ -1,6 +1,6 @@
 //! Renders heads with wgpu: WebGPU, WebGL2 and offscreen.
 //!
-//! One WGSL path that WebGL2 can run: no compute, no storage buffers. A frame is four passes, all
+//! One WGSL path that WebGL2 can run: no compute, no storage buffers. A frame is five steps, all
 //! over tables that stay on the GPU; the CPU writes two small uniform buffers.
 //!
 //! | pass | shader | a fragment a | gives |
@@ -8,7 +8,8 @@
 //! | 1 deform | `deform.wgsl` | vertex | position = neutral + sum of weight x delta, eyeballs turned |
 //! | 2 light | `shade.wgsl` | pixel of the key light's view | depth |
 //! | 3 surface | `surface.wgsl` | vertex | normal of the deformed surface, visibility of the key light |
-//! | 4 picture | `shade.wgsl` | pixel, 4x MSAA | colour |
+//! | 4 soften | `soften.wgsl` | vertex, four times | visibility averaged with the vertices round it |
+//! | 5 picture | `shade.wgsl` | pixel, 4x MSAA | colour |
 //!
 //! Colours are computed in linear light, pass a filmic response and are stored in an sRGB format,
 //! so that the resolve of the samples is linear too; a target that does not encode sRGB by itself

@@ -1,4 +1,4 @@
-//! The four passes' pipelines and what is bound to them.
+//! The passes' pipelines and what is bound to them.
 
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, CompareFunction, DepthBiasState,
@@ -28,12 +28,14 @@ const ADD: wgpu::BlendState = wgpu::BlendState {
 pub(crate) struct Pipelines {
     pub deform_layout: BindGroupLayout,
     pub surface_layout: BindGroupLayout,
+    pub soften_layout: BindGroupLayout,
     pub occlusion_layout: BindGroupLayout,
     pub shade_layout: BindGroupLayout,
     pub light_layout: BindGroupLayout,
     pub deform: RenderPipeline,
     pub light: RenderPipeline,
     pub surface: RenderPipeline,
+    pub soften: RenderPipeline,
     pub occlusion: RenderPipeline,
     closed: RenderPipeline,
     sheet: RenderPipeline,
@@ -46,6 +48,7 @@ impl Pipelines {
         let module = |label, source| shader(device, label, source);
         let deform_module = module("deform.wgsl", include_str!("shaders/deform.wgsl"));
         let surface_module = module("surface.wgsl", include_str!("shaders/surface.wgsl"));
+        let soften_module = module("soften.wgsl", include_str!("shaders/soften.wgsl"));
         let occlusion_module = module("occlusion.wgsl", include_str!("shaders/occlusion.wgsl"));
         let shade_module = module("shade.wgsl", include_str!("shaders/shade.wgsl"));
 
@@ -74,6 +77,11 @@ impl Pipelines {
                 table(4, fragment, TextureSampleType::Depth),
                 entry(5, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
             ],
+        );
+        let soften_layout = layout(
+            device,
+            "soften",
+            &[table(0, fragment, integer), table(1, fragment, integer), table(2, fragment, float)],
         );
         let occlusion_layout = layout(
             device,
@@ -116,6 +124,7 @@ impl Pipelines {
                 ["cover_surface", "surface"],
                 &float32,
             ),
+            soften: cover(&soften_module, &soften_layout, ["cover_softened", "soften"], &float32),
             occlusion: cover(
                 &occlusion_module,
                 &occlusion_layout,
@@ -128,6 +137,7 @@ impl Pipelines {
             blended: picture_pass(device, &shade_module, &shade_layout, format, Layer::Blended),
             deform_layout,
             surface_layout,
+            soften_layout,
             occlusion_layout,
             shade_layout,
             light_layout,

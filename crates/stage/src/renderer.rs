@@ -15,6 +15,10 @@ use crate::{Look, StageError};
 /// Towards the key light; `scene.wgsl`, constant `KEY`.
 const TOWARDS_KEY: Vec3 = Vec3::new(-0.4364, 0.5455, 0.7155);
 
+/// How often the key light's visibility is softened, there and back between two tables: twice spreads
+/// a step over about four triangles.
+const SOFTENINGS: u32 = 2;
+
 /// Pipelines, targets and the look: draws any head that it loaded.
 pub struct Renderer {
     device: Device,
@@ -125,6 +129,11 @@ impl Renderer {
         fill_table(&mut encoder, &head.positions, &passes.deform, &head.deform_group, clear);
         self.light_pass(&mut encoder, head);
         fill_table(&mut encoder, &head.surfaces, &passes.surface, &head.surface_group, clear);
+        let [onward, back] = &head.soften_groups;
+        for _ in 0..SOFTENINGS {
+            fill_table(&mut encoder, &head.softened, &passes.soften, onward, clear);
+            fill_table(&mut encoder, &head.surfaces, &passes.soften, back, clear);
+        }
         match (&self.encoder, &self.targets.resolved) {
             (Some(encode), Some((resolved, group))) => {
                 self.picture_pass(&mut encoder, head, resolved);

@@ -1,4 +1,4 @@
-// Passes 2 and 4: the head seen by the key light (depth only), and the picture.
+// Steps 2 and 5: the head seen by the key light (depth only), and the picture.
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var positions: texture_2d<f32>;
 @group(0) @binding(2) var surfaces: texture_2d<f32>;
