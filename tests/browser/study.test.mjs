@@ -63,7 +63,7 @@ async function takePart(server, { backend, hands, locale, colorScheme, viewport 
           reloaded = true;
           await page.waitForTimeout(700);
           await page.reload();
-          await page.waitForSelector("main[data-view]");
+          await page.waitForSelector("main[data-step]", { timeout: 30_000 });
           const again = await place(page);
           assert.equal(again.step, here.step, "after a reload the study goes on at the same trial");
           await phase(page, "ready");
@@ -111,7 +111,7 @@ function compare(server, { backend }, given) {
   const trials = answers.filter((row) => row.stimulus !== "");
   assert.equal(trials.length, 36, "12 clips, three questions each");
   for (const row of trials) {
-    assert.equal(row.status, "complete");
+    assert.equal(row.status, "completed");
     assert.equal(row.backend, backend);
     assert.ok(["lsts", "box"].includes(row.method), row.method);
     assert.ok(Number(row.frames) > 1, "frames are logged");

@@ -21,7 +21,7 @@ pub struct Args {
     /// Folder for the report; an earlier report in it is replaced
     #[arg(long)]
     out: PathBuf,
-    /// Language of the report: en or fr [default: en]
+    /// Language of the report: en or fr
     #[arg(long, default_value = "en", value_parser = language)]
     language: Language,
 }

@@ -17,7 +17,7 @@ const backends = {
   webgl2: ["--enable-unsafe-swiftshader"],
   webgpu: [
     "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-unsafe-swiftshader",
-    "--use-angle=swiftshader", "--enable-features=Vulkan",
+    "--use-angle=swiftshader", "--use-vulkan=swiftshader", "--enable-features=Vulkan",
   ],
 };
 

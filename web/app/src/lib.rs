@@ -10,8 +10,8 @@
 //!                                          +--- pages, bridge, outbox <+
 //! ```
 
-mod address;
-mod outbox;
+pub mod address;
+pub mod outbox;
 
 #[cfg(target_arch = "wasm32")]
 mod bridge;

@@ -76,6 +76,16 @@ pub(crate) struct Flow {
     pub rules: Vec<String>,
 }
 
+impl Flow {
+    /// The reasons and their counts, in brackets; empty where there are none.
+    pub fn why(&self) -> String {
+        let reasons = self.people_left_out.iter().chain(&self.trials_left_out);
+        let words: Vec<String> =
+            reasons.map(|(reason, count)| format!("{reason}: {count}")).collect();
+        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+    }
+}
+
 /// A study's answers.
 #[derive(Debug, Clone)]
 pub(crate) struct Export {

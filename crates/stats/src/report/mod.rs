@@ -58,9 +58,12 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
         return Err(Refusal::column(
             "trial_type",
             format!(
-                "no trial is left of {} people ({} left out)",
+                "no trial is left: {} of {} people and {} of {} trials are left out{}",
+                export.flow.people - export.flow.people_used,
                 export.flow.people,
-                export.flow.people - export.flow.people_used
+                export.flow.trials - export.flow.trials_used,
+                export.flow.trials,
+                export.flow.why()
             ),
             "collect answers first, or look at the study's exclusions",
         ));
