@@ -40,10 +40,10 @@ fn studies_of_the_repository_have_no_problem() {
     assert!(checked >= 3, "{checked} studies");
 }
 
-/// `MIMIQUE_UPDATE=1 cargo test` writes the expected reports and the schema anew; look at the
+/// `MIMIQUE_UPDATE_GOLDEN=1 cargo test` writes the expected reports and the schema anew; look at the
 /// difference before you keep it.
 fn update_wanted() -> bool {
-    std::env::var_os("MIMIQUE_UPDATE").is_some()
+    std::env::var_os("MIMIQUE_UPDATE_GOLDEN").is_some()
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn schema_is_the_one_in_the_repository() {
     let kept = std::fs::read_to_string(&file).unwrap_or_default();
     assert!(
         kept == schema,
-        "{} is not current; write it anew with MIMIQUE_UPDATE=1",
+        "{} is not current; write it anew with MIMIQUE_UPDATE_GOLDEN=1",
         file.display()
     );
 }

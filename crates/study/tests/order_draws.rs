@@ -67,7 +67,7 @@ fn orders_are_those_of_the_golden_file() {
     }
     assert_eq!(hash.len(), 64);
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/order.txt");
-    if std::env::var_os("MIMIQUE_UPDATE").is_some() {
+    if std::env::var_os("MIMIQUE_UPDATE_GOLDEN").is_some() {
         std::fs::write(&file, &lines).unwrap();
     }
     assert_eq!(lines, std::fs::read_to_string(&file).unwrap());
