@@ -33,9 +33,10 @@ pub struct Bundle {
     pub clips: BTreeMap<String, Value>,
 }
 
-/// `GET /api/studies/{study}`
-pub async fn bundle(study: &str) -> Result<Bundle, Failure> {
-    read(Request::get(&format!("/api/studies/{study}")).send().await).await
+/// `GET /api/studies/{study}`: the version of today, or the one of that configuration hash.
+pub async fn bundle(study: &str, config_hash: Option<&str>) -> Result<Bundle, Failure> {
+    let version = config_hash.map(|hash| format!("?config_hash={hash}")).unwrap_or_default();
+    read(Request::get(&format!("/api/studies/{study}{version}")).send().await).await
 }
 
 /// `POST /api/studies/{study}/sessions`

@@ -87,7 +87,7 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     let address = Address::parse(&path, &query).ok_or(Trouble::NoStudy)?;
     let wanted = wanted_languages(&address);
 
-    let bundle = persist(|| network::bundle(&address.study)).await?;
+    let bundle = bundle(&address.study).await?;
     let study =
         Study::from_value(&bundle.study).map_err(|error| Trouble::Unreadable(error.to_string()))?;
     let language = wanted
@@ -103,7 +103,7 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     if !bridge::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab(language));
     }
-    let known = resume(&address, &bundle).await?;
+    let known = resume(&address).await?;
     let (started, events) = match known {
         Some(known) => known,
         None => (begin_session(&address, &language).await?, Vec::new()),
@@ -130,19 +130,30 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     Ok(engine)
 }
 
+/// The study as it is today; or, in the middle of a session that began before the study was
+/// changed, the version that it began with.
+async fn bundle(study: &str) -> Result<Bundle, Trouble> {
+    let today = persist(|| network::bundle(study, None)).await?;
+    let begun = Identity::load(study).and_then(|identity| identity.started);
+    let Some(begun) = begun.filter(|begun| begun.config_hash != today.config_hash) else {
+        return Ok(today);
+    };
+    match persist(|| network::bundle(study, Some(&begun.config_hash))).await {
+        Ok(earlier) => Ok(earlier),
+        Err(Trouble::Refused(_)) => {
+            // The server has never had that version: the session is not of this server.
+            Identity::forget(study);
+            Ok(today)
+        }
+        Err(trouble) => Err(trouble),
+    }
+}
+
 /// The session that this browser is in the middle of, and its events on the server.
-async fn resume(
-    address: &Address,
-    bundle: &Bundle,
-) -> Result<Option<(SessionStarted, Vec<Event>)>, Trouble> {
+async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)>, Trouble> {
     let Some(started) = Identity::load(&address.study).and_then(|identity| identity.started) else {
         return Ok(None);
     };
-    if started.config_hash != bundle.config_hash {
-        // The study was changed meanwhile: what was begun belongs to the version before.
-        Identity::forget(&address.study);
-        return Ok(None);
-    }
     match persist(|| network::resume(&started.session)).await {
         Ok(resume) => Ok(Some((resume.started, resume.events))),
         Err(Trouble::Refused(_)) => {
