@@ -200,7 +200,8 @@ pub fn scheirer_ray_hare(result: &ScheirerRayHare) -> String {
                 cells.extend([
                     o(table.H[effect]),
                     match (table.p[effect], table.ln_p[effect]) {
-                        (Some(p), Some(ln_p)) => format_p(p, ln_p),
+                        // The column's name is the other side of the equation.
+                        (Some(p), Some(ln_p)) => format_p(p, ln_p).replace("= ", ""),
                         _ => "undefined".to_owned(),
                     },
                     o(table.eta_squared_H[effect]),
