@@ -38,7 +38,7 @@ enum Command {
     /// Tell what an avatar, a capture, a weight file, a pack or a study holds
     Inspect(inspect::Args),
     /// Turn marker trajectories into blendshape weights
-    Solve(solve::Args),
+    Solve(Box<solve::Args>),
     /// Write the responses of a study to a file
     Export(export::Args),
     /// Run one statistical test on a data file
@@ -61,7 +61,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args, json),
         Command::Order(args) => order::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),
-        Command::Solve(args) => solve::run(args, json),
+        Command::Solve(args) => solve::run(*args, json),
         Command::Export(args) => export::run(args, json),
         Command::Test(args) => test_command::run(args, json),
         Command::Analyze(args) => analyze::run(args, json),
