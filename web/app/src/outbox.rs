@@ -1,7 +1,7 @@
 //! What is still to be sent: the pure core of the outbox.
 //!
 //! Events come in as the session makes them, go out in batches as often as it takes, and leave only
-//! when the server says that they are stored. [`crate::memory`] keeps the same set in IndexedDB;
+//! when the server says that they are stored. `memory` keeps the same set in IndexedDB;
 //! `engine` does the sending.
 
 use std::collections::BTreeMap;
