@@ -115,7 +115,8 @@ fn an_export_without_trials_or_columns_is_refused() {
     let only_incomplete = export(&study, &Raters { people: 1, effect: 0.0, seed: 1 });
     let table = Table::parse(only_incomplete.as_bytes()).unwrap();
     let refusal = analyze(&table, &study, Language::English).unwrap_err().to_string();
-    assert!(refusal.contains("no trial is left of 1 people (1 left out)"), "{refusal}");
+    let wanted = "no trial is left: 1 of 1 people and 0 of 0 trials are left out (incomplete: 1)";
+    assert!(refusal.contains(wanted), "{refusal}");
     let table = Table::parse(b"a,b\n1,2\n").unwrap();
     let refusal = analyze(&table, &study, Language::English).unwrap_err().to_string();
     assert!(refusal.contains("column \"participant_id\": there is no such column"), "{refusal}");

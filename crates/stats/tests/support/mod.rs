@@ -127,8 +127,11 @@ pub fn export(study: &Study, raters: &Raters) -> String {
     text
 }
 
-/// The built-in demonstration study.
+/// The built-in demonstration study, with a rule on late frames such as a real study has.
 pub fn demo_study() -> Study {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/demo.json");
-    Study::from_text(&std::fs::read_to_string(path).unwrap()).unwrap()
+    let mut study = Study::from_text(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let exclusions = study.exclusions.as_mut().expect("the demonstration has exclusions");
+    exclusions.late_frame_share = Some(0.2);
+    study
 }
