@@ -97,11 +97,12 @@ impl Tally {
         // nextest: Summary [   1.2s] 12 tests run: 11 passed (1 slow), 1 failed, 2 skipped
         if line.starts_with("Summary [") {
             let rest = line.split_once("run:").map_or("", |(_, rest)| rest);
-            self.passed += number_before(rest, "passed");
-            self.failed += number_before(rest, "failed")
+            // It stands for all that went before, the output of single tests included.
+            self.passed = number_before(rest, "passed");
+            self.failed = number_before(rest, "failed")
                 + number_before(rest, "timed out")
                 + number_before(rest, "exec failed");
-            self.skipped += number_before(rest, "skipped");
+            self.skipped = number_before(rest, "skipped");
         // libtest: test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out
         } else if let Some(rest) = line.strip_prefix("test result:") {
             self.passed += number_before(rest, "passed");
@@ -191,6 +192,8 @@ mod tests {
         assert_eq!(counted(&[nextest]), (12, 2, 3));
         let coloured = "\u{1b}[32;1m     Summary\u{1b}[0m [   0.1s] \u{1b}[1m2\u{1b}[0m tests run: \u{1b}[1m2\u{1b}[0m \u{1b}[32;1mpassed\u{1b}[0m, \u{1b}[1m0\u{1b}[0m \u{1b}[33;1mskipped\u{1b}[0m";
         assert_eq!(counted(&[coloured]), (2, 0, 0));
+        let one = "    test result: ok. 1 passed; 0 failed; 0 ignored; 0 measured; 9 filtered out";
+        assert_eq!(counted(&[one, one, nextest]), (12, 2, 3), "nothing is counted twice");
         let libtest =
             "test result: FAILED. 3 passed; 2 failed; 1 ignored; 0 measured; 0 filtered out";
         assert_eq!(counted(&[libtest]), (3, 2, 1));
