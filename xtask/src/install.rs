@@ -3,13 +3,13 @@
 //! Debian-like systems with root or sudo are served by apt. Elsewhere the step says what to install
 //! by hand and the command goes on with what it can.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 
-use crate::process::{cargo, has, output, root, run, say};
+use crate::process::{cargo, has, output, root, run, say, target};
 
 /// Whether something asked for is there (perhaps since now), or not and why.
 pub enum Found {
@@ -92,6 +92,23 @@ pub const POSTGRESQL: Package = Package {
     ]),
     elsewhere: "PostgreSQL 14 or newer",
 };
+/// The statistics that the written-out R scripts are compared with.
+pub const R: Package = Package {
+    name: "r-base-core",
+    sign: Sign::Program("Rscript"),
+    elsewhere: "R 4 or newer (Rscript on the path)",
+};
+/// Python with environments of its own, for the peers of tests and benchmarks.
+pub const PYTHON: Package = Package {
+    name: "python3 python3-venv",
+    sign: Sign::File(&[
+        "/usr/lib/python3.11/ensurepip/__init__.py",
+        "/usr/lib/python3.12/ensurepip/__init__.py",
+        "/usr/lib/python3.13/ensurepip/__init__.py",
+        "/usr/lib/python3.14/ensurepip/__init__.py",
+    ]),
+    elsewhere: "Python 3.11 or newer with venv and pip",
+};
 impl Package {
     fn present(&self) -> bool {
         match self.sign {
@@ -172,4 +189,27 @@ pub fn npm(folder: &Path) -> Result<Found> {
         .current_dir(folder))?;
     std::fs::write(&stamp, wanted)?;
     Ok(Found::Yes)
+}
+
+/// A Python environment in `target/NAME` with the packages that `requirements` pins. Its interpreter,
+/// or what to do.
+pub fn python(name: &str, requirements: &Path) -> Result<std::result::Result<PathBuf, String>> {
+    let wanted = std::fs::read(requirements).with_context(|| requirements.display().to_string())?;
+    let environment = target().join(name);
+    let interpreter = environment.join("bin/python");
+    let stamp = environment.join(".installed-requirements");
+    if std::fs::read(&stamp).ok().as_deref() == Some(&wanted) {
+        return Ok(Ok(interpreter));
+    }
+    let usable = output(Command::new("python3").args(["-c", "import ensurepip, venv"])).is_some();
+    if !usable && let Found::No(remedy) = PYTHON.ensure() {
+        return Ok(Err(remedy));
+    }
+    say(&format!("installing the Python packages of {}", requirements.display()));
+    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment))?;
+    run(Command::new(&interpreter)
+        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"])
+        .arg(requirements))?;
+    std::fs::write(&stamp, wanted)?;
+    Ok(Ok(interpreter))
 }

@@ -31,6 +31,18 @@ pub fn run(args: &Args) -> Result<()> {
     need(&install::C_COMPILER);
     need(&install::LAVAPIPE);
     need(&install::POSTGRESQL);
+    need(&install::R);
+    let python = match install::python("python", &root().join("tests/support/requirements.txt")) {
+        Ok(Ok(interpreter)) => Some(interpreter),
+        Ok(Err(remedy)) => {
+            say(&format!("no Python environment; the tests that need it will skip: {remedy}"));
+            None
+        }
+        Err(error) => {
+            say(&format!("no Python environment; the tests that need it will skip: {error:#}"));
+            None
+        }
+    };
 
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
     // The server embeds the pages, so they come before everything that compiles it.
@@ -69,6 +81,9 @@ pub fn run(args: &Args) -> Result<()> {
     tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
     exclude_web(&mut tests);
     tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_WEB_DIST", web::dist());
+    if let Some(python) = &python {
+        tests.env("MIMIQUE_PYTHON", python);
+    }
     tally.tests("unit, property, golden and http tests", &mut tests)?;
 
     let mut doc_tests = cargo();

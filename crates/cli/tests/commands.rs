@@ -4,27 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use mimique_test_support::real_file;
 use serde_json::Value;
-
-/// The repository.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-/// A folder of the real data, or a skip said aloud.
-fn data(test: &str, folder: &str) -> Option<PathBuf> {
-    let data = std::env::var_os("MIMIQUE_DATA")
-        .map_or_else(|| root().join("../shared/data"), PathBuf::from)
-        .join(folder);
-    if data.is_dir() {
-        return Some(data);
-    }
-    let skip =
-        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", data.display());
-    assert!(std::env::var("MIMIQUE_NO_SKIP").as_deref() != Ok("1"), "{skip}");
-    eprintln!("{skip}");
-    None
-}
 
 fn mimique<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_mimique"));
@@ -73,7 +54,9 @@ fn weights(csv: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
 
 #[test]
 fn solve_gives_the_stored_weights_of_lsts_and_box() {
-    let Some(data) = data("solve_gives_the_stored_weights_of_lsts_and_box", "lsts") else { return };
+    let Some(data) = real_file("solve_gives_the_stored_weights_of_lsts_and_box", "lsts") else {
+        return;
+    };
     let folder = tempfile::tempdir().expect("a folder");
     for (method, alpha, stored) in [
         ("lsts", Some("0.3"), "F4_box_k0.1_a0.3.csv"),
@@ -118,7 +101,7 @@ fn solve_gives_the_stored_weights_of_lsts_and_box() {
 
 #[test]
 fn solve_refuses_and_writes_nothing() {
-    let Some(data) = data("solve_refuses_and_writes_nothing", "lsts") else { return };
+    let Some(data) = real_file("solve_refuses_and_writes_nothing", "lsts") else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("w.csv");
     let empty = folder.path().join("empty.c3d");
@@ -162,7 +145,7 @@ fn solve_refuses_and_writes_nothing() {
 #[test]
 fn statistical_tests_print_the_expected_values() {
     let test = "statistical_tests_print_the_expected_values";
-    let Some(data) = data(test, "stats") else { return };
+    let Some(data) = real_file(test, "stats") else { return };
     let expected: Value = serde_json::from_slice(
         &std::fs::read(data.join("expected.json")).expect("expected values"),
     )
@@ -281,7 +264,7 @@ fn order_is_the_same_every_time_and_differs_between_participants() {
 
 #[test]
 fn inspect_tells_what_a_capture_holds() {
-    let Some(data) = data("inspect_tells_what_a_capture_holds", "animface") else { return };
+    let Some(data) = real_file("inspect_tells_what_a_capture_holds", "animface") else { return };
     let file = text(&data.join("JawMoCap.c3d"));
     let facts: Value = serde_json::from_str(&ok(&["inspect", &file, "--json"])).expect("JSON");
     let said = facts.to_string();

@@ -1,31 +1,12 @@
 //! Real avatars through the glTF reader.
 
-use std::path::PathBuf;
-
 use mimique_face::pack::{decode_pack, encode_pack};
 use mimique_face::{Part, read_avatar};
-
-/// The real data, or `None` after saying that the test is skipped.
-fn data(test: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("MIMIQUE_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    if root.is_dir() {
-        return Some(root);
-    }
-    assert!(
-        std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"),
-        "{test}: real data not found at {}",
-        root.display()
-    );
-    eprintln!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", root.display());
-    None
-}
+use mimique_test_support::real_data;
 
 #[test]
 fn ict_facekit_has_its_parts_shapes_and_turning_eyes() {
-    let Some(root) = data("ict_facekit_has_its_parts_shapes_and_turning_eyes") else { return };
+    let Some(root) = real_data("ict_facekit_has_its_parts_shapes_and_turning_eyes") else { return };
     let read = read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap();
     let avatar = &read.avatar;
     assert_eq!(avatar.shape_names.len(), 53);
@@ -66,7 +47,7 @@ fn ict_facekit_has_its_parts_shapes_and_turning_eyes() {
 
 #[test]
 fn ict_facekit_packs_small_and_true() {
-    let Some(root) = data("ict_facekit_packs_small_and_true") else { return };
+    let Some(root) = real_data("ict_facekit_packs_small_and_true") else { return };
     let avatar = read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap().avatar;
     let pack = encode_pack(&avatar);
     eprintln!("{} bytes, {:.2} um at most", pack.bytes.len(), pack.error_bound * 1e6);

@@ -3,23 +3,8 @@
 use mimique_mocap::{
     Capture, CaptureFacts, LengthUnit, ReadOptions, Recording, read, read_recording, read_weights,
 };
+use mimique_test_support::real_data;
 use std::path::PathBuf;
-
-/// The data folder, or `None` after saying that the test is skipped.
-fn data(test: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("MIMIQUE_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    if path.is_dir() {
-        return Some(path);
-    }
-    let message =
-        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", path.display());
-    assert!(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"), "{message}");
-    eprintln!("{message}");
-    None
-}
 
 fn recording(path: PathBuf) -> Recording {
     let bytes = std::fs::read(&path).unwrap();
@@ -43,7 +28,7 @@ fn largest_difference(a: &Capture, b: &Capture) -> f64 {
 
 #[test]
 fn lsts_take_is_the_same_from_csv_and_c3d() {
-    let Some(data) = data("lsts_take_is_the_same_from_csv_and_c3d") else { return };
+    let Some(data) = real_data("lsts_take_is_the_same_from_csv_and_c3d") else { return };
     let csv = read(&data.join("lsts/take_n01.csv")).unwrap();
     let c3d = read(&data.join("lsts/take_n01.c3d")).unwrap();
     for capture in [&csv, &c3d] {
@@ -59,7 +44,7 @@ fn lsts_take_is_the_same_from_csv_and_c3d() {
 
 #[test]
 fn animface_takes_are_the_same_in_centimetres_and_millimetres() {
-    let Some(data) = data("animface_takes_are_the_same_in_centimetres_and_millimetres") else {
+    let Some(data) = real_data("animface_takes_are_the_same_in_centimetres_and_millimetres") else {
         return;
     };
     for (take, frames) in [("Cheeks", 1499), ("Jaw", 1590)] {
@@ -76,7 +61,7 @@ fn animface_takes_are_the_same_in_centimetres_and_millimetres() {
 
 #[test]
 fn qualisys_vicon_and_motive_files_are_read() {
-    let Some(data) = data("qualisys_vicon_and_motive_files_are_read") else { return };
+    let Some(data) = real_data("qualisys_vicon_and_motive_files_are_read") else { return };
     let qualisys = recording(data.join("c3d/Qualisys.c3d"));
     assert_eq!(qualisys.system.as_deref(), Some("Qualisys Track Manager 2.17.3720"));
     assert_eq!((qualisys.analog_channels, qualisys.events.len()), (69, 7));
@@ -100,7 +85,7 @@ fn qualisys_vicon_and_motive_files_are_read() {
 
 #[test]
 fn live_link_takes_are_weights_at_30_hz() {
-    let Some(data) = data("live_link_takes_are_weights_at_30_hz") else { return };
+    let Some(data) = real_data("live_link_takes_are_weights_at_30_hz") else { return };
     for name in ["alex_rom_3.csv", "facial.csv"] {
         let path = data.join("livelink").join(name);
         let bytes = std::fs::read(&path).unwrap();
@@ -120,7 +105,7 @@ fn live_link_takes_are_weights_at_30_hz() {
 
 #[test]
 fn facts_of_real_takes() {
-    let Some(data) = data("facts_of_real_takes") else { return };
+    let Some(data) = real_data("facts_of_real_takes") else { return };
     for name in ["lsts/take_n01.csv", "animface/JawMoCap.c3d", "animface/CheeksMoCap.csv"] {
         let facts = CaptureFacts::of(&recording(data.join(name)));
         assert!(facts.extent_m.is_some_and(|e| (0.1..0.4).contains(&e)), "{:?}", facts.extent_m);

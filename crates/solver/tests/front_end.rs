@@ -8,6 +8,7 @@ use mimique_solver::{
     Fit, FrontEnd, FrontEndError, Lowpass, MarkerColumns, MarkerFrames, Method, MethodSpec,
     OperatorOptions, Rbf, RbfError, RigidError, RigidMotion, align_rigidly,
 };
+use mimique_test_support::real_data;
 
 type Points = Vec<[f64; 3]>;
 
@@ -299,7 +300,7 @@ fn planted_displacements(data: &Path, avatar: &Points) -> (usize, Vec<f64>) {
 
 #[test]
 fn planted_take_from_its_file_gives_the_stored_weights() {
-    let Some(data) = common::data("planted_take_from_its_file_gives_the_stored_weights") else {
+    let Some(data) = real_data("planted_take_from_its_file_gives_the_stored_weights") else {
         return;
     };
     let operators = common::operators(&data, &OperatorOptions::default());

@@ -6,6 +6,7 @@ use mimique_solver::{
     Fit, Laplacian, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
     SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
 };
+use mimique_test_support::real_data;
 
 /// A width x height grid in the plane, each square cut along the same diagonal.
 fn grid(width: usize, height: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
@@ -120,7 +121,7 @@ fn energy_of_a_translation_is_zero_and_of_a_rotation_is_not() {
 
 #[test]
 fn toy_every_matrix_and_solution() {
-    let Some(data) = common::data("toy_every_matrix_and_solution") else { return };
+    let Some(data) = real_data("toy_every_matrix_and_solution") else { return };
     let toy = common::json(&data.join("lsts/toy.json"));
     let numbers = |key: &str| common::numbers(&toy[key]);
     let triples = |key: &str| -> Vec<[f64; 3]> { numbers(key).as_chunks::<3>().0.to_vec() };
@@ -189,7 +190,7 @@ fn toy_every_matrix_and_solution() {
 
 #[test]
 fn stored_operators_of_a_real_head() {
-    let Some(data) = common::data("stored_operators_of_a_real_head") else { return };
+    let Some(data) = real_data("stored_operators_of_a_real_head") else { return };
     let stored = common::json(&data.join("lsts/operators.json"));
     let constants = common::json(&data.join("lsts/constants.json"));
     let close = |what: &str, a: &[f64], b: &[f64]| {
@@ -236,7 +237,7 @@ fn stored_operators_of_a_real_head() {
 
 #[test]
 fn welding_closes_the_seams_of_an_exported_head() {
-    let Some(data) = common::data("welding_closes_the_seams_of_an_exported_head") else { return };
+    let Some(data) = real_data("welding_closes_the_seams_of_an_exported_head") else { return };
     let (mesh, _) = common::read_skin(&data.join("ict-facekit/ict-facekit.glb"));
     // 11,925 vertices in the file; every place holds one vertex afterwards.
     let mut places: Vec<[u64; 3]> =
@@ -302,7 +303,7 @@ fn wrong_meshes_and_parts_are_refused_in_words() {
 
 #[test]
 fn parts_restore_the_same_bits() {
-    let Some(data) = common::data("parts_restore_the_same_bits") else { return };
+    let Some(data) = real_data("parts_restore_the_same_bits") else { return };
     let options = OperatorOptions { sigma: Some(0.012), ..OperatorOptions::default() };
     let built = common::operators(&data, &options);
     let parts: OperatorParts = built.parts().clone();

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use mimique_solver::{Fit, LaplacianKind, Method, MethodSpec, OperatorOptions, Operators, Unit};
+use mimique_test_support::real_data;
 
 /// Operators are built once for each set of options.
 struct Bench<'a> {
@@ -76,7 +77,7 @@ fn stored() -> Vec<(String, MethodSpec, f64)> {
 
 #[test]
 fn stored_optima_of_every_variant() {
-    let Some(data) = common::data("stored_optima_of_every_variant") else { return };
+    let Some(data) = real_data("stored_optima_of_every_variant") else { return };
     let mut bench = Bench { data: &data, built: BTreeMap::new() };
     let (frames, d) = common::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
     let variants = stored();

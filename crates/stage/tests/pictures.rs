@@ -185,7 +185,9 @@ fn reads_as_a_face(stage: &Offscreen, avatar: &Avatar, jaw: &str) {
 #[test]
 fn real_head_reads_as_a_face() {
     let name = "real_head_reads_as_a_face";
-    let Some(path) = support::real_data(name, "ict-facekit/ict-facekit.glb") else { return };
+    let Some(path) = mimique_test_support::real_file(name, "ict-facekit/ict-facekit.glb") else {
+        return;
+    };
     let Some(stage) = support::adapter(name) else { return };
     let avatar = mimique_face::read_avatar(&path).expect("the head is read").avatar;
     reads_as_a_face(&stage, &avatar, "jawOpen");

@@ -1,32 +1,15 @@
 //! Every case of the shared data sets, every field that their file of expected values gives, and every
 //! distribution tail. A field that this walk does not know fails it.
 
-use std::path::PathBuf;
-
 use mimique_stats::{
     Alternative, Blocks, Contingency, Factor, Numbers, Outcome, Refusal, SumsOfSquares, Table,
     WilcoxonOptions, adjust_all, chi_square, chi_square_upper, confusion, describe, f_upper,
     friedman, kruskal_wallis, mann_whitney, normal_upper, paired_differences, scheirer_ray_hare,
     spearman, t_upper, wilcoxon,
 };
+use mimique_test_support::real_file;
 use serde::Serialize;
 use serde_json::{Value, json};
-
-/// The folder of the shared data, or a skip said aloud.
-fn data(test: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("MIMIQUE_DATA")
-        .map(PathBuf::from)
-        .unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
-    let folder = root.join("stats");
-    if folder.join("expected.json").exists() {
-        return Some(folder);
-    }
-    let skip =
-        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", folder.display());
-    assert!(std::env::var("MIMIQUE_NO_SKIP").as_deref() != Ok("1"), "{skip}");
-    eprintln!("{skip}");
-    None
-}
 
 fn expected(folder: &std::path::Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join("expected.json")).unwrap()).unwrap()
@@ -34,7 +17,7 @@ fn expected(folder: &std::path::Path) -> Value {
 
 #[test]
 fn all_cases_of_the_expected_file() {
-    let Some(folder) = data("all_cases_of_the_expected_file") else { return };
+    let Some(folder) = real_file("all_cases_of_the_expected_file", "stats") else { return };
     let expected = expected(&folder);
     let cases = expected["cases"].as_array().unwrap();
     assert!(cases.len() >= 25, "{} cases", cases.len());
@@ -237,7 +220,7 @@ fn close(actual: f64, wanted: f64) -> bool {
 
 #[test]
 fn all_distribution_tails() {
-    let Some(folder) = data("all_distribution_tails") else { return };
+    let Some(folder) = real_file("all_distribution_tails", "stats") else { return };
     let expected = expected(&folder);
     let points = expected["distribution_tails"]["points"].as_array().unwrap();
     assert!(points.len() >= 33);

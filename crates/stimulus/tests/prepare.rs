@@ -5,26 +5,11 @@ use std::path::{Path, PathBuf};
 use mimique_face::pack::decode_pack;
 use mimique_stimulus::{Places, Prepared, prepare, sha256_hex, solve_packs};
 use mimique_study::Study;
+use mimique_test_support::real_data;
 use serde_json::{Value, json};
 
 fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-/// The real data, or `None` after saying that the test is skipped.
-fn data(test: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("MIMIQUE_DATA")
-        .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
-    if root.is_dir() {
-        return Some(root);
-    }
-    assert!(
-        std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"),
-        "{test}: real data not found at {}",
-        root.display()
-    );
-    eprintln!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", root.display());
-    None
 }
 
 /// A study of the given stimuli and nothing else.
@@ -196,7 +181,7 @@ fn what_is_wrong_is_named_with_its_pointer() {
 
 #[test]
 fn the_study_of_real_motion_capture_is_prepared() {
-    let Some(data) = data("the_study_of_real_motion_capture_is_prepared") else { return };
+    let Some(data) = real_data("the_study_of_real_motion_capture_is_prepared") else { return };
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(repository().join("study-config/animface.json")).unwrap();
     let study = Study::from_text(&text).unwrap();

@@ -1,30 +1,13 @@
 //! Real avatars and captures, end to end: `solve_take` against stored optima, and the packs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, SolvedCapture, TakeOptions, WeightsTable, decode_operators,
     encode_operators, encode_take, solve_packs, solve_segment, solve_take,
 };
-
-/// The real data, or `None` after saying that the test is skipped.
-fn data(test: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("MIMIQUE_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
-        PathBuf::from,
-    );
-    if root.is_dir() {
-        return Some(root);
-    }
-    assert!(
-        std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"),
-        "{test}: real data not found at {}",
-        root.display()
-    );
-    eprintln!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", root.display());
-    None
-}
+use mimique_test_support::real_data;
 
 fn skin(path: &Path) -> AvatarSkin {
     AvatarSkin::of(&mimique_face::read_avatar(path).unwrap().avatar).unwrap()
@@ -64,7 +47,7 @@ fn lsts(alpha: f64) -> MethodSpec {
 
 #[test]
 fn the_planted_take_gives_the_stored_weights() {
-    let Some(root) = data("the_planted_take_gives_the_stored_weights") else { return };
+    let Some(root) = real_data("the_planted_take_gives_the_stored_weights") else { return };
     // `box` has no prior: it multiplies the rounding of the C3D's single precision (0.06 µm) so
     // that any exact solver differs by 3e-4 there; the next test shows that nothing else does.
     for (take, tolerance, tolerance_of_box) in
@@ -89,7 +72,7 @@ fn the_planted_take_gives_the_stored_weights() {
 
 #[test]
 fn a_c3d_gives_the_weights_of_its_rounded_numbers() {
-    let Some(root) = data("a_c3d_gives_the_weights_of_its_rounded_numbers") else { return };
+    let Some(root) = real_data("a_c3d_gives_the_weights_of_its_rounded_numbers") else { return };
     let skin = skin(&root.join("lsts/avatar_skin.glb"));
     let map = map(&root.join("lsts/mapping.csv"));
     let mut rounded = mimique_mocap::read(&root.join("lsts/take_n01.csv")).unwrap();
@@ -105,7 +88,7 @@ fn a_c3d_gives_the_weights_of_its_rounded_numbers() {
 
 #[test]
 fn a_segment_s_packs_give_the_take_s_weights() {
-    let Some(root) = data("a_segment_s_packs_give_the_take_s_weights") else { return };
+    let Some(root) = real_data("a_segment_s_packs_give_the_take_s_weights") else { return };
     let capture = mimique_mocap::read(&root.join("lsts/take_n01.csv")).unwrap();
     let skin = skin(&root.join("lsts/avatar_skin.glb"));
     let map = map(&root.join("lsts/mapping.csv"));
@@ -142,7 +125,7 @@ fn a_segment_s_packs_give_the_take_s_weights() {
 
 #[test]
 fn real_motion_capture_moves_ict_facekit() {
-    let Some(root) = data("real_motion_capture_moves_ict_facekit") else { return };
+    let Some(root) = real_data("real_motion_capture_moves_ict_facekit") else { return };
     let skin = skin(&root.join("ict-facekit/ict-facekit.glb"));
     let map = map(&root.join("animface/markers-ict-facekit.json"));
     for take in ["JawMoCap.c3d", "CheeksMoCap.c3d"] {

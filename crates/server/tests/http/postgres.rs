@@ -5,6 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use mimique_test_support::skip;
 use sqlx::{AssertSqlSafe, Connection, PgConnection};
 
 /// A running cluster; stopped and deleted when dropped.
@@ -18,11 +19,7 @@ impl Cluster {
     /// Starts one, or says that the test is skipped where PostgreSQL is not installed.
     pub fn start(test: &str) -> Option<Self> {
         let Some(binaries) = binaries() else {
-            let text = format!(
-                "SKIPPED {test}: PostgreSQL's initdb not found; install the package postgresql"
-            );
-            assert!(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"), "{text}");
-            eprintln!("{text}");
+            skip(test, "PostgreSQL's initdb not found; install the package postgresql");
             return None;
         };
         let folder = tempfile::tempdir().unwrap();

@@ -1,26 +1,10 @@
 //! The planted problem of the real data, read for tests.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use mimique_solver::{OperatorOptions, Operators, SkinMesh, SparseDeltas};
 use serde_json::Value;
-
-/// The folder of the real data, or none after saying that `test` is skipped.
-pub fn data(test: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("MIMIQUE_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    if path.join("lsts/frames").is_dir() {
-        return Some(path);
-    }
-    let message =
-        format!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", path.display());
-    assert!(std::env::var("MIMIQUE_NO_SKIP").as_deref() != Ok("1"), "{message}");
-    eprintln!("{message}");
-    None
-}
 
 /// The skin of the planted problem, welded, and its shape names.
 pub fn skin(data: &Path) -> (SkinMesh, Vec<String>) {

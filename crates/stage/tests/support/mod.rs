@@ -2,10 +2,10 @@
 #![allow(dead_code)]
 
 use std::f32::consts::PI;
-use std::path::PathBuf;
 
 use mimique_face::{Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape};
 use mimique_stage::offscreen::{Offscreen, Picture};
+use mimique_test_support::skip;
 
 /// The software adapter, or `None` after saying that the test is skipped.
 ///
@@ -15,33 +15,10 @@ pub fn adapter(test: &str) -> Option<Offscreen> {
     match Offscreen::new(true) {
         Ok(stage) => Some(stage),
         Err(error) => {
-            assert!(!no_skip(), "{test}: {error}");
-            eprintln!("SKIPPED {test}: {error}");
+            skip(test, &error.to_string());
             None
         }
     }
-}
-
-/// A file of the real data, or `None` after saying that the test is skipped.
-///
-/// # Panics
-/// Without the file when `MIMIQUE_NO_SKIP=1`.
-pub fn real_data(test: &str, file: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("MIMIQUE_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let path = folder.join(file);
-    if path.exists() {
-        return Some(path);
-    }
-    assert!(!no_skip(), "{test}: real data not found at {}", path.display());
-    eprintln!("SKIPPED {test}: real data not found at {}; set MIMIQUE_DATA", path.display());
-    None
-}
-
-fn no_skip() -> bool {
-    std::env::var_os("MIMIQUE_NO_SKIP").is_some_and(|v| v == "1")
 }
 
 /// An egg with eyes, a mouthless chin and three blendshapes: `puff` swells its cheeks, `jawOpen`

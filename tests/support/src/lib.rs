@@ -1,0 +1,85 @@
+//! What Mimique's tests find outside the repository: real data, Python, R.
+//!
+//! Each finder gives its find, or says that the test is skipped and gives `None`. With
+//! `MIMIQUE_NO_SKIP=1` a test that would skip fails instead.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The folder of the real data: `MIMIQUE_DATA`, else `../shared/data` beside the repository.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when it is absent.
+pub fn real_data(test: &str) -> Option<PathBuf> {
+    real_file(test, "")
+}
+
+/// A file or folder of the real data, by its path inside.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when it is absent.
+pub fn real_file(test: &str, inside: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("MIMIQUE_DATA")
+        .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
+    let path = if inside.is_empty() { folder } else { folder.join(inside) };
+    if path.exists() {
+        return Some(path);
+    }
+    skip(test, &format!("real data not found at {}; set MIMIQUE_DATA", path.display()));
+    None
+}
+
+/// A Python that has the packages of `tests/support/requirements.txt`: `MIMIQUE_PYTHON`, else the
+/// environment that `cargo xtask test` makes in `target/python`.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when there is none.
+pub fn python(test: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("MIMIQUE_PYTHON")
+        .map_or_else(|| repository().join("target/python/bin/python"), PathBuf::from);
+    if runs(&path, &["-c", "import numpy, scipy, ezc3d"]) {
+        return Some(path);
+    }
+    skip(
+        test,
+        &format!(
+            "no Python with numpy, scipy and ezc3d at {}; run cargo xtask test, or set MIMIQUE_PYTHON",
+            path.display()
+        ),
+    );
+    None
+}
+
+/// R's script runner.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when there is none.
+pub fn rscript(test: &str) -> Option<PathBuf> {
+    let path = PathBuf::from("Rscript");
+    if runs(&path, &["--version"]) {
+        return Some(path);
+    }
+    skip(test, "Rscript not found; install the package r-base-core");
+    None
+}
+
+/// Says that a test is skipped and why.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1`.
+pub fn skip(test: &str, why: &str) {
+    let text = format!("SKIPPED {test}: {why}");
+    assert!(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"), "{text}");
+    eprintln!("{text}");
+}
+
+/// The repository's root.
+pub fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn runs(program: &Path, arguments: &[&str]) -> bool {
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|s| s.success())
+}
