@@ -3,7 +3,8 @@
 use crate::dense::packed_len;
 use crate::laplacian::Laplacian;
 use crate::linked::LinkedRows;
-use crate::method_spec::{LaplacianKind, Method, MethodSpec};
+use crate::method::Method;
+use crate::method_spec::{LaplacianKind, MethodSpec};
 use crate::skin_mesh::{MeshError, SkinMesh};
 use crate::thin_shell::shell_gram;
 

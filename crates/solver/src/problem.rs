@@ -2,9 +2,11 @@
 //! which shapes are free, how much each marker counts.
 
 use crate::linked::LinkedRows;
-use crate::method_spec::{Method, MethodSpec, SpecError};
+use crate::method::Method;
+use crate::method_spec::MethodSpec;
 use crate::objective::{Objective, Term};
 use crate::operators::{OperatorOptions, Operators};
+use crate::spec_check::SpecError;
 
 /// Why a method cannot be set up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
