@@ -87,16 +87,35 @@ widest! {
                     vanished += 1;
                 }
             }
-            let rows = [0, 1, 2, 3].map(|k| &panel[k * stride..(k + 1) * stride]);
-            for i in start + 4..n {
-                let [f0, f1, f2, f3] = rows.map(|row| row[i]);
+            // Two rows at a time, which share what they load of the panel.
+            let mut i = start + 4;
+            while i < n {
                 let from = i / 4 * 4;
-                let target = &mut tail[(i - start - 4) * stride + from..(i - start - 3) * stride];
-                let width = target.len();
-                let [r0, r1, r2, r3] = rows.map(|row| &row[from..from + width]);
-                for j in 0..width {
-                    target[j] = (((target[j] - f0 * r0[j]) - f1 * r1[j]) - f2 * r2[j]) - f3 * r3[j];
+                let width = stride - from;
+                let (above, below) = tail[(i - start - 4) * stride..].split_at_mut(stride);
+                let target = &mut above[from..];
+                let r0 = &panel[from..][..width];
+                let r1 = &panel[stride + from..][..width];
+                let r2 = &panel[2 * stride + from..][..width];
+                let r3 = &panel[3 * stride + from..][..width];
+                let f = [r0[i - from], r1[i - from], r2[i - from], r3[i - from]];
+                if i + 1 < n {
+                    let next = &mut below[from..stride];
+                    let at = i + 1 - from;
+                    let g = [r0[at], r1[at], r2[at], r3[at]];
+                    for j in 0..width {
+                        target[j] = (((target[j] - f[0] * r0[j]) - f[1] * r1[j]) - f[2] * r2[j])
+                            - f[3] * r3[j];
+                        next[j] = (((next[j] - g[0] * r0[j]) - g[1] * r1[j]) - g[2] * r2[j])
+                            - g[3] * r3[j];
+                    }
+                } else {
+                    for j in 0..width {
+                        target[j] = (((target[j] - f[0] * r0[j]) - f[1] * r1[j]) - f[2] * r2[j])
+                            - f[3] * r3[j];
+                    }
                 }
+                i += 2;
             }
             start = end;
         }
@@ -122,8 +141,8 @@ widest! {
                 let y = [b[start], b[start + 1], b[start + 2], b[start + 3]];
                 let rest = &mut b[end..];
                 let width = rest.len();
-                let [r0, r1, r2, r3] =
-                    [0, 1, 2, 3].map(|k| &u[(start + k) * stride + end..][..width]);
+                let row = |k: usize| &u[(start + k) * stride + end..][..width];
+                let (r0, r1, r2, r3) = (row(0), row(1), row(2), row(3));
                 for j in 0..width {
                     rest[j] = (((rest[j] - y[0] * r0[j]) - y[1] * r1[j]) - y[2] * r2[j])
                         - y[3] * r3[j];
@@ -135,8 +154,8 @@ widest! {
         while end > 0 {
             let start = (end - 1) / 4 * 4;
             if end < n {
-                let rows = [0, 1, 2, 3].map(|k| &u[(start + k) * stride + end..]);
-                let sums = dot4(rows, &b[end..n]);
+                let row = |k: usize| &u[(start + k) * stride + end..];
+                let sums = dot4([row(0), row(1), row(2), row(3)], &b[end..n]);
                 for k in 0..4 {
                     b[start + k] -= sums[k];
                 }

@@ -62,10 +62,17 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
 #[inline(always)]
 pub(crate) fn dot4(rows: [&[f64]; 4], x: &[f64]) -> [f64; 4] {
     let n = x.len();
-    let rows = rows.map(|row| &row[..n]);
+    let [r0, r1, r2, r3] = rows;
+    let rows = [&r0[..n], &r1[..n], &r2[..n], &r3[..n]];
     let mut lanes = [[0.0; 4]; 4];
     let (xs, x_rest) = x.as_chunks::<4>();
-    let chunks = rows.map(|row| &row.as_chunks::<4>().0[..xs.len()]);
+    // Written out: a closure would be a call from code that is compiled for wider vectors.
+    let chunks = [
+        &rows[0].as_chunks::<4>().0[..xs.len()],
+        &rows[1].as_chunks::<4>().0[..xs.len()],
+        &rows[2].as_chunks::<4>().0[..xs.len()],
+        &rows[3].as_chunks::<4>().0[..xs.len()],
+    ];
     for (i, x) in xs.iter().enumerate() {
         for r in 0..4 {
             let row = &chunks[r][i];
@@ -74,7 +81,10 @@ pub(crate) fn dot4(rows: [&[f64]; 4], x: &[f64]) -> [f64; 4] {
             }
         }
     }
-    let mut sums = lanes.map(|l| (l[0] + l[1]) + (l[2] + l[3]));
+    let mut sums = [0.0; 4];
+    for r in 0..4 {
+        sums[r] = (lanes[r][0] + lanes[r][1]) + (lanes[r][2] + lanes[r][3]);
+    }
     for (i, x) in x_rest.iter().enumerate() {
         for r in 0..4 {
             sums[r] += rows[r][4 * xs.len() + i] * x;
@@ -135,7 +145,8 @@ widest! {
         let done = 4 * fours.len();
         for (block, y) in fours.iter_mut().enumerate() {
             let i = 4 * block;
-            *y = dot4([0, 1, 2, 3].map(|k| &r[(i + k) * n + i..(i + k + 1) * n]), &x[i..]);
+            let row = |k: usize| &r[(i + k) * n + i..(i + k + 1) * n];
+            *y = dot4([row(0), row(1), row(2), row(3)], &x[i..]);
         }
         for (i, y) in (done..).zip(rest) {
             *y = dot(&r[i * n + i..(i + 1) * n], &x[i..]);
@@ -152,10 +163,10 @@ widest! {
         for (block, x) in fours.iter().enumerate() {
             let i = 4 * block;
             let y = &mut y[i..];
-            let [r0, r1, r2, r3] = [0, 1, 2, 3].map(|k| &r[(i + k) * n + i..(i + k + 1) * n]);
             let width = n - i;
-            let (y, r0) = (&mut y[..width], &r0[..width]);
-            let (r1, r2, r3) = (&r1[..width], &r2[..width], &r3[..width]);
+            let row = |k: usize| &r[(i + k) * n + i..][..width];
+            let (r0, r1, r2, r3) = (row(0), row(1), row(2), row(3));
+            let y = &mut y[..width];
             for j in 0..width {
                 y[j] = (((y[j] + x[0] * r0[j]) + x[1] * r1[j]) + x[2] * r2[j]) + x[3] * r3[j];
             }

@@ -148,6 +148,7 @@ impl FrameSolver<'_> {
     pub fn reset(&mut self) {
         self.weights.clear();
         self.qp.reset();
+        self.newton.reset();
     }
 
     fn solve_checked(&mut self, d: &[f64], weights: &mut [f64]) -> FrameReport {
@@ -270,6 +271,7 @@ impl FrameSolver<'_> {
             d.chunks_exact(3).zip(&current.missing).all(|(row, &gone)| is_missing(row) == gone);
         if !same {
             self.qp.forget_factor();
+            self.newton.reset();
             self.some_seen = (missing > 0)
                 .then(|| Seen::new(problem, d.chunks_exact(3).map(is_missing).collect()));
         }

@@ -56,6 +56,7 @@ mod rbf;
 mod report;
 mod rigid_alignment;
 mod seen;
+mod shell_patch;
 mod skin_mesh;
 mod spec_check;
 mod svd;

@@ -195,7 +195,8 @@ widest! {
     /// out = sum of the rows times their factors, in order.
     fn combine(parts: [(f64, &[f64]); 4], out: &mut [f64]) {
         let n = out.len();
-        let [(a, x), (b, y), (c, z), (d, w)] = parts.map(|(factor, row)| (factor, &row[..n]));
+        let [(a, x), (b, y), (c, z), (d, w)] = parts;
+        let (x, y, z, w) = (&x[..n], &y[..n], &z[..n], &w[..n]);
         for j in 0..n {
             out[j] = ((a * x[j] + b * y[j]) + c * z[j]) + d * w[j];
         }

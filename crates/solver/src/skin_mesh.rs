@@ -127,21 +127,31 @@ impl SkinMesh {
     /// [`MeshError`] as of [`SkinMesh::check`].
     pub fn weld(&self) -> Result<Welded, MeshError> {
         self.check()?;
-        let moves = Moves::new(self);
-        // The welded vertices at a place, each with the first vertex that it was made of.
-        let mut at_place: HashMap<[u64; 3], Vec<(u32, usize)>> =
-            HashMap::with_capacity(self.positions.len());
-        let mut index_of = Vec::with_capacity(self.positions.len());
+        // For each vertex the last one before it at the same place; itself where there is none.
+        let mut last_at: HashMap<[u64; 3], usize> = HashMap::with_capacity(self.positions.len());
+        let before: Vec<usize> = (self.positions.iter().enumerate())
+            .map(|(vertex, p)| last_at.insert(p.map(bits), vertex).unwrap_or(vertex))
+            .collect();
+        let mut shared = vec![false; before.len()];
+        for (vertex, &other) in before.iter().enumerate().filter(|(vertex, other)| vertex != *other)
+        {
+            (shared[vertex], shared[other]) = (true, true);
+        }
+        let moves = Moves::new(self, &shared);
+        let mut index_of: Vec<u32> = Vec::with_capacity(self.positions.len());
         let mut positions = Vec::new();
         for (vertex, p) in self.positions.iter().enumerate() {
-            let here = at_place.entry(p.map(bits)).or_default();
-            let same = here.iter().find(|(_, first)| moves.of(*first) == moves.of(vertex));
-            let new = same.map_or(positions.len() as u32, |(new, _)| *new);
+            let (mut at, mut same) = (vertex, None);
+            while before[at] != at {
+                at = before[at];
+                if moves.of(at) == moves.of(vertex) {
+                    same = Some(index_of[at]);
+                }
+            }
+            index_of.push(same.unwrap_or(positions.len() as u32));
             if same.is_none() {
-                here.push((new, vertex));
                 positions.push(*p);
             }
-            index_of.push(new);
         }
         let triangles = (self.triangles.iter())
             .map(|t| t.map(|v| index_of[v as usize]))
@@ -152,17 +162,17 @@ impl SkinMesh {
     }
 }
 
-/// For each vertex its non-zero deltas as (shape, bits).
+/// For each vertex that shares its place its non-zero deltas as (shape, bits); nothing for others.
 struct Moves {
     starts: Vec<usize>,
     entries: Vec<(u32, [u64; 3])>,
 }
 
 impl Moves {
-    fn new(mesh: &SkinMesh) -> Moves {
+    fn new(mesh: &SkinMesh, shared: &[bool]) -> Moves {
         let moving = |shape: &SparseDeltas| {
             let pairs = shape.vertices.iter().copied().zip(shape.deltas.iter().copied());
-            pairs.filter(|(_, d)| *d != [0.0; 3]).collect::<Vec<_>>()
+            pairs.filter(|(v, d)| shared[*v as usize] && *d != [0.0; 3]).collect::<Vec<_>>()
         };
         let mut starts = vec![0_usize; mesh.positions.len() + 1];
         let shapes: Vec<_> = mesh.shapes.iter().map(moving).collect();
@@ -200,6 +210,8 @@ fn welded_shape(shape: &SparseDeltas, index_of: &[u32]) -> SparseDeltas {
         .collect();
     entries.sort_by_key(|e| e.0);
     entries.dedup_by_key(|e| e.0);
-    let (vertices, deltas) = entries.into_iter().unzip();
-    SparseDeltas { vertices, deltas }
+    SparseDeltas {
+        vertices: entries.iter().map(|e| e.0).collect(),
+        deltas: entries.iter().map(|e| e.1).collect(),
+    }
 }

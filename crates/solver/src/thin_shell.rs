@@ -1,8 +1,20 @@
 //! The thin shell on blendshapes: A = -k_s L + k_b L L (eq. 5.17), AB (eq. 5.29), and its Gram
 //! matrix H over the vertices without a marker (eq. 5.28-5.30).
 
+use std::ops::Range;
+
+use crate::dense::widest;
 use crate::laplacian::Laplacian;
+use crate::shell_patch::{DeltasByVertex, ShellPatch};
 use crate::skin_mesh::SkinMesh;
+
+/// Vertices whose part of H is summed by itself; the parts are then added in their order. A
+/// constant, so that the bits do not depend on how many threads share the mesh.
+const CHUNK_VERTICES: usize = 2048;
+
+/// Vertices whose rows of AB are made before they are summed: 48 rows of 53 shapes are 20 KiB,
+/// which the processor's nearest memory holds.
+const BATCH_VERTICES: usize = 16;
 
 /// A applied to one scalar field: -k_s L f + k_b L (L f), S numbers.
 ///
@@ -14,50 +26,12 @@ pub fn apply_shell(laplacian: &Laplacian, k_s: f64, k_b: f64, f: &[f64]) -> Vec<
     lf.iter().zip(&llf).map(|(l, ll)| k_b * ll - k_s * l).collect()
 }
 
-/// The rows of AB: call `row(vertex, &values)` for each vertex in order, with 3N values, coordinate
-/// first (`values[axis * n + shape]`).
-pub(crate) fn for_each_ab_row(
-    mesh: &SkinMesh,
-    laplacian: &Laplacian,
-    k_s: f64,
-    k_b: f64,
-    mut row: impl FnMut(usize, &[f64]),
-) {
-    let n = mesh.shapes.len();
-    let width = 3 * n;
-    let by_vertex = EntriesByVertex::new(mesh);
-    let mut first = vec![0.0; mesh.positions.len() * width];
-    for (i, out) in first.chunks_exact_mut(width).enumerate() {
-        for (j, w) in laplacian.row(i) {
-            for &(column, value) in by_vertex.row(j) {
-                out[column as usize] += w * value;
-            }
-            for &(column, value) in by_vertex.row(i) {
-                out[column as usize] -= w * value;
-            }
-        }
-    }
-    let mut out = vec![0.0; width];
-    for i in 0..mesh.positions.len() {
-        let here = &first[i * width..(i + 1) * width];
-        for (o, h) in out.iter_mut().zip(here) {
-            *o = -k_s * h;
-        }
-        for (j, w) in laplacian.row(i) {
-            let there = &first[j * width..(j + 1) * width];
-            let w = k_b * w;
-            for ((o, t), h) in out.iter_mut().zip(there).zip(here) {
-                *o += w * (t - h);
-            }
-        }
-        row(i, &out);
-    }
-}
-
 /// H = sum over vertices without a face marker of AB^T AB, N x N, row-major, m^2 (for weights
 /// without a unit).
 ///
-/// `marker_vertices` are the vertices left out. Costs O(S); everything after it costs nothing in S.
+/// `marker_vertices` are the vertices left out. Costs O(S) time; beside the mesh itself, memory
+/// for an index of 8 bytes a delta and for one patch of the mesh a thread. Everything after it
+/// costs nothing in S.
 pub fn shell_gram(
     mesh: &SkinMesh,
     laplacian: &Laplacian,
@@ -66,27 +40,36 @@ pub fn shell_gram(
     marker_vertices: &[usize],
 ) -> Vec<f64> {
     let n = mesh.shapes.len();
-    let mut has_marker = vec![false; mesh.positions.len()];
+    let count = mesh.positions.len();
+    let mut has_marker = vec![false; count];
     for &v in marker_vertices {
         has_marker[v] = true;
     }
+    let deltas = DeltasByVertex::new(mesh);
+    let one = |chunk: usize| {
+        let start = chunk * CHUNK_VERTICES;
+        let vertices = start..(start + CHUNK_VERTICES).min(count);
+        let patch = ShellPatch::new(mesh, &deltas, laplacian, vertices.clone())?;
+        Some(patch_gram(&patch, vertices, &has_marker, k_s, k_b))
+    };
+    let chunks = 0..count.div_ceil(CHUNK_VERTICES);
+    #[cfg(feature = "parallel")]
+    let parts: Vec<Option<PatchGram>> = {
+        use rayon::prelude::*;
+        chunks.into_par_iter().map(one).collect()
+    };
+    #[cfg(not(feature = "parallel"))]
+    let parts = chunks.map(one);
+
     let mut gram = vec![0.0; n * n];
-    let mut nonzero = Vec::with_capacity(n);
-    for_each_ab_row(mesh, laplacian, k_s, k_b, |vertex, values| {
-        if has_marker[vertex] {
-            return;
-        }
-        for axis in values.chunks_exact(n) {
-            nonzero.clear();
-            nonzero.extend((0..n).filter(|&k| axis[k] != 0.0));
-            for (at, &i) in nonzero.iter().enumerate() {
-                let row = &mut gram[i * n..(i + 1) * n];
-                for &j in &nonzero[at..] {
-                    row[j] += axis[i] * axis[j];
-                }
+    for part in parts.into_iter().flatten() {
+        let width = part.shapes.len().next_multiple_of(4);
+        for (a, &i) in part.shapes.iter().enumerate() {
+            for (b, &j) in part.shapes.iter().enumerate().skip(a) {
+                gram[i * n + j] += part.upper[a * width + b];
             }
         }
-    });
+    }
     for i in 0..n {
         for j in 0..i {
             gram[i * n + j] = gram[j * n + i];
@@ -95,36 +78,74 @@ pub fn shell_gram(
     gram
 }
 
-/// The shapes' deltas vertex by vertex: entries (axis * n + shape, value).
-struct EntriesByVertex {
-    starts: Vec<usize>,
-    entries: Vec<(u32, f64)>,
+/// A patch's part of H.
+struct PatchGram {
+    shapes: Vec<usize>,
+    /// Row-major, rows of the number of shapes filled up to a multiple of four; what is left of the
+    /// diagonal means nothing.
+    upper: Vec<f64>,
 }
 
-impl EntriesByVertex {
-    fn new(mesh: &SkinMesh) -> EntriesByVertex {
-        let n = mesh.shapes.len();
-        let mut starts = vec![0_usize; mesh.positions.len() + 1];
-        for &v in mesh.shapes.iter().flat_map(|s| &s.vertices) {
-            starts[v as usize + 1] += 3;
+fn patch_gram(
+    patch: &ShellPatch<'_>,
+    vertices: Range<usize>,
+    has_marker: &[bool],
+    k_s: f64,
+    k_b: f64,
+) -> PatchGram {
+    let width = patch.padded;
+    let mut upper = vec![0.0; width * width];
+    let mut rows = vec![0.0; BATCH_VERTICES * 3 * width];
+    let mut free = vertices.filter(|&v| !has_marker[v]).peekable();
+    let mut moving = Vec::with_capacity(width / 4);
+    while free.peek().is_some() {
+        let mut filled = 0;
+        // In this order: the other one would take a vertex too many.
+        for (row, vertex) in rows.chunks_exact_mut(3 * width).zip(free.by_ref()) {
+            patch.ab_row(vertex, k_s, k_b, row);
+            filled += row.len();
         }
-        for i in 0..mesh.positions.len() {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![(0, 0.0); starts[mesh.positions.len()]];
-        for (k, shape) in mesh.shapes.iter().enumerate() {
-            for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                for (axis, &value) in d.iter().enumerate() {
-                    entries[next[v as usize]] = ((axis * n + k) as u32, value);
-                    next[v as usize] += 1;
+        moving.clear();
+        moving.extend((0..width).step_by(4).filter(|&column| {
+            rows[..filled].chunks_exact(width).any(|r| r[column..column + 4] != [0.0; 4])
+        }));
+        add_grams(&rows[..filled], width, &moving, &mut upper);
+    }
+    PatchGram { shapes: patch.shapes.clone(), upper }
+}
+
+widest! {
+    /// upper += rows^T rows, a block of 4 x 8 numbers at a time, each number by itself in the order
+    /// of the rows. `moving` has the first columns of the fours of columns that are not all 0.
+    fn add_grams(rows: &[f64], width: usize, moving: &[usize], upper: &mut [f64]) {
+        for (at, &i) in moving.iter().enumerate() {
+            for pair in moving[at..].chunks(2) {
+                let j = [pair[0], pair[pair.len() - 1]];
+                let mut sums = [[[0.0; 4]; 2]; 4];
+                for r in 0..4 {
+                    for h in 0..2 {
+                        let from = (i + r) * width + j[h];
+                        sums[r][h].copy_from_slice(&upper[from..from + 4]);
+                    }
+                }
+                for row in rows.chunks_exact(width) {
+                    let a: [f64; 4] = [row[i], row[i + 1], row[i + 2], row[i + 3]];
+                    for h in 0..2 {
+                        let b: &[f64] = &row[j[h]..j[h] + 4];
+                        for r in 0..4 {
+                            for c in 0..4 {
+                                sums[r][h][c] += a[r] * b[c];
+                            }
+                        }
+                    }
+                }
+                for r in 0..4 {
+                    for h in 0..pair.len() {
+                        let to = (i + r) * width + j[h];
+                        upper[to..to + 4].copy_from_slice(&sums[r][h]);
+                    }
                 }
             }
         }
-        EntriesByVertex { starts, entries }
-    }
-
-    fn row(&self, vertex: usize) -> &[(u32, f64)] {
-        &self.entries[self.starts[vertex]..self.starts[vertex + 1]]
     }
 }

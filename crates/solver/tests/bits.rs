@@ -20,12 +20,13 @@ impl Numbers {
     }
 }
 
-fn operators(options: &OperatorOptions) -> Operators {
-    let width = 12;
+/// A bulging sheet of `width` x `width` vertices.
+fn operators(width: usize, options: &OperatorOptions) -> Operators {
+    let spacing = 64.0 * width as f64 / 12.0;
     let mut noise = Numbers(3);
     let positions: Vec<[f64; 3]> = (0..width * width)
         .map(|i| {
-            let (x, y) = ((i % width) as f64 / 64.0, (i / width) as f64 / 64.0);
+            let (x, y) = ((i % width) as f64 / spacing, (i / width) as f64 / spacing);
             [x, y, 0.1 - 2.0 * (x - 0.08) * (x - 0.08) - (y - 0.08) * (y - 0.08)]
         })
         .collect();
@@ -94,7 +95,7 @@ fn hash(numbers: &[f64]) -> u64 {
 
 #[test]
 fn every_method_gives_the_same_bits_everywhere() {
-    let plain = operators(&OperatorOptions::default());
+    let plain = operators(12, &OperatorOptions::default());
     let positions = take(&plain);
     let take = MarkerFrames { positions: &positions, columns: 19 };
     let columns = MarkerColumns { face: (0..15).collect(), head: Some((15..19).collect()) };
@@ -104,11 +105,14 @@ fn every_method_gives_the_same_bits_everywhere() {
     let front = FrontEnd::fit(take, &columns, &poses, 0..10, avatar).unwrap();
     let d = front.take_displacements(take, &poses).unwrap();
     let mut found = vec![format!("operators {:016x}", hash(&plain.parts().shell_gram))];
+    // A mesh of several patches, whose parts of H are added in their order.
+    let larger = operators(72, &OperatorOptions::default());
+    found.push(format!("operators of 5184 vertices {:016x}", hash(&larger.parts().shell_gram)));
     found.push(format!("displacements {:016x}", hash(&d)));
     for method in Method::ALL {
         let spec = MethodSpec::new(method);
         let options = OperatorOptions::of(&spec);
-        if let Ok(fit) = Fit::new(&operators(&options), &spec) {
+        if let Ok(fit) = Fit::new(&operators(12, &options), &spec) {
             let solved = fit.solve_take(&d).unwrap();
             assert!(solved.reports.iter().all(|r| r.warning.is_none()), "{method}");
             found.push(format!("{method} {:016x}", hash(&solved.weights)));
