@@ -36,47 +36,48 @@ export async function prepareClip(clip, source, progress) {
   return JSON.stringify(await prepareClip(clip, JSON.parse(source), progress));
 }
 
-let canvasNow = null;
-let lookNow = null;
-let opening = null;
+// The two places where clips are shown: "clip", and "beside" it.
+const places = new Map();
 
-/** Puts the stage on a canvas; it opens when a clip is first shown there. */
-export function attachStage(canvas, look) {
-  detachStage();
-  canvasNow = canvas;
-  lookNow = JSON.parse(look);
+/** Puts a stage on the canvas of a place; it opens when a clip is first shown there. */
+export function attachStage(place, canvas, look) {
+  detachStage(place);
+  places.set(place, { canvas, look: JSON.parse(look), opening: null });
 }
 
-/** Takes the stage off its canvas. */
-export function detachStage() {
-  const old = opening;
-  opening = null;
-  canvasNow = null;
+/** Takes the stage off a place's canvas. */
+export function detachStage(place) {
+  const old = places.get(place)?.opening;
+  places.delete(place);
   old?.then((stage) => stage.close(), () => {});
 }
 
-async function stage() {
-  if (!canvasNow) throw new Error("there is no canvas on this page");
-  if (!opening) {
-    const canvas = canvasNow;
-    const mine = stageHost().then(({ openStage }) => openStage(canvas, lookNow));
-    opening = mine;
+async function stage(place) {
+  const here = places.get(place);
+  if (!here) throw new Error("there is no canvas on this page");
+  if (!here.opening) {
+    const mine = stageHost().then(({ openStage }) => openStage(here.canvas, here.look));
+    here.opening = mine;
     // A stage that could not open is tried anew at the next call.
     mine.catch(() => {
-      if (opening === mine) opening = null;
+      if (here.opening === mine) here.opening = null;
     });
   }
-  return opening;
+  return here.opening;
 }
 
-/** Shows the first frame of a clip, before it is played. */
-export async function showClip(clip) {
-  await (await stage()).show(clip, 0);
+/** Shows the first frame of a clip, and of the one beside it, before they are played. */
+export async function showClip(clip, beside) {
+  await (await stage("clip")).show(clip, 0);
+  if (beside) await (await stage("beside")).show(beside, 0);
 }
 
-/** Plays a clip once. Resolves with the log as JSON, its times as `study::PlayLog` has them. */
-export async function playClip(clip) {
-  return JSON.stringify(onPageClock(await (await stage()).play(clip)));
+/** Plays a clip once, the one beside it in step. Resolves with the log as JSON, its times as
+    `study::PlayLog` has them. */
+export async function playClip(clip, beside) {
+  const here = await stage("clip");
+  const there = beside ? { stage: await stage("beside"), clipId: beside } : null;
+  return JSON.stringify(onPageClock(await here.play(clip, there)));
 }
 
 // The stage's times are requestAnimationFrame's: ms since the page was opened. Onset and end become
@@ -88,6 +89,7 @@ function onPageClock({ onset_ms: onset, end_ms: end, frames, ...log }) {
     onset_ms: since1970(onset),
     end_ms: since1970(end),
     longest_ms: thousandth(log.longest_ms),
+    drift_ms: thousandth(log.drift_ms),
     frames: frames.map(([shown, clip, late]) => [thousandth(shown - onset), thousandth(clip), late]),
   };
 }
@@ -99,5 +101,5 @@ function thousandth(ms) {
 
 /** Aborts the play in progress. */
 export function stopClip() {
-  opening?.then((stage) => stage.stop(), () => {});
+  places.get("clip")?.opening?.then((stage) => stage.stop(), () => {});
 }

@@ -1,4 +1,5 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
+import { filmDuration } from "./stage-film.js";
 import { fetchPack } from "./stage-packs.js";
 
 const clips = new Map();
@@ -29,7 +30,8 @@ export function prepareClip(clipId, source, onProgress = () => {}) {
   return entry.summary;
 }
 
-/// A prepared clip with its weights (Float32Array, frames x shapes), or a thrown Error.
+/// A prepared clip with its weights (Float32Array, frames x shapes) or its film (an address), or a
+/// thrown Error.
 export function preparedClip(clipId) {
   const clip = clips.get(clipId)?.clip;
   if (!clip) throw new Error(`clip ${clipId}: not prepared; await prepareClip first`);
@@ -62,6 +64,17 @@ async function prepare(clipId, source, onProgress) {
     if (source.bytes > 0) report(0.9 * Math.min(received / source.bytes, 1));
   };
   report(0);
+  if (source.film) {
+    const bytes = await fetchPack(source.avatar, count);
+    const film = URL.createObjectURL(new Blob([bytes], { type: source.film }));
+    const duration_ms = await filmDuration(film).catch((error) => {
+      URL.revokeObjectURL(film);
+      throw error;
+    });
+    report(1);
+    const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
+    return { clip: clipId, film, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
+  }
   const [avatar, operators, take] = await Promise.all(
     [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count)),
   );
@@ -69,6 +82,8 @@ async function prepare(clipId, source, onProgress) {
   const solved = await solve(operators, take, JSON.stringify(source.method));
   const clip = {
     clip: clipId,
+    film: null,
+    look: source.look ?? "stimulus",
     avatarHash: source.avatar,
     avatarPack: avatar,
     weights: solved.weights,

@@ -3,12 +3,13 @@
 import { backend, loadModule } from "./stage-backend.js";
 import { prepareClip, preparedClip, weightsAt } from "./stage-clips.js";
 import { refreshPeriod } from "./stage-clock.js";
+import { Film } from "./stage-film.js";
 import { Playback } from "./stage-playback.js";
 
 export { backend, prepareClip, preparedClip };
 
 /// A stage on a canvas. `look`: {background: "#rrggbb", width, height (CSS pixels), variant:
-/// "stimulus" (or left out) | "reference"}.
+/// "stimulus" (or left out) | "reference"}; a clip's own look goes before the variant.
 export async function openStage(canvas, look) {
   const stage = new Stage(canvas, look);
   await stage.reopen();
@@ -22,6 +23,7 @@ class Stage {
   #look;
   #backend = null;
   #gpu = null;
+  #film;
   #lost = null;
   #reopening = null;
   #closed = false;
@@ -37,6 +39,7 @@ class Stage {
 
   constructor(canvas, look) {
     this.#canvas = canvas;
+    this.#film = new Film(canvas);
     this.#look = { background: "", variant: "stimulus", width: 640, height: 640, ...look };
     const { width, height } = this.#look;
     const frame = canvas.closest(".stage");
@@ -53,6 +56,11 @@ class Stage {
 
   /// Draws one frame of a prepared clip; resolves when it is drawn. A lost canvas is opened again.
   async show(clipId, timeMs) {
+    const clip = preparedClip(clipId);
+    if (clip.film) {
+      this.#shown = { clipId, timeMs };
+      return this.#film.show(clip, timeMs);
+    }
     if (this.#lost !== null) await this.reopen();
     while (!this.drawNow(clipId, timeMs)) await new Promise(requestAnimationFrame);
   }
@@ -62,6 +70,10 @@ class Stage {
   drawNow(clipId, timeMs) {
     const clip = preparedClip(clipId);
     this.#shown = { clipId, timeMs };
+    if (clip.film) {
+      this.#film.show(clip, timeMs);
+      return true;
+    }
     if (this.#lost !== null) throw new Error(this.#lost);
     try {
       this.#fit();
@@ -72,28 +84,43 @@ class Stage {
     }
   }
 
-  /// Plays a prepared clip once; resolves with the log whatever happens.
-  async play(clipId) {
+  /// Plays a prepared clip once; resolves with the log whatever happens. `beside`: {stage, clipId}
+  /// of another stage, played in step.
+  async play(clipId, beside = null) {
     const clip = preparedClip(clipId);
-    if (this.#playback) throw new Error("stage: a clip is playing; stop it first");
-    const playback = new Playback((timeMs) => this.#draw(clip, timeMs));
-    this.#playback = playback;
+    const parts = [{ stage: this, clip }];
+    if (beside) parts.push({ stage: beside.stage, clip: preparedClip(beside.clipId) });
+    if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
+    const playback = new Playback(parts.map(({ stage, clip }) => stage.#part(clip)));
+    for (const { stage } of parts) stage.#playback = playback;
     try {
-      if (this.#lost !== null) await this.reopen();
-      this.#fit();
-      this.#load(clip);
-      const log = await playback.run(clip.duration_ms);
-      if (log.failure) this.#fail(log.failure);
+      for (const { stage, clip } of parts) await stage.#ready(clip);
+      const log = await playback.run(Math.max(...parts.map(({ clip }) => clip.duration_ms)));
+      if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
-      if (this.#lost !== null) await this.reopen().catch(() => {});
+      for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
       return this.#log(clip, log);
     } catch (error) {
-      this.#fail(error.message);
+      for (const { stage } of parts) stage.#fail(error.message);
       return this.#log(clip, playback.log(error.message));
     } finally {
-      this.#playback = null;
-      this.#shown = { clipId, timeMs: clip.duration_ms };
+      for (const { stage, clip } of parts) {
+        stage.#playback = null;
+        stage.#shown = { clipId: clip.clip, timeMs: clip.duration_ms };
+      }
     }
+  }
+
+  // What a play does of this stage's clip.
+  #part(clip) {
+    return clip.film ? { clock: this.#film.clock(clip) } : { draw: (timeMs) => this.#draw(clip, timeMs) };
+  }
+
+  async #ready(clip) {
+    if (clip.film) return;
+    if (this.#lost !== null) await this.reopen();
+    this.#fit();
+    this.#load(clip);
   }
 
   /// Aborts the play in progress.
@@ -106,6 +133,7 @@ class Stage {
     this.stop();
     this.#closed = true;
     this.#canvas.removeEventListener("webglcontextlost", this.#onContextLost);
+    this.#film.close();
     this.#free();
   }
 
@@ -186,6 +214,8 @@ class Stage {
   }
 
   #load(clip) {
+    this.#film.hide();
+    if (clip.look !== this.#look.variant) this.setLook({ variant: clip.look });
     if (this.#gpu.hasAvatar(clip.avatarHash)) return;
     const shapes = this.#gpu.loadAvatar(clip.avatarHash, clip.avatarPack);
     if (shapes !== clip.shapes) {

@@ -1,14 +1,17 @@
-// One play of a clip in the display's clock, and its log.
+// One play of a clip, or of two in step, in the display's clock, and its log.
 //
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
-// refresh periods after the one before.
+// refresh periods after the one before. Where one of the two is a film, the film sets the time; of a
+// film alone the log has its own frames.
 import { refreshPeriod } from "./stage-clock.js";
 
 const LATE = 1.5;
 
 export class Playback {
-  #draw;
+  #parts;
+  #clock;
+  #drift = 0;
   #frames = [];
   #refreshMs = 1000 / 60;
   #endMs = null;
@@ -16,9 +19,11 @@ export class Playback {
   #failure = null;
   #finish = null;
 
-  /// `draw(clipMs)` draws and answers whether the frame goes to the display.
-  constructor(draw) {
-    this.#draw = draw;
+  /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
+  /// film's}.
+  constructor(parts) {
+    this.#parts = parts;
+    this.#clock = parts.find((part) => part.clock)?.clock ?? null;
   }
 
   /// Plays from 0 to `durationMs`; resolves with the log.
@@ -31,8 +36,10 @@ export class Playback {
     document.addEventListener("visibilitychange", onHidden);
     try {
       onHidden();
+      if (this.#aborted === null) await this.#clock?.start();
       if (this.#aborted === null) await new Promise((resolve) => this.#loop(durationMs, resolve));
     } finally {
+      this.#clock?.stop();
       document.removeEventListener("visibilitychange", onHidden);
     }
     return this.log(this.#aborted);
@@ -46,7 +53,7 @@ export class Playback {
 
   /// What was shown so far.
   log(aborted) {
-    const frames = this.#frames;
+    const frames = this.#judged();
     const onset = frames.length > 0 ? frames[0][0] : null;
     let longest = 0;
     for (let i = 1; i < frames.length; i++) longest = Math.max(longest, frames[i][0] - frames[i - 1][0]);
@@ -57,9 +64,28 @@ export class Playback {
       frames,
       late: frames.reduce((sum, frame) => sum + frame[2], 0),
       longest_ms: longest,
+      drift_ms: this.#drift,
       aborted,
       failure: this.#failure,
     };
+  }
+
+  // A film's frames come at the film's own rate: they are late by that.
+  #judged() {
+    const frames = this.#frames;
+    if (!this.#clock || this.#parts.length > 1 || frames.length < 3) return frames;
+    const steps = frames.slice(1).map((frame, k) => frame[1] - frames[k][1]).sort((a, b) => a - b);
+    const period = Math.max(this.#refreshMs, steps[steps.length >> 1]);
+    return frames.map(([now, ms], k) => [now, ms, k > 0 && now - frames[k - 1][0] > LATE * period ? 1 : 0]);
+  }
+
+  // Shows every part at `ms`; the clip time that went to the display, or null.
+  #show(ms) {
+    const shown = this.#parts.map((part) => (part.clock ? part.clock.takeFrame() : part.draw(ms) ? ms : null));
+    if (this.#parts.length === 1) return shown[0];
+    if (shown.every((each) => each !== null)) this.#drift = Math.max(this.#drift, Math.abs(shown[0] - shown[1]));
+    // Between two frames of a film the drawn clip goes on.
+    return this.#parts.every((part, k) => part.clock || shown[k] !== null) ? ms : null;
   }
 
   #loop(durationMs, resolve) {
@@ -71,11 +97,17 @@ export class Playback {
     const tick = (now) => {
       if (this.#aborted !== null) return;
       const frames = this.#frames;
-      const clipMs = frames.length === 0 ? 0 : Math.min(now - frames[0][0], durationMs);
+      const time = this.#clock ? this.#clock.at(now) : frames.length === 0 ? 0 : now - frames[0][0];
+      if (time === null) {
+        request = requestAnimationFrame(tick);
+        return;
+      }
+      const clipMs = Math.min(time, durationMs);
       try {
-        if (this.#draw(clipMs)) {
+        const shown = this.#show(clipMs);
+        if (shown !== null) {
           const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
-          frames.push([now, clipMs, since > LATE * this.#refreshMs ? 1 : 0]);
+          frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
         }
       } catch (error) {
         this.#failure = String(error?.message ?? error);

@@ -64,7 +64,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let studies = load_studies(&args.studies, &packs_folder, stage)?;
     let mut packs = PackStore::default();
     for clip in studies.iter().flat_map(|study| study.bundle().clips.values()) {
-        for hash in [&clip.avatar, &clip.operators, &clip.take] {
+        for hash in clip.packs() {
             packs.load(&packs_folder, hash)?;
         }
     }

@@ -83,7 +83,7 @@ impl PackStore {
         for version in storage.study_versions().await? {
             let version = Version::read(&version)?;
             for clip in version.clips.values() {
-                for hash in [&clip.avatar, &clip.operators, &clip.take] {
+                for hash in clip.packs() {
                     if let Err(error) = self.load(folder, hash) {
                         tracing::warn!("a pack of an earlier version is gone: {error}");
                     }

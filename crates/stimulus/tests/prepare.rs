@@ -194,3 +194,67 @@ fn the_study_of_real_motion_capture_is_prepared() {
         assert!(source.bytes < 2_500_000);
     }
 }
+
+#[test]
+fn the_actor_s_own_head_shows_the_performance_that_a_solve_recovers() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study(json!({
+        "avatars": {"self": {"builtin": {"actor": 1}, "look": "reference"}},
+        "captures": {"actor": {"builtin": {"actor": 1, "noiseMm": 0.0}}},
+        "segments": [{"id": "joy3", "capture": "actor",
+                      "performance": {"expression": "joy", "intensity": 3}}],
+        "methods": {"real": {"method": "recorded"}, "lsts": {"method": "lsts", "alpha": 0.02}},
+    }));
+    let prepared = prepare(&study, &places(folder.path(), None), &mut |_| {}).unwrap();
+    let weights = |clip: &str| {
+        let source = &prepared.clips[clip];
+        assert_eq!((source.look.as_str(), source.duration_ms), ("reference", 4000.0));
+        let pack = |hash: &str| std::fs::read(folder.path().join(hash)).unwrap();
+        let solved =
+            solve_packs(&pack(&source.operators), &pack(&source.take), &source.method).unwrap();
+        (solved.shape_names, solved.weights)
+    };
+    let (names, planted) = weights("joy3.real");
+    let (_, found) = weights("joy3.lsts");
+    assert_eq!(planted.len(), found.len());
+    // The shapes of the smile itself, over the whole clip.
+    let n = names.len();
+    for name in ["mouthSmileLeft", "mouthSmileRight", "mouthSmile_L", "mouthSmile_R"] {
+        let Some(k) = names.iter().position(|each| each == name) else { continue };
+        let column = |w: &[f64]| -> Vec<f64> { w.iter().skip(k).step_by(n).copied().collect() };
+        let (planted, found) = (column(&planted), column(&found));
+        let top = planted.iter().copied().fold(0.0, f64::max);
+        assert!(top > 0.5, "{name} reaches {top}");
+        let worst = planted.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        eprintln!("{name}: planted up to {top:.2}, found within {worst:.3}");
+        assert!(worst < 0.1, "{name}: {worst}");
+    }
+    assert!(names.iter().any(|name| name.starts_with("mouthSmile")));
+}
+
+#[test]
+fn a_film_is_served_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let film = b"not looked into: browsers judge films".to_vec();
+    std::fs::write(folder.path().join("joy2.webm"), &film).unwrap();
+    let mut stimuli = builtin();
+    stimuli["avatars"]["person"] = json!({"videos": {"joy2": "joy2.webm"}});
+    stimuli["methods"]["real"] = json!({"method": "recorded"});
+    stimuli["clips"] = json!({"list": [
+        {"avatar": "ada", "segment": "joy2", "method": "box"},
+        {"avatar": "person", "segment": "joy2", "method": "real"},
+    ]});
+    let packs = folder.path().join("packs");
+    let here = Places { study: folder.path().to_owned(), data: None, packs: packs.clone() };
+    let prepared = prepare(&study(stimuli.clone()), &here, &mut |_| {}).unwrap();
+    let source = &prepared.clips["joy2.real.person"];
+    assert_eq!(source.film.as_deref(), Some("video/webm"));
+    assert_eq!(std::fs::read(packs.join(&source.avatar)).unwrap(), film);
+    assert_eq!(source.packs().collect::<Vec<_>>(), [source.avatar.as_str()]);
+    assert_eq!(prepared.clips["joy2.box.ada"].packs().count(), 3);
+
+    stimuli["avatars"]["person"] = json!({"videos": {"joy2": "gone.webm"}});
+    let error = prepare(&study(stimuli), &here, &mut |_| {}).unwrap_err();
+    assert_eq!(error.pointer, "/stimuli/avatars/person/videos/joy2");
+    assert!(error.message.contains("gone.webm"), "{error}");
+}

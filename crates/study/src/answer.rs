@@ -138,6 +138,11 @@ impl QuestionKind {
                 }
                 Ok(())
             }
+            Self::Comparison(comparison) => match value.as_str() {
+                Some("left" | "right") => Ok(()),
+                Some("same") if comparison.allow_same => Ok(()),
+                _ => Err(AnswerProblem::NotAnOption),
+            },
             Self::ValenceArousal(grid) => {
                 for axis in ["valence", "arousal"] {
                     let number = value.get(axis).and_then(Value::as_i64);

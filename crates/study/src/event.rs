@@ -67,6 +67,9 @@ pub enum EventKind {
         step: String,
         /// Which clip.
         clip: String,
+        /// What is played beside it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        beside: Option<ShownBeside>,
     },
     /// The clip was played, wholly or not.
     TrialPlayed {
@@ -136,6 +139,15 @@ impl EventKind {
     }
 }
 
+/// What is played in step beside a clip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShownBeside {
+    /// Which clip.
+    pub clip: String,
+    /// Whether it stands left of the trial's own clip.
+    pub left: bool,
+}
+
 /// The display and the page, no finer than the analysis needs.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Client {
@@ -177,6 +189,8 @@ pub struct PlayLog {
     pub device_pixel_ratio: f64,
     /// SHA-256 of the weights as the browser solved them, hexadecimal.
     pub weights_hash: String,
+    /// Side by side: the largest time between what the two clips showed in one frame, milliseconds.
+    pub drift_ms: f64,
     /// Why the play ended early; null for a whole play.
     pub aborted: Option<String>,
 }

@@ -18,6 +18,6 @@ pub use canonical::{canonical, config_hash};
 pub use check::{
     CheckedStudy, FileLookup, Issue, Report, SCHEMA_ADDRESS, Severity, check, json_schema,
 };
-pub use event::{Answers, Client, EventKind, PlayLog};
+pub use event::{Answers, Client, EventKind, PlayLog, ShownBeside};
 pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
 pub use study_file::*;

@@ -115,6 +115,12 @@ pub struct Words {
     pub move_up: &'static str,
     /// Button beside an item of a ranking, before the item's name.
     pub move_down: &'static str,
+    /// Answer of a comparison: the clip on the left, or above on a narrow screen.
+    pub left_one: &'static str,
+    /// Answer of a comparison: the clip on the right, or below on a narrow screen.
+    pub right_one: &'static str,
+    /// Answer of a comparison: no difference.
+    pub both_alike: &'static str,
     /// Button: another person takes part in the same browser.
     pub another_person: &'static str,
 }
@@ -176,6 +182,9 @@ const ENGLISH: Words = Words {
     confirm_order: "This is my order",
     move_up: "Move up:",
     move_down: "Move down:",
+    left_one: "The left one (or upper one)",
+    right_one: "The right one (or lower one)",
+    both_alike: "No difference",
     another_person: "Start again for another person",
 };
 
@@ -236,6 +245,9 @@ const FRENCH: Words = Words {
     confirm_order: "C’est mon classement",
     move_up: "Monter :",
     move_down: "Descendre :",
+    left_one: "Celui de gauche (ou du haut)",
+    right_one: "Celui de droite (ou du bas)",
+    both_alike: "Aucune différence",
     another_person: "Recommencer pour une autre personne",
 };
 

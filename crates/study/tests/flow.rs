@@ -121,7 +121,7 @@ fn no_answer_counts_before_one_whole_play() {
 
     // A play cut short does not count either.
     let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
-    assert!(effects.iter().any(|effect| matches!(effect, Effect::PlayClip(_))));
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::PlayClip { .. })));
     let mut log = whole_play(page.now_ms);
     log.aborted = Some("hidden".into());
     let (state, _) = update(&page.plan, state, Input::Played(log), page.now_ms + 900.0);

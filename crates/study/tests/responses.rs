@@ -29,6 +29,8 @@ fn sources(study: &Study) -> BTreeMap<String, ClipSource> {
             bytes: 1,
             provenance: format!("provenance of {}", clip.id),
             weights_hash: "w".into(),
+            look: "stimulus".into(),
+            film: None,
         };
         (clip.id, source)
     };

@@ -20,21 +20,22 @@ extern "C" {
         progress: &js_sys::Function,
     ) -> Result<JsValue, JsValue>;
 
-    /// Puts the stage on a canvas.
+    /// Puts a stage on the canvas of a place: `clip`, or `beside` it.
     #[wasm_bindgen(js_name = attachStage)]
-    pub fn attach_stage(canvas: &web_sys::HtmlCanvasElement, look: &str);
+    pub fn attach_stage(place: &str, canvas: &web_sys::HtmlCanvasElement, look: &str);
 
-    /// Takes the stage off its canvas.
+    /// Takes the stage off the canvas of a place.
     #[wasm_bindgen(js_name = detachStage)]
-    pub fn detach_stage();
+    pub fn detach_stage(place: &str);
 
-    /// Shows the first frame of a clip.
+    /// Shows the first frame of a clip and of the one beside it.
     #[wasm_bindgen(js_name = showClip, catch)]
-    pub async fn show_clip(clip: &str) -> Result<JsValue, JsValue>;
+    pub async fn show_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
 
-    /// Plays a clip once; resolves with the log as JSON, its times on the page's clock.
+    /// Plays a clip once, the one beside it in step; resolves with the log as JSON, its times on
+    /// the page's clock.
     #[wasm_bindgen(js_name = playClip, catch)]
-    pub async fn play_clip(clip: &str) -> Result<JsValue, JsValue>;
+    pub async fn play_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
 
     /// Aborts the play in progress.
     #[wasm_bindgen(js_name = stopClip)]

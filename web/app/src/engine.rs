@@ -118,7 +118,7 @@ impl Engine {
                 drop(queue);
                 self.prepare();
             }
-            Effect::PlayClip(clip) => self.play(clip),
+            Effect::PlayClip { clip, beside } => self.play(clip, beside),
             Effect::StopClip => bridge::stop_clip(),
             Effect::Complete { events } => self.complete(events),
             Effect::Withdraw => self.withdraw(),
@@ -277,11 +277,11 @@ impl Engine {
         }
     }
 
-    /// Shows the first frame of a clip that is prepared.
-    pub fn show(self: &Rc<Self>, clip: String) {
+    /// Shows the first frame of a clip that is prepared, and of the one beside it.
+    pub fn show(self: &Rc<Self>, clip: String, beside: Option<String>) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            if let Err(thrown) = bridge::show_clip(&clip).await {
+            if let Err(thrown) = bridge::show_clip(&clip, beside).await {
                 engine.prepared.borrow_mut().remove(&clip);
                 let message = bridge::reason(&thrown);
                 engine.dispatch(Input::ClipFailed { clip, message });
@@ -289,10 +289,10 @@ impl Engine {
         });
     }
 
-    fn play(self: &Rc<Self>, clip: String) {
+    fn play(self: &Rc<Self>, clip: String, beside: Option<String>) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            let input = match bridge::play_clip(&clip).await.map(|log| play_log(&log)) {
+            let input = match bridge::play_clip(&clip, beside).await.map(|log| play_log(&log)) {
                 Ok(Ok(log)) => Input::Played(log),
                 Ok(Err(message)) => Input::ClipFailed { clip, message },
                 Err(thrown) => Input::ClipFailed { clip, message: bridge::reason(&thrown) },

@@ -28,7 +28,7 @@ const LONGEST_REQUEST: Duration = Duration::from_secs(60);
 /// Scripts and styles only from here; nothing inline, nothing from elsewhere.
 const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; \
      style-src 'self'; img-src 'self' data:; connect-src 'self'; worker-src 'self'; \
-     media-src 'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
+     media-src 'self' blob:; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
 
 /// Every address of the server.
 pub fn router(app: App) -> Router {

@@ -33,7 +33,7 @@ pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec
         log.add(EventKind::PageShown { step: id.clone() });
         if let Some(trial) = step.trial() {
             let clip = trial.clip.clone();
-            log.add(EventKind::TrialStarted { step: id.clone(), clip: clip.clone() });
+            log.add(EventKind::TrialStarted { step: id.clone(), clip: clip.clone(), beside: None });
             log.add(EventKind::TrialPlayed { step: id.clone(), log: play(log.now_ms) });
             log.add(EventKind::TrialFinished { step: id, clip, answers, rt_ms: 900.5, replays: 0 });
         } else {

@@ -3,13 +3,14 @@
 use std::ops::Range;
 
 use mimique_face::{
-    Avatar, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
+    Avatar, Density, Emotion, HeadSpec, Identity, SyntheticTake, build_head, marker_sites,
+    synthetic_take,
 };
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_study::{BuiltinAvatar, BuiltinCapture, BuiltinExpression};
 
 use crate::provenance::Provenance;
-use crate::{MappedMarker, MarkerMap, MarkerPlace};
+use crate::{MappedMarker, MarkerMap, MarkerPlace, WeightsTable};
 
 /// Noise of the built-in actors' sensors where the study gives none, millimetres.
 const NOISE_MM: f64 = 0.1;
@@ -29,8 +30,9 @@ pub(super) struct BuiltinTake {
 
 /// A person of the built-in head, and where markers sit on it.
 pub(super) fn avatar(who: &BuiltinAvatar) -> (Avatar, MarkerMap) {
+    let seed = who.actor.map_or(who.seed, |actor| actor ^ ACTORS);
     let spec = HeadSpec {
-        identity: Identity::from_seed(who.seed),
+        identity: Identity::from_seed(seed),
         density: who.vertices.map_or_else(Density::default, |v| Density::nearest(v as usize)),
     };
     let sites = marker_sites(&spec);
@@ -49,6 +51,38 @@ pub(super) fn avatar_key(avatar: &Avatar) -> String {
 
 /// An actor's take of one performance: always the same for the same actor and performance.
 pub(super) fn take(actor: &BuiltinCapture, what: mimique_study::Performance) -> BuiltinTake {
+    let take = synthetic(actor, what);
+    let [first, end] = take.neutral;
+    BuiltinTake {
+        played: played(&take),
+        head: take.head_labels,
+        neutral: first..end,
+        capture: Capture {
+            labels: take.labels,
+            rate_hz: take.rate_hz,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions: take.positions,
+            notes: vec![],
+        },
+    }
+}
+
+/// The weights of an actor's performance as the actor made them, and the frames played.
+pub(super) fn performed(
+    actor: &BuiltinCapture,
+    what: mimique_study::Performance,
+) -> (WeightsTable, Range<usize>) {
+    let take = synthetic(actor, what);
+    let played = played(&take);
+    (WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz), played)
+}
+
+fn played(take: &SyntheticTake) -> Range<usize> {
+    take.segments.first().map_or(0..take.frames(), |s| s.first..s.end)
+}
+
+fn synthetic(actor: &BuiltinCapture, what: mimique_study::Performance) -> SyntheticTake {
     let spec = HeadSpec {
         identity: Identity::from_seed(actor.actor ^ ACTORS),
         density: Density::default(),
@@ -65,22 +99,7 @@ pub(super) fn take(actor: &BuiltinCapture, what: mimique_study::Performance) -> 
     let noise_mm = actor.noise_mm.unwrap_or(NOISE_MM);
     // Every performance has noise of its own.
     let seed = actor.actor ^ ((emotion as u64 + 1) << 40) ^ (u64::from(what.intensity) << 48);
-    let take = synthetic_take(&build_head(&spec), &marker_sites(&spec), &[clip], seed, noise_mm);
-    let frames = take.frames();
-    let [first, end] = take.neutral;
-    BuiltinTake {
-        head: take.head_labels,
-        neutral: first..end,
-        played: take.segments.first().map_or(0..frames, |s| s.first..s.end),
-        capture: Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: vec![],
-        },
-    }
+    synthetic_take(&build_head(&spec), &marker_sites(&spec), &[clip], seed, noise_mm)
 }
 
 /// What a take made by code is known by: its numbers.

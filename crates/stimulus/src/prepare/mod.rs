@@ -13,10 +13,10 @@ use std::path::PathBuf;
 
 use mimique_solver::{Method, MethodSpec, OperatorOptions};
 use mimique_study::wire::ClipSource;
-use mimique_study::{Clip, Study};
+use mimique_study::{AvatarLook, Clip, Study};
 
 use self::cache::{Cache, StoredPack};
-use self::sources::{Performance, Recording, Sources};
+use self::sources::{Film, Performance, Recording, Sources};
 use crate::provenance::Provenance;
 use crate::report::unseen_shapes;
 use crate::{TakeContent, TakePack, encode_operators, encode_take, solve_packs};
@@ -115,6 +115,9 @@ fn prepare_clip(
     cache: &Cache,
     warnings: &mut Vec<(String, String)>,
 ) -> Result<ClipSource, PrepareError> {
+    if let Some(film) = sources.film(clip)? {
+        return prepare_film(study, clip, &film, cache);
+    }
     let avatar = sources.avatar(&clip.avatar)?;
     let entry = study.stimuli.methods.get(&clip.method).ok_or_else(|| {
         PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
@@ -153,6 +156,31 @@ fn prepare_clip(
         method: spec,
         provenance,
         weights_hash: solved.weights_hash,
+        look: study.stimuli.avatars[&clip.avatar].look.word().to_owned(),
+        film: None,
+    })
+}
+
+/// A film is served as it is.
+fn prepare_film(
+    study: &Study,
+    clip: &Clip,
+    film: &Film,
+    cache: &Cache,
+) -> Result<ClipSource, PrepareError> {
+    let pack = cache.store(film.bytes.clone())?;
+    let method = study.stimuli.methods.get(&clip.method).map(|entry| entry.spec.clone());
+    Ok(ClipSource {
+        bytes: pack.bytes.len() as u64,
+        duration_ms: 0.0,
+        provenance: Provenance::new().text("film", &pack.hash).hash(),
+        avatar: pack.hash,
+        operators: String::new(),
+        take: String::new(),
+        method: method.unwrap_or_else(|| MethodSpec::new(Method::Recorded)),
+        weights_hash: String::new(),
+        look: AvatarLook::Stimulus.word().to_owned(),
+        film: Some(film.media_type.to_owned()),
     })
 }
 

@@ -10,7 +10,9 @@ use mimique_face::Avatar;
 use mimique_face::pack::encode_pack;
 use mimique_mocap::{Capture, Format, LengthUnit, ReadOptions};
 use mimique_solver::FrontEndError;
-use mimique_study::{AvatarSource, CaptureSource, Segment, Span, Study, resolve_path};
+use mimique_study::{
+    AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
+};
 
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
@@ -61,6 +63,12 @@ pub(super) struct Performance {
     options: TakeOptions,
 }
 
+/// A film of a segment.
+pub(super) struct Film {
+    pub bytes: Vec<u8>,
+    pub media_type: &'static str,
+}
+
 /// A segment whose weights were recorded.
 pub(super) struct Recording {
     /// Pointer of the segment.
@@ -97,14 +105,32 @@ impl<'a> Sources<'a> {
                 })?;
                 (sha256_hex(&bytes), read.avatar, None, at("file"))
             }
-            None => {
-                let message = "give exactly one of builtin and file";
+            Some(AvatarSource::Videos(_)) | None => {
+                let message = "give exactly one of builtin, file and videos";
                 return Err(PrepareError::new(pointer(&["stimuli", "avatars", id]), message));
             }
         };
         let file = Rc::new(AvatarFile { key, avatar, sites, skin: OnceCell::new(), pointer });
         self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
         Ok(file)
+    }
+
+    /// The film that a clip shows; `None` for a clip of a head.
+    pub fn film(&self, clip: &Clip) -> Result<Option<Film>, PrepareError> {
+        let avatar = self.study.stimuli.avatars.get(&clip.avatar);
+        let Some(AvatarSource::Videos(videos)) = avatar.and_then(|a| a.source()) else {
+            return Ok(None);
+        };
+        let at = pointer(&["stimuli", "avatars", &clip.avatar, "videos"]);
+        let path = videos.get(&clip.segment).ok_or_else(|| {
+            PrepareError::new(&at, format!("no film of segment {:?}; name its file", clip.segment))
+        })?;
+        let at = pointer(&["stimuli", "avatars", &clip.avatar, "videos", &clip.segment]);
+        let media_type = film_type(path).ok_or_else(|| {
+            PrepareError::new(&at, format!("{path:?} is neither MP4 nor WebM; convert it"))
+        })?;
+        let (_, bytes) = self.read(path, &at)?;
+        Ok(Some(Film { bytes, media_type }))
     }
 
     /// The segment of that identifier, with the marker map for an avatar.
@@ -167,9 +193,17 @@ impl<'a> Sources<'a> {
         let (segment, at) = self.segment(segment)?;
         let pointer = format!("{}/file", pointer(&["stimuli", "captures", &segment.capture]));
         let entry = self.study.stimuli.captures.get(&segment.capture);
-        let Some(CaptureSource::File(file)) = entry.and_then(|c| c.source()) else {
-            let message = "the method recorded takes weights from a file; name a CSV of weights";
-            return Err(PrepareError::new(pointer, message));
+        let file = match (entry.and_then(|c| c.source()), segment.span()) {
+            (Some(CaptureSource::File(file)), _) => file,
+            // The performance itself, as the actor's own face made it.
+            (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
+                let (table, frames) = builtin::performed(actor, what);
+                return Ok(Recording { pointer: at, table, frames });
+            }
+            _ => {
+                let message = "the method recorded takes weights; name a CSV of weights";
+                return Err(PrepareError::new(pointer, message));
+            }
         };
         let (path, bytes) = self.read(file, &pointer)?;
         let table = weights(&path, &bytes)

@@ -66,6 +66,10 @@ impl Issues {
         }
     }
 
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|issue| issue.severity == Severity::Error)
     }

@@ -4,6 +4,7 @@
 //! raw types -> [`general`], [`questions`], [`stimuli`], [`sequence`], [`hypotheses`] (what no type
 //! can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
 
+mod avatars;
 mod general;
 mod hypotheses;
 mod issue;

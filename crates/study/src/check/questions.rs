@@ -45,6 +45,13 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             let hint = "name it in the questions of a trials component, or remove it";
             issues.warning(below("/questions", index), "unused-question", message, hint);
         }
+        if matches!(question.kind, QuestionKind::Comparison(_))
+            && (in_training || blocks.iter().any(|block| block.beside.is_none()))
+        {
+            let message = format!("\"{}\" compares two clips, and only one is shown", question.id);
+            let hint = "ask it in trials components that have \"beside\"";
+            issues.error(below("/questions", index), "no-companion", message, hint);
+        }
         truth(subject, question, &blocks, &below("/questions", index), issues);
     }
 }
@@ -125,6 +132,7 @@ fn kind(question: &Question, place: &str, issues: &mut Issues) {
             }
         }
         QuestionKind::ValenceArousal(grid) => points(grid.num_items, place, issues),
+        QuestionKind::Comparison(_) => {}
     }
 }
 

@@ -6,7 +6,9 @@ use super::Subject;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
 use crate::order::{Draw, prove};
-use crate::study_file::{Component, OrderRule, Sequence, SequenceItem, TrialsComponent};
+use crate::study_file::{
+    Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
+};
 
 /// Names of steps that are no components.
 const RESERVED: [&str; 5] = ["consent", "demographics", "instructions", "training", "debriefing"];
@@ -110,9 +112,50 @@ fn trials(
             }
         }
     }
+    if let Some(companion) = &block.beside {
+        beside(subject, block, companion, &below(pointer, "beside"), issues);
+    }
     if !subject.clips.iter().any(|clip| block.clips.takes(clip)) {
         let message = "no clip is chosen";
         issues.error(below(pointer, "clips"), "empty", message, "loosen the choice");
+    }
+}
+
+/// Each clip of the block needs a companion.
+fn beside(
+    subject: &Subject<'_>,
+    block: &TrialsComponent,
+    companion: &Beside,
+    pointer: &str,
+    issues: &mut Issues,
+) {
+    let stimuli = &subject.study.stimuli;
+    let methods: Vec<&str> = stimuli.methods.keys().map(String::as_str).collect();
+    let avatars: Vec<&str> = stimuli.avatars.keys().map(String::as_str).collect();
+    let before = issues.count();
+    let method = std::slice::from_ref(&companion.method);
+    for (given, known, key) in
+        [(method, &methods, "method"), (companion.avatar.as_slice(), &avatars, "avatar")]
+    {
+        for name in given.iter().filter(|name| !known.contains(&name.as_str())) {
+            let message = format!("there is no {key} \"{name}\"");
+            let hint = suggestion(name, known);
+            issues.error(below(pointer, key), "unknown-reference", message, hint);
+        }
+    }
+    if issues.count() > before {
+        return;
+    }
+    let alone =
+        |clip: &&Clip| block.clips.takes(clip) && companion.of(clip, subject.clips).is_none();
+    if let Some(clip) = subject.clips.iter().find(alone) {
+        let avatar = companion.avatar.as_ref().unwrap_or(&clip.avatar);
+        let message = format!(
+            "clip \"{}\" has no other clip of segment \"{}\" by \"{}\" on \"{avatar}\" to stand beside it",
+            clip.id, clip.segment, companion.method
+        );
+        let hint = "make such clips in /stimuli/clips, or leave this clip out of the block";
+        issues.error(pointer, "no-companion", message, hint);
     }
 }
 

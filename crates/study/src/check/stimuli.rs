@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
-use super::{FileLookup, Subject};
+use super::{FileLookup, Subject, avatars};
 use crate::responses::FIXED_COLUMNS;
 use crate::study_file::{Capture, CaptureSource, Component, QuestionKind, Sequence, SequenceItem};
 
@@ -13,9 +13,9 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     for (name, avatar) in &stimuli.avatars {
         let pointer = below("/stimuli/avatars", name);
         identifier(name, &pointer, issues);
-        one_source(avatar.builtin.is_some(), avatar.file.is_some(), &pointer, issues);
-        file(avatar.file.as_deref(), &below(&pointer, "file"), lookup, issues);
+        avatars::examine(avatar, &pointer, lookup, issues);
     }
+    avatars::films(subject, issues);
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
         identifier(name, &pointer, issues);

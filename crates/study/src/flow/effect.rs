@@ -12,8 +12,13 @@ pub enum Effect {
     /// Load and solve these clips, the first one first. Report by `ClipProgress`, `ClipPrepared`,
     /// `ClipFailed`. Clips that are prepared already may be named again.
     PrepareClips(Vec<String>),
-    /// Play this clip once from its start; report by `Played`.
-    PlayClip(String),
+    /// Play this clip once from its start, the one beside it in step; report by `Played`.
+    PlayClip {
+        /// The trial's own clip.
+        clip: String,
+        /// The one beside it.
+        beside: Option<String>,
+    },
     /// Abort the play in progress, if there is one.
     StopClip,
     /// Send the outbox now.

@@ -22,11 +22,11 @@ mod view;
 
 pub use effect::Effect;
 pub use input::Input;
-pub use plan::{Plan, Step, StepKind, TrialStep};
+pub use plan::{Companion, Plan, Step, StepKind, TrialStep};
 pub use render::view;
 pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
-    ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,
-    QuestionView, SectionView, TrialView, View,
+    BesideView, ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView,
+    QuestionKindView, QuestionView, SectionView, TrialView, View,
 };

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::order::{Draw, OrderError, OrderedItem, option_order, order};
 use crate::study_file::{
-    BreakComponent, Component, OptionOrder, Question, QuestionKind, Questionnaire, Section, Study,
+    Beside, BreakComponent, Clip, Component, LocalText, OptionOrder, Question, QuestionKind,
+    Questionnaire, Section, Side, Study,
 };
 use crate::text::{Words, words};
 use crate::wire::SessionStarted;
@@ -61,7 +62,7 @@ pub struct TrialStep {
     /// The questions, in the order they are asked.
     pub questions: Vec<Question>,
     /// A line above the clip.
-    pub instruction: Option<crate::study_file::LocalText>,
+    pub instruction: Option<LocalText>,
     /// Most replays after the first whole play.
     pub maximum_replays: Option<u32>,
     /// Whether it is for practice.
@@ -70,6 +71,21 @@ pub struct TrialStep {
     pub number: usize,
     /// Nearest sequence with an identifier, else the component.
     pub condition: String,
+    /// What is played in step beside the clip.
+    pub beside: Option<Companion>,
+}
+
+/// A clip that is played in step beside another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Companion {
+    /// Identifier of the clip.
+    pub clip: String,
+    /// Whether it stands left of the trial's own clip.
+    pub left: bool,
+    /// A line below it.
+    pub caption: Option<LocalText>,
+    /// A line below the trial's own clip.
+    pub clip_caption: Option<LocalText>,
 }
 
 impl Plan {
@@ -102,10 +118,13 @@ impl Plan {
                     training: true,
                     number: index + 1,
                     condition: "training".to_owned(),
+                    beside: None,
                 };
                 push(format!("training/{}/{clip}", index + 1), StepKind::Trial(trial));
             }
         }
+        let clips = study.clips();
+        let mut sides = Sides::new(&study, draw, &items);
         let mut trials = 0;
         let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
         for item in &items {
@@ -123,6 +142,9 @@ impl Plan {
                         training: false,
                         number: trials,
                         condition: condition.clone(),
+                        beside: block.beside.as_ref().and_then(|beside| {
+                            companion(beside, clip, &clips, sides.next(component))
+                        }),
                     };
                     push(trial.clone(), StepKind::Trial(step));
                 }
@@ -168,15 +190,11 @@ impl Plan {
 
     /// The clips of the next `count` trials from a step on, each once.
     pub fn clips_from(&self, index: usize, count: usize) -> Vec<String> {
-        let mut clips = Vec::new();
-        for step in self.steps.iter().skip(index) {
-            if let StepKind::Trial(trial) = &step.kind
-                && !clips.contains(&trial.clip)
-            {
-                clips.push(trial.clip.clone());
-                if clips.len() == count {
-                    break;
-                }
+        let mut clips: Vec<String> = Vec::new();
+        let trials = self.steps.iter().skip(index).filter_map(Step::trial);
+        for clip in trials.take(count).flat_map(TrialStep::clips) {
+            if !clips.iter().any(|known| known == clip) {
+                clips.push(clip.to_owned());
             }
         }
         clips
@@ -186,6 +204,53 @@ impl Plan {
     pub fn words(&self, language: &str) -> &'static Words {
         words(language)
     }
+}
+
+impl TrialStep {
+    /// Its clip, and the one beside it.
+    pub fn clips(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(self.clip.as_str()).chain(self.beside.iter().map(|each| each.clip.as_str()))
+    }
+}
+
+/// The sides that are drawn, by component: each side in half of the trials.
+struct Sides(BTreeMap<String, std::vec::IntoIter<bool>>);
+
+impl Sides {
+    fn new(study: &Study, draw: Draw<'_>, items: &[OrderedItem]) -> Self {
+        let drawn = study.components.iter().filter(|(_, component)| {
+            matches!(component, Component::Trials(block)
+                if block.beside.as_ref().is_some_and(|beside| beside.side == Side::Random))
+        });
+        let sides = drawn.map(|(name, _)| {
+            let of = |item: &&OrderedItem| matches!(item, OrderedItem::Trial { component, .. } if component == name);
+            let count = items.iter().filter(of).count();
+            let mut left: Vec<bool> = (0..count).map(|trial| trial % 2 == 0).collect();
+            draw.stream(&format!("sides/{name}")).shuffle(&mut left);
+            (name.clone(), left.into_iter())
+        });
+        Self(sides.collect())
+    }
+
+    /// Whether the next companion of this component stands left, where that is drawn.
+    fn next(&mut self, component: &str) -> Option<bool> {
+        self.0.get_mut(component).and_then(Iterator::next)
+    }
+}
+
+fn companion(
+    beside: &Beside,
+    clip: &str,
+    clips: &[Clip],
+    drawn: Option<bool>,
+) -> Option<Companion> {
+    let clip = clips.iter().find(|each| each.id == clip)?;
+    Some(Companion {
+        clip: beside.of(clip, clips)?.id.clone(),
+        left: drawn.unwrap_or(beside.side == Side::Left),
+        caption: beside.caption.clone(),
+        clip_caption: beside.clip_caption.clone(),
+    })
 }
 
 impl Step {

@@ -4,8 +4,8 @@ use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
 use super::update::{break_seconds_left, can_play, can_submit, is_saving, shown_questions};
 use super::view::{
-    ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView, QuestionKindView,
-    QuestionView, SectionView, TrialView, View,
+    BesideView, ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView,
+    QuestionKindView, QuestionView, SectionView, TrialView, View,
 };
 use crate::answer::{LONG_TEXT, SHORT_TEXT};
 use crate::study_file::{Choice, LocalText, Question, QuestionKind, Section};
@@ -155,14 +155,19 @@ impl Screen<'_> {
         let progress = &state.record.trial;
         let playing = state.live.play == Play::Running;
         let saving = is_saving(state);
+        let prepared = trial.clips().all(|clip| state.live.prepared.contains(clip));
         let phase = if playing {
             Phase::Playing
-        } else if let Some(reason) = state.live.failed.get(&trial.clip) {
+        } else if let Some(reason) = trial.clips().find_map(|clip| state.live.failed.get(clip)) {
             Phase::Failed { reason: reason.clone(), retry: words.retry.to_owned() }
         } else if progress.plays > 0 {
             Phase::Answering
-        } else if !state.live.prepared.contains(&trial.clip) {
-            let fraction = state.live.progress.get(&trial.clip).copied().unwrap_or(0.0);
+        } else if !prepared {
+            let part = |clip: &str| match state.live.progress.get(clip) {
+                _ if state.live.prepared.contains(clip) => 1.0,
+                fraction => fraction.copied().unwrap_or(0.0),
+            };
+            let fraction = trial.clips().map(part).sum::<f64>() / trial.clips().count() as f64;
             Phase::Loading { fraction }
         } else if saving {
             Phase::Loading { fraction: 1.0 }
@@ -173,9 +178,7 @@ impl Screen<'_> {
             Phase::Playing => words.playing,
             Phase::Failed { .. } => words.clip_failed,
             Phase::Answering => words.answer_now,
-            Phase::Loading { .. } if saving && state.live.prepared.contains(&trial.clip) => {
-                words.saving
-            }
+            Phase::Loading { .. } if saving && prepared => words.saving,
             Phase::Loading { .. } => words.loading,
             Phase::Ready if progress.cut_short => words.play_interrupted,
             Phase::Ready => words.watch_first,
@@ -194,6 +197,12 @@ impl Screen<'_> {
         TrialView {
             step: step.id.clone(),
             clip: trial.clip.clone(),
+            beside: trial.beside.as_ref().map(|beside| BesideView {
+                clip: beside.clip.clone(),
+                left: beside.left,
+                caption: beside.caption.as_ref().map(|text| self.text(text)),
+                clip_caption: beside.clip_caption.as_ref().map(|text| self.text(text)),
+            }),
             heading,
             instruction: trial.instruction.as_ref().map(|text| self.text(text)),
             phase,
@@ -303,6 +312,19 @@ impl Screen<'_> {
                 options: options(),
             },
             QuestionKind::Ranking(_) => QuestionKindView::Ranking { options: options() },
+            QuestionKind::Comparison(comparison) => {
+                let option = |value: &str, label: &str| ChoiceView {
+                    value: value.to_owned(),
+                    label: label.to_owned(),
+                    image: None,
+                    video: None,
+                };
+                let same = comparison.allow_same.then(|| option("same", self.words.both_alike));
+                let mut options = vec![option("left", self.words.left_one)];
+                options.extend(same);
+                options.push(option("right", self.words.right_one));
+                QuestionKindView::SingleChoice { options }
+            }
             QuestionKind::ValenceArousal(grid) => QuestionKindView::ValenceArousal {
                 num_items: grid.num_items,
                 left: self.text(&grid.left_label),

@@ -6,7 +6,7 @@ use super::effect::Effect;
 use super::input::Input;
 use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
-use crate::event::{Answers, Client, EventKind, PlayLog};
+use crate::event::{Answers, Client, EventKind, PlayLog, ShownBeside};
 use crate::study_file::Question;
 use crate::wire;
 
@@ -261,10 +261,15 @@ impl<'a> Turn<'a> {
         }
         if !self.state.record.trial.started {
             let (step, clip) = (step.id.clone(), trial.clip.clone());
-            self.record(EventKind::TrialStarted { step, clip });
+            let beside = trial.beside.as_ref();
+            let beside = beside.map(|it| ShownBeside { clip: it.clip.clone(), left: it.left });
+            self.record(EventKind::TrialStarted { step, clip, beside });
         }
         self.state.live.play = Play::Running;
-        self.effects.push(Effect::PlayClip(trial.clip.clone()));
+        self.effects.push(Effect::PlayClip {
+            clip: trial.clip.clone(),
+            beside: trial.beside.as_ref().map(|beside| beside.clip.clone()),
+        });
         true
     }
 
@@ -282,7 +287,7 @@ impl<'a> Turn<'a> {
         self.state.live.prepared.remove(clip);
         self.state.live.progress.remove(clip);
         self.state.live.failed.insert(clip.to_owned(), message.to_owned());
-        if self.trial().is_some_and(|(_, trial)| trial.clip == clip) {
+        if self.trial().is_some_and(|(_, trial)| trial.clips().any(|each| each == clip)) {
             self.state.live.play = Play::Still;
         }
         let (clip, message) = (clip.to_owned(), message.to_owned());
@@ -292,7 +297,10 @@ impl<'a> Turn<'a> {
 
     fn retry(&mut self) -> bool {
         let Some((_, trial)) = self.trial() else { return false };
-        if self.state.live.failed.remove(&trial.clip).is_none() {
+        let failed = &mut self.state.live.failed;
+        let before = failed.len();
+        trial.clips().for_each(|clip| drop(failed.remove(clip)));
+        if failed.len() == before {
             return false;
         }
         let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
@@ -384,8 +392,8 @@ pub(super) fn can_play(plan: &Plan, state: &State) -> bool {
     };
     state.record.status == Status::Active
         && state.live.play == Play::Still
-        && state.live.prepared.contains(&trial.clip)
-        && !state.live.failed.contains_key(&trial.clip)
+        && trial.clips().all(|clip| state.live.prepared.contains(clip))
+        && !trial.clips().any(|clip| state.live.failed.contains_key(clip))
         && replays_left
         && !is_saving(state)
 }

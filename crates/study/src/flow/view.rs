@@ -135,6 +135,8 @@ pub struct TrialView {
     pub step: String,
     /// Identifier of the clip.
     pub clip: String,
+    /// What is played in step beside it.
+    pub beside: Option<BesideView>,
     /// "Clip 3 of 12".
     pub heading: String,
     /// A line above the clip.
@@ -157,6 +159,19 @@ pub struct TrialView {
     pub button: ButtonView,
     /// How far the session is.
     pub progress: ProgressView,
+}
+
+/// A clip that is played in step beside the trial's own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BesideView {
+    /// Identifier of the clip.
+    pub clip: String,
+    /// Whether it stands left (above, on a narrow screen).
+    pub left: bool,
+    /// A line below it.
+    pub caption: Option<String>,
+    /// A line below the trial's own clip.
+    pub clip_caption: Option<String>,
 }
 
 /// Where a trial is.

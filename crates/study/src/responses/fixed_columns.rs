@@ -4,7 +4,7 @@ use super::column::ColumnKind;
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 46] = {
     use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
     [
         ("participant_id", Text, "", "Public identifier of the participant"),
@@ -27,11 +27,14 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
         ("stage", Text, "", "pilot or live"),
         ("status", Text, "", "How the session stands: completed, active, withdrawn, declined"),
         ("stimulus", Text, "", "Identifier of the clip"),
+        ("beside", Text, "", "Clip shown in step beside it"),
+        ("beside_side", Text, "", "Side of that clip: left or right"),
         ("response_id", Text, "", "Identifier of the question"),
         ("answer", Any, "", "The answer; scales are coded as shown, several choices joined by |"),
         ("response", Any, "", "The same as answer"),
         ("truth", Any, "", "The right answer, where the clip has one"),
         ("correct", Boolean, "", "Whether the answer is the right one"),
+        ("chosen", Text, "", "Of a comparison: the clip that was chosen"),
         ("attention_passed", Boolean, "", "Whether an attention check was passed"),
         (
             "rt",
@@ -60,6 +63,12 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
         ("frame_longest_ms", Number, "ms", "Longest time between two of its frames"),
         ("refresh_hz", Number, "Hz", "Rate of the display as measured"),
         ("backend", Text, "", "What drew the clip: webgpu or webgl2"),
+        (
+            "beside_drift_ms",
+            Number,
+            "ms",
+            "Side by side: largest time between what the two clips showed in one frame",
+        ),
         ("clip_width", Number, "px", "Width of the clip as shown, CSS pixels"),
         ("clip_height", Number, "px", "Height of the clip as shown, CSS pixels"),
         ("viewport", Text, "px", "Width x height of the window, CSS pixels"),
@@ -71,6 +80,7 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 41] = {
             "",
             "SHA-256 over avatar, capture, marker map, method, parameters and solver",
         ),
+        ("beside_provenance", Text, "", "The same of the clip beside it"),
         ("start_time", Time, "", "Start of the trial or page, UTC, the participant's clock"),
         ("end_time", Time, "", "Its end"),
         ("language", Text, "", "Language of the pages"),

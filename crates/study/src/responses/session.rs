@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::answer::alike;
-use crate::event::{Answers, Client, EventKind, PlayLog};
+use crate::event::{Answers, Client, EventKind, PlayLog, ShownBeside};
 use crate::study_file::Study;
 use crate::wire::{Event, SessionStarted};
 
@@ -47,6 +47,7 @@ pub(super) struct Walk {
 pub(super) struct FinishedStep {
     pub id: String,
     pub clip: Option<String>,
+    pub beside: Option<ShownBeside>,
     pub answers: Answers,
     /// When each answer was last changed, page clock.
     pub answered_ms: BTreeMap<String, f64>,
@@ -97,7 +98,10 @@ impl Walk {
                 EventKind::Answered { question, .. } => {
                     here.answered_ms.insert(question, at_ms);
                 }
-                EventKind::TrialStarted { .. } => started_ms = Some(at_ms),
+                EventKind::TrialStarted { beside, .. } => {
+                    started_ms = Some(at_ms);
+                    here.beside = beside;
+                }
                 EventKind::TrialPlayed { log, .. } => {
                     if !log.is_whole() {
                         here.interruptions += 1;

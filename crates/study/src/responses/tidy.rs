@@ -150,6 +150,15 @@ impl<'a> Layout<'a> {
             put("clip_width", number(play.width));
             put("clip_height", number(play.height));
             put("weights_hash", play.weights_hash.as_str().into());
+            if step.beside.is_some() {
+                put("beside_drift_ms", milliseconds(play.drift_ms));
+            }
+        }
+        let Some(beside) = &step.beside else { return };
+        put("beside", beside.clip.as_str().into());
+        put("beside_side", if beside.left { "left" } else { "right" }.into());
+        if let Some(source) = self.sources.get(&beside.clip) {
+            put("beside_provenance", source.provenance.as_str().into());
         }
     }
 
@@ -191,6 +200,17 @@ impl<'a> Layout<'a> {
                 row.insert("correct".to_owned(), correct.into());
             }
             row.insert("truth".to_owned(), truth.into());
+        }
+        if let QuestionKind::Comparison(_) = &question.kind
+            && let (Some(clip), Some(beside)) = (&step.clip, &step.beside)
+        {
+            let chosen = match answer.as_str() {
+                Some("left") if beside.left => Some(beside.clip.as_str()),
+                Some("right") if !beside.left => Some(beside.clip.as_str()),
+                Some("left" | "right") => Some(clip.as_str()),
+                _ => None,
+            };
+            row.insert("chosen".to_owned(), chosen.into());
         }
         if let Some(check) = &question.attention_check {
             let passed = alike(answer, &check.expected);

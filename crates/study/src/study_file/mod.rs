@@ -29,16 +29,17 @@ pub use local_text::LocalText;
 pub use method::{MethodEntry, method_keys};
 pub use paths::{PathError, resolve_path};
 pub use questions::{
-    AttentionCheck, Choice, Condition, Grid, Likert, Matrix, MultipleChoice, NumberField,
-    OptionOrder, Question, QuestionKind, Ranking, SingleChoice, Slider, TextField,
+    AttentionCheck, Choice, Comparison, Condition, Grid, Likert, Matrix, MultipleChoice,
+    NumberField, OptionOrder, Question, QuestionKind, Ranking, SingleChoice, Slider, TextField,
 };
 pub use sequence::{
-    BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule, PageComponent,
-    Questionnaire, Sequence, SequenceItem, Training, TrialsComponent,
+    Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
+    PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
 };
 pub use stimuli::{
-    Avatar, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource, ClipCross,
-    ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
+    Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource,
+    ClipCross, ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
+    film_type,
 };
 
 /// A whole study file.

@@ -3,7 +3,7 @@
 //! Nothing is ever pre-selected: a question has no default answer. Answers as JSON: a choice is its
 //! `value`, several choices an array of values in the order of the file, a scale its number as
 //! shown, a matrix an object from row to value, a ranking an array of values from first to last, a
-//! grid `{"valence": v, "arousal": a}`.
+//! grid `{"valence": v, "arousal": a}`, a comparison `"left"`, `"right"` or `"same"`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -128,6 +128,8 @@ pub enum QuestionKind {
     Ranking(Ranking),
     /// A point on a grid of valence and arousal.
     ValenceArousal(Grid),
+    /// Which of the two clips shown side by side.
+    Comparison(Comparison),
 }
 
 tagged_by_type!(QuestionKind);
@@ -146,6 +148,7 @@ impl QuestionKind {
             Self::Matrix(_) => "matrix",
             Self::Ranking(_) => "ranking",
             Self::ValenceArousal(_) => "valenceArousal",
+            Self::Comparison(_) => "comparison",
         }
     }
 
@@ -337,6 +340,16 @@ pub struct Grid {
     pub bottom_label: LocalText,
     /// What the upper edge means.
     pub top_label: LocalText,
+}
+
+/// Which of the two clips that are shown side by side. The export names the clip that was chosen in
+/// its column `chosen`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub struct Comparison {
+    /// Whether "no difference" can be answered.
+    #[serde(default)]
+    pub allow_same: bool,
 }
 
 fn nine() -> u32 {

@@ -46,6 +46,43 @@ pub struct TrialsComponent {
     /// How many times each clip is shown.
     #[serde(default = "once")]
     pub repetitions: u32,
+    /// Beside each clip, in step with it: another clip of the same segment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beside: Option<Beside>,
+}
+
+/// What is played in step beside each clip of a block: the clip of the same segment by another
+/// method, or of another avatar.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Beside {
+    /// Key of `stimuli.methods`.
+    pub method: String,
+    /// Key of `stimuli.avatars`; the clip's own if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub avatar: Option<String>,
+    /// On which side of the clip it stands.
+    #[serde(default)]
+    pub side: Side,
+    /// A line below it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub caption: Option<LocalText>,
+    /// A line below the clip itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip_caption: Option<LocalText>,
+}
+
+/// On which side of the clip its companion stands. On a narrow screen left is above.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum Side {
+    /// Always left.
+    Left,
+    /// Always right.
+    #[default]
+    Right,
+    /// Drawn for each trial, each side in half of a participant's trials.
+    Random,
 }
 
 fn once() -> u32 {
@@ -194,6 +231,20 @@ pub struct Constraint {
     /// Fewest trials from one with a value to the next with the same value (1: next to each other).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minimum_distance: Option<usize>,
+}
+
+impl Beside {
+    /// The companion of `clip` among `clips`; `None` where the study makes no such clip, or where
+    /// it would be the clip itself.
+    pub fn of<'a>(&self, clip: &super::Clip, clips: &'a [super::Clip]) -> Option<&'a super::Clip> {
+        let avatar = self.avatar.as_ref().unwrap_or(&clip.avatar);
+        clips.iter().find(|each| {
+            each.segment == clip.segment
+                && each.method == self.method
+                && each.avatar == *avatar
+                && each.id != clip.id
+        })
+    }
 }
 
 impl ClipSelection {

@@ -32,7 +32,7 @@ pub struct Stimuli {
     pub look: Look,
 }
 
-/// A head: exactly one of `builtin` and `file`.
+/// Who is seen: exactly one of `builtin`, `file` and `videos`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Avatar {
@@ -42,6 +42,13 @@ pub struct Avatar {
     /// A GLB file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// Films of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
+    /// with the method `recorded`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub videos: BTreeMap<String, String>,
+    /// How a head is drawn.
+    #[serde(default, skip_serializing_if = "AvatarLook::is_stimulus")]
+    pub look: AvatarLook,
     /// Factors of the clips shown with it.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
@@ -57,9 +64,39 @@ pub struct BuiltinAvatar {
     /// Which person: the same seed is the same face.
     #[serde(default)]
     pub seed: u64,
+    /// Instead of a seed: the person who performs where a capture's `builtin` has this `actor`.
+    /// With the method `recorded` it shows the performance itself, the truth that methods are
+    /// compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actor: Option<u64>,
     /// About how many vertices the skin has; the head's own default if not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vertices: Option<u32>,
+}
+
+/// How a head is drawn: camera and light are the same.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum AvatarLook {
+    /// Skin, eyes and hair.
+    #[default]
+    Stimulus,
+    /// Grey clay, which nobody takes for a stimulus: for the performance itself.
+    Reference,
+}
+
+impl AvatarLook {
+    /// The word that the stage knows it by.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Stimulus => "stimulus",
+            Self::Reference => "reference",
+        }
+    }
+
+    fn is_stimulus(&self) -> bool {
+        *self == Self::Stimulus
+    }
 }
 
 /// Where an avatar comes from.
@@ -69,16 +106,29 @@ pub enum AvatarSource<'a> {
     Builtin(&'a BuiltinAvatar),
     /// A GLB file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
+    /// Films: segment -> a file, its path as above.
+    Videos(&'a BTreeMap<String, String>),
 }
 
 impl Avatar {
     /// Where it comes from; `None` unless exactly one source is given.
     pub fn source(&self) -> Option<AvatarSource<'_>> {
-        match (&self.builtin, &self.file) {
-            (Some(builtin), None) => Some(AvatarSource::Builtin(builtin)),
-            (None, Some(file)) => Some(AvatarSource::File(file)),
+        match (&self.builtin, &self.file, self.videos.is_empty()) {
+            (Some(builtin), None, true) => Some(AvatarSource::Builtin(builtin)),
+            (None, Some(file), true) => Some(AvatarSource::File(file)),
+            (None, None, false) => Some(AvatarSource::Videos(&self.videos)),
             _ => None,
         }
+    }
+}
+
+/// The media type of a film, by the ending of its name; `None` for what browsers do not all play.
+pub fn film_type(path: &str) -> Option<&'static str> {
+    let (_, ending) = path.rsplit_once('.')?;
+    match ending.to_ascii_lowercase().as_str() {
+        "mp4" | "m4v" => Some("video/mp4"),
+        "webm" => Some("video/webm"),
+        _ => None,
     }
 }
 

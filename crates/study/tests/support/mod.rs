@@ -95,7 +95,7 @@ impl Page {
                     self.send(Input::ClipPrepared { clip });
                 }
             }
-            Effect::PlayClip(clip) => {
+            Effect::PlayClip { clip, .. } => {
                 self.played.push(clip);
                 let onset_ms = self.now_ms + 20.0;
                 self.now_ms += 2_000.0;
@@ -203,6 +203,7 @@ pub fn whole_play(onset_ms: f64) -> PlayLog {
         height: 480.0,
         device_pixel_ratio: 2.0,
         weights_hash: "ab".repeat(32),
+        drift_ms: 0.0,
         aborted: None,
     }
 }

@@ -2,7 +2,7 @@
 
 use leptos::html::Canvas;
 use leptos::prelude::*;
-use mimique_study::flow::{Input, Phase, TrialView, View};
+use mimique_study::flow::{BesideView, Input, Phase, TrialView, View};
 
 use super::ProgressLine;
 use super::questions::QuestionList;
@@ -59,11 +59,16 @@ pub fn TrialPage() -> impl IntoView {
     let (width, height) = (look.width, look.height);
     let look = serde_json::to_string(&look).unwrap_or_default();
     let canvas = NodeRef::<Canvas>::new();
-    canvas.on_load(move |canvas| bridge::attach_stage(&canvas, &look));
-    on_cleanup(bridge::detach_stage);
+    let beside_look = look.clone();
+    canvas.on_load(move |canvas| bridge::attach_stage("clip", &canvas, &look));
+    on_cleanup(|| bridge::detach_stage("clip"));
+    let beside = Memo::new(move |_| trial.with(|trial| trial.beside.clone()));
+    let companion = Memo::new(move |_| beside.with(|it| it.as_ref().map(|it| it.clip.clone())));
+    let clip_caption =
+        Memo::new(move |_| beside.with(|it| it.as_ref().and_then(|it| it.clip_caption.clone())));
     Effect::new(move |_| {
         if phase.get() == "ready" {
-            session.engine().show(clip.get());
+            session.engine().show(clip.get(), companion.get());
         }
     });
 
@@ -84,18 +89,24 @@ pub fn TrialPage() -> impl IntoView {
             <div class="card">
                 <h1 tabindex="-1">{heading}</h1>
                 {move || trial.with(|trial| trial.instruction.clone()).map(|text| view! { <p>{text}</p> })}
-                <div class="stage-frame">
-                    <div class="stage"
-                        style=("--stage-width", format!("{width}px"))
-                        style=("--stage-aspect", format!("{width} / {height}"))>
-                        <canvas node_ref=canvas role="img" aria-label=heading></canvas>
-                        <Show when=move || fraction.get().is_some()>
-                            <div class="veil">
-                                <progress max="1" aria-label=move || message.get()
-                                    value=move || fraction.get().unwrap_or(0.0).to_string()></progress>
-                            </div>
-                        </Show>
-                    </div>
+                <div class="stage-frame" class:pair=move || companion.get().is_some()
+                    style=("--stage-width", format!("{width}px"))
+                    style=("--stage-aspect", format!("{width} / {height}"))>
+                    <figure>
+                        <div class="stage">
+                            <canvas node_ref=canvas role="img" aria-label=heading></canvas>
+                            <Show when=move || fraction.get().is_some()>
+                                <div class="veil">
+                                    <progress max="1" aria-label=move || message.get()
+                                        value=move || fraction.get().unwrap_or(0.0).to_string()></progress>
+                                </div>
+                            </Show>
+                        </div>
+                        {move || clip_caption.get().map(|text| view! { <figcaption>{text}</figcaption> })}
+                    </figure>
+                    <Show when=move || companion.get().is_some()>
+                        <BesideStage beside look=beside_look.clone()/>
+                    </Show>
                 </div>
                 <p class="trial-message" role="status">{message}</p>
                 {move || failed.get().map(|(reason, retry)| view! {
@@ -133,6 +144,25 @@ pub fn TrialPage() -> impl IntoView {
         </main>
     }
     .into_any()
+}
+
+/// What is played in step beside the trial's own clip, on its side.
+#[component]
+fn BesideStage(beside: Memo<Option<BesideView>>, look: String) -> impl IntoView {
+    let caption =
+        Memo::new(move |_| beside.with(|it| it.as_ref().and_then(|it| it.caption.clone())));
+    let left = Memo::new(move |_| beside.with(|it| it.as_ref().is_some_and(|it| it.left)));
+    let canvas = NodeRef::<Canvas>::new();
+    canvas.on_load(move |canvas| bridge::attach_stage("beside", &canvas, &look));
+    on_cleanup(|| bridge::detach_stage("beside"));
+    view! {
+        <figure class:first=left data-beside=move || beside.with(|it| it.as_ref().map(|it| it.clip.clone()))>
+            <div class="stage">
+                <canvas node_ref=canvas role="img" aria-label=caption></canvas>
+            </div>
+            {move || caption.get().map(|text| view! { <figcaption>{text}</figcaption> })}
+        </figure>
+    }
 }
 
 fn phase_word(phase: &Phase) -> &'static str {
