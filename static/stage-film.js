@@ -60,7 +60,13 @@ export async function filmDuration(address) {
   });
   video.src = address;
   await loaded;
-  const ms = video.duration * 1000;
+  if (video.duration === Infinity) {
+    // Films that a browser recorded do not say how long they are: their end does.
+    const known = new Promise((resolve) => video.addEventListener("seeked", resolve, { once: true }));
+    video.currentTime = 1e6;
+    await known;
+  }
+  const ms = (Number.isFinite(video.duration) ? video.duration : video.currentTime) * 1000;
   video.removeAttribute("src");
   if (!(Number.isFinite(ms) && ms > 0)) throw new Error("film: its duration is not known; export it anew");
   return ms;

@@ -1,0 +1,131 @@
+// Two clips in step: a drawn clip beside the actor's own head, and beside a film; screenshots kept.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { parse } from "./lib/csv.mjs";
+import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { mimique, serve } from "./lib/server.mjs";
+
+const unable = skip(!executable && "Chromium not found");
+
+const text = (words) => ({ en: words, fr: `${words} (fr)` });
+const pair = (avatar, side) => ({
+  type: "trials",
+  clips: { ids: ["joy2.box.head"] },
+  questions: ["nearer"],
+  beside: { avatar, method: "real", side, caption: text("The person"), clipCaption: text("The animated face") },
+});
+const study = (film) => ({
+  id: "pairs",
+  studyMetadata: { title: text("Pairs"), version: "1" },
+  languages: ["en", "fr"],
+  contact: { investigator: { name: "A", email: "a@example.org" }, ethicsBoard: { name: "B", email: "b@example.org" } },
+  consent: { version: "1", minimumAge: 18, retention: text("One year."), sections: [{ heading: text("What"), text: text("Watch.") }] },
+  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is more natural?"), allowSame: true }],
+  components: { heads: pair("actor", "right"), films: pair("person", "left") },
+  sequence: { order: "fixed", components: ["heads", "films"] },
+  stimuli: {
+    avatars: {
+      head: { builtin: { seed: 1, vertices: 2000 } },
+      actor: { builtin: { actor: 7, vertices: 2000 }, look: "reference" },
+      person: { videos: { joy2: film } },
+    },
+    captures: { actor: { builtin: { actor: 7 } } },
+    segments: [{ id: "joy2", capture: "actor", performance: { expression: "joy", intensity: 2 } }],
+    methods: { box: { method: "box" }, real: { method: "recorded" } },
+    clips: { list: [
+      { avatar: "head", segment: "joy2", method: "box" },
+      { avatar: "actor", segment: "joy2", method: "real" },
+      { avatar: "person", segment: "joy2", method: "real" },
+    ] },
+  },
+});
+
+/** A film of two seconds, made by the browser itself: a disc that crosses the picture. */
+async function film(page) {
+  const base64 = await page.evaluate(async () => {
+    const canvas = Object.assign(document.createElement("canvas"), { width: 240, height: 240 });
+    const brush = canvas.getContext("2d");
+    const recorder = new MediaRecorder(canvas.captureStream(25), { mimeType: "video/webm;codecs=vp8" });
+    const pieces = [];
+    recorder.ondataavailable = ({ data }) => pieces.push(data);
+    recorder.start();
+    const began = performance.now();
+    for (let ms = 0; ms < 2000; ms = performance.now() - began) {
+      brush.fillStyle = "#6b4f3a";
+      brush.fillRect(0, 0, 240, 240);
+      brush.fillStyle = "#f2d0a0";
+      brush.beginPath();
+      brush.arc(20 + ms / 10, 120, 18, 0, 7);
+      brush.fill();
+      await new Promise((done) => setTimeout(done, 40));
+    }
+    await new Promise((done) => ((recorder.onstop = done), recorder.stop()));
+    const bytes = new Uint8Array(await new Blob(pieces).arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  });
+  return Buffer.from(base64, "base64");
+}
+
+for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
+  test(`pairs: in step beside a head and beside a film, ${backend}`, { skip: unable, timeout: 400_000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), "mimique-pairs-"));
+    const browser = await open(backend, { viewport: { width, height: 900 } });
+    const shots = screenshotFolder(`pairs-${backend}`);
+    const { page } = browser;
+    let server;
+    try {
+      writeFileSync(join(folder, "joy2.webm"), await film(page));
+      writeFileSync(join(folder, "pairs.json"), JSON.stringify(study("joy2.webm")));
+      server = await serve([join(folder, "pairs.json")]);
+      await page.goto(`${server.url}/s/pairs/?backend=${backend}`);
+      await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+      let here = await place(page);
+      let trials = 0;
+      while (here.view !== "end") {
+        if (here.view === "trial") {
+          trials += 1;
+          await phase(page, "ready", 120_000);
+          assert.equal(await page.locator(".stage-frame.pair figure").count(), 2);
+          assert.deepEqual((await page.locator("figcaption").allTextContents()).sort(), ["The animated face", "The person"]);
+          const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+          assert.ok(sideways <= 0, `scrolls sideways by ${sideways} px`);
+          const companionFirst = await page.evaluate(() => {
+            const at = (selector) => document.querySelector(selector).getBoundingClientRect();
+            const [beside, own] = [at("figure[data-beside]"), at("figure:not([data-beside])")];
+            return beside.left < own.left || beside.top < own.top;
+          });
+          assert.equal(companionFirst, trials === 2, "the side is the study's");
+          await page.screenshot({ path: join(shots, `${trials}-ready.png`), fullPage: true });
+          await go(page, "mouse");
+          await phase(page, "playing");
+          await page.waitForTimeout(1500);
+          await page.locator(".stage-frame").screenshot({ path: join(shots, `${trials}-playing.png`) });
+          await phase(page, "answering", 120_000);
+        }
+        if (here.view === "trial") await answer(page, "mouse", here.step);
+        await go(page, "mouse");
+        here = await leave(page, here, 60_000);
+      }
+      assert.equal(trials, 2);
+      assert.deepEqual(browser.errors, [], "the console is clean");
+      const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.trial_type === "trial");
+      assert.deepEqual(rows.map((row) => [row.beside, row.beside_side]), [["joy2.real.actor", "right"], ["joy2.real.person", "left"]]);
+      for (const row of rows) {
+        assert.ok(Number(row.frames) >= 2, `${row.frames} frames`);
+        assert.match(row.beside_provenance, /^[0-9a-f]{64}$/);
+        const side = row.answer === "same" ? "" : row.answer === row.beside_side ? row.beside : row.stimulus;
+        assert.equal(row.chosen, side);
+      }
+      assert.equal(Number(rows[0].beside_drift_ms), 0, "two drawn clips share each frame");
+      assert.ok(Number(rows[1].beside_drift_ms) < 40, `drift of ${rows[1].beside_drift_ms} ms: less than a frame of the film`);
+    } finally {
+      await browser.close();
+      await server?.stop();
+    }
+  });
+}
