@@ -78,6 +78,7 @@ class FilmClock {
   #durationMs;
   #presented = null;
   #fresh = false;
+  #endedAt = null;
   #request = 0;
 
   constructor(video, durationMs) {
@@ -96,10 +97,14 @@ class FilmClock {
     this.#video.pause();
   }
 
-  /// Film time (ms) of what is on the display at `now`; null before the first frame.
+  /// Film time (ms) of what is on the display at `now`; null before the first frame. What stands
+  /// beside it may last longer: the time goes on after the film's end.
   at(now) {
     const video = this.#video;
-    if (video.ended) return this.#durationMs;
+    if (video.ended) {
+      this.#endedAt ??= now;
+      return this.#durationMs + (now - this.#endedAt);
+    }
     if (!video.requestVideoFrameCallback) {
       this.#fresh = true;
       return video.currentTime * 1000;
@@ -112,7 +117,6 @@ class FilmClock {
 
   /// The time of a film frame that came with this frame of the display; null if none came.
   takeFrame() {
-    if (this.#video.ended) return this.#durationMs;
     if (!this.#fresh) return null;
     this.#fresh = false;
     return this.#presented?.media ?? this.#video.currentTime * 1000;

@@ -12,6 +12,7 @@ export class Playback {
   #parts;
   #clock;
   #drift = 0;
+  #drawn = new Map();
   #frames = [];
   #refreshMs = 1000 / 60;
   #endMs = null;
@@ -79,13 +80,21 @@ export class Playback {
     return frames.map(([now, ms], k) => [now, ms, k > 0 && now - frames[k - 1][0] > LATE * period ? 1 : 0]);
   }
 
-  // Shows every part at `ms`; the clip time that went to the display, or null.
+  // Shows every part at `ms`; the clip time of the frame that this completes, or null. A part whose
+  // adapter is busy is drawn in a later frame of the display, before the other one is drawn again.
   #show(ms) {
-    const shown = this.#parts.map((part) => (part.clock ? part.clock.takeFrame() : part.draw(ms) ? ms : null));
-    if (this.#parts.length === 1) return shown[0];
-    if (shown.every((each) => each !== null)) this.#drift = Math.max(this.#drift, Math.abs(shown[0] - shown[1]));
+    const film = this.#clock?.takeFrame() ?? null;
+    if (this.#parts.length === 1 && this.#clock) return film;
+    for (const part of this.#parts) {
+      if (!part.clock && !this.#drawn.has(part) && part.draw(ms)) this.#drawn.set(part, ms);
+    }
+    const times = [...this.#drawn.values()];
+    if (times.length < this.#parts.filter((part) => !part.clock).length) return null;
     // Between two frames of a film the drawn clip goes on.
-    return this.#parts.every((part, k) => part.clock || shown[k] !== null) ? ms : null;
+    if (film !== null) times.push(film);
+    this.#drift = Math.max(this.#drift, Math.max(...times) - Math.min(...times));
+    this.#drawn.clear();
+    return ms;
   }
 
   #loop(durationMs, resolve) {

@@ -30,8 +30,8 @@ const study = (film) => ({
   sequence: { order: "fixed", components: ["heads", "films"] },
   stimuli: {
     avatars: {
-      head: { builtin: { seed: 1, vertices: 2000 } },
-      actor: { builtin: { actor: 7, vertices: 2000 }, look: "reference" },
+      head: { builtin: { seed: 1 } },
+      actor: { builtin: { actor: 7 }, look: "reference" },
       person: { videos: { joy2: film } },
     },
     captures: { actor: { builtin: { actor: 7 } } },
@@ -107,6 +107,10 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
           await page.locator(".stage-frame").screenshot({ path: join(shots, `${trials}-playing.png`) });
           await phase(page, "answering", 120_000);
         }
+        if (here.view === "receipt") {
+          here = await leave(page, here, 60_000);
+          continue;
+        }
         if (here.view === "trial") await answer(page, "mouse", here.step);
         await go(page, "mouse");
         here = await leave(page, here, 60_000);
@@ -121,7 +125,8 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
         const side = row.answer === "same" ? "" : row.answer === row.beside_side ? row.beside : row.stimulus;
         assert.equal(row.chosen, side);
       }
-      assert.equal(Number(rows[0].beside_drift_ms), 0, "two drawn clips share each frame");
+      const [drift, longest] = [Number(rows[0].beside_drift_ms), Number(rows[0].frame_longest_ms)];
+      assert.ok(drift <= longest, `two drawn clips ${drift} ms apart, with frames of at most ${longest} ms`);
       assert.ok(Number(rows[1].beside_drift_ms) < 40, `drift of ${rows[1].beside_drift_ms} ms: less than a frame of the film`);
     } finally {
       await browser.close();

@@ -274,6 +274,8 @@ fn developed(light: vec3f) -> vec3f {
     return clamp(film(light * scene.light.x * 0.42), vec3f(0.0), vec3f(1.0));
 }
 
+const CLAY: vec3f = vec3f(0.34);
+
 @fragment
 fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let v = normalize(scene.camera.xyz - p.position);
@@ -285,6 +287,8 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     f.wrap = vec3f(0.10);
     f.open = 1.0;
     var alpha = 1.0;
+    // The look of reference clips is one matter, whatever the person's skin and hair.
+    let clay = scene.brows.w == 0.0;
     // How far behind the lips, and so how dark.
     let behind = clamp((scene.mouth.z - p.position.z) / scene.mouth.w, 0.0, 1.6);
     if p.material >= MATERIAL_EYE {
@@ -295,7 +299,7 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         if p.material == MATERIAL_PAINTED_SKIN {
             albedo = painted(albedo, p.neutral);
         }
-        f.albedo = albedo * scene.skin.rgb;
+        f.albedo = select(albedo, CLAY, clay) * scene.skin.rgb;
         f.roughness = scene.skin.w;
         f.specular = 0.028;
         f.wrap = vec3f(0.42, 0.20, 0.14);
@@ -313,6 +317,7 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         if p.material == MATERIAL_HAIR || p.material == MATERIAL_LASHES {
             f.roughness = 0.62;
             f.specular = 0.015;
+            f.albedo = select(f.albedo, 0.7 * CLAY * scene.skin.rgb, clay);
         }
         if p.material == MATERIAL_LASHES {
             alpha = lash(p.neutral);
