@@ -9,40 +9,27 @@ import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 
-const text = (words) => ({ en: words, fr: `${words} (fr)` });
 const pair = (avatar, side) => ({
-  type: "trials",
-  clips: { ids: ["joy2.box.head"] },
-  questions: ["nearer"],
+  ...trials(["joy2.box.head"], ["nearer"]),
   beside: { avatar, method: "real", side, caption: text("The person"), clipCaption: text("The animated face") },
 });
-const study = (film) => ({
-  id: "pairs",
-  studyMetadata: { title: text("Pairs"), version: "1" },
-  languages: ["en", "fr"],
-  contact: { investigator: { name: "A", email: "a@example.org" }, ethicsBoard: { name: "B", email: "b@example.org" } },
-  consent: { version: "1", minimumAge: 18, retention: text("One year."), sections: [{ heading: text("What"), text: text("Watch.") }] },
+const study = (film) => small("pairs", {
   questions: [{ id: "nearer", type: "comparison", prompt: text("Which is more natural?"), allowSame: true }],
   components: { heads: pair("actor", "right"), films: pair("person", "left") },
   sequence: { order: "fixed", components: ["heads", "films"] },
-  stimuli: {
-    avatars: {
+  stimuli: stimuli(
+    {
       head: { builtin: { seed: 1 } },
       actor: { builtin: { actor: 7 }, look: "reference" },
       person: { videos: { joy2: film } },
     },
-    captures: { actor: { builtin: { actor: 7 } } },
-    segments: [{ id: "joy2", capture: "actor", performance: { expression: "joy", intensity: 2 } }],
-    methods: { box: { method: "box" }, real: { method: "recorded" } },
-    clips: { list: [
-      { avatar: "head", segment: "joy2", method: "box" },
-      { avatar: "actor", segment: "joy2", method: "real" },
-      { avatar: "person", segment: "joy2", method: "real" },
-    ] },
-  },
+    { box: { method: "box" }, real: { method: "recorded" } },
+    [["head", "box"], ["actor", "real"], ["person", "real"]],
+  ),
 });
 
 /** A film of two seconds, made by the browser itself: a disc that crosses the picture. */

@@ -1,0 +1,126 @@
+// Every page for everybody: axe finds nothing against WCAG 2.2 AA, in light and dark, on a screen of
+// 320 px, with text of 200 %; every type of question among them.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { go, leave, phase, place } from "./lib/participant.mjs";
+import { serve } from "./lib/server.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+
+const unable = skip(!executable && "Chromium not found");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+
+const option = (value) => ({ value, label: text(value) });
+const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
+const questions = [
+  { id: "single", type: "singleChoice", prompt: text("One of these?"), options: ["a", "b", "c"].map(option) },
+  { id: "several", type: "multipleChoice", prompt: text("Any of these?"), help: text("Choose some."), options: ["a", "b", "c"].map(option) },
+  { id: "likert", type: "likert", prompt: text("How strong?"), ...scale },
+  { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") },
+  { id: "matrix", type: "matrix", prompt: text("How often?"), rows: ["play", "call"].map(option), options: ["never", "sometimes", "often"].map(option) },
+  { id: "number", type: "number", prompt: text("How old?"), minimum: 0, maximum: 120, integer: true, unit: text("years") },
+  { id: "short", type: "shortText", prompt: text("In a word?") },
+  { id: "long", type: "longText", prompt: text("In some words?"), required: false },
+  { id: "ranking", type: "ranking", prompt: text("In which order?"), options: ["eyes", "mouth", "skin"].map(option) },
+  { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited") },
+];
+const study = small("access", {
+  demographics: { title: text("About you"), questions },
+  instructions: [{ heading: text("Before you begin"), text: text("Watch.") }],
+  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is nearer?"), allowSame: true }, { id: "rating", type: "likert", prompt: text("How strong is it?"), ...scale }],
+  components: { pairs: { ...trials(["joy2.box.head"], ["nearer", "rating"]), beside: { avatar: "actor", method: "real", caption: text("The person") } } },
+  sequence: { order: "fixed", components: ["pairs"] },
+  debriefing: [{ heading: text("What it was about"), text: text("Faces.") }],
+  stimuli: stimuli(
+    { head: { builtin: { seed: 1 } }, actor: { builtin: { actor: 7 }, look: "reference" } },
+    { box: { method: "box" }, real: { method: "recorded" } },
+    [["head", "box"], ["actor", "real"]],
+  ),
+});
+
+/** What axe finds on the page as it stands. */
+async function violations(page) {
+  // Not by a script element: the pages allow none but their own.
+  await page.evaluate(axe);
+  return page.evaluate(async (tags) => {
+    const { violations } = await window.axe.run(document, { runOnly: { type: "tag", values: tags } });
+    return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
+  }, standards);
+}
+
+/** One answer of each question, by the controls that people use. */
+async function answerAll(page) {
+  for (const question of await page.locator("fieldset[data-question]").all()) {
+    const id = await question.getAttribute("data-question");
+    if (id === "several") await question.locator("label").first().click();
+    else if (id === "slider") await question.locator("input[type=range]").press("ArrowRight");
+    else if (id === "matrix") for (const row of await question.locator("[role=radiogroup], tr:has(input)").all()) await row.locator("label, input").first().click();
+    else if (id === "number") await question.locator("input").fill("30");
+    else if (id === "short") await question.locator("input").fill("word");
+    else if (id === "long") await question.locator("textarea").fill("some words");
+    else if (id === "ranking") await question.locator("button").last().click();
+    else await question.locator("label").first().click();
+  }
+}
+
+for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark", 320, 1, "fr-FR"], ["light", 1280, 2, "fr-FR"]]) {
+  test(`access: every page, ${scheme}, ${width} px, text ${zoom * 100} %`, { skip: unable, timeout: 300_000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
+    writeFileSync(join(folder, "access.json"), JSON.stringify(study));
+    const server = await serve([join(folder, "access.json")]);
+    const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
+    const shots = screenshotFolder(`access-${scheme}-${width}-${zoom}`);
+    const { page } = browser;
+    const seen = [];
+    const look = async (name) => {
+      seen.push(name);
+      if (zoom !== 1) await page.evaluate((factor) => (document.documentElement.style.fontSize = `${factor * 100}%`), zoom);
+      await page.screenshot({ path: join(shots, `${seen.length}-${name}.png`), fullPage: true });
+      assert.deepEqual(await violations(page), [], `${name}: axe`);
+      const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px`);
+      const headings = await page.locator("h1").count();
+      assert.equal(headings, 1, `${name}: one main heading`);
+    };
+    try {
+      await page.goto(`${server.url}/s/access/?backend=webgl2`);
+      await page.waitForSelector('main[data-view="consent"]', { timeout: 30_000 });
+      let here = await place(page);
+      for (let guard = 0; here.view !== "end" && guard < 20; guard++) {
+        if (here.view === "receipt") {
+          here = await leave(page, here, 60_000);
+          continue;
+        }
+        if (here.view === "questions") {
+          // Without answers the page says what is missing, and stays.
+          await go(page, "mouse");
+          await page.waitForSelector(".problem");
+          await look("questions-missing");
+          await answerAll(page);
+        }
+        if (here.view === "trial") {
+          await phase(page, "ready", 120_000);
+          await look("trial-ready");
+          await go(page, "mouse");
+          await phase(page, "answering", 120_000);
+          await answerAll(page);
+        }
+        await look(here.view);
+        await go(page, "mouse");
+        here = await leave(page, here, 60_000);
+      }
+      await look("end");
+      assert.deepEqual(seen, ["consent", "questions-missing", "questions", "page", "trial-ready", "trial", "page", "end"]);
+      assert.deepEqual(browser.errors, [], "the console is clean");
+    } finally {
+      await browser.close();
+      await server.stop();
+    }
+  });
+}

@@ -1,0 +1,26 @@
+// Small studies, made of parts: one performance, everything else as a test wants it.
+
+/** A text in both languages. */
+export const text = (words) => ({ en: words, fr: `${words} (fr)` });
+
+/** A block of these clips. */
+export const trials = (ids, questions) => ({ type: "trials", clips: { ids }, questions });
+
+/** One performance of joy, by these avatars and methods; `clips`: [avatar, method] pairs. */
+export const stimuli = (avatars, methods, clips) => ({
+  avatars,
+  captures: { actor: { builtin: { actor: 7 } } },
+  segments: [{ id: "joy2", capture: "actor", performance: { expression: "joy", intensity: 2 } }],
+  methods,
+  clips: { list: clips.map(([avatar, method]) => ({ avatar, segment: "joy2", method })) },
+});
+
+/** A study with these parts. */
+export const small = (id, parts) => ({
+  id,
+  studyMetadata: { title: text("Faces"), version: "1" },
+  languages: ["en", "fr"],
+  contact: { investigator: { name: "A", email: "a@example.org" }, ethicsBoard: { name: "B", email: "b@example.org" } },
+  consent: { version: "1", minimumAge: 18, retention: text("One year."), sections: [{ heading: text("What"), text: text("Watch.") }] },
+  ...parts,
+});
