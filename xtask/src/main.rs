@@ -2,8 +2,11 @@
 //!
 //! - `cargo xtask demo`: install what is missing, build everything, start the built-in study;
 //! - `cargo xtask test`: install what tests need, then every check and test there is;
+//! - `cargo xtask bench`: the solver and its peers, and their ratios;
 //! - `cargo xtask web`: build the wasm modules and the pages alone.
 
+mod bench;
+mod bench_plot;
 mod demo;
 mod install;
 mod process;
@@ -26,6 +29,8 @@ enum Command {
     Demo(demo::Args),
     /// Install what tests need, then run every check and test
     Test(test::Args),
+    /// Measure the solver beside its peers and print the ratios
+    Bench(bench::Args),
     /// Build the wasm modules and the pages into target/web-dist
     Web(web::Args),
 }
@@ -34,6 +39,7 @@ fn main() -> anyhow::Result<()> {
     match Cli::parse().command {
         Command::Demo(args) => demo::run(&args),
         Command::Test(args) => test::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Web(args) => web::run(&args),
     }
 }

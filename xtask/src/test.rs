@@ -144,7 +144,7 @@ fn exclude_web(command: &mut Command) {
 }
 
 /// Where real data are looked for.
-fn data() -> PathBuf {
+pub fn data() -> PathBuf {
     let given = std::env::var_os("MIMIQUE_DATA").unwrap_or_else(|| "../shared/data".into());
     let path = root().join(given);
     path.canonicalize().unwrap_or(path)

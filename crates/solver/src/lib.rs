@@ -60,6 +60,7 @@ mod shell_patch;
 mod skin_mesh;
 mod spec_check;
 mod svd;
+mod synthesis;
 mod thin_shell;
 
 pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
@@ -76,4 +77,5 @@ pub use report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
 pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
 pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
 pub use spec_check::SpecError;
+pub use synthesis::Synthesis;
 pub use thin_shell::{apply_shell, shell_gram};
