@@ -1,0 +1,57 @@
+// One take by every method, solved natively by the server and in Chromium by the page's worker: the
+// hashes of the weights (SHA-256 over every bit of every double) are the same.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { executable, open, skip } from "./lib/browser.mjs";
+import { root, serve } from "./lib/server.mjs";
+
+const unable = skip(executable ? false : "Chromium not found");
+const methods = [
+  "lsts", "lsts-soft", "lsts-norm", "lsts-short", "thesis-literal", "short-literal", "bounds-only",
+  "thin-shell-only", "box", "nnls", "pseudo-inverse", "kouadio",
+];
+
+/** The demonstration with every method, without the hypotheses about its own two. */
+function studyOfEveryMethod() {
+  const demo = readFileSync(join(root, "study-config/demo.json"), "utf8");
+  const named = methods.map((method) => `"${method}": { "method": "${method}" }`).join(",\n");
+  const text = demo.replace(/"methods": \{[^]*?\n    \}/, `"methods": {\n${named}\n    }`);
+  assert.notEqual(text, demo, "the demonstration's methods were found");
+  const file = join(mkdtempSync(join(tmpdir(), "mimique-methods-")), "study.json");
+  writeFileSync(file, text.replace(/"hypotheses": \[[^]*?\n  \]/, '"hypotheses": []'));
+  return file;
+}
+
+test("solver: every method has the same bits natively and in Chromium", { skip: unable, timeout: 600_000 }, async () => {
+  const server = await serve([studyOfEveryMethod()]);
+  const browser = await open("webgl2");
+  try {
+    const { page } = browser;
+    await page.goto(`${server.url}/preview/demo`);
+    const { clips } = await (await fetch(`${server.url}/api/studies/demo`)).json();
+    const solved = await page.evaluate(async (clips) => {
+      const page = document.querySelector('script[type="module"][src*="preview.js"]').src;
+      const { prepareClip } = await import(new URL("stage-clips.js", page).href);
+      const found = {};
+      for (const [id, source] of Object.entries(clips)) found[id] = await prepareClip(id, source);
+      return found;
+    }, clips);
+    for (const method of methods) {
+      const own = Object.entries(clips).filter(([, clip]) => clip.method.method === method);
+      assert.ok(own.length >= 6, `${method}: ${own.length} clips`);
+      for (const [id, clip] of own) {
+        assert.match(clip.weights_hash, /^[0-9a-f]{64}$/);
+        assert.equal(solved[id].weights_hash, clip.weights_hash, id);
+      }
+    }
+    const different = new Set(Object.values(clips).map((clip) => clip.weights_hash));
+    assert.equal(different.size, Object.keys(clips).length, "no two clips are one");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
