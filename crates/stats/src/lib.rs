@@ -22,6 +22,7 @@ mod report;
 mod sample;
 mod scheirer_ray_hare;
 mod signed_rank;
+mod simulate;
 mod spearman;
 mod special;
 mod table;
@@ -45,6 +46,10 @@ pub use proportion::{Proportion, proportion};
 pub use ranks::Ranks;
 pub use report::{Language, Report, ReportFile, analyze};
 pub use scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
+pub use simulate::{
+    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError, Rating,
+    Recognition, SimulatedSession, Simulation, Times,
+};
 pub use spearman::{Spearman, spearman};
 pub use table::{Numbers, Table, TableError};
 pub use tail::{

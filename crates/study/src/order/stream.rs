@@ -28,6 +28,11 @@ impl Stream {
         }
     }
 
+    /// A number in [0, 1), in steps of 2^-53, each equally likely.
+    pub fn unit(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
     /// Every order equally likely (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
@@ -51,6 +56,17 @@ mod tests {
         assert_ne!(draws(Some(1), "order"), draws(Some(2), "order"));
         assert_ne!(draws(Some(1), "order"), draws(Some(1), "options"));
         assert_ne!(draws(Some(1), "order"), draws(None, "order"));
+    }
+
+    #[test]
+    fn unit_is_uniform() {
+        let mut stream = Stream::new(1, "", None, "unit");
+        let draws: Vec<f64> = (0..100_000).map(|_| stream.unit()).collect();
+        assert!(draws.iter().all(|draw| (0.0..1.0).contains(draw)));
+        let mean = draws.iter().sum::<f64>() / 1e5;
+        let square = draws.iter().map(|draw| draw * draw).sum::<f64>() / 1e5;
+        // Standard errors 0.0009; the seed is fixed.
+        assert!((mean - 0.5).abs() < 0.003 && (square - 1.0 / 3.0).abs() < 0.003, "{mean} {square}");
     }
 
     #[test]

@@ -1,0 +1,66 @@
+//! The same study without the effects that its hypotheses look for: what false positives are counted in.
+
+use std::collections::BTreeMap;
+
+use mimique_study::{Measure, Study};
+
+use super::parameters::{ByLevel, Interaction, Parameters, Recognition};
+use super::scales::truth_of;
+
+impl Parameters {
+    /// Without the effects of every hypothesis's factors on its response, and without interactions of
+    /// them. What is random stays: clips still differ from one another.
+    pub fn without_effects(&self, study: &Study) -> Self {
+        let mut null = self.clone();
+        for hypothesis in &study.hypotheses {
+            let tested = |factor: &str| hypothesis.factors.iter().any(|each| each == factor);
+            if hypothesis.measure == Measure::Rt {
+                null.times.effects.retain(|factor, _| !tested(factor));
+                continue;
+            }
+            if let Some(rating) = null.ratings.get_mut(&hypothesis.response) {
+                drop_effects(&mut rating.effects, &mut rating.interactions, tested);
+            }
+            if let Some(recognition) = null.recognition.get_mut(&hypothesis.response) {
+                drop_effects(&mut recognition.effects, &mut recognition.interactions, tested);
+                let asked = study.all_questions().find(|each| each.id == hypothesis.response);
+                let truth = asked.and_then(truth_of).unwrap_or_default();
+                if tested(truth) || tested(&recognition.by) {
+                    level_hits(recognition);
+                }
+            }
+        }
+        null
+    }
+}
+
+fn drop_effects(
+    effects: &mut BTreeMap<String, ByLevel>,
+    interactions: &mut Vec<Interaction>,
+    tested: impl Fn(&str) -> bool,
+) {
+    effects.retain(|factor, _| !tested(factor));
+    interactions.retain(|interaction| !interaction.levels.keys().any(|factor| tested(factor)));
+}
+
+/// Gives every row the mean share of right answers; how wrong ones are spread stays.
+fn level_hits(recognition: &mut Recognition) {
+    let hit = |right: &str, row: &ByLevel| {
+        row.get(right).copied().unwrap_or(0.0) / row.values().sum::<f64>().max(1e-12)
+    };
+    let hits: Vec<f64> = recognition
+        .confusion
+        .iter()
+        .flat_map(|(right, rows)| rows.values().map(|row| hit(right, row)))
+        .collect();
+    let mean = hits.iter().sum::<f64>() / hits.len().max(1) as f64;
+    for (right, rows) in &mut recognition.confusion {
+        for row in rows.values_mut() {
+            let old = hit(right, row);
+            let sum: f64 = row.values().sum();
+            let scale = if old < 1.0 { (1.0 - mean) / (1.0 - old) / sum } else { 0.0 };
+            row.values_mut().for_each(|share| *share *= scale);
+            row.insert(right.clone(), mean);
+        }
+    }
+}
