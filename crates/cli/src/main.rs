@@ -8,8 +8,11 @@ mod check;
 mod export;
 mod inspect;
 mod order;
+mod power;
 mod serve;
+mod simulate;
 mod solve;
+mod study_file;
 mod test_command;
 
 use std::process::ExitCode;
@@ -41,6 +44,10 @@ enum Command {
     Solve(Box<solve::Args>),
     /// Write the responses of a study to a file
     Export(export::Args),
+    /// Write an export of simulated participants
+    Simulate(simulate::Args),
+    /// Find the power of a study by simulation, and write its preregistration
+    Power(power::Args),
     /// Run one statistical test on a data file
     Test(test_command::Args),
     /// Compute every table and figure of a study
@@ -63,6 +70,8 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
         Command::Export(args) => export::run(args, json),
+        Command::Simulate(args) => simulate::run(args, json),
+        Command::Power(args) => power::run(args, json),
         Command::Test(args) => test_command::run(args, json),
         Command::Analyze(args) => analyze::run(args, json),
     };

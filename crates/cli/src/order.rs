@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use mimique_study::{Draw, OrderedItem, order};
 
-use crate::check::check_file;
+use crate::study_file::load;
 
 /// Options.
 #[derive(clap::Args)]
@@ -24,22 +24,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let file = args.study.display();
-    let report = check_file(&args.study)?;
-    // Stimuli are not needed to know their order, so a missing file does no harm here.
-    let blocking = report.issues.iter().find(|issue| {
-        issue.severity == mimique_study::Severity::Error && issue.code != "missing-file"
-    });
-    if let Some(issue) = blocking {
-        anyhow::bail!(
-            "{file}: {}: {}; {} (`mimique check` lists every problem)",
-            if issue.pointer.is_empty() { "/" } else { &issue.pointer },
-            issue.message,
-            issue.hint
-        );
-    }
-    let text = std::fs::read_to_string(&args.study).with_context(|| format!("{file}"))?;
-    let value = mimique_study::parse(&text).with_context(|| format!("{file}"))?;
-    let study = mimique_study::Study::from_value(&value).with_context(|| format!("{file}"))?;
+    let (value, study) = load(&args.study)?;
     let config_hash = mimique_study::config_hash(&value);
     let seed = args.seed.unwrap_or(study.seed);
     let draw = Draw { seed, config_hash: &config_hash, participant: args.participant };

@@ -16,6 +16,8 @@ mod kendall;
 mod kruskal_wallis;
 mod mann_whitney;
 mod outcome;
+mod power;
+mod preregistration;
 mod proportion;
 mod ranks;
 mod report;
@@ -42,13 +44,18 @@ pub use friedman::{Blocks, Friedman, ImanDavenport, PairwiseHolm, Quade, friedma
 pub use kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
 pub use mann_whitney::{MannWhitney, mann_whitney};
 pub use outcome::{Labelled, Outcome, Refusal};
+pub use power::{
+    Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, power, power_csv,
+    power_curve, power_markdown, power_runs,
+};
+pub use preregistration::{Preregistration, preregistration};
 pub use proportion::{Proportion, proportion};
 pub use ranks::Ranks;
 pub use report::{Language, Report, ReportFile, analyze};
 pub use scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use simulate::{
-    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError, Rating,
-    Recognition, SimulatedSession, Simulation, Times,
+    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
+    Rating, Recognition, SimulatedSession, Simulation, Times,
 };
 pub use spearman::{Spearman, spearman};
 pub use table::{Numbers, Table, TableError};

@@ -1,21 +1,31 @@
 //! JSON lines: tidy rows, or stored events.
 
-use mimique_study::responses::iso_time;
+use mimique_study::responses::{Column, iso_time};
+use mimique_study::wire::{Event, SessionStarted};
 use serde_json::{Map, Value, json};
 
 use super::ExportError;
-use super::table::{Merged, Sources};
+use super::table::{Merged, Sources, as_started};
 use crate::storage::Storage;
 
 /// One object a row, its keys in alphabetical order.
 pub(super) fn rows(table: &Merged) -> Result<Vec<u8>, ExportError> {
     let mut bytes = Vec::new();
     for row in &table.rows {
-        let names = table.columns.iter().map(|column| column.name.clone());
-        let object: Map<String, Value> = names.zip(row.iter().cloned()).collect();
-        add_line(&mut bytes, &Value::Object(object))?;
+        add_row(&mut bytes, &table.columns, row)?;
     }
     Ok(bytes)
+}
+
+/// Adds one row.
+pub(super) fn add_row(
+    bytes: &mut Vec<u8>,
+    columns: &[Column],
+    row: &[Value],
+) -> Result<(), ExportError> {
+    let names = columns.iter().map(|column| column.name.clone());
+    let object: Map<String, Value> = names.zip(row.iter().cloned()).collect();
+    add_line(bytes, &Value::Object(object))
 }
 
 /// One object an event; also how many participants and events there are.
@@ -29,20 +39,30 @@ pub(super) async fn events(
         let events = storage.events(session.key).await?;
         participants += usize::from(!events.is_empty());
         rows += events.len();
-        for event in events {
-            let line = json!({
-                "participant_id": crate::participant_id(session.participant),
-                "stage": session.stage,
-                "config_hash": session.config_hash,
-                "sequence": event.sequence,
-                "at_ms": event.at_ms,
-                "at": iso_time(event.at_ms),
-                "body": event.body,
-            });
-            add_line(&mut bytes, &line)?;
+        let started = as_started(session);
+        for event in &events {
+            add_event(&mut bytes, &started, event)?;
         }
     }
     Ok((bytes, participants, rows))
+}
+
+/// Adds one event.
+pub(super) fn add_event(
+    bytes: &mut Vec<u8>,
+    started: &SessionStarted,
+    event: &Event,
+) -> Result<(), ExportError> {
+    let line = json!({
+        "participant_id": started.participant_id,
+        "stage": started.stage,
+        "config_hash": started.config_hash,
+        "sequence": event.sequence,
+        "at_ms": event.at_ms,
+        "at": iso_time(event.at_ms),
+        "body": event.body,
+    });
+    add_line(bytes, &line)
 }
 
 fn add_line(bytes: &mut Vec<u8>, value: &Value) -> Result<(), ExportError> {

@@ -14,11 +14,13 @@
 mod lines;
 mod psych_ds;
 mod table;
+mod unstored;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 pub(crate) use table::{Sources, Version, as_started};
+pub use unstored::{Unstored, Written};
 
 use crate::atomic_file;
 use crate::storage::{Storage, StorageError};
@@ -147,7 +149,11 @@ pub async fn export(
         Format::PsychDs => {
             let tidy = sources.tidy(storage).await?;
             let counts = (tidy.participants, tidy.rows.len());
-            (psych_ds::files(&sources, &tidy)?, counts.0, counts.1)
+            (
+                psych_ds::files(&sources, &tidy.columns, table::csv(&tidy)?, counts)?,
+                counts.0,
+                counts.1,
+            )
         }
     };
     Ok(Exported { study_id, files, participants, rows })

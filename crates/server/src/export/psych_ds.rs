@@ -2,28 +2,31 @@
 
 use std::io::{Cursor, Write};
 
-use mimique_study::responses::{self, Table};
+use mimique_study::responses::{self, Column, Table};
 use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 
 use super::ExportError;
-use super::table::{self, Merged, Sources};
+use super::table::Sources;
 
-/// The files by their paths in the data set, in alphabetical order.
+/// The files by their paths in the data set, in alphabetical order. `csv` is the tidy table with these
+/// columns, of so many participants and rows.
 pub(super) fn files(
     sources: &Sources,
-    tidy: &Merged,
+    columns: &[Column],
+    csv: Vec<u8>,
+    counts: (usize, usize),
 ) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     let form = |error: serde_json::Error| ExportError::Form(error.to_string());
     let latest = sources.latest()?;
     // The data dictionary needs the columns alone.
-    let columns = Table { columns: tidy.columns.clone(), rows: Vec::new() };
+    let columns = Table { columns: columns.to_vec(), rows: Vec::new() };
     let description = responses::psych_ds_description(&latest.study, &columns);
     // Values of Psych-DS keywords are letters and digits.
     let name: String = sources.study_id.chars().filter(char::is_ascii_alphanumeric).collect();
     let mut files = vec![
-        ("README.md".to_owned(), readme(sources, tidy)?.into_bytes()),
-        (format!("data/study-{name}_data.csv"), table::csv(tidy)?),
+        ("README.md".to_owned(), readme(sources, counts)?.into_bytes()),
+        (format!("data/study-{name}_data.csv"), csv),
         (
             "dataset_description.json".to_owned(),
             serde_json::to_vec_pretty(&description).map_err(form)?,
@@ -37,17 +40,15 @@ pub(super) fn files(
     Ok(files)
 }
 
-fn readme(sources: &Sources, tidy: &Merged) -> Result<String, ExportError> {
+fn readme(sources: &Sources, (participants, rows): (usize, usize)) -> Result<String, ExportError> {
     let study = &sources.latest()?.study;
     let title = study.study_metadata.title.in_language(study.default_language());
     let description = study.study_metadata.description.in_language(study.default_language());
     Ok(format!(
         "# {title}\n\n{description}\n\n\
-         {} participants, {} responses; one row a participant x trial x response.\n\
+         {participants} participants, {rows} responses; one row a participant x trial x response.\n\
          The columns are described in `dataset_description.json`; `materials/` holds the study\n\
          file, one for each version that was served (column `config_hash`).\n",
-        tidy.participants,
-        tidy.rows.len(),
     ))
 }
 

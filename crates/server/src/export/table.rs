@@ -72,6 +72,11 @@ impl Sources {
         Ok(Self { study_id: study_id.to_owned(), versions, sessions, identifiers })
     }
 
+    /// A study of one version whose sessions lie elsewhere.
+    pub fn without_storage(study_id: String, version: Version) -> Self {
+        Self { study_id, versions: vec![version], sessions: Vec::new(), identifiers: None }
+    }
+
     /// The version that is served now, or was served last.
     pub fn latest(&self) -> Result<&Version, ExportError> {
         self.versions.last().ok_or_else(|| ExportError::UnknownStudy {
@@ -224,11 +229,28 @@ fn response_session<'a>(
 
 /// A table as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.
 pub(super) fn csv(table: &Merged) -> Result<Vec<u8>, ExportError> {
+    let mut bytes = csv_header(&table.columns)?;
+    bytes.extend(csv_rows(&table.rows)?);
+    Ok(bytes)
+}
+
+/// The first line of a CSV file.
+pub(super) fn csv_header(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
+    records(std::iter::once(columns.iter().map(|column| column.name.clone())))
+}
+
+/// The lines below it.
+pub(super) fn csv_rows(rows: &[Vec<Value>]) -> Result<Vec<u8>, ExportError> {
+    records(rows.iter().map(|row| row.iter().map(cell)))
+}
+
+fn records(
+    rows: impl Iterator<Item = impl Iterator<Item = String>>,
+) -> Result<Vec<u8>, ExportError> {
     let form = |error: csv::Error| ExportError::Form(error.to_string());
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(table.columns.iter().map(|column| &column.name)).map_err(form)?;
-    for row in &table.rows {
-        writer.write_record(row.iter().map(cell)).map_err(form)?;
+    for row in rows {
+        writer.write_record(row).map_err(form)?;
     }
     writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use mimique_study::{Question, QuestionKind, Study};
+use mimique_study::{Exclusions, Question, QuestionKind, Study};
 use serde::Serialize;
 
 use crate::outcome::Refusal;
@@ -191,24 +191,8 @@ impl Export {
                         None
                     } else {
                         self.flow.trials += 1;
-                        let share = match (trial.late, trial.frames) {
-                            (Some(late), Some(frames)) if frames > 0.0 => Some(late / frames),
-                            _ => None,
-                        };
-                        let over = |value: Option<f64>, limit: Option<f64>| matches!((value, limit), (Some(value), Some(limit)) if value > limit);
-                        let quick = matches!(
-                            (quickest.get(&(person, id)), rules.shortest_rt_ms),
-                            (Some(rt), Some(limit)) if *rt < limit
-                        );
-                        let reason = if over(share, rules.late_frame_share) {
-                            Some("late frames")
-                        } else if over(trial.longest_ms, rules.longest_frame_ms) {
-                            Some("long frame")
-                        } else if quick {
-                            Some("answered too soon")
-                        } else {
-                            None
-                        };
+                        let reason =
+                            why_left_out(&rules, &trial, quickest.get(&(person, id)).copied());
                         match reason {
                             Some(reason) => {
                                 *self.flow.trials_left_out.entry(reason).or_insert(0) += 1;
@@ -345,7 +329,32 @@ impl<'t> Rows<'t> {
     }
 }
 
-fn exclude_people(study: &Study, people: &mut [Person], stages: &[&str]) -> Flow {
+/// Why a trial is left out, if it is: its first reason. `quickest_ms` is its shortest response time.
+pub(crate) fn why_left_out(
+    rules: &Exclusions,
+    trial: &Trial,
+    quickest_ms: Option<f64>,
+) -> Option<&'static str> {
+    let share = match (trial.late, trial.frames) {
+        (Some(late), Some(frames)) if frames > 0.0 => Some(late / frames),
+        _ => None,
+    };
+    let over = |value: Option<f64>, limit: Option<f64>| matches!((value, limit), (Some(value), Some(limit)) if value > limit);
+    let quick =
+        matches!((quickest_ms, rules.shortest_rt_ms), (Some(rt), Some(limit)) if rt < limit);
+    if over(share, rules.late_frame_share) {
+        Some("late frames")
+    } else if over(trial.longest_ms, rules.longest_frame_ms) {
+        Some("long frame")
+    } else if quick {
+        Some("answered too soon")
+    } else {
+        None
+    }
+}
+
+/// Marks the people whom the rules leave out, and counts them.
+pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&str]) -> Flow {
     let rules = study.exclusions.clone().unwrap_or_default();
     let live = stages.iter().any(|stage| *stage != "pilot");
     let mut flow = Flow { people: people.len(), rules: rules_in_words(&rules), ..Flow::default() };
@@ -377,7 +386,7 @@ fn exclude_people(study: &Study, people: &mut [Person], stages: &[&str]) -> Flow
     flow
 }
 
-fn rules_in_words(rules: &mimique_study::Exclusions) -> Vec<String> {
+fn rules_in_words(rules: &Exclusions) -> Vec<String> {
     let mut words = Vec::new();
     if rules.incomplete {
         words.push("incomplete".to_owned());

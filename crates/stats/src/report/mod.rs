@@ -25,8 +25,13 @@ use mimique_study::Study;
 
 use crate::outcome::Refusal;
 use crate::table::Table;
+pub(crate) use comparison::TestLine;
 use document::Block;
+pub(crate) use export::{Answer, Export, Person, Trial, exclude_people, why_left_out};
+pub(crate) use hypothesis::test_hypothesis;
 pub use language::Language;
+pub(crate) use naming::Naming;
+pub(crate) use svg::{Anchor, Axis, Svg};
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,7 +58,7 @@ pub struct Report {
 /// Computes the report. Refuses an export without the columns of the tidy form or without any trial
 /// that can be used.
 pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, Refusal> {
-    let export = export::Export::read(table, study)?;
+    let export = Export::read(table, study)?;
     if export.trials.is_empty() {
         return Err(Refusal::column(
             "trial_type",

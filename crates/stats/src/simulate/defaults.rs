@@ -29,12 +29,72 @@ const TIME_EFFECT: f64 = 0.1;
 
 /// Answers to the six emotions, a row a right answer.
 const CONFUSION: [(&str, [(&str, f64); 6]); 6] = [
-    ("anger", [("anger", 0.60), ("disgust", 0.25), ("fear", 0.04), ("joy", 0.02), ("sadness", 0.05), ("surprise", 0.04)]),
-    ("disgust", [("anger", 0.27), ("disgust", 0.55), ("fear", 0.05), ("joy", 0.02), ("sadness", 0.08), ("surprise", 0.03)]),
-    ("fear", [("anger", 0.04), ("disgust", 0.05), ("fear", 0.42), ("joy", 0.01), ("sadness", 0.08), ("surprise", 0.40)]),
-    ("joy", [("anger", 0.02), ("disgust", 0.02), ("fear", 0.01), ("joy", 0.87), ("sadness", 0.02), ("surprise", 0.06)]),
-    ("sadness", [("anger", 0.06), ("disgust", 0.08), ("fear", 0.15), ("joy", 0.02), ("sadness", 0.55), ("surprise", 0.14)]),
-    ("surprise", [("anger", 0.02), ("disgust", 0.02), ("fear", 0.12), ("joy", 0.08), ("sadness", 0.01), ("surprise", 0.75)]),
+    (
+        "anger",
+        [
+            ("anger", 0.60),
+            ("disgust", 0.25),
+            ("fear", 0.04),
+            ("joy", 0.02),
+            ("sadness", 0.05),
+            ("surprise", 0.04),
+        ],
+    ),
+    (
+        "disgust",
+        [
+            ("anger", 0.27),
+            ("disgust", 0.55),
+            ("fear", 0.05),
+            ("joy", 0.02),
+            ("sadness", 0.08),
+            ("surprise", 0.03),
+        ],
+    ),
+    (
+        "fear",
+        [
+            ("anger", 0.04),
+            ("disgust", 0.05),
+            ("fear", 0.42),
+            ("joy", 0.01),
+            ("sadness", 0.08),
+            ("surprise", 0.40),
+        ],
+    ),
+    (
+        "joy",
+        [
+            ("anger", 0.02),
+            ("disgust", 0.02),
+            ("fear", 0.01),
+            ("joy", 0.87),
+            ("sadness", 0.02),
+            ("surprise", 0.06),
+        ],
+    ),
+    (
+        "sadness",
+        [
+            ("anger", 0.06),
+            ("disgust", 0.08),
+            ("fear", 0.15),
+            ("joy", 0.02),
+            ("sadness", 0.55),
+            ("surprise", 0.14),
+        ],
+    ),
+    (
+        "surprise",
+        [
+            ("anger", 0.02),
+            ("disgust", 0.02),
+            ("fear", 0.12),
+            ("joy", 0.08),
+            ("sadness", 0.01),
+            ("surprise", 0.75),
+        ],
+    ),
 ];
 /// Share of right answers of anything else.
 const OTHER_HIT: f64 = 0.62;
@@ -72,9 +132,13 @@ impl Parameters {
                 }
                 QuestionKind::Number(field) => {
                     // Most numbers that a study asks for are ages.
-                    let (low, high) = (field.minimum.unwrap_or(0.0), field.maximum.unwrap_or(100.0));
-                    let (mean, sd) =
-                        if low <= 30.0 && high >= 60.0 { (30.0, 10.0) } else { ((low + high) / 2.0, (high - low) / 6.0) };
+                    let (low, high) =
+                        (field.minimum.unwrap_or(0.0), field.maximum.unwrap_or(100.0));
+                    let (mean, sd) = if low <= 30.0 && high >= 60.0 {
+                        (30.0, 10.0)
+                    } else {
+                        ((low + high) / 2.0, (high - low) / 6.0)
+                    };
                     numbers.insert(question.id.clone(), NumberAnswer { mean, sd });
                 }
                 _ => {}
@@ -88,8 +152,13 @@ impl Parameters {
             clip_ms: 3000.0,
         };
         for hypothesis in study.hypotheses.iter().filter(|each| each.measure == Measure::Rt) {
-            for factor in hypothesis.factors.iter().filter(|each| !traits(study).contains_key(*each)) {
-                times.effects.insert(factor.clone(), spread(&tested(hypothesis, factor, &levels), TIME_EFFECT));
+            for factor in
+                hypothesis.factors.iter().filter(|each| !traits(study).contains_key(*each))
+            {
+                times.effects.insert(
+                    factor.clone(),
+                    spread(&tested(hypothesis, factor, &levels), TIME_EFFECT),
+                );
             }
         }
         Self {
@@ -136,7 +205,8 @@ fn rating(study: &Study, levels: &Levels, response: &str, scale: Scale, in_trial
         let of = |each: &&Hypothesis| each.response == response && each.measure != Measure::Rt;
         let tested: Vec<&Hypothesis> = study.hypotheses.iter().filter(of).collect();
         (rating.effects, rating.interactions) = effects(&tested, levels, RATING_EFFECT * unit);
-        (rating.person_sd, rating.segment_sd, rating.clip_sd) = (0.6 * unit, 0.3 * unit, 0.1 * unit);
+        (rating.person_sd, rating.segment_sd, rating.clip_sd) =
+            (0.6 * unit, 0.3 * unit, 0.1 * unit);
         rating.person_by_sd = takes_to(study, &tested, levels, 0.3 * unit);
     }
     rating
@@ -147,12 +217,15 @@ fn recognised(study: &Study, levels: &Levels, question: &Question) -> Recognitio
     let tested: Vec<&Hypothesis> = study.hypotheses.iter().filter(of).collect();
     let truth = truth_of(question).unwrap_or_default();
     let none = Vec::new();
-    let by = if levels.contains_key("intensity") && truth != "intensity" { "intensity" } else { "" };
+    let by =
+        if levels.contains_key("intensity") && truth != "intensity" { "intensity" } else { "" };
     let steps = levels.get(by).unwrap_or(&none);
     let answers: Vec<&str> =
         question.kind.options().iter().map(|option| option.value.as_str()).collect();
     let mut confusion = BTreeMap::new();
-    for right in levels.get(truth).unwrap_or(&none).iter().filter(|each| answers.contains(&each.as_str())) {
+    for right in
+        levels.get(truth).unwrap_or(&none).iter().filter(|each| answers.contains(&each.as_str()))
+    {
         let row = row(right, &answers);
         let mut rows = BTreeMap::new();
         if steps.len() < 2 {
@@ -243,20 +316,26 @@ fn effects(
     for hypothesis in tested_by {
         match (hypothesis.factors.as_slice(), is_two_way(hypothesis.test)) {
             ([a, b, ..], true) => {
-                let (of_a, of_b) = (tested(hypothesis, a, levels), levels.get(b).cloned().unwrap_or_default());
+                let (of_a, of_b) =
+                    (tested(hypothesis, a, levels), levels.get(b).cloned().unwrap_or_default());
                 for (i, level_a) in of_a.iter().enumerate() {
                     for (j, level_b) in of_b.iter().enumerate() {
                         // Alternating signs, centred: rows and columns add up to about nothing.
                         let sign = if (i + j) % 2 == 0 { 0.5 } else { -0.5 };
                         interactions.push(Interaction {
-                            levels: BTreeMap::from([(a.clone(), level_a.clone()), (b.clone(), level_b.clone())]),
+                            levels: BTreeMap::from([
+                                (a.clone(), level_a.clone()),
+                                (b.clone(), level_b.clone()),
+                            ]),
                             shift: rounded(sign * size),
                         });
                     }
                 }
             }
             ([factor, ..], _) => {
-                effects.entry(factor.clone()).or_insert_with(|| spread(&tested(hypothesis, factor, levels), size));
+                effects
+                    .entry(factor.clone())
+                    .or_insert_with(|| spread(&tested(hypothesis, factor, levels), size));
             }
             ([], _) => {}
         }

@@ -94,7 +94,9 @@ impl Latent {
                 interaction.levels.clone().into_iter().partition(|(factor, _)| is_trait(factor));
             let here: Vec<bool> = clips
                 .iter()
-                .map(|clip| of_clips.iter().all(|(f, wanted)| level(clip, f).as_ref() == Some(wanted)))
+                .map(|clip| {
+                    of_clips.iter().all(|(f, wanted)| level(clip, f).as_ref() == Some(wanted))
+                })
                 .collect();
             if of_people.is_empty() {
                 for (value, here) in base.iter_mut().zip(&here) {
@@ -149,7 +151,10 @@ impl Latent {
         let mut draws = Draws::new(seed, None, &format!("clips of {}", self.response));
         let count = segments.iter().max().map_or(0, |last| last + 1);
         let of_segments: Vec<f64> = (0..count).map(|_| self.segment_sd * draws.normal()).collect();
-        segments.iter().map(|&segment| of_segments[segment] + self.clip_sd * draws.normal()).collect()
+        segments
+            .iter()
+            .map(|&segment| of_segments[segment] + self.clip_sd * draws.normal())
+            .collect()
     }
 
     /// The value of one person at each clip.

@@ -6,6 +6,7 @@
 //! number and purpose: the same seed gives the same events in any order and on any number of threads.
 
 mod defaults;
+mod fit;
 mod latent;
 mod model;
 mod null;
@@ -29,7 +30,7 @@ pub use parameters::{
 pub(crate) use person::{BEFORE_REPLAY_MS, Person, Raw, as_json};
 pub(crate) use random::Draws;
 pub use read::ParametersError;
-pub(crate) use scales::traits;
+pub(crate) use scales::{factor_levels, traits};
 pub(crate) use session::eighths;
 
 /// A study with simulated participants.

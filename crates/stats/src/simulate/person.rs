@@ -17,6 +17,7 @@ pub(crate) struct Person<'m> {
     pub fate: Fate,
     answers: Draws,
     pages: Draws,
+    chance: Draws,
     times: Draws,
     display: Draws,
     pace: f64,
@@ -107,6 +108,7 @@ impl<'m> Person<'m> {
             fate: Fate { declines, leaves_after, withdraws },
             answers: draws("answers"),
             pages: draws("about"),
+            chance: draws("chance"),
             times: draws("times"),
             display: draws("display"),
             pace,
@@ -137,7 +139,12 @@ impl<'m> Person<'m> {
     }
 
     /// An answer in the trial of this number (from 0); none where the question is left out.
-    pub(crate) fn trial_answer(&mut self, question: usize, clip: usize, trial: usize) -> Option<Raw> {
+    pub(crate) fn trial_answer(
+        &mut self,
+        question: usize,
+        clip: usize,
+        trial: usize,
+    ) -> Option<Raw> {
         self.mind.answer(&mut self.answers, question, Some(clip), trial)
     }
 
@@ -151,7 +158,8 @@ impl<'m> Person<'m> {
             };
             times.effects.iter().filter_map(of).sum()
         });
-        let share = if self.mind.careless { self.mind.model.parameters.careless.time_share } else { 1.0 };
+        let share =
+            if self.mind.careless { self.mind.model.parameters.careless.time_share } else { 1.0 };
         let median = times.median_ms * share * self.pace * libm::exp(shift);
         self.times.log_normal(median, times.sigma)
     }
@@ -180,7 +188,7 @@ impl<'m> Person<'m> {
 
     /// A draw for what decides nothing: window, browser, reading times.
     pub(crate) fn chance(&mut self) -> &mut Draws {
-        &mut self.pages
+        &mut self.chance
     }
 }
 
@@ -214,7 +222,8 @@ impl Mind<'_> {
                 several => {
                     let values: Vec<f64> =
                         several.iter().map(|one| self.rate(draws, one, clip, trial)).collect();
-                    let [valence, arousal] = [0, 1].map(|axis| values.get(axis).copied().unwrap_or(1.0));
+                    let [valence, arousal] =
+                        [0, 1].map(|axis| values.get(axis).copied().unwrap_or(1.0));
                     Raw::Json(json!({"valence": valence as i64, "arousal": arousal as i64}))
                 }
             },
@@ -223,7 +232,11 @@ impl Mind<'_> {
                 match row {
                     Some((clip, row)) if !self.careless => {
                         let value = self.values[recognised.latent][clip] + draws.normal();
-                        Raw::Option(if value > row.threshold { row.right } else { draws.weighted(&row.wrong) })
+                        Raw::Option(if value > row.threshold {
+                            row.right
+                        } else {
+                            draws.weighted(&row.wrong)
+                        })
                     }
                     _ => Raw::Option(draws.below(recognised.options)),
                 }
@@ -253,7 +266,13 @@ impl Mind<'_> {
                 Raw::Number(if *whole {
                     let value = value.round();
                     // Rounding must not leave bounds that are no whole numbers.
-                    if value < *low { low.ceil() } else if value > *high { high.floor() } else { value }
+                    if value < *low {
+                        low.ceil()
+                    } else if value > *high {
+                        high.floor()
+                    } else {
+                        value
+                    }
                 } else {
                     (value * 100.0).round() / 100.0
                 })

@@ -77,7 +77,9 @@ mod tests {
         let values: Vec<f64> = (0..n).map(|_| draws.normal()).collect();
         let moment = |power: i32| values.iter().map(|v| v.powi(power)).sum::<f64>() / f64::from(n);
         // Standard errors of the first four moments: sqrt of 1, 2, 15, 96 over sqrt of n.
-        for (power, expected, error) in [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0f64)] {
+        for (power, expected, error) in
+            [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0f64)]
+        {
             let bound = 3.5 * error.sqrt() / f64::from(n).sqrt();
             assert!((moment(power) - expected).abs() < bound, "moment {power}: {}", moment(power));
         }
@@ -91,7 +93,9 @@ mod tests {
             counts[draws.weighted(&[1.0, 0.0, 2.0, 1.0])] += 1;
         }
         assert_eq!(counts[1], 0);
-        for (count, expected) in [(counts[0], 10_000.0), (counts[2], 20_000.0), (counts[3], 10_000.0)] {
+        for (count, expected) in
+            [(counts[0], 10_000.0), (counts[2], 20_000.0), (counts[3], 10_000.0)]
+        {
             assert!((f64::from(count) - expected).abs() < 400.0, "{counts:?}");
         }
     }

@@ -32,14 +32,16 @@ impl Parameters {
             let (problem, remedy) = text.split_once("; ").unwrap_or((&text, "write JSON"));
             problem_at("/", problem, remedy)
         })?;
-        let mut value = serde_json::to_value(base)
-            .map_err(|error| problem_at("/", error.to_string(), "report this mistake of Mimique's"))?;
+        let mut value = serde_json::to_value(base).map_err(|error| {
+            problem_at("/", error.to_string(), "report this mistake of Mimique's")
+        })?;
         for part in ["ratings", "recognition", "choices", "numbers"] {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);
         let parameters: Self = serde_path_to_error::deserialize(value).map_err(|error| {
-            let path = error.path().to_string().replace('.', "/").replace('[', "/").replace(']', "");
+            let path =
+                error.path().to_string().replace('.', "/").replace('[', "/").replace(']', "");
             let pointer = if path == "/" { path } else { format!("/{path}") };
             problem_at(&pointer, error.inner().to_string(), "look up the key's name and kind")
         })?;
@@ -74,13 +76,22 @@ impl Parameters {
                 if borders.len() != expected {
                     return Err(problem_at(
                         &at("thresholds"),
-                        format!("{} thresholds for a scale of {} points", borders.len(), scale.points),
+                        format!(
+                            "{} thresholds for a scale of {} points",
+                            borders.len(),
+                            scale.points
+                        ),
                         format!("give {expected}, or none"),
                     ));
                 }
-                if !borders.iter().all(|b| b.is_finite()) || borders.windows(2).any(|w| w[0] > w[1]) {
+                if !borders.iter().all(|b| b.is_finite()) || borders.windows(2).any(|w| w[0] > w[1])
+                {
                     let problem = format!("{borders:?} does not ascend");
-                    return Err(problem_at(&at("thresholds"), problem, "order them from low to high"));
+                    return Err(problem_at(
+                        &at("thresholds"),
+                        problem,
+                        "order them from low to high",
+                    ));
                 }
             }
         }
@@ -99,7 +110,9 @@ impl Parameters {
             if !recognition.by.is_empty() {
                 known_factor(&at("by"), &recognition.by, &levels)?;
             }
-            let Some(asked) = study.all_questions().find(|each| each.id == *question) else { continue };
+            let Some(asked) = study.all_questions().find(|each| each.id == *question) else {
+                continue;
+            };
             let answers: Vec<&str> =
                 asked.kind.options().iter().map(|option| option.value.as_str()).collect();
             let truth = truth_of(asked).unwrap_or_default();
@@ -119,9 +132,9 @@ impl Parameters {
                     shares(&format!("{pointer}/{level}"), row, &answers)?;
                 }
             }
-            let missing = shown
-                .iter()
-                .find(|each| answers.contains(&each.as_str()) && !recognition.confusion.contains_key(*each));
+            let missing = shown.iter().find(|each| {
+                answers.contains(&each.as_str()) && !recognition.confusion.contains_key(*each)
+            });
             if let Some(missing) = missing {
                 return Err(problem_at(
                     &at("confusion"),
@@ -131,7 +144,9 @@ impl Parameters {
             }
         }
         for (question, shares_given) in &self.choices {
-            let Some(asked) = study.all_questions().find(|each| each.id == *question) else { continue };
+            let Some(asked) = study.all_questions().find(|each| each.id == *question) else {
+                continue;
+            };
             let answers: Vec<&str> =
                 asked.kind.options().iter().map(|option| option.value.as_str()).collect();
             shares(&format!("/choices/{question}"), shares_given, &answers)?;
@@ -147,7 +162,8 @@ impl Parameters {
                 return Err(problem_at(&format!("/times/{key}"), problem, "give milliseconds"));
             }
         }
-        for (key, value) in [("sigma", self.times.sigma), ("personSigma", self.times.person_sigma)] {
+        for (key, value) in [("sigma", self.times.sigma), ("personSigma", self.times.person_sigma)]
+        {
             deviation(&format!("/times/{key}"), value)?;
         }
         let rate = self.display.refresh_hz;
@@ -157,7 +173,11 @@ impl Parameters {
         }
         if !(self.careless.time_share > 0.0 && self.careless.time_share <= 10.0) {
             let problem = format!("{} is no share of a time", self.careless.time_share);
-            return Err(problem_at("/careless/timeShare", problem, "give a number above 0, up to 10"));
+            return Err(problem_at(
+                "/careless/timeShare",
+                problem,
+                "give a number above 0, up to 10",
+            ));
         }
         for (pointer, share) in [
             ("/attentionPass", self.attention_pass),
@@ -183,12 +203,18 @@ impl Parameters {
     }
 }
 
-fn problem_at(pointer: &str, problem: impl Into<String>, remedy: impl Into<String>) -> ParametersError {
+fn problem_at(
+    pointer: &str,
+    problem: impl Into<String>,
+    remedy: impl Into<String>,
+) -> ParametersError {
     ParametersError { pointer: pointer.to_owned(), problem: problem.into(), remedy: remedy.into() }
 }
 
 fn refuse_unknown(base: &Value, given: &Value, part: &str) -> Result<(), ParametersError> {
-    let (Some(Value::Object(known)), Some(Value::Object(named))) = (base.get(part), given.get(part)) else {
+    let (Some(Value::Object(known)), Some(Value::Object(named))) =
+        (base.get(part), given.get(part))
+    else {
         return Ok(());
     };
     match named.keys().find(|key| !known.contains_key(*key)) {
@@ -200,7 +226,11 @@ fn refuse_unknown(base: &Value, given: &Value, part: &str) -> Result<(), Paramet
             } else {
                 format!("the study has {}", names.join(", "))
             };
-            Err(problem_at(&format!("/{part}/{key}"), "the study has no such question here", remedy))
+            Err(problem_at(
+                &format!("/{part}/{key}"),
+                "the study has no such question here",
+                remedy,
+            ))
         }
     }
 }
@@ -244,10 +274,18 @@ fn deviation(pointer: &str, value: f64) -> Result<(), ParametersError> {
 
 type Levels = BTreeMap<String, Vec<String>>;
 
-fn known_factor<'l>(pointer: &str, factor: &str, levels: &'l Levels) -> Result<&'l [String], ParametersError> {
+fn known_factor<'l>(
+    pointer: &str,
+    factor: &str,
+    levels: &'l Levels,
+) -> Result<&'l [String], ParametersError> {
     levels.get(factor).map(Vec::as_slice).ok_or_else(|| {
         let names: Vec<&str> = levels.keys().map(String::as_str).collect();
-        problem_at(pointer, format!("there is no factor \"{factor}\""), format!("the study has {}", names.join(", ")))
+        problem_at(
+            pointer,
+            format!("there is no factor \"{factor}\""),
+            format!("the study has {}", names.join(", ")),
+        )
     })
 }
 
@@ -255,7 +293,11 @@ fn known_level(pointer: &str, level: &str, levels: &[String]) -> Result<(), Para
     if levels.iter().any(|known| known == level) {
         return Ok(());
     }
-    Err(problem_at(pointer, format!("there is no level \"{level}\""), format!("the levels are {}", levels.join(", "))))
+    Err(problem_at(
+        pointer,
+        format!("there is no level \"{level}\""),
+        format!("the levels are {}", levels.join(", ")),
+    ))
 }
 
 fn by_factor(pointer: &str, by: &ByLevel, levels: &Levels) -> Result<(), ParametersError> {
@@ -267,7 +309,11 @@ fn by_factor(pointer: &str, by: &ByLevel, levels: &Levels) -> Result<(), Paramet
     Ok(())
 }
 
-fn effects(pointer: &str, effects: &BTreeMap<String, ByLevel>, levels: &Levels) -> Result<(), ParametersError> {
+fn effects(
+    pointer: &str,
+    effects: &BTreeMap<String, ByLevel>,
+    levels: &Levels,
+) -> Result<(), ParametersError> {
     for (factor, shifts) in effects {
         let pointer = format!("{pointer}/{factor}");
         let known = known_factor(&pointer, factor, levels)?;
@@ -280,7 +326,11 @@ fn effects(pointer: &str, effects: &BTreeMap<String, ByLevel>, levels: &Levels) 
     Ok(())
 }
 
-fn interactions(pointer: &str, given: &[Interaction], levels: &Levels) -> Result<(), ParametersError> {
+fn interactions(
+    pointer: &str,
+    given: &[Interaction],
+    levels: &Levels,
+) -> Result<(), ParametersError> {
     for (place, interaction) in given.iter().enumerate() {
         finite(&format!("{pointer}/{place}/shift"), interaction.shift)?;
         for (factor, level) in &interaction.levels {

@@ -76,8 +76,7 @@ pub(crate) fn truth_of(question: &Question) -> Option<&str> {
 pub(crate) fn factor_levels(study: &Study, clips: &[Clip]) -> BTreeMap<String, Vec<String>> {
     let mut levels = BTreeMap::new();
     for name in study.factor_names() {
-        let cells: Vec<Option<String>> =
-            clips.iter().map(|clip| clip.factor_text(&name)).collect();
+        let cells: Vec<Option<String>> = clips.iter().map(|clip| clip.factor_text(&name)).collect();
         let cells = cells.iter().map(Option::as_deref);
         let factor = Factor::from_cells(&name, cells, |level| level.parse().ok());
         levels.insert(name, factor.levels);

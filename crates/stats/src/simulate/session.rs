@@ -226,9 +226,7 @@ impl Walk<'_, '_> {
             refresh_hz: self.model.parameters.display.refresh_hz,
             frames: showing.frames[..shown.min(showing.frames.len())]
                 .iter()
-                .map(|&(ms, late)| {
-                    (thousandths(ms), thousandths(ms), f64::from(u8::from(late)))
-                })
+                .map(|&(ms, late)| (thousandths(ms), thousandths(ms), f64::from(u8::from(late))))
                 .collect(),
             late: showing.late() as u32,
             longest_ms: thousandths(showing.longest_ms()),

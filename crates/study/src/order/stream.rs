@@ -66,7 +66,10 @@ mod tests {
         let mean = draws.iter().sum::<f64>() / 1e5;
         let square = draws.iter().map(|draw| draw * draw).sum::<f64>() / 1e5;
         // Standard errors 0.0009; the seed is fixed.
-        assert!((mean - 0.5).abs() < 0.003 && (square - 1.0 / 3.0).abs() < 0.003, "{mean} {square}");
+        assert!(
+            (mean - 0.5).abs() < 0.003 && (square - 1.0 / 3.0).abs() < 0.003,
+            "{mean} {square}"
+        );
     }
 
     #[test]

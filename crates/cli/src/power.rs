@@ -1,0 +1,191 @@
+//! `mimique power STUDY`: the study's own analysis over simulated answers, against the number of people
+//! and clips; the curve, the tables, and a preregistration written from the study file.
+
+use std::io::{IsTerminal, Write as _};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::Context as _;
+use indicatif::{ProgressBar, ProgressStyle};
+use mimique_stats::{
+    Language, Power, PowerOptions, Preregistration, power, power_csv, power_curve, power_markdown,
+    power_runs, preregistration,
+};
+
+use crate::simulate::{Assumptions, write_whole};
+use crate::study_file::load;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Study file (JSON, comments allowed)
+    study: PathBuf,
+    /// Numbers of people who arrive
+    #[arg(long, short = 'n', value_delimiter = ',', default_values_t = [10, 20, 40, 80])]
+    participants: Vec<usize>,
+    /// Numbers of clips: segments are repeated or left out, whole; the study's own if not given
+    #[arg(long, value_delimiter = ',')]
+    clips: Vec<usize>,
+    /// Simulated studies a point
+    #[arg(long, default_value_t = 500)]
+    runs: usize,
+    /// Seed of all simulations
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// A test is positive below this p
+    #[arg(long, default_value_t = 0.05)]
+    alpha: f64,
+    #[command(flatten)]
+    assumptions: Assumptions,
+    /// Leave out the false positives, which take as many runs again
+    #[arg(long)]
+    no_false_positives: bool,
+    /// Folder for power.csv, power.json, power.md and power.svg
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Write a preregistration to this file (markdown), its curve beside it
+    #[arg(long)]
+    preregistration: Option<PathBuf>,
+    /// Language of tables, curve and preregistration: en or fr
+    #[arg(long, default_value = "en", value_parser = language)]
+    language: Language,
+}
+
+fn language(code: &str) -> Result<Language, String> {
+    Language::from_code(code).ok_or_else(|| "power is written in en or fr".to_owned())
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let (file, study) = load(&args.study)?;
+    let place = || args.study.display().to_string();
+    let config_hash = mimique_study::config_hash(&file);
+    let parameters = args.assumptions.read(&study)?;
+    let mut participants = args.participants.clone();
+    participants.sort_unstable();
+    participants.dedup();
+    let mut clips = args.clips.clone();
+    clips.sort_unstable();
+    clips.dedup();
+    let options = PowerOptions {
+        participants,
+        clips,
+        runs: args.runs,
+        seed: args.seed,
+        alpha: args.alpha,
+        false_positives: !args.no_false_positives,
+    };
+    let bar = progress_bar(power_runs(&options));
+    let result = power(&study, &config_hash, &parameters, &options, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let power = result.with_context(place)?;
+    let language = args.language;
+    let mut written = Vec::new();
+    let mut write = |path: PathBuf, text: String| -> anyhow::Result<()> {
+        if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+            std::fs::create_dir_all(parent)
+                .map_err(|error| anyhow::anyhow!("no folder can be made ({error})"))
+                .with_context(|| parent.display().to_string())?;
+        }
+        write_whole(&path, &text)?;
+        written.push(path.display().to_string());
+        Ok(())
+    };
+    let curve = power_curve(&power, language);
+    if let Some(out) = &args.out {
+        let json = serde_json::json!({"parameters": parameters, "config_hash": config_hash, "power": power});
+        write(out.join("power.csv"), power_csv(&power))?;
+        write(out.join("power.json"), format!("{}\n", serde_json::to_string_pretty(&json)?))?;
+        write(out.join("power.md"), power_markdown(&power, language))?;
+        write(out.join("power.svg"), curve.clone())?;
+    }
+    if let Some(path) = &args.preregistration {
+        let figure = path.with_extension("svg");
+        let name = figure.file_name().map(|name| name.to_string_lossy().into_owned());
+        let text = preregistration(&Preregistration {
+            study: &study,
+            config_hash: &config_hash,
+            power: &power,
+            parameters: &parameters,
+            language,
+            curve: name.as_deref(),
+        });
+        write(path.clone(), text)?;
+        write(figure, curve)?;
+    }
+    let mut out = std::io::stdout().lock();
+    if json {
+        let all = serde_json::json!({"config_hash": config_hash, "power": power, "files": written});
+        writeln!(out, "{all:#}")?;
+        return Ok(());
+    }
+    print(&mut out, &power)?;
+    if args.assumptions.is_default() {
+        writeln!(
+            out,
+            "\nEffects, spreads and dropout are the study's defaults; `mimique simulate` writes them into \
+             parameters.json, `--parameters` takes your own."
+        )?;
+    }
+    for path in &written {
+        writeln!(out, "  {path}")?;
+    }
+    Ok(())
+}
+
+/// A bar on stderr, where somebody looks at it.
+fn progress_bar(runs: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(runs);
+    let style = "{bar:40} {human_pos} of {human_len} studies, {per_sec}, {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(style) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "{}: {} simulated studies a point, alpha {}, seed {}; in brackets Wilson's 95 % interval",
+        power.study, power.runs, power.alpha, power.seed
+    )?;
+    let ids = power.points.first().map_or(0, |point| point.hypotheses.len());
+    for place in 0..ids {
+        let id = &power.points[0].hypotheses[place].id;
+        writeln!(out, "\n{id}")?;
+        let falsely = power.points[0].hypotheses[place].false_positives.is_some();
+        write!(
+            out,
+            "{:>7} {:>6}  {:<22} {:<22}",
+            "people", "clips", "power, recommended", "as in the thesis"
+        )?;
+        writeln!(out, "{}", if falsely { " false positives        as in the thesis" } else { "" })?;
+        for point in &power.points {
+            let hypothesis = &point.hypotheses[place];
+            let cell = |rate: &mimique_stats::Rate| {
+                let [low, high] = rate.interval.map(|share| 100.0 * share);
+                format!("{:5.1} % [{low:.1}, {high:.1}]", 100.0 * rate.share)
+            };
+            let columns = &hypothesis.power;
+            write!(
+                out,
+                "{:>7} {:>6}  {:<22} {:<22}",
+                point.participants,
+                point.clips,
+                cell(&columns.recommended),
+                cell(&columns.as_in_the_thesis)
+            )?;
+            if let Some(columns) = &hypothesis.false_positives {
+                let (people, trials) =
+                    (cell(&columns.recommended), cell(&columns.as_in_the_thesis));
+                write!(out, " {people:<22} {trials}")?;
+            }
+            writeln!(out)?;
+        }
+    }
+    Ok(())
+}

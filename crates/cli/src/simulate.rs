@@ -1,0 +1,167 @@
+//! `mimique simulate STUDY --participants N --out DIR`: an export of simulated participants, as the
+//! server writes it, and the parameters it was made with.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use mimique_server::export::{Format, Unstored};
+use mimique_stats::{Parameters, Simulation, Table};
+use mimique_study::Study;
+use rayon::prelude::*;
+
+use crate::study_file::load;
+
+/// Most participants of one simulation.
+const MOST_PARTICIPANTS: u64 = 1_000_000;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Study file (JSON, comments allowed)
+    study: PathBuf,
+    /// How many people arrive; who declines or withdraws leaves no answers
+    #[arg(long, short = 'n', value_parser = clap::value_parser!(u64).range(1..=MOST_PARTICIPANTS))]
+    participants: u64,
+    /// Seed of people and clips; the order of trials is the study's own
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    assumptions: Assumptions,
+    /// Without the effects that the study's hypotheses look for
+    #[arg(long)]
+    no_effects: bool,
+    /// csv: one row a participant x trial x response; wide: one row a participant; json: the rows of
+    /// csv as JSON lines; events: all that the page would send; psych-ds: a Psych-DS data set
+    #[arg(long, default_value = "csv", value_parser = format)]
+    format: Format,
+    /// Folder to write to: the export, and parameters.json
+    #[arg(long)]
+    out: PathBuf,
+}
+
+/// Where the parameters of a simulation come from.
+#[derive(clap::Args)]
+pub struct Assumptions {
+    /// Parameters file (JSON, comments allowed); what it leaves out is the study's default, which
+    /// `mimique simulate` writes into parameters.json
+    #[arg(long)]
+    parameters: Option<PathBuf>,
+    /// Tidy export of this study to fit the parameters to; a parameters file goes over what is fitted
+    #[arg(long)]
+    fit: Option<PathBuf>,
+}
+
+impl Assumptions {
+    /// Whether everything is the study's default.
+    pub fn is_default(&self) -> bool {
+        self.parameters.is_none() && self.fit.is_none()
+    }
+
+    /// The parameters for a study.
+    pub fn read(&self, study: &Study) -> anyhow::Result<Parameters> {
+        let mut parameters = match &self.fit {
+            None => Parameters::for_study(study),
+            Some(path) => std::fs::read(path)
+                .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
+                .and_then(|bytes| Ok(Table::parse(&bytes)?))
+                .and_then(|table| Ok(Parameters::fit(&table, study)?))
+                .with_context(|| path.display().to_string())?,
+        };
+        if let Some(path) = &self.parameters {
+            let place = || path.display().to_string();
+            let text = std::fs::read_to_string(path)
+                .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
+                .with_context(place)?;
+            parameters = Parameters::read_over(&parameters, &text, study).with_context(place)?;
+        }
+        Ok(parameters)
+    }
+}
+
+fn format(word: &str) -> Result<Format, String> {
+    Format::from_word(word).ok_or_else(|| {
+        let known = Format::ALL.map(Format::word).join(", ");
+        format!("there are {known}")
+    })
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let (file, study) = load(&args.study)?;
+    let place = || args.study.display().to_string();
+    let mut parameters = args.assumptions.read(&study)?;
+    if args.no_effects {
+        parameters = parameters.without_effects(&study);
+    }
+    let writer = Unstored::new(file, BTreeMap::new(), args.format).with_context(place)?;
+    let simulation = Simulation::new(&study, writer.config_hash(), &parameters, args.seed)
+        .with_context(|| match &args.assumptions.parameters {
+            Some(path) => path.display().to_string(),
+            None => place(),
+        })?;
+    let sessions: Vec<_> = (1..=args.participants)
+        .into_par_iter()
+        .map(|participant| {
+            let session = simulation.session(participant)?;
+            anyhow::Ok(writer.write(&session.started, &session.events)?)
+        })
+        .collect::<anyhow::Result<_>>()
+        .with_context(place)?;
+    let exported = writer.join(sessions)?;
+    let (participants, rows) = (exported.participants, exported.rows);
+    std::fs::create_dir_all(&args.out)
+        .map_err(|error| {
+            anyhow::anyhow!("no folder can be made ({error}); choose another by --out")
+        })
+        .with_context(|| args.out.display().to_string())?;
+    // One file goes under its own name, several are a folder of their own.
+    let target = match exported.files.as_slice() {
+        [(name, _)] => args.out.join(name),
+        _ => args.out.clone(),
+    };
+    let mut written = exported.write(&target)?;
+    let path = args.out.join("parameters.json");
+    let mut text = serde_json::to_string_pretty(&parameters)?;
+    text.push('\n');
+    write_whole(&path, &text)?;
+    written.push(path);
+
+    let mut out = std::io::stdout().lock();
+    if json {
+        let files: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        let line = serde_json::json!({
+            "study": study.id,
+            "seed": args.seed,
+            "arrived": args.participants,
+            "participants": participants,
+            "rows": rows,
+            "files": files,
+        });
+        writeln!(out, "{line}")?;
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "{}: {participants} of {} simulated participants left answers, {rows} rows, seed {}",
+        study.id, args.participants, args.seed
+    )?;
+    for path in &written {
+        writeln!(out, "  {}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Writes a file so that it is whole or absent.
+pub fn write_whole(path: &Path, text: &str) -> anyhow::Result<()> {
+    let place = || path.display().to_string();
+    let name = path.file_name().context("this is no name of a file").with_context(place)?;
+    let beside = format!(".{}.{}.part", name.to_string_lossy(), std::process::id());
+    let beside = path.with_file_name(beside);
+    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&beside);
+    }
+    written.map_err(|error| anyhow::anyhow!("cannot be written ({error})")).with_context(place)
+}

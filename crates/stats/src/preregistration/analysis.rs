@@ -1,0 +1,225 @@
+//! Analysis plan and exclusions in words. What is said here is what `report::hypothesis` computes.
+
+use mimique_study::{Hypothesis, Measure, QuestionKind, TestName};
+
+use super::{Preregistration, Text};
+use crate::report::{Language, Naming};
+use crate::simulate::{factor_levels, is_two_way, traits};
+
+pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let (language, study) = (from.language, from.study);
+    text.heading(2, "Analysis plan", "Plan d’analyse");
+    text.heading(3, "Statistical models", "Modèles statistiques");
+    for hypothesis in &study.hypotheses {
+        let (recommended, thesis) = tests(from, hypothesis);
+        let factors: Vec<String> =
+            hypothesis.factors.iter().map(|each| naming.factor(each)).collect();
+        let of = match hypothesis.measure {
+            Measure::Answer => format!("`{}`", hypothesis.response),
+            Measure::Correct => language.pick(
+                format!("right answers to `{}`", hypothesis.response),
+                format!("bonnes réponses à `{}`", hypothesis.response),
+            ),
+            Measure::Rt => language.pick(
+                format!("response time of `{}`", hypothesis.response),
+                format!("temps de réponse à `{}`", hypothesis.response),
+            ),
+        };
+        let by = factors.join(" × ");
+        text.line(&format!("- **{}** ({of}, {by}){}", hypothesis.id, language.pick(":", " :")));
+        if !hypothesis.levels.is_empty() {
+            let levels: Vec<String> = hypothesis
+                .levels
+                .iter()
+                .map(|level| naming.level(&hypothesis.factors[0], &level.to_string()))
+                .collect();
+            let words = language.pick("levels compared: ", "niveaux comparés : ");
+            text.line(&format!("  - {words}{}", levels.join(", ")));
+        }
+        text.line(&format!("  - {} {recommended}.", language.pick("decides:", "décide :")));
+        text.line(&format!(
+            "  - {} {thesis}.",
+            language.pick(
+                "for comparison with earlier work, not evidence (trials of one person are not independent):",
+                "pour comparaison avec les travaux antérieurs, sans valeur de preuve (les essais d’une personne ne sont pas indépendants) :"
+            )
+        ));
+    }
+    text.line("");
+    text.both(
+        "All are computed by `mimique analyze` on the export, with this study file.",
+        "Tous sont calculés par `mimique analyze` sur l’export, avec ce fichier d’étude.",
+    );
+    text.heading(3, "Transformations", "Transformations");
+    text.both(
+        "None, beyond the means a person and level above. Ratings are used as coded on the scale.",
+        "Aucune, au-delà des moyennes par personne et niveau ci-dessus. Les notes sont utilisées telles que codées sur l’échelle.",
+    );
+    text.heading(3, "Inference criteria", "Critères d’inférence");
+    let count = study.hypotheses.len();
+    let alpha = language.number(from.power.alpha);
+    let words = language.pick(
+        format!("Two-sided tests at α = {alpha}, after Holm’s correction over the {count} hypotheses. Comparisons of pairs within a hypothesis are corrected by Holm among themselves. Effect sizes with 95 % intervals are reported whatever the outcome: rank-biserial correlation and Hodges-Lehmann difference of pairs, Kendall’s W of several levels, partial η² of the aligned rank transform. A test that is not significant is not taken as evidence that there is no difference."),
+        format!("Tests bilatéraux à α = {alpha}, après correction de Holm sur les {count} hypothèses. Les comparaisons par paires au sein d’une hypothèse sont corrigées entre elles par Holm. Les tailles d’effet et leurs intervalles à 95 % sont rapportés quel que soit le résultat : corrélation bisériale des rangs et différence de Hodges-Lehmann pour les paires, W de Kendall pour plusieurs niveaux, η² partiel pour la transformation des rangs alignés. Un test non significatif n’est pas pris pour la preuve d’une absence de différence."),
+    );
+    text.line(&words);
+    text.line("");
+    text.heading(3, "Data exclusion", "Exclusion de données");
+    for rule in exclusions(from, language) {
+        text.line(&format!("- {rule}"));
+    }
+    text.line("");
+    text.both(
+        "Each exclusion is counted by its reason in the report’s flow chart. There are no others.",
+        "Chaque exclusion est comptée par motif dans le diagramme de flux du rapport. Il n’y en a pas d’autre.",
+    );
+    text.heading(3, "Missing data", "Données manquantes");
+    text.both(
+        "A person without a value at every level that a test compares is left out of that test and counted. Nothing is imputed.",
+        "Une personne sans valeur à chacun des niveaux qu’un test compare est écartée de ce test et comptée. Rien n’est imputé.",
+    );
+    text.heading(3, "Exploratory analysis", "Analyses exploratoires");
+    text.both(
+        "Everything else in the report (confusion matrices, other factors, response times, order and fatigue, late frames) is exploratory and will be called so. With one clip for a combination of performance and method, results are about these clips: they do not generalise to other performances.",
+        "Tout le reste du rapport (matrices de confusion, autres facteurs, temps de réponse, ordre et fatigue, images en retard) est exploratoire et sera présenté comme tel. Avec un seul extrait par combinaison de performance et de méthode, les résultats portent sur ces extraits : ils ne se généralisent pas à d’autres performances.",
+    );
+}
+
+/// The test that decides and the one of the thesis, in words.
+fn tests(from: &Preregistration<'_>, hypothesis: &Hypothesis) -> (String, String) {
+    let (language, study) = (from.language, from.study);
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let clips = study.clips();
+    let of_clips = study.factor_names().iter().any(|name| name == factor);
+    let levels = match hypothesis.levels.len() {
+        0 => factor_levels(study, &clips).get(factor).map_or(0, Vec::len),
+        named => named,
+    };
+    let asked = study.all_questions().find(|question| question.id == hypothesis.response);
+    let recognition = hypothesis.measure != Measure::Rt
+        && matches!(asked.map(|q| &q.kind), Some(QuestionKind::SingleChoice(c)) if c.truth.is_some());
+    let is_trait = !of_clips
+        && (traits(study).contains_key(factor)
+            || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor));
+    let wilcoxon = language.pick(
+        "Wilcoxon’s signed rank test on person means, exact and conditional on the observed ranks, zeros by Pratt",
+        "test des rangs signés de Wilcoxon sur les moyennes par personne, exact et conditionnel aux rangs observés, zéros selon Pratt",
+    );
+    let recommended = if is_two_way(hypothesis.test) {
+        language.pick(
+            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
+            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",
+        )
+        .to_owned()
+    } else if is_trait {
+        match (hypothesis.test, levels) {
+            (TestName::Spearman, _) => language
+                .pick(
+                    "Spearman’s correlation with person means",
+                    "corrélation de Spearman avec les moyennes par personne",
+                )
+                .to_owned(),
+            (_, 2) => language
+                .pick(
+                    "Mann-Whitney test on one mean a person",
+                    "test de Mann-Whitney sur une moyenne par personne",
+                )
+                .to_owned(),
+            _ => language
+                .pick(
+                    "Kruskal-Wallis test on one mean a person",
+                    "test de Kruskal-Wallis sur une moyenne par personne",
+                )
+                .to_owned(),
+        }
+    } else if hypothesis.test == TestName::Spearman {
+        language.pick(
+            "signed rank test of each person’s own Spearman correlation against zero",
+            "test des rangs signés des corrélations de Spearman propres à chaque personne contre zéro",
+        )
+        .to_owned()
+    } else if levels == 2 {
+        wilcoxon.to_owned()
+    } else {
+        language.pick(
+            format!("Friedman’s test on person means with Iman and Davenport’s F; then, for pairs, {wilcoxon}, corrected by Holm"),
+            format!("test de Friedman sur les moyennes par personne, F d’Iman et Davenport ; puis, pour les paires, {wilcoxon}, corrigé par Holm"),
+        )
+    };
+    let thesis =
+        match hypothesis.test {
+            _ if is_two_way(hypothesis.test) => language.pick(
+                "Scheirer-Ray-Hare test of trials, type I",
+                "test de Scheirer-Ray-Hare sur les essais, type I",
+            ),
+            TestName::Spearman => language
+                .pick("Spearman’s correlation of trials", "corrélation de Spearman sur les essais"),
+            TestName::MannWhitney => {
+                language.pick("Mann-Whitney test of trials", "test de Mann-Whitney sur les essais")
+            }
+            TestName::Wilcoxon if !recognition && of_clips => language.pick(
+                "Wilcoxon’s test of matched trials as R computed it in 2019",
+                "test de Wilcoxon sur les essais appariés tel que R le calculait en 2019",
+            ),
+            TestName::KruskalWallis => language
+                .pick("Kruskal-Wallis test of trials", "test de Kruskal-Wallis sur les essais"),
+            _ if recognition => {
+                language.pick("chi-square test of trials", "test du khi-deux sur les essais")
+            }
+            TestName::ChiSquare if of_clips => {
+                language.pick("chi-square test of trials", "test du khi-deux sur les essais")
+            }
+            _ => language
+                .pick("Kruskal-Wallis test of trials", "test de Kruskal-Wallis sur les essais"),
+        };
+    (recommended, thesis.to_owned())
+}
+
+fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
+    let rules = from.study.exclusions.clone().unwrap_or_default();
+    let mut words = vec![
+        language
+            .pick(
+                "people who do not agree or who take their answers back (their answers are deleted)",
+                "les personnes qui refusent ou qui retirent leurs réponses (elles sont effacées)",
+            )
+            .to_owned(),
+        language.pick("pilot sessions", "les sessions pilotes").to_owned(),
+    ];
+    if rules.incomplete {
+        words.push(
+            language
+                .pick("people who do not finish", "les personnes qui ne terminent pas")
+                .to_owned(),
+        );
+    }
+    if let Some(most) = rules.failed_attention_checks {
+        words.push(language.pick(
+            format!("people who fail more than {most} attention checks"),
+            format!("les personnes qui échouent à plus de {most} contrôles d’attention"),
+        ));
+    }
+    if let Some(share) = rules.late_frame_share {
+        let percent = language.fixed(100.0 * share, 0);
+        words.push(language.pick(
+            format!("trials with more than {percent} % late frames"),
+            format!("les essais ayant plus de {percent} % d’images en retard"),
+        ));
+    }
+    if let Some(longest) = rules.longest_frame_ms {
+        words.push(language.pick(
+            format!("trials with a frame longer than {longest} ms"),
+            format!("les essais ayant une image de plus de {} ms", language.number(longest)),
+        ));
+    }
+    if let Some(shortest) = rules.shortest_rt_ms {
+        words.push(language.pick(
+            format!("trials answered sooner than {shortest} ms after the onset"),
+            format!(
+                "les essais répondus en moins de {} ms après le début",
+                language.number(shortest)
+            ),
+        ));
+    }
+    words
+}

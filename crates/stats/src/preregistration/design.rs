@@ -1,0 +1,302 @@
+//! Design and variables in words.
+
+use mimique_study::{
+    Component, Constraint, OrderRule, Question, QuestionKind, Sequence, SequenceItem, Study,
+};
+
+use super::{Preregistration, Text};
+use crate::report::{Language, Naming};
+use crate::simulate::factor_levels;
+
+pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let (language, study) = (from.language, from.study);
+    let clips = study.clips();
+    text.heading(2, "Design plan", "Plan d’expérience");
+    text.heading(3, "Study type", "Type d’étude");
+    text.both(
+        "Experiment: the clips are made by the researcher, and each participant gets a drawn order of them.",
+        "Expérience : les extraits sont produits par le chercheur et chaque participant en reçoit un ordre tiré au sort.",
+    );
+    text.heading(3, "Blinding", "Aveugle");
+    text.both(
+        "Participants are not told by which method a clip was made, nor what is compared, before the last answer. Analyses are computed by a program fixed beforehand.",
+        "Les participants ne savent ni par quelle méthode un extrait a été produit, ni ce qui est comparé, avant la dernière réponse. Les analyses sont calculées par un programme fixé d’avance.",
+    );
+    text.heading(3, "Study design", "Plan");
+    let shown: Vec<usize> = blocks(study)
+        .map(|block| {
+            let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
+            chosen * block.repetitions as usize
+        })
+        .collect();
+    let (trials, sampled) = (shown.iter().sum::<usize>(), samples(&study.sequence));
+    let segments = study.stimuli.segments.len();
+    let (methods, avatars) = (study.stimuli.methods.len(), study.stimuli.avatars.len());
+    let words = language.pick(
+        format!(
+            "Within participants: {} clips, made of {segments} segments of performance, {methods} methods and {avatars} avatars.",
+            clips.len()
+        ),
+        format!(
+            "Intra-participants : {} extraits, faits de {segments} segments joués, {methods} méthodes et {avatars} avatars.",
+            clips.len()
+        ),
+    );
+    text.line(&words);
+    let words = match sampled {
+        true => language.pick(
+            format!("Each participant sees a sample of the {trials} trials; over participants each is shown equally often."),
+            format!("Chaque participant voit une partie des {trials} essais ; sur l’ensemble des participants, chacun est montré aussi souvent."),
+        ),
+        false => language.pick(
+            format!("Each participant sees {trials} trials."),
+            format!("Chaque participant voit {trials} essais."),
+        ),
+    };
+    text.line(&words);
+    text.line("");
+    for (factor, levels) in factor_levels(study, &clips) {
+        if levels.len() < 2 || crate::simulate::traits(study).contains_key(&factor) {
+            continue;
+        }
+        let names: Vec<String> = levels.iter().map(|level| naming.level(&factor, level)).collect();
+        text.item(&naming.factor(&factor), &naming.factor(&factor), &names.join(", "));
+    }
+    text.line("");
+    if let Some(training) = &study.training {
+        let count = training.clips.len();
+        let words = language.pick(
+            format!("{count} trials for practice come first; their answers are not analysed."),
+            format!(
+                "{count} essais d’entraînement précèdent ; leurs réponses ne sont pas analysées."
+            ),
+        );
+        text.line(&words);
+        text.line("");
+    }
+    text.heading(3, "Randomization", "Tirage au sort");
+    for line in order_in_words(study, language, naming) {
+        text.line(&line);
+    }
+    let words = language.pick(
+        format!(
+            "The order follows from the study’s seed ({}), the hash of its file and the participant’s number; `mimique order` prints it.",
+            study.seed
+        ),
+        format!(
+            "L’ordre découle de la graine de l’étude ({}), de l’empreinte de son fichier et du numéro du participant ; `mimique order` l’imprime.",
+            study.seed
+        ),
+    );
+    text.line(&words);
+    text.line("");
+}
+
+pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let (language, study) = (from.language, from.study);
+    text.heading(2, "Variables", "Variables");
+    text.heading(3, "Manipulated variables", "Variables manipulées");
+    let clips = study.clips();
+    let about = crate::simulate::traits(study);
+    let tested =
+        |factor: &str| study.hypotheses.iter().any(|h| h.factors.iter().any(|f| f == factor));
+    for (factor, levels) in factor_levels(study, &clips) {
+        if about.contains_key(&factor) || levels.len() < 2 {
+            continue;
+        }
+        let role = if tested(&factor) {
+            language.pick("tested", "testée")
+        } else {
+            language.pick("varied, not tested", "variée, non testée")
+        };
+        let words = language.pick(
+            format!("{} levels ({role}), column `{factor}`", levels.len()),
+            format!("{} niveaux ({role}), colonne `{factor}`", levels.len()),
+        );
+        text.item(&naming.factor(&factor), &naming.factor(&factor), &words);
+    }
+    text.line("");
+    text.heading(3, "Measured variables", "Variables mesurées");
+    text.both("After each clip:", "Après chaque extrait :");
+    let asked: Vec<&String> = blocks(study).flat_map(|block| &block.questions).collect();
+    for question in study.questions.iter().filter(|question| asked.contains(&&question.id)) {
+        measured(text, language, question);
+    }
+    text.line("");
+    if let Some(page) = study.demographics.as_ref().filter(|page| !page.questions.is_empty()) {
+        text.both("About the participant:", "À propos du participant :");
+        for question in &page.questions {
+            measured(text, language, question);
+        }
+        text.line("");
+    }
+    text.both(
+        "Recorded with each trial: response time (from the first frame of the first whole play to the last change of the answer), replays, late frames, the longest frame, interruptions.",
+        "Enregistrés à chaque essai : temps de réponse (de la première image de la première lecture complète au dernier changement de la réponse), relectures, images en retard, image la plus longue, interruptions.",
+    );
+    text.heading(3, "Indices", "Indices");
+    text.both(
+        "For each participant, response and level: the mean of the answers over the trials kept; for a choice with a right answer the share of right answers; for a response time its mean in seconds. These values, one a person and level, are what is tested.",
+        "Pour chaque participant, réponse et niveau : la moyenne des réponses sur les essais gardés ; pour un choix à bonne réponse, la proportion de bonnes réponses ; pour un temps de réponse, sa moyenne en secondes. Ce sont ces valeurs, une par personne et niveau, qui sont testées.",
+    );
+}
+
+fn measured(text: &mut Text, language: Language, question: &Question) {
+    let code = language.code();
+    let ends = |left: Option<&str>, right: Option<&str>| match (left, right) {
+        (Some(left), Some(right)) => format!(" ({left} – {right})"),
+        _ => String::new(),
+    };
+    let options = || {
+        let labels: Vec<&str> =
+            question.kind.options().iter().map(|option| option.label.in_language(code)).collect();
+        labels.join(", ")
+    };
+    let kind = match &question.kind {
+        QuestionKind::Likert(scale) => {
+            let points = language.pick(
+                format!("scale of {} points, {} to {}", scale.num_items, scale.start, scale.end()),
+                format!(
+                    "échelle de {} points, de {} à {}",
+                    scale.num_items,
+                    scale.start,
+                    scale.end()
+                ),
+            );
+            let left = scale.left_label.as_ref().map(|label| label.in_language(code));
+            let right = scale.right_label.as_ref().map(|label| label.in_language(code));
+            points + &ends(left, right)
+        }
+        QuestionKind::Slider(slider) => {
+            let left = slider.left_label.as_ref().map(|label| label.in_language(code));
+            let right = slider.right_label.as_ref().map(|label| label.in_language(code));
+            let points = language.pick(
+                format!("slider from {} to {}", slider.minimum, slider.maximum),
+                format!("curseur de {} à {}", slider.minimum, slider.maximum),
+            );
+            points + &ends(left, right)
+        }
+        QuestionKind::SingleChoice(choice) => match &choice.truth {
+            Some(truth) => language.pick(
+                format!("forced choice of {}; right is the clip’s `{truth}`", options()),
+                format!(
+                    "choix forcé parmi {} ; la bonne réponse est `{truth}` de l’extrait",
+                    options()
+                ),
+            ),
+            None => language
+                .pick(format!("one of {}", options()), format!("un choix parmi {}", options())),
+        },
+        QuestionKind::MultipleChoice(_) => language
+            .pick(format!("any of {}", options()), format!("plusieurs choix parmi {}", options())),
+        QuestionKind::Number(_) => language.pick("a number", "un nombre").to_owned(),
+        QuestionKind::ValenceArousal(grid) => language.pick(
+            format!("valence and arousal, 1 to {} each", grid.num_items),
+            format!("valence et activation, de 1 à {} chacune", grid.num_items),
+        ),
+        QuestionKind::Matrix(_) => {
+            language.pick("one choice a row", "un choix par ligne").to_owned()
+        }
+        QuestionKind::Ranking(_) => language
+            .pick(format!("ranking of {}", options()), format!("classement de {}", options())),
+        _ => language.pick("text, not analysed", "texte, non analysé").to_owned(),
+    };
+    let optional = if question.required { "" } else { language.pick(", optional", ", facultatif") };
+    let open = language.pick(["“", "”"], ["« ", " »"]);
+    text.line(&format!(
+        "- `{}`: {}{}{} {kind}{optional}",
+        question.id,
+        open[0],
+        question.prompt.in_language(code),
+        open[1]
+    ));
+}
+
+/// The blocks of trials that the sequence shows.
+fn blocks(study: &Study) -> impl Iterator<Item = &mimique_study::TrialsComponent> {
+    study.components.iter().filter_map(move |(name, component)| match component {
+        Component::Trials(block) if names(&study.sequence, name) => Some(block),
+        _ => None,
+    })
+}
+
+fn names(sequence: &Sequence, wanted: &str) -> bool {
+    sequence.components.iter().any(|item| match item {
+        SequenceItem::Component(name) => name == wanted,
+        SequenceItem::Sequence(nested) => names(nested, wanted),
+    })
+}
+
+fn samples(sequence: &Sequence) -> bool {
+    sequence.num_samples.is_some()
+        || sequence.components.iter().any(|item| match item {
+            SequenceItem::Component(_) => false,
+            SequenceItem::Sequence(nested) => samples(nested),
+        })
+}
+
+fn order_in_words(study: &Study, language: Language, naming: &Naming<'_>) -> Vec<String> {
+    let mut lines = Vec::new();
+    sequence_in_words(&study.sequence, language, naming, &mut lines);
+    lines
+}
+
+fn sequence_in_words(
+    sequence: &Sequence,
+    language: Language,
+    naming: &Naming<'_>,
+    lines: &mut Vec<String>,
+) {
+    let parts: Vec<String> = sequence
+        .components
+        .iter()
+        .map(|item| match item {
+            SequenceItem::Component(name) => format!("`{name}`"),
+            SequenceItem::Sequence(nested) => {
+                format!(
+                    "`{}`",
+                    nested.id.as_deref().unwrap_or(language.pick("a part", "une partie"))
+                )
+            }
+        })
+        .collect();
+    let order = match sequence.order {
+        OrderRule::Fixed => language.pick("in this order", "dans cet ordre"),
+        OrderRule::Random => language.pick(
+            "in an order drawn for each participant",
+            "dans un ordre tiré au sort pour chaque participant",
+        ),
+        OrderRule::LatinSquare => language.pick(
+            "in the order of a Williams square over participants",
+            "dans l’ordre d’un carré de Williams sur les participants",
+        ),
+    };
+    let name = sequence.id.as_ref().map_or(String::new(), |id| format!("`{id}`: "));
+    lines.push(format!("- {name}{} {order}", parts.join(", ")));
+    for constraint in &sequence.constraints {
+        lines.push(format!("  - {}", constraint_in_words(constraint, language, naming)));
+    }
+    for item in &sequence.components {
+        if let SequenceItem::Sequence(nested) = item {
+            sequence_in_words(nested, language, naming, lines);
+        }
+    }
+}
+
+fn constraint_in_words(constraint: &Constraint, language: Language, naming: &Naming<'_>) -> String {
+    let factor = naming.factor(&constraint.factor);
+    let mut words = Vec::new();
+    if let Some(most) = constraint.at_most_alike {
+        words.push(language.pick(
+            format!("{factor}: at most {most} in a row alike"),
+            format!("{factor} : au plus {most} de suite identiques"),
+        ));
+    }
+    if let Some(least) = constraint.minimum_distance {
+        words.push(language.pick(
+            format!("{factor}: the same value at least {least} trials apart"),
+            format!("{factor} : même valeur à {least} essais de distance au moins"),
+        ));
+    }
+    words.join("; ")
+}
