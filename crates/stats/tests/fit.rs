@@ -70,6 +70,7 @@ fn ratings_are_found_again() {
         .choices
         .insert("group".into(), [("no".to_owned(), 0.3), ("yes".to_owned(), 0.7)].into());
     planted.times.median_ms = 1800.0;
+    planted.times.clip_ms = 500.0;
     planted.times.person_sigma = 0.4;
     planted.display.late_share = 0.01;
     let table = export(&study, &hash, &planted, 20, 200);
@@ -111,6 +112,7 @@ fn recognition_is_found_again() {
     let (study, hash) = study("demo.json");
     let mut planted = Parameters::for_study(&study);
     planted.careless.share = 0.0;
+    planted.times.clip_ms = 200.0;
     let recognition = planted.recognition.get_mut("emotion").unwrap();
     (recognition.person_sd, recognition.segment_sd, recognition.clip_sd) = (0.6, 0.0, 0.0);
     recognition.person_by_sd = [("method".to_owned(), 0.4)].into();

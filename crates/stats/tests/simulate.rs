@@ -78,6 +78,7 @@ fn dropout_checks_frames_and_times_are_as_planted() {
     parameters.attention_pass = 1.0;
     parameters.display.late_share = 0.03;
     parameters.display.slow_people = 0.0;
+    parameters.times.clip_ms = 500.0;
     let people = 1500;
     let sessions = sessions(&study, &hash, &parameters, 3, people);
     let share = |count: usize| count as f64 / people as f64;
@@ -120,6 +121,7 @@ fn answers_have_the_planted_confusion_means_and_spreads() {
     let (study, hash) = study("demo.json");
     let mut parameters = Parameters::for_study(&study);
     parameters.careless.share = 0.0;
+    parameters.times.clip_ms = 200.0;
     let rating = parameters.ratings.get_mut("believability").unwrap();
     rating.mean = 4.0;
     rating.interactions.clear();
