@@ -197,6 +197,12 @@ fn measured(text: &mut Text, language: Language, question: &Question) {
         QuestionKind::Matrix(_) => {
             language.pick("one choice a row", "un choix par ligne").to_owned()
         }
+        QuestionKind::Comparison(_) => language
+            .pick(
+                "left or right of two clips in step",
+                "gauche ou droite de deux extraits synchrones",
+            )
+            .to_owned(),
         QuestionKind::Ranking(_) => language
             .pick(format!("ranking of {}", options()), format!("classement de {}", options())),
         _ => language.pick("text, not analysed", "texte, non analysé").to_owned(),

@@ -51,6 +51,8 @@ pub(crate) enum Way {
     Matrix,
     /// Options in any order.
     Ranking,
+    /// The left or the right clip, or neither where that can be said.
+    Comparison { same: bool },
 }
 
 /// A scale and its latent value.
@@ -230,6 +232,7 @@ impl<'s> Model<'s> {
             }
             QuestionKind::Matrix(_) => Way::Matrix,
             QuestionKind::Ranking(_) => Way::Ranking,
+            QuestionKind::Comparison(comparison) => Way::Comparison { same: comparison.allow_same },
             _ => Way::Text,
         }
     }

@@ -277,6 +277,10 @@ impl Mind<'_> {
                     (value * 100.0).round() / 100.0
                 })
             }
+            Way::Comparison { same } => {
+                let sides = ["left", "right", "same"];
+                Raw::Json(sides[draws.below(if *same { 3 } else { 2 })].into())
+            }
             Way::Text => Raw::Json("simulated answer".into()),
             Way::Matrix => {
                 let QuestionKind::Matrix(matrix) = &asked.question.kind else { return None };

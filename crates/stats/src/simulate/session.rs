@@ -235,6 +235,7 @@ impl Walk<'_, '_> {
             device_pixel_ratio: client.device_pixel_ratio,
             // Nothing was rendered.
             weights_hash: String::new(),
+            drift_ms: 0.0,
             aborted: aborted.map(str::to_owned),
         }
     }
