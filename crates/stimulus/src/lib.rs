@@ -14,11 +14,20 @@ mod operators_pack;
 #[cfg(feature = "prepare")]
 mod prepare;
 mod provenance;
+#[cfg(feature = "prepare")]
+mod recorded;
 mod report;
 mod skin;
 mod solve_packs;
+#[cfg(feature = "prepare")]
 mod solve_take;
+#[cfg(feature = "prepare")]
+mod surface_avatar;
 mod take_pack;
+#[cfg(feature = "prepare")]
+mod training;
+#[cfg(feature = "prepare")]
+mod vertex_frames;
 mod weights_file;
 
 pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
@@ -26,9 +35,18 @@ pub use operators_pack::{decode_operators, encode_operators};
 #[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
 pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
-pub use report::{FrameRow, FrameStatistics, SolveReport, StageSeconds};
+#[cfg(feature = "prepare")]
+pub use recorded::{Driven, RecordedNames, RecordedWeights};
+pub use report::{FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds};
 pub use skin::AvatarSkin;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
-pub use solve_take::{JoinedTake, SolveError, SolvedCapture, TakeOptions, solve_take};
+#[cfg(feature = "prepare")]
+pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
+#[cfg(feature = "prepare")]
+pub use surface_avatar::surface_avatar;
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
+#[cfg(feature = "prepare")]
+pub use training::Training;
+#[cfg(feature = "prepare")]
+pub use vertex_frames::VertexFrames;
 pub use weights_file::{WeightsFileError, WeightsTable};

@@ -3,12 +3,12 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use mimique_face::Avatar;
 use mimique_face::pack::encode_pack;
-use mimique_mocap::{Capture, Format, LengthUnit, ReadOptions};
+use mimique_mocap::{Capture, LengthUnit, ReadOptions};
 use mimique_solver::FrontEndError;
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
@@ -16,7 +16,7 @@ use mimique_study::{
 
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
-use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, WeightsTable};
+use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, Training, WeightsTable};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -24,6 +24,7 @@ pub(super) struct Sources<'a> {
     places: &'a Places,
     avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
+    trainings: RefCell<BTreeMap<String, Rc<Training>>>,
 }
 
 /// An avatar, and what its bytes or its making are known by.
@@ -81,8 +82,8 @@ pub(super) struct Recording {
 
 impl<'a> Sources<'a> {
     pub fn new(study: &'a Study, places: &'a Places) -> Self {
-        let (avatars, captures) = Default::default();
-        Self { study, places, avatars, captures }
+        let (avatars, captures, trainings) = Default::default();
+        Self { study, places, avatars, captures, trainings }
     }
 
     /// The avatar of that identifier.
@@ -162,8 +163,11 @@ impl<'a> Sources<'a> {
         let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
         let neutral = entry.neutral.map(|[first, end]| first..end);
         let known = file.known.as_ref().map(|(neutral, _)| neutral.clone());
-        let options =
-            TakeOptions { neutral: neutral.or(known), head: (!head.is_empty()).then_some(head) };
+        let options = TakeOptions {
+            neutral: neutral.or(known),
+            head: (!head.is_empty()).then_some(head),
+            training: None,
+        };
         let frames = match (segment.span(), &file.known) {
             (Some(Span::Frames { first, end }), None) => first..end,
             (Some(Span::Performance(_)), Some((_, played))) => played.clone(),
@@ -174,7 +178,8 @@ impl<'a> Sources<'a> {
                 ));
             }
         };
-        let key = format!("{} {map_key} {options:?} {frames:?}", file.key);
+        let key =
+            format!("{} {map_key} {:?} {:?} {frames:?}", file.key, options.neutral, options.head);
         Ok(Performance {
             pointer: at,
             capture_pointer,
@@ -186,6 +191,45 @@ impl<'a> Sources<'a> {
             map,
             options,
         })
+    }
+
+    /// What the regression of that identifier learns from.
+    pub fn training(&self, method: &str) -> Result<Rc<Training>, PrepareError> {
+        if let Some(found) = self.trainings.borrow().get(method) {
+            return Ok(found.clone());
+        }
+        let at = format!("{}/training", pointer(&["stimuli", "methods", method]));
+        let entry = self.study.stimuli.methods.get(method).and_then(|m| m.training.as_ref());
+        let entry = entry.ok_or_else(|| {
+            PrepareError::new(&at, "a regression learns from a range of motion; name its capture")
+        })?;
+        let id = &entry.capture;
+        let capture_at = pointer(&["stimuli", "captures", id]);
+        let source = self.study.stimuli.captures.get(id);
+        let training = match (source.and_then(|c| c.source()), &entry.weights) {
+            (Some(CaptureSource::Builtin(actor)), None) => builtin::training(actor),
+            (Some(CaptureSource::File(path)), Some(weights_file)) => {
+                let source = &self.study.stimuli.captures[id];
+                let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
+                let at = format!("{at}/weights");
+                let (path, bytes) = self.read(weights_file, &at)?;
+                let weights = WeightsTable::from_recording(&path, &bytes)
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                Training {
+                    capture,
+                    weights,
+                    neutral: source.neutral.map(|[first, end]| first..end),
+                    head: (!source.head.is_empty()).then(|| source.head.clone()),
+                }
+            }
+            _ => {
+                let message = "give a capture of a file and its weights, or a built-in actor";
+                return Err(PrepareError::new(at, message));
+            }
+        };
+        let training = Rc::new(training);
+        self.trainings.borrow_mut().insert(method.to_owned(), training.clone());
+        Ok(training)
     }
 
     /// The segment of that identifier as recorded weights.
@@ -206,7 +250,7 @@ impl<'a> Sources<'a> {
             }
         };
         let (path, bytes) = self.read(file, &pointer)?;
-        let table = weights(&path, &bytes)
+        let table = WeightsTable::from_recording(&path, &bytes)
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
             Some(Span::Frames { first, end }) if end <= table.frames.len() => {
@@ -251,16 +295,9 @@ impl<'a> Sources<'a> {
                 if let Some(found) = self.captures.borrow().get(id) {
                     return Ok(found.clone());
                 }
-                let (path, bytes) = self.read(path, &of("file"))?;
                 let unit = entry.and_then(|c| c.unit.as_deref());
-                let options = ReadOptions { unit: unit_of(unit, &of("unit"))?, rate_hz: None };
-                let recording =
-                    mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
-                        .map_err(|e| {
-                            PrepareError::new(of("file"), format!("{}: {e}", path.display()))
-                        })?;
-                let key = format!("{} {unit:?}", sha256_hex(&bytes));
-                let capture = recording.capture;
+                let at = pointer(&["stimuli", "captures", id]);
+                let (key, capture) = self.read_capture(path, unit, &at)?;
                 (id.clone(), CaptureFile { key, capture, head: vec![], known: None })
             }
             (None, _) => {
@@ -277,6 +314,21 @@ impl<'a> Sources<'a> {
         Ok(file)
     }
 
+    /// The capture of a file, and what it is known by.
+    fn read_capture(
+        &self,
+        file: &str,
+        unit: Option<&str>,
+        at: &str,
+    ) -> Result<(String, Capture), PrepareError> {
+        let at_file = format!("{at}/file");
+        let (path, bytes) = self.read(file, &at_file)?;
+        let options = ReadOptions { unit: unit_of(unit, &format!("{at}/unit"))?, rate_hz: None };
+        let recording = mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
+            .map_err(|e| PrepareError::new(at_file, format!("{}: {e}", path.display())))?;
+        Ok((format!("{} {unit:?}", sha256_hex(&bytes)), recording.capture))
+    }
+
     /// The file that a path of the study names.
     fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
         let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
@@ -289,16 +341,6 @@ impl<'a> Sources<'a> {
             }
         }
     }
-}
-
-/// Weights from a Live Link Face export or from Mimique's own CSV.
-fn weights(path: &Path, bytes: &[u8]) -> Result<WeightsTable, String> {
-    if mimique_mocap::recognise(bytes) == Some(Format::LiveLinkCsv) {
-        let take = mimique_mocap::read_weights(&path.to_string_lossy(), bytes)
-            .map_err(|e| e.to_string())?;
-        return Ok(WeightsTable::at_rate(take.names, take.weights, 0, take.rate_hz));
-    }
-    WeightsTable::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
 }
 
 fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
@@ -317,7 +359,7 @@ impl AvatarFile {
         encode_pack(&self.avatar).bytes
     }
 
-    fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
+    pub fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
         if let Some(skin) = self.skin.get() {
             return Ok(skin);
         }
