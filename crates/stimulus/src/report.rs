@@ -1,8 +1,8 @@
 //! What a solve says of itself: per frame, over all frames, in words.
 
-use mimique_solver::{
-    FrameReport, FrameWarning, Kernel, Method, MethodSpec, Operators, Regression,
-};
+use mimique_solver::{FrameReport, FrameWarning, Kernel, MethodSpec};
+#[cfg(feature = "prepare")]
+use mimique_solver::{Method, Operators, Regression};
 use serde::Serialize;
 
 /// Residual, iterations and convergence over the frames of a take.
@@ -154,6 +154,7 @@ pub struct RegressionSummary {
     pub log_likelihood: f64,
 }
 
+#[cfg(feature = "prepare")]
 impl RegressionSummary {
     pub(crate) fn of(model: &Regression) -> Self {
         Self {
@@ -206,6 +207,7 @@ pub struct SolveReport {
 }
 
 /// Shapes that move no marker by a millimetre at weight 1, and are not locked.
+#[cfg(feature = "prepare")]
 pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
     // A surface has no shapes; what a regression knows of a shape it knows from its training.
     if matches!(spec.method, Method::ThinShellSurface | Method::Regression) {

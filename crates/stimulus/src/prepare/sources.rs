@@ -274,7 +274,6 @@ impl<'a> Sources<'a> {
     /// The capture of a segment; for a built-in actor the take of its performance.
     fn capture(&self, segment: &Segment, at: &str) -> Result<Rc<CaptureFile>, PrepareError> {
         let id = &segment.capture;
-        let of = |field: &str| pointer(&["stimuli", "captures", id, field]);
         let entry = self.study.stimuli.captures.get(id);
         let (name, file) = match (entry.and_then(|c| c.source()), segment.span()) {
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
