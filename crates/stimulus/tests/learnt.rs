@@ -100,9 +100,10 @@ fn a_range_of_motion_teaches_the_emotions() {
          {summary:?}; {:?}",
         learnt.report.warnings
     );
-    assert!(regression < 0.06, "{regression}");
+    // Another person's face, markers with noise: half the error of a fit that is not bounded.
+    assert!(regression < 0.12, "{regression}");
     assert!(
-        regression < 0.6 * rest && regression < 1.2 * lsts_norm,
+        regression < 0.6 * rest && regression < 0.6 * lsts_norm,
         "{regression} {lsts_norm} {rest}"
     );
 }
