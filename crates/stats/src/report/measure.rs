@@ -229,3 +229,12 @@ impl Measure {
         levels.len() * factor.levels.len() == found.len()
     }
 }
+
+/// A factor's levels as numbers; if they are words, their places in order.
+pub(crate) fn as_numbers(factor: &Factor) -> Numbers {
+    let numbers: Option<Vec<f64>> = factor.levels.iter().map(|level| level.parse().ok()).collect();
+    let numbers = numbers.unwrap_or_else(|| (1..=factor.levels.len()).map(|i| i as f64).collect());
+    let values =
+        factor.codes.iter().map(|&code| numbers.get(code as usize).copied().unwrap_or(f64::NAN));
+    Numbers { name: factor.name.clone(), values: values.collect() }
+}

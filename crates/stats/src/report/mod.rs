@@ -15,11 +15,14 @@ mod language;
 mod markdown;
 mod measure;
 mod naming;
+mod person_level;
 mod reading;
 mod section_measures;
 mod sections;
 mod svg;
 mod tables;
+mod test_line;
+mod trial_level;
 
 use mimique_study::Study;
 

@@ -2,14 +2,17 @@
 
 use mimique_study::QuestionKind;
 
-use super::comparison::{TrialLevel, person_level_two_way, trial_level_two_way, within};
+use super::comparison::within;
 use super::document::{Block, DataTable, slug};
 use super::export::AskedQuestion;
 use super::figure;
 use super::measure::{Measure, MeasureKind};
+use super::person_level;
 use super::reading;
 use super::sections::{LateFrames, NamedConfusion, TwoWay, Writer};
 use super::tables;
+use super::test_line::TestLine;
+use super::trial_level::TrialLevel;
 use crate::confusion::confusion;
 use crate::factor::Factor;
 use crate::proportion::Proportion;
@@ -228,7 +231,7 @@ impl Writer<'_> {
             };
             self.blocks.push(Block::Table(table));
             if result.recommended.people > 0 && (1..=3).contains(&result.recommended.pairs.len()) {
-                let pairs: Vec<(String, &super::comparison::Pair)> = result
+                let pairs: Vec<(String, &super::person_level::Pair)> = result
                     .recommended
                     .pairs
                     .iter()
@@ -272,11 +275,9 @@ impl Writer<'_> {
             return;
         }
         let both = [&factors[0], &factors[1]];
-        let trials = TrialLevel {
-            assumes: "independent observations",
-            tests: trial_level_two_way(measure, both),
-        };
-        let people = person_level_two_way(self.export, measure, both);
+        let trials =
+            TrialLevel::new(TestLine::scheirer_ray_hare(&measure.numbers(), both, "trials"));
+        let people = person_level::two_way(self.export, measure, both);
         let shown = names.map(|name| self.naming.factor(name)).join(" × ");
         self.blocks.push(Block::Heading(3, shown.clone()));
         let table = tables::two_columns(

@@ -1,11 +1,14 @@
 //! Tables of tests: as in the thesis beside recommended.
 
-use super::comparison::{Comparison, Pair, PersonLevel, TestLine, TrialLevel};
+use super::comparison::Comparison;
 use super::document::DataTable;
 use super::language::Language;
 use super::measure::MeasureKind;
 use super::naming::Naming;
+use super::person_level::{Pair, PersonLevel};
 use super::reading;
+use super::test_line::TestLine;
+use super::trial_level::TrialLevel;
 use crate::outcome::{Labelled, Outcome};
 use crate::proportion::Proportion;
 
