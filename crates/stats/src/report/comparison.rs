@@ -48,7 +48,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Com
             }),
         ),
         as_in_the_thesis: TrialLevel::new(tests),
-        recommended: person_level::within(&blocks),
+        recommended: person_level::within(export, measure, factor),
     }
 }
 

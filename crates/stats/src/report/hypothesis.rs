@@ -160,7 +160,7 @@ fn within_people(
     measure: &Measure,
     factor: &Factor,
 ) -> (Vec<Outcome<TestLine>>, PersonLevel) {
-    let mut people = person_level::within(&measure.person_means(export, factor));
+    let mut people = person_level::within(export, measure, factor);
     let rating = measure.kind != MeasureKind::Recognition;
     let trials = match hypothesis.test {
         TestName::Wilcoxon if rating => {
@@ -171,7 +171,7 @@ fn within_people(
         }
         TestName::Spearman => {
             let x = as_numbers(factor);
-            people.overall = vec![person_level::correlation_within_people(&x.values, measure)];
+            people.overall = vec![person_level::correlation_within_people(&x, measure)];
             people.pairs.clear();
             vec![TestLine::spearman(&x, &measure.numbers(), "trials")]
         }

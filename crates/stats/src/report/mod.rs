@@ -4,6 +4,7 @@
 //! input. Each test stands in two columns: as in the thesis (trials taken for independent
 //! observations) and as recommended (one value a person).
 
+mod call;
 mod comparison;
 mod document;
 mod export;
@@ -12,6 +13,9 @@ mod flow_chart;
 mod html;
 mod hypothesis;
 mod language;
+mod latex;
+mod layout_tests;
+mod layouts;
 mod markdown;
 mod measure;
 mod naming;
@@ -83,6 +87,7 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
         ReportFile { path: "report.md".to_owned(), text: markdown::markdown(&document) },
         ReportFile { path: "results.json".to_owned(), text: results },
     ];
+    let mut in_latex = Vec::new();
     for block in &document.blocks {
         match block {
             Block::Table(data) => {
@@ -90,6 +95,11 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
                     path: format!("tables/{}.csv", data.id),
                     text: data.to_csv(),
                 });
+                files.push(ReportFile {
+                    path: format!("tables/{}.tex", data.id),
+                    text: latex::table(data),
+                });
+                in_latex.push(data.id.as_str());
             }
             Block::Figure(figure) => {
                 files.push(ReportFile {
@@ -100,10 +110,18 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
                     path: format!("tables/figure-{}.csv", figure.data.id),
                     text: figure.data.to_csv(),
                 });
+                files.push(ReportFile {
+                    path: format!("tables/figure-{}.tex", figure.data.id),
+                    text: latex::table(&figure.data),
+                });
             }
             _ => {}
         }
     }
+    files.push(ReportFile {
+        path: "tables/all.tex".to_owned(),
+        text: latex::document(&document.title, &in_latex),
+    });
     Ok(Report {
         files,
         people: (export.flow.people_used, export.flow.people),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::call::Call;
 use super::export::Export;
 use super::measure::Measure;
 use super::test_line::TestLine;
@@ -14,7 +15,7 @@ use crate::outcome::Outcome;
 use crate::spearman::spearman;
 use crate::table::Numbers;
 use crate::walsh::HodgesLehmann;
-use crate::wilcoxon::WilcoxonOptions;
+use crate::wilcoxon::{WilcoxonOptions, rounded};
 
 /// Two levels compared within people.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,14 +54,20 @@ pub(crate) struct PersonLevel {
 }
 
 /// Friedman with Iman and Davenport's F, then exact paired tests with Holm's correction.
-pub(crate) fn within(blocks: &Blocks) -> PersonLevel {
+pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> PersonLevel {
+    let blocks = &measure.person_means(export, factor);
+    let call =
+        |function| Call::new(function).text(&measure.id).text(&factor.name).list(&factor.levels);
     let n = blocks.responses.len();
     let mut overall = Vec::new();
     if blocks.groups.len() > 2 {
-        overall.push(TestLine::friedman(blocks));
+        overall.push(TestLine::friedman(blocks, &call("friedman")));
     }
-    let mut pairs: Vec<Pair> =
-        blocks.pairs().into_iter().map(|(a, b)| pair(blocks, a, b)).collect();
+    let mut pairs: Vec<Pair> = blocks
+        .pairs()
+        .into_iter()
+        .map(|(a, b)| pair(blocks, a, b, call("wilcoxon_people").number(a + 1).number(b + 1)))
+        .collect();
     let p: Vec<Option<f64>> = pairs
         .iter()
         .map(|pair| match &pair.wilcoxon {
@@ -76,14 +83,14 @@ pub(crate) fn within(blocks: &Blocks) -> PersonLevel {
     PersonLevel { people: n, incomplete: blocks.incomplete, overall, pairs }
 }
 
-fn pair(blocks: &Blocks, a: usize, b: usize) -> Pair {
+fn pair(blocks: &Blocks, a: usize, b: usize, call: Call) -> Pair {
     let differences = blocks.differences(a, b);
     let count = |positive: bool| {
         differences.values.iter().filter(|&&d| (d > 1e-9) == positive && d.abs() > 1e-9).count()
     };
     let n = differences.values.len();
     let (outcome, difference) =
-        TestLine::wilcoxon(&differences, WilcoxonOptions::default(), "on person means");
+        TestLine::wilcoxon(&differences, WilcoxonOptions::default(), "on person means", call);
     Pair {
         a: blocks.groups[a].clone(),
         b: blocks.groups[b].clone(),
@@ -131,6 +138,42 @@ pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2])
     }
 }
 
+/// Whether people's differences between two levels depend on something about them, a line a pair of
+/// levels.
+pub(crate) fn differences_by_trait(
+    export: &Export,
+    measure: &Measure,
+    within: &Factor,
+    about: &Factor,
+) -> Vec<Outcome<TestLine>> {
+    let means = measure.person_means_by_place(within);
+    let first_rows = measure.first_rows();
+    let rows: Vec<usize> =
+        means.people.iter().filter_map(|person| first_rows.get(person).copied()).collect();
+    let about = about.rows(&rows);
+    let blocks = means.blocks(export, within);
+    blocks
+        .pairs()
+        .into_iter()
+        .map(|(a, b)| {
+            let differences = Numbers {
+                name: measure.id.clone(),
+                values: blocks.differences(a, b).values.iter().map(|d| rounded(*d)).collect(),
+            };
+            let line = TestLine::of_groups(&differences, &about, "person differences");
+            let call = Call::new("differences_by_trait")
+                .text(&measure.id)
+                .text(&within.name)
+                .list(&within.levels)
+                .number(a + 1)
+                .number(b + 1)
+                .text(&about.name)
+                .list(&about.levels);
+            line.map(|line| TestLine { call, ..line })
+        })
+        .collect()
+}
+
 /// One value a person against something about the person.
 pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
     let means = measure.overall_person_means();
@@ -144,12 +187,13 @@ pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
 }
 
 /// Each person's own rho, then a signed rank test of them against zero.
-pub(crate) fn correlation_within_people(x: &[f64], measure: &Measure) -> Outcome<TestLine> {
+pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> Outcome<TestLine> {
+    let name = x.name.clone();
     let mut by_person: BTreeMap<usize, (Vec<f64>, Vec<f64>)> = BTreeMap::new();
     for (i, &person) in measure.person.iter().enumerate() {
-        if x[i].is_finite() {
+        if x.values[i].is_finite() {
             let cell = by_person.entry(person).or_default();
-            cell.0.push(x[i]);
+            cell.0.push(x.values[i]);
             cell.1.push(measure.values[i]);
         }
     }
@@ -161,8 +205,9 @@ pub(crate) fn correlation_within_people(x: &[f64], measure: &Measure) -> Outcome
         })
         .collect();
     let rhos = Numbers { name: "rho".to_owned(), values: rhos };
-    let (line, estimate) =
-        TestLine::wilcoxon(&rhos, WilcoxonOptions::default(), "of each person's rho");
+    let call = Call::new("wilcoxon_rho").text(&name).text(&measure.id);
+    let options = WilcoxonOptions::default();
+    let (line, estimate) = TestLine::wilcoxon(&rhos, options, "of each person's rho", call);
     line.map(|line| TestLine {
         term: String::new(),
         effect_name: "median rho",

@@ -231,7 +231,7 @@ impl Writer<'_> {
             };
             self.blocks.push(Block::Table(table));
             if result.recommended.people > 0 && (1..=3).contains(&result.recommended.pairs.len()) {
-                let pairs: Vec<(String, &super::person_level::Pair)> = result
+                let pairs: Vec<(String, &person_level::Pair)> = result
                     .recommended
                     .pairs
                     .iter()

@@ -11,6 +11,7 @@ use super::export::{AskedQuestion, Export, Flow, Person};
 use super::flow_chart::flow_chart;
 use super::hypothesis::{HypothesisResult, test_hypothesis};
 use super::language::Language;
+use super::layouts::LayoutCell;
 use super::measure::Measure;
 use super::naming::Naming;
 use super::person_level::PersonLevel;
@@ -46,6 +47,7 @@ pub(crate) struct Results<'a> {
     pub confusion: Vec<NamedConfusion>,
     pub comparisons: Vec<Comparison>,
     pub two_way: Vec<TwoWay>,
+    pub layouts: Vec<LayoutCell>,
     pub late_frames: Vec<LateFrames>,
 }
 
@@ -136,6 +138,7 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
     for (asked, measure) in measures.iter().filter(|(asked, _)| !asked.is_recognition()) {
         writer.rating(asked, measure);
     }
+    writer.layouts();
     writer.timing();
     writer.notes();
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::call::Call;
 use crate::aligned_rank_transform::aligned_rank_transform;
 use crate::chi_square::{Contingency, chi_square};
 use crate::factor::Factor;
@@ -42,6 +43,9 @@ pub(crate) struct TestLine {
     pub effect: Option<f64>,
     /// Observations: trials or people.
     pub n: usize,
+    /// How other programs compute it.
+    #[serde(skip)]
+    pub call: Call,
 }
 
 impl TestLine {
@@ -60,6 +64,11 @@ impl TestLine {
                 effect_name: "epsilon squared",
                 effect: Some(result.epsilon_squared),
                 n: result.n,
+                call: Call::new("kruskal_wallis")
+                    .text(&values.name)
+                    .text(&factor.name)
+                    .list(&factor.levels)
+                    .text(of),
             })
         }))
     }
@@ -79,6 +88,11 @@ impl TestLine {
                 effect_name: "rank-biserial",
                 effect: Some(result.rank_biserial),
                 n: result.n,
+                call: Call::new("mann_whitney")
+                    .text(&values.name)
+                    .text(&factor.name)
+                    .list(&factor.levels)
+                    .text(of),
             })
         }))
     }
@@ -97,6 +111,7 @@ impl TestLine {
         differences: &Numbers,
         options: WilcoxonOptions,
         of: &str,
+        call: Call,
     ) -> (Outcome<Self>, Option<HodgesLehmann>) {
         match wilcoxon(differences, options) {
             Err(refusal) => (Outcome::undefined(refusal.to_string()), None),
@@ -114,15 +129,16 @@ impl TestLine {
                     effect_name: "rank-biserial",
                     effect: Some(result.rank_biserial),
                     n: result.n_pairs,
+                    call: call,
                 };
                 (Outcome::Ok(line), Some(result.hodges_lehmann_ci))
             }
         }
     }
 
-    /// Chi-square of the table of two factors, Yates for two by two.
-    pub(crate) fn chi_square(rows: &Factor, columns: &Factor) -> Outcome<Self> {
-        let result = Contingency::of(rows, columns).and_then(|table| chi_square(&table));
+    /// Chi-square of a factor and answers, Yates for two by two.
+    pub(crate) fn chi_square(rows: &Factor, answers: &Factor) -> Outcome<Self> {
+        let result = Contingency::of(rows, answers).and_then(|table| chi_square(&table));
         from_refusal(result.map(|result| {
             let chosen = &result.default_yates_if_2x2;
             Outcome::Ok(Self {
@@ -137,6 +153,10 @@ impl TestLine {
                 effect_name: "Cramer's V",
                 effect: Some(result.cramers_v),
                 n: result.n as usize,
+                call: Call::new("chi_square")
+                    .text(&answers.name)
+                    .text(&rows.name)
+                    .list(&rows.levels),
             })
         }))
     }
@@ -158,6 +178,7 @@ impl TestLine {
                     effect_name: "rho",
                     effect: Some(result.rho),
                     n: result.n,
+                    call: Call::new("spearman").text(&x.name).text(&y.name).text(of),
                 }),
                 None => Outcome::undefined(result.warnings.join("; ")),
             },
@@ -165,7 +186,7 @@ impl TestLine {
     }
 
     /// Friedman with Iman and Davenport's F.
-    pub(crate) fn friedman(blocks: &Blocks) -> Outcome<Self> {
+    pub(crate) fn friedman(blocks: &Blocks, call: &Call) -> Outcome<Self> {
         match friedman(blocks) {
             Outcome::Undefined { reason } => Outcome::Undefined { reason },
             Outcome::Ok(result) => match &result.iman_davenport {
@@ -181,6 +202,7 @@ impl TestLine {
                     effect_name: "Kendall's W",
                     effect: Some(result.kendalls_w),
                     n: result.n_blocks,
+                    call: call.clone(),
                 }),
                 None => Outcome::undefined(result.warnings.join("; ")),
             },
@@ -212,6 +234,13 @@ impl TestLine {
                             effect_name: "eta squared H",
                             effect: table.eta_squared_H[effect],
                             n: result.n,
+                            call: Call::new("scheirer_ray_hare")
+                                .text(&values.name)
+                                .text(&factors[0].name)
+                                .list(&factors[0].levels)
+                                .text(&factors[1].name)
+                                .list(&factors[1].levels)
+                                .number(effect + 1),
                         }),
                         _ => Outcome::undefined(format!(
                             "{}: no degrees of freedom are left",
@@ -235,7 +264,8 @@ impl TestLine {
             Ok(Outcome::Ok(result)) => result
                 .effects
                 .iter()
-                .map(|effect| match (effect.F, effect.p_value, effect.ln_p) {
+                .enumerate()
+                .map(|(place, effect)| match (effect.F, effect.p_value, effect.ln_p) {
                     (Some(f), Some(p_value), Some(ln_p)) => Outcome::Ok(Self {
                         test: "aligned rank transform of person means".to_owned(),
                         term: effect.term.clone(),
@@ -251,6 +281,13 @@ impl TestLine {
                             explained / (explained + effect.df2 as f64)
                         }),
                         n: result.n_blocks,
+                        call: Call::new("aligned_rank_transform")
+                            .text(&values.name)
+                            .text(&factors[0].name)
+                            .list(&factors[0].levels)
+                            .text(&factors[1].name)
+                            .list(&factors[1].levels)
+                            .number(place + 1),
                     }),
                     _ => Outcome::undefined(format!("{}: no residual is left", effect.term)),
                 })

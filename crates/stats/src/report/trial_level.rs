@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::call::Call;
 use super::export::Export;
 use super::measure::{Measure, MeasureKind};
 use super::test_line::TestLine;
@@ -58,7 +59,12 @@ pub(crate) fn wilcoxon(export: &Export, measure: &Measure, factor: &Factor) -> O
         return Outcome::undefined("no trials of one person differ in this factor only");
     }
     let options = WilcoxonOptions { variant: WilcoxonVariant::Thesis, ..Default::default() };
-    TestLine::wilcoxon(&blocks.differences(0, 1), options, "of trials").0
+    let call = Call::new("wilcoxon_trials")
+        .text(&measure.id)
+        .text(&factor.name)
+        .list(&factor.levels)
+        .list(&measure.matched_factors(export, factor));
+    TestLine::wilcoxon(&blocks.differences(0, 1), options, "of trials", call).0
 }
 
 /// Every pair of levels: Wilcoxon, or the chi-square test for right and wrong answers.
