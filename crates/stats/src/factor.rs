@@ -122,6 +122,24 @@ impl Factor {
         Self { name: self.name.clone(), levels, codes }
     }
 
+    /// Whether each level occurs.
+    pub(crate) fn uses_all_levels(&self) -> bool {
+        let mut used = vec![false; self.levels.len()];
+        let mut left = used.len();
+        for &code in &self.codes {
+            if let Some(used) = used.get_mut(code as usize)
+                && !*used
+            {
+                *used = true;
+                left -= 1;
+                if left == 0 {
+                    return true;
+                }
+            }
+        }
+        left == 0
+    }
+
     /// Level of a row.
     pub fn level(&self, row: usize) -> Option<&str> {
         self.levels.get(self.codes[row] as usize).map(String::as_str)

@@ -54,10 +54,9 @@ pub struct Spearman {
 
 /// Do two variables rise together? Undefined if one of them is constant, naming it.
 pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> {
-    let (rows, dropped) = complete_rows(&[x, y], &[])?;
-    let n = rows.len();
-    let take = |column: &Numbers| rows.iter().map(|&r| column.values[r]).collect::<Vec<f64>>();
-    let (rank_x, rank_y) = (Ranks::of(&take(x)), Ranks::of(&take(y)));
+    let rows = complete_rows(&[x, y], &[])?;
+    let (n, dropped) = (rows.len(), rows.dropped());
+    let (rank_x, rank_y) = (Ranks::of(&rows.numbers(x)), Ranks::of(&rows.numbers(y)));
     for (ranks, column) in [(&rank_x, x), (&rank_y, y)] {
         if ranks.values.len() == 1 {
             return Ok(Outcome::undefined(format!(

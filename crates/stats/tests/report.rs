@@ -42,6 +42,11 @@ fn holds_every_part_under_its_own_name() {
             "figures/believability-by-method.svg",
             "figures/believability-by-method-differences.svg",
             "figures/response-times.svg",
+            "figures/believability-by-method-people.svg",
+            "figures/emotion-people.svg",
+            "figures/course-believability.svg",
+            "figures/course-emotion-rt.svg",
+            "figures/late-frames-share.svg",
         ] {
             assert!(paths.contains(path), "{path} is missing among {paths:?}");
         }
@@ -195,4 +200,43 @@ fn every_table_is_there_as_latex() {
         assert!(tables > 30, "{tables}");
         assert!(all.contains("\\input{table-6-3}") && all.ends_with("\\end{document}\n"));
     }
+}
+
+/// Of two methods only one has the parameter: what is asked of the parameter is asked of its trials.
+#[test]
+fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
+    let mut study = support::parameter_study();
+    let box_entry = serde_json::from_value(serde_json::json!({ "method": "box" })).unwrap();
+    study.stimuli.methods.insert("box".to_owned(), box_entry);
+    let raters = Raters { people: 13, effect: 1.0, seed: 23 };
+    let with_box = export(&study, &raters);
+    let without_box: String = with_box
+        .lines()
+        .filter(|line| !line.contains(".box,"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let results_of = |text: &str| {
+        let table = Table::parse(text.as_bytes()).unwrap();
+        results(&analyze(&table, &study, Language::English).unwrap())
+    };
+    let (both, one) = (results_of(&with_box), results_of(&without_box));
+    for (with, without) in
+        both["hypotheses"].as_array().unwrap().iter().zip(one["hypotheses"].as_array().unwrap())
+    {
+        assert_eq!(with["factors"][0], "alpha");
+        assert_eq!(with["as_in_the_thesis"], without["as_in_the_thesis"]);
+        assert_eq!(with["recommended"], without["recommended"]);
+        assert_eq!(with["trials_without_level"], 12 * 18, "{with}");
+        assert_eq!(without["trials_without_level"], 0);
+        assert!(
+            with["reading"].as_str().unwrap().contains("216 trials have no value of the factor")
+        );
+    }
+    let alpha = |results: &serde_json::Value| {
+        let all = results["comparisons"].as_array().unwrap().clone();
+        all.into_iter().find(|c| c["factor"] == "alpha" && c["measure"] == "difficulty").unwrap()
+    };
+    assert_eq!(alpha(&both)["levels"], serde_json::json!(["0.3", "0.5", "0.7"]));
+    assert_eq!(alpha(&both)["recommended"], alpha(&one)["recommended"]);
+    assert_eq!(alpha(&both)["trials_without_level"], 216);
 }

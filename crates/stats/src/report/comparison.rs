@@ -18,6 +18,8 @@ pub(crate) struct Comparison {
     pub kind: MeasureKind,
     pub factor: String,
     pub levels: Vec<String>,
+    /// Trials without a value of the factor, such as those of a method without that parameter: not used.
+    pub trials_without_level: usize,
     /// Trials a level.
     pub descriptions: Labelled<Outcome<Description>>,
     /// Mean over people of their means, a level.
@@ -40,6 +42,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Com
         kind: measure.kind,
         factor: factor.name.clone(),
         levels: factor.levels.clone(),
+        trials_without_level: without_level(factor),
         descriptions: describe_levels(measure, factor),
         person_means: Labelled::zip(
             &factor.levels,
@@ -64,4 +67,9 @@ pub(crate) fn describe_levels(
             .collect()
     };
     Labelled::zip(&factor.levels, (0..factor.levels.len() as u32).map(|level| describe(&of(level))))
+}
+
+/// Values whose trial has none of the factor's levels.
+pub(crate) fn without_level(factor: &Factor) -> usize {
+    factor.codes.iter().filter(|&&code| code == Factor::MISSING).count()
 }

@@ -100,7 +100,7 @@ pub(crate) fn is_number(cell: &str) -> bool {
         && cell.chars().filter(|c| c.is_alphabetic() && *c != 'e').count() == 0
 }
 
-fn csv_cell(cell: &str) -> String {
+pub(crate) fn csv_cell(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r', ';']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {

@@ -3,6 +3,7 @@
 use mimique_study::{Hypothesis, Measure as What, Study, TestName};
 use serde::Serialize;
 
+use super::comparison::without_level;
 use super::export::{AskedQuestion, Export};
 use super::language::Language;
 use super::measure::{Measure, MeasureKind, as_numbers};
@@ -25,6 +26,8 @@ pub(crate) struct HypothesisResult {
     pub factors: Vec<String>,
     pub as_in_the_thesis: TrialLevel,
     pub recommended: PersonLevel,
+    /// Trials without a value of a factor, such as those of a method without that parameter: not used.
+    pub trials_without_level: usize,
     /// p of the recommended test that decides.
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
@@ -52,7 +55,12 @@ pub(crate) fn test_hypothesis(
         )),
     };
     let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let (trials, people, reading) = match (tested, &measure) {
+    let trials_without_level = measure.as_ref().map_or(0, |measure| {
+        let of_clips = hypothesis.factors.iter().filter(|name| export.factors.contains(name));
+        let counts = of_clips.map(|name| without_level(&measure.factor(export, name, &[])));
+        counts.max().unwrap_or(0)
+    });
+    let (trials, people, mut reading) = match (tested, &measure) {
         (Ok((trials, people)), Some(measure)) => {
             // A hypothesis of two factors is about their interaction, which stands last.
             let mut read = people.clone();
@@ -75,6 +83,12 @@ pub(crate) fn test_hypothesis(
             (vec![Outcome::undefined(reason)], nothing, reading)
         }
     };
+    if trials_without_level > 0 {
+        reading += &language.pick(
+            format!(" {trials_without_level} trials have no value of the factor and take no part."),
+            format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
+        );
+    }
     HypothesisResult {
         id: hypothesis.id.clone(),
         statement: hypothesis.statement.in_language(language.code()).to_owned(),
@@ -82,6 +96,7 @@ pub(crate) fn test_hypothesis(
         kind: measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind),
         measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
         factors: hypothesis.factors.clone(),
+        trials_without_level,
         as_in_the_thesis: TrialLevel::new(trials),
         p: deciding_p(&people),
         p_holm_over_hypotheses: None,

@@ -122,6 +122,7 @@ pub(crate) fn escape(text: &str) -> String {
             '‘' => escaped.push('`'),
             '“' => escaped.push_str("``"),
             '”' => escaped.push_str("''"),
+            '≤' => escaped.push_str("$\\leq$"),
             '…' => escaped.push_str("\\ldots{}"),
             c => escaped.push(c),
         }

@@ -9,6 +9,7 @@ mod comparison;
 mod document;
 mod export;
 mod figure;
+mod figure_people;
 mod flow_chart;
 mod html;
 mod hypothesis;
@@ -21,6 +22,8 @@ mod measure;
 mod naming;
 mod person_level;
 mod reading;
+mod replay;
+mod section_course;
 mod section_measures;
 mod sections;
 mod svg;
@@ -80,7 +83,7 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
             "collect answers first, or look at the study's exclusions",
         ));
     }
-    let sections::Sections { document, results, readings } =
+    let sections::Sections { document, results, readings, replay } =
         sections::write(&export, study, language);
     let mut files = vec![
         ReportFile { path: "report.html".to_owned(), text: html::html(&document, language) },
@@ -118,6 +121,7 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
             _ => {}
         }
     }
+    files.extend(replay);
     files.push(ReportFile {
         path: "tables/all.tex".to_owned(),
         text: latex::document(&document.title, &in_latex),

@@ -129,7 +129,7 @@ impl TestLine {
                     effect_name: "rank-biserial",
                     effect: Some(result.rank_biserial),
                     n: result.n_pairs,
-                    call: call,
+                    call,
                 };
                 (Outcome::Ok(line), Some(result.hodges_lehmann_ci))
             }
