@@ -39,7 +39,9 @@ impl Factor {
                 }),
             });
         }
-        let numbers: Option<Vec<f64>> = labels.iter().map(|label| number(label)).collect();
+        // -0 and 0 are one level.
+        let numbers: Option<Vec<f64>> =
+            labels.iter().map(|label| number(label).map(|value| value + 0.0)).collect();
         let mut order: Vec<usize> = (0..labels.len()).collect();
         let compare = |&a: &usize, &b: &usize| match &numbers {
             Some(numbers) => numbers[a].total_cmp(&numbers[b]),

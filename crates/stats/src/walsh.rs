@@ -253,8 +253,8 @@ impl Pairs for Differences<'_> {
             while end < ys.len() && first - ys[end] > low {
                 end += 1;
             }
-            for j in start..end {
-                found(first - ys[j], own * self.y.counts[j]);
+            for (&second, &count) in ys[start..end].iter().zip(&self.y.counts[start..end]) {
+                found(first - second, own * count);
             }
         }
     }

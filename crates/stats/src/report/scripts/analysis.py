@@ -204,7 +204,7 @@ def spearman_p(x, y, rho):
         tail = np.mean(np.array(sums) >= s) if upper else np.mean(np.array(sums) <= s)
         return min(1.0, 2 * tail)
     b = 1 / n
-    q = s - 1 if upper else s + 2
+    q = s if upper else s + 2
     z = (6 * (q - 1) * b / (n * n - 1) - 1) * math.sqrt(n - 1)
     w = z * z
     inner = 0.0879 + 0.0151 * b - w * (0.0072 - 0.0831 * b + w * b * (0.0131 - 0.00046 * w))
