@@ -137,11 +137,8 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
 fn two_sided(tail: &dyn Fn(f64, bool) -> f64, s: f64, n: usize) -> f64 {
     let s = s.round();
     let size = n as f64;
-    let one_sided = if s > size * (size * size - 1.0) / 6.0 {
-        tail(s, true)
-    } else {
-        tail(s + 2.0, false)
-    };
+    let one_sided =
+        if s > size * (size * size - 1.0) / 6.0 { tail(s, true) } else { tail(s + 2.0, false) };
     Tail::from_p(one_sided).doubled().p
 }
 

@@ -235,6 +235,8 @@ impl<'d> Data<'d> {
         let needs = &self.design.needs;
         let mut trial = Trial {
             stimulus: self.model.clips[clip].id.clone(),
+            // The order of trials has no part in the study's tests.
+            order: None,
             levels: self.levels[clip].clone(),
             frames: None,
             late: None,

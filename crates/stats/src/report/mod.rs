@@ -35,13 +35,13 @@ use mimique_study::Study;
 
 use crate::outcome::Refusal;
 use crate::table::Table;
-pub(crate) use comparison::TestLine;
 use document::Block;
 pub(crate) use export::{Answer, Export, Person, Trial, exclude_people, why_left_out};
 pub(crate) use hypothesis::test_hypothesis;
 pub use language::Language;
 pub(crate) use naming::Naming;
 pub(crate) use svg::{Anchor, Axis, Svg};
+pub(crate) use test_line::TestLine;
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
