@@ -427,7 +427,7 @@ mod tests {
         // Every rule that leaves people or trials out, a response time, and a condition.
         value["exclusions"] = serde_json::json!({
             "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
-            "longestFrameMs": 120.0, "shortestRtMs": 4200.0,
+            "longestFrameMs": 33.0, "shortestRtMs": 4200.0,
         });
         value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
             "id": "H5", "statement": "s", "test": "wilcoxon", "response": "believability",
