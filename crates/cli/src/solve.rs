@@ -12,7 +12,8 @@ use indicatif::ProgressBar;
 use mimique_mocap::{LengthUnit, ReadOptions};
 use mimique_solver::{FrontEndError, Method, MethodSpec};
 use mimique_stimulus::{
-    AvatarSkin, MarkerMap, SolveError, SolveReport, SolvedCapture, TakeOptions, solve_take,
+    AvatarSkin, Depth, MarkerMap, ScaleRule, SolveError, SolveReport, SolvedCapture, TakeOptions,
+    solve_take, split_shapes,
 };
 use serde_json::{Value, json};
 
@@ -65,6 +66,10 @@ pub struct Args {
     /// uniform, umbrella, cotan-clamped or cotan-literal [default: uniform]
     #[arg(long)]
     laplacian: Option<String>,
+    /// Points of the face that a marker moves, in kouadio: points, zones or triangles
+    /// [default: zones]
+    #[arg(long)]
+    association: Option<String>,
     /// Radius of kouadio's zones, with its unit [default: 12mm]
     #[arg(long)]
     sigma: Option<Length>,
@@ -89,6 +94,21 @@ pub struct Args {
     /// Markers that move rigidly with the head (by default the map's)
     #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
     head: Option<Vec<String>>,
+    /// Frames of the range of motion that automatic scale factors come from (Kouadio 5.3)
+    #[arg(long, value_name = "FIRST:END")]
+    scale_automatic: Option<Span>,
+    /// Scale factor of one marker's displacements; may be given again
+    #[arg(long, value_name = "MARKER=S or MARKER=X,Y,Z")]
+    scale: Vec<Named<Factors>>,
+    /// Scale factor of all markers' displacements
+    #[arg(long, value_name = "S or X,Y,Z")]
+    scale_global: Option<Factors>,
+    /// Third coordinate: measured, or surface for a two-dimensional capture (by default the map's)
+    #[arg(long, value_name = "WORD")]
+    depth: Option<Depth>,
+    /// Symmetric shapes to cut into NAME_L and NAME_R along the face's middle (Kouadio 4.5)
+    #[arg(long, value_name = "SHAPE,SHAPE", value_delimiter = ',')]
+    split: Vec<String>,
     /// Unit of the capture where its file does not say: m, cm or mm
     #[arg(long, value_name = "UNIT")]
     mocap_unit: Option<String>,
@@ -109,6 +129,10 @@ struct Span(Range<usize>);
 #[derive(Debug, Clone, Copy)]
 struct Length(f64);
 
+/// A factor, or one for each of x, y, z.
+#[derive(Debug, Clone, Copy)]
+struct Factors([f64; 3]);
+
 /// `NAME=VALUE`.
 #[derive(Debug, Clone)]
 struct Named<T>(String, T);
@@ -119,6 +143,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let options = TakeOptions {
         neutral: args.neutral.as_ref().map(|s| s.0.clone()),
         head: args.head.clone(),
+        scale: ScaleRule {
+            automatic: args.scale_automatic.as_ref().map(|s| s.0.clone()),
+            global: args.scale_global.map(|f| f.0),
+            markers: unique("--scale", &args.scale)?.into_iter().map(|(k, f)| (k, f.0)).collect(),
+        },
+        depth: args.depth,
     };
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(Duration::from_millis(100));
@@ -127,7 +157,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 
     progress.set_message("reading");
     let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let skin = AvatarSkin::of(&avatar.avatar).map_err(|e| blame(&args.avatar, e))?;
+    let split = split_shapes(&avatar.avatar, &args.split)
+        .map_err(|e| blame(&args.avatar, format!("--{e}")))?;
+    let skin = AvatarSkin::of(&split).map_err(|e| blame(&args.avatar, e))?;
     let bytes = std::fs::read(&args.mocap).map_err(|e| {
         blame(&args.mocap, format!("open: {e}; check the path and its permissions"))
     })?;
@@ -207,8 +239,13 @@ fn print(args: &Args, solved: &SolvedCapture, notes: &[String], json: bool) -> a
     )?;
     writeln!(
         out,
-        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, write {:.3}",
-        seconds.read, seconds.set_up, seconds.front_end, seconds.solve, seconds.write
+        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, check {:.3}, write {:.3}",
+        seconds.read,
+        seconds.set_up,
+        seconds.front_end,
+        seconds.solve,
+        seconds.check,
+        seconds.write
     )?;
     writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
@@ -226,6 +263,7 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         k_s: args.k_s,
         k_b: args.k_b,
         laplacian: None,
+        association: None,
         soft_bounds: args.soft_bounds.map(|p| p.0),
         s: args.s,
         eps: args.eps,
@@ -242,6 +280,12 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         spec.laplacian = Some(serde_json::from_value(json!(word)).map_err(|_| {
             anyhow!("--laplacian: {word:?}; use uniform, umbrella, cotan-clamped or cotan-literal")
         })?);
+    }
+    if let Some(word) = &args.association {
+        spec.association = Some(
+            serde_json::from_value(json!(word))
+                .map_err(|_| anyhow!("--association: {word:?}; use points, zones or triangles"))?,
+        );
     }
     if let Some(word) = &args.unit {
         spec.unit = Some(
@@ -282,7 +326,10 @@ fn unique<T: Clone>(option: &str, list: &[Named<T>]) -> anyhow::Result<BTreeMap<
 /// The file or option that an error of the solve comes from.
 fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
     match error {
-        SolveError::Map(_) | SolveError::NoCommonLabel { .. } => &args.markers,
+        SolveError::Map(_)
+        | SolveError::NoCommonLabel { .. }
+        | SolveError::NoScaledMarker { .. }
+        | SolveError::ScaleFrames { .. } => &args.markers,
         SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
         SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => &args.markers,
         SolveError::Fit(_) => Path::new("--method"),
@@ -311,6 +358,22 @@ impl FromStr for Pair {
         let numbers =
             text.split_once(':').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
         numbers.map(Pair).ok_or_else(|| "give two numbers as LOW:HIGH".to_owned())
+    }
+}
+
+impl FromStr for Factors {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f64>> = text
+            .split(',')
+            .map(|x| x.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0))
+            .collect();
+        match numbers.as_deref() {
+            Some(&[x]) => Ok(Self([x; 3])),
+            Some(&[x, y, z]) => Ok(Self([x, y, z])),
+            _ => Err("give a number of 0 or more, or three for x, y and z".to_owned()),
+        }
     }
 }
 

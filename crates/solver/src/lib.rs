@@ -19,7 +19,7 @@
 //! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
 //! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
-//! | w_i, N_i, sigma (Kouadio 4.4-4.7) | [`LinkedRows`] | P x N(N+1)/2 | m^2 |
+//! | w_i, N_i, sigma (Kouadio 4.4-4.7); r, u, v (4.8-4.11) | [`LinkedRows`], [`MarkerSite`] | P x N(N+1)/2 | m^2 |
 //!
 //! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
 //! is written down, nothing is fused, `tan` is that of `libm` and `exp` our own.
@@ -37,15 +37,20 @@
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
+mod bank;
 mod box_qp;
 mod cholesky;
 mod dense;
 mod exp;
 mod fit;
 mod front_end;
+mod head_pose;
 mod laplacian;
 mod linked;
 mod lowpass;
+mod marker_scales;
+mod marker_site;
+mod mask;
 mod method;
 mod method_spec;
 mod newton;
@@ -59,17 +64,22 @@ mod seen;
 mod shell_patch;
 mod skin_mesh;
 mod spec_check;
+mod surface_depth;
 mod svd;
 mod synthesis;
+mod symmetry;
 mod thin_shell;
 
+pub use bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
 pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
 pub use front_end::{FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns, MarkerFrames};
 pub use laplacian::{Laplacian, mixed_voronoi_areas};
-pub use linked::LinkedRows;
+pub use linked::{LinkedRows, Linking};
 pub use lowpass::{Lowpass, LowpassError};
+pub use marker_scales::{Extent, LEAST_RANGE_M, MarkerScales, bank_extents, motion_extents};
+pub use marker_site::{MarkerSite, SurfacePoint};
 pub use method::Method;
-pub use method_spec::{LaplacianKind, MethodSpec, Unit};
+pub use method_spec::{Association, LaplacianKind, MethodSpec, Unit};
 pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use problem::FitError;
 pub use rbf::{Rbf, RbfError};
@@ -78,4 +88,6 @@ pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
 pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
 pub use spec_check::SpecError;
 pub use synthesis::Synthesis;
+pub use surface_depth::{FanTriangle, SurfaceDepth};
+pub use symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
 pub use thin_shell::{apply_shell, shell_gram};

@@ -1,7 +1,7 @@
 //! What is wrong with a method's parameters: all of it, each with its field, value and remedy.
 
 use crate::method::Method;
-use crate::method_spec::MethodSpec;
+use crate::method_spec::{Association, MethodSpec};
 
 /// Something wrong in a [`MethodSpec`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -44,6 +44,12 @@ impl MethodSpec {
         found.number("eps", self.eps, "0 or more", |v| v >= 0.0);
         found
             .number("sigma", self.sigma, "above 0 and at most 1 (metres)", |v| v > 0.0 && v <= 1.0);
+        if let (Some(association), Some(sigma)) = (self.association, self.sigma)
+            && association != Association::Zones
+        {
+            let message = format!("is {sigma}, but only zones have a radius; remove it");
+            found.add("sigma", message);
+        }
         found.number("boundsWeight", self.bounds_weight, "above 0", |v| v > 0.0);
         found.number("headLowpassHz", self.head_lowpass_hz, "0 (no filter) or more", |v| v >= 0.0);
         if self.k_s() == 0.0 && self.k_b() == 0.0 && self.method.parameters().contains(&"kS") {
@@ -83,6 +89,7 @@ impl MethodSpec {
             ("softBounds", self.soft_bounds.is_some()),
             ("s", self.s.is_some()),
             ("eps", self.eps.is_some()),
+            ("association", self.association.is_some()),
             ("sigma", self.sigma.is_some()),
             ("boundsWeight", self.bounds_weight.is_some()),
             ("unit", self.unit.is_some()),

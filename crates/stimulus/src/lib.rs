@@ -9,6 +9,9 @@
 //!                                              solve_packs (server, browser) --> weights
 //! ```
 
+mod bank_diagnosis;
+mod head_check;
+mod label_check;
 mod marker_map;
 mod operators_pack;
 #[cfg(feature = "prepare")]
@@ -18,10 +21,19 @@ mod report;
 mod skin;
 mod solve_packs;
 mod solve_take;
+mod split_shapes;
+mod take_adjustments;
+mod take_checks;
 mod take_pack;
 mod weights_file;
 
-pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
+pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
+pub use head_check::{HeadMarker, STILL_MM};
+pub use label_check::{LabelFault, LabelProblem};
+pub use marker_map::{
+    Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
+    REACH_M, ScaleRule, TOLERANCE_M,
+};
 pub use operators_pack::{decode_operators, encode_operators};
 #[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
@@ -30,5 +42,6 @@ pub use report::{FrameRow, FrameStatistics, SolveReport, StageSeconds};
 pub use skin::AvatarSkin;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 pub use solve_take::{JoinedTake, SolveError, SolvedCapture, TakeOptions, solve_take};
+pub use split_shapes::{SplitError, split_shapes};
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
 pub use weights_file::{WeightsFileError, WeightsTable};

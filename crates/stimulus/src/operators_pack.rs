@@ -1,13 +1,15 @@
 //! The operators pack (`MMOP`): what the solver needs of avatar and marker map, and no mesh.
 //!
-//! Body: options (Laplacian, k_s, k_b, sigma), shape names, marker labels, S, marker positions, D,
+//! Body: options (Laplacian, k_s, k_b, association, sigma), shape names, marker labels, S, marker positions, D,
 //! H as f64, then Kouadio's linked rows where they were asked for. l^2 and tau follow from D and H.
 
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
-use mimique_solver::{LaplacianKind, LinkedRows, OperatorOptions, OperatorParts, Operators};
+use mimique_solver::{
+    LaplacianKind, LinkedRows, Linking, OperatorOptions, OperatorParts, Operators,
+};
 
 const KIND: &str = "MMOP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const LAPLACIANS: [LaplacianKind; 4] = [
     LaplacianKind::Uniform,
@@ -24,7 +26,14 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     w.u8(kind.unwrap_or(0) as u8);
     w.f64(parts.options.k_s);
     w.f64(parts.options.k_b);
-    w.f64(parts.options.sigma.unwrap_or(f64::NAN));
+    let (linking, sigma) = match parts.options.linking {
+        None => (0, 0.0),
+        Some(Linking::Points) => (1, 0.0),
+        Some(Linking::Zones { sigma }) => (2, sigma),
+        Some(Linking::Triangles) => (3, 0.0),
+    };
+    w.u8(linking);
+    w.f64(sigma);
     w.texts(&parts.shape_names);
     w.texts(&parts.marker_labels);
     w.u64(parts.vertex_count as u64);
@@ -34,7 +43,6 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     all(&parts.shell_gram);
     w.u8(u8::from(parts.linked.is_some()));
     if let Some(linked) = &parts.linked {
-        w.f64(linked.sigma);
         w.u64(linked.vertex_count as u64);
         linked.grams.iter().chain(&linked.sums).for_each(|&x| w.f64(x));
     }
@@ -52,9 +60,15 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
     let Some(&laplacian) = LAPLACIANS.get(usize::from(kind)) else {
         return r.refuse(format!("Laplacian {kind}"));
     };
-    let (k_s, k_b, sigma) = (r.f64()?, r.f64()?, r.f64()?);
-    let options =
-        OperatorOptions { laplacian, k_s, k_b, sigma: (!sigma.is_nan()).then_some(sigma) };
+    let (k_s, k_b) = (r.f64()?, r.f64()?);
+    let linking = match (r.u8()?, r.f64()?) {
+        (0, _) => None,
+        (1, _) => Some(Linking::Points),
+        (2, sigma) => Some(Linking::Zones { sigma }),
+        (3, _) => Some(Linking::Triangles),
+        (other, _) => return r.refuse(format!("association {other}")),
+    };
+    let options = OperatorOptions { laplacian, k_s, k_b, linking };
     let shape_names = r.texts()?;
     let marker_labels = r.texts()?;
     let (n, p) = (shape_names.len(), marker_labels.len());
@@ -62,15 +76,15 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
     let positions = numbers(&mut r, 3, p)?;
     let marker_deltas = numbers(&mut r, 3 * p, n)?;
     let shell_gram = numbers(&mut r, n, n)?;
-    let linked = match r.u8()? {
-        0 => None,
-        1 => Some(LinkedRows {
-            sigma: r.f64()?,
+    let linked = match (r.u8()?, linking) {
+        (0, _) => None,
+        (1, Some(linking)) => Some(LinkedRows {
+            linking,
             vertex_count: r.u64()? as usize,
             grams: numbers(&mut r, p, n.saturating_mul(n + 1) / 2)?,
             sums: numbers(&mut r, 3 * p, n)?,
         }),
-        other => return r.refuse(format!("linked flag {other}")),
+        (other, _) => return r.refuse(format!("linked flag {other}")),
     };
     let left = r.left();
     if left > 0 {

@@ -4,15 +4,18 @@ use std::ops::Range;
 
 use mimique_mocap::Capture;
 use mimique_solver::{
-    Fit, FitError, FrontEnd, FrontEndError, MarkerColumns, MarkerFrames, MeshError, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion,
+    Fit, FitError, FrontEnd, FrontEndError, MarkerColumns, MarkerFrames, MarkerSite, MeshError,
+    Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, RigidMotion,
+    SurfaceDepth,
 };
 
+use crate::head_check::moving_skin;
 use crate::provenance::{Provenance, weights_hash};
 use crate::report::{FrameRow, FrameStatistics, SolveReport, StageSeconds, unseen_shapes};
 use crate::solve_packs::lowpass;
+use crate::take_adjustments::{refuse_flat, scale_rule};
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
-use crate::{AvatarSkin, MapError, MarkerMap, WeightsTable};
+use crate::{AvatarSkin, Depth, LabelProblem, MapError, MarkerMap, ScaleRule, WeightsTable};
 
 /// Frames that a neutral should be the mean of.
 const NEUTRAL_FRAMES: usize = 60;
@@ -26,6 +29,10 @@ pub struct TakeOptions {
     pub neutral: Option<Range<usize>>,
     /// Labels of the markers that stabilise the head; the map's where not given.
     pub head: Option<Vec<String>>,
+    /// Scale factors of the displacements; what is given here stands before the map's.
+    pub scale: ScaleRule,
+    /// Where the third coordinate comes from; the map's where not given.
+    pub depth: Option<Depth>,
 }
 
 /// Why a take cannot be solved.
@@ -55,6 +62,51 @@ pub enum SolveError {
         /// Some labels of the capture.
         capture: String,
     },
+    /// A marker that is to be scaled is not on the face.
+    #[error("scale of marker {label}: not a face marker of map and capture, which have {markers}")]
+    NoScaledMarker {
+        /// The label.
+        label: String,
+        /// Some face markers.
+        markers: String,
+    },
+    /// The frames of the range of motion are not in the capture.
+    #[error(
+        "automatic scale, frames {first}:{end} of {frames}; give the frames of the range of motion"
+    )]
+    ScaleFrames {
+        /// First frame.
+        first: usize,
+        /// One past the last.
+        end: usize,
+        /// Frames there are.
+        frames: usize,
+    },
+    /// All markers lie in a plane of constant z.
+    #[error(
+        "capture: two-dimensional (z is {z_mm} mm throughout); take the depth from the surface \
+         (--depth surface, or \"depth\": \"surface\" in the marker map)"
+    )]
+    Flat {
+        /// The one depth, millimetres.
+        z_mm: f64,
+    },
+    /// Two labels at one place, on the neutral face.
+    #[error(
+        "markers {first} and {second}: at one place on the neutral face; one of the two labels is wrong"
+    )]
+    OnePlace {
+        /// One label.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A marker that is never seen while the face is neutral.
+    #[error(
+        "face marker {0} is not seen in any neutral frame; give other neutral frames or leave the \
+         marker out of the map"
+    )]
+    NeutralUnseen(String),
     /// The capture is empty.
     #[error("capture: no frames; record or export the take again")]
     NoFrames,
@@ -94,18 +146,20 @@ pub struct SolvedCapture {
 /// Avatar, marker map and capture brought together; solves any method and any segment.
 #[derive(Debug, Clone)]
 pub struct JoinedTake<'a> {
-    skin: &'a AvatarSkin,
-    /// Face markers that the capture has: label and welded vertex.
-    markers: Vec<(String, usize)>,
+    pub(crate) skin: &'a AvatarSkin,
+    /// Face markers that the capture has, on the welded skin.
+    pub(crate) markers: Vec<MarkerSite>,
     /// Labels of the columns of `positions`.
-    labels: Vec<String>,
-    columns: MarkerColumns,
+    pub(crate) labels: Vec<String>,
+    pub(crate) columns: MarkerColumns,
     /// Frames x 3 columns, metres.
-    positions: Vec<f64>,
-    neutral: Range<usize>,
-    rate_hz: f64,
-    first_frame: u64,
-    warnings: Vec<String>,
+    pub(crate) positions: Vec<f64>,
+    pub(crate) neutral: Range<usize>,
+    pub(crate) scale: ScaleRule,
+    pub(crate) depth: Depth,
+    pub(crate) rate_hz: f64,
+    pub(crate) first_frame: u64,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Solves a capture with one method.
@@ -139,9 +193,21 @@ pub fn solve_take(
     let front = clock();
     seconds.front_end = front - set_up;
     let solution = fit.solve_take(&displacements)?;
-    seconds.solve = clock() - front;
+    let solve = clock();
+    seconds.solve = solve - front;
 
     let mut warnings = joined.warnings.clone();
+    let head_markers = joined.head_markers()?;
+    warnings.extend(moving_skin(&head_markers));
+    let label_problems = joined.label_problems(
+        &operators,
+        &fit,
+        (&front_end, &poses),
+        &displacements,
+        &solution.weights,
+    );
+    warnings.extend(label_problems.iter().map(LabelProblem::sentence));
+    seconds.check = clock() - solve;
     warnings.extend(unseen_shapes(&operators, spec));
     let summary = FrameStatistics::of(&solution.reports);
     warnings.extend(summary.warnings(joined.first_frame));
@@ -160,7 +226,7 @@ pub fn solve_take(
         avatar: skin.name.clone(),
         vertices: skin.mesh.positions.len(),
         shapes: skin.shape_names.len(),
-        markers: joined.markers.iter().map(|(label, _)| label.clone()).collect(),
+        markers: joined.markers.iter().map(|site| site.label.clone()).collect(),
         head: joined.head_labels(),
         neutral: [joined.neutral.start, joined.neutral.end],
         rate_hz: joined.rate_hz,
@@ -170,6 +236,8 @@ pub fn solve_take(
         summary,
         seconds,
         warnings,
+        head_markers,
+        label_problems,
         provenance: joined.provenance(spec).text("weights", &weights_hash).hash(),
         weights_hash,
         frames,
@@ -197,7 +265,7 @@ impl<'a> JoinedTake<'a> {
         let mut warnings = Vec::new();
         let resolved = map.resolve(skin)?;
         let (markers, absent): (Vec<_>, Vec<_>) =
-            resolved.into_iter().partition(|(label, _)| capture.marker_index(label).is_some());
+            resolved.into_iter().partition(|site| capture.marker_index(&site.label).is_some());
         if markers.is_empty() {
             return Err(SolveError::NoCommonLabel {
                 map: some(map.face_labels()),
@@ -208,12 +276,12 @@ impl<'a> JoinedTake<'a> {
             warnings.push(format!(
                 "{} markers of the map are not in the capture: {}",
                 absent.len(),
-                some(absent.iter().map(|(label, _)| label.as_str()))
+                some(absent.iter().map(|site| site.label.as_str()))
             ));
         }
         let head = options.head.as_ref().unwrap_or(&map.head);
         // Columns: face markers, then the head markers that are none.
-        let mut labels: Vec<String> = markers.iter().map(|(label, _)| label.clone()).collect();
+        let mut labels: Vec<String> = markers.iter().map(|site| site.label.clone()).collect();
         let face = (0..labels.len()).collect();
         let mut head_columns = Vec::new();
         for label in head {
@@ -243,16 +311,33 @@ impl<'a> JoinedTake<'a> {
                 neutral.len()
             ));
         }
+        let positions = metres(capture, &labels);
+        let depth = options.depth.unwrap_or(map.depth);
+        if depth == Depth::Measured {
+            refuse_flat(&positions)?;
+        }
+        let scale = scale_rule(options, map);
+        if let Some(label) = scale.markers.keys().find(|l| !labels[..markers.len()].contains(l)) {
+            let markers = some(labels[..markers.len()].iter().map(String::as_str));
+            return Err(SolveError::NoScaledMarker { label: label.clone(), markers });
+        }
+        if let Some(Range { start: first, end }) = scale.automatic
+            && (first >= end || end > frames)
+        {
+            return Err(SolveError::ScaleFrames { first, end, frames });
+        }
         Ok(Self {
             skin,
             markers,
-            positions: metres(capture, &labels),
+            positions,
             labels,
             columns: MarkerColumns {
                 face,
                 head: (!head_columns.is_empty()).then_some(head_columns),
             },
             neutral,
+            scale,
+            depth,
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
             warnings,
@@ -264,6 +349,12 @@ impl<'a> JoinedTake<'a> {
         &self.warnings
     }
 
+    /// Whether scale factors come from the bank's range of motion.
+    #[cfg(feature = "prepare")]
+    pub(crate) fn scales_by_bank(&self) -> bool {
+        self.scale.automatic.is_some()
+    }
+
     /// Number of frames.
     pub fn frame_count(&self) -> usize {
         self.frames().len()
@@ -272,11 +363,10 @@ impl<'a> JoinedTake<'a> {
     /// A hash of the face markers and their vertices.
     #[cfg(feature = "prepare")]
     pub(crate) fn marker_key(&self) -> String {
-        let labels: Vec<&str> = self.markers.iter().map(|(label, _)| label.as_str()).collect();
-        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
+        let labels: Vec<&str> = self.markers.iter().map(|site| site.label.as_str()).collect();
         Provenance::default()
             .text("labels", &labels.join("\n"))
-            .numbers("vertices", &vertices)
+            .numbers("vertices", &self.site_numbers())
             .hash()
     }
 
@@ -286,7 +376,7 @@ impl<'a> JoinedTake<'a> {
     /// [`OperatorError`] for a skin or markers that cannot be used.
     pub fn operators(&self, spec: &MethodSpec) -> Result<Operators, OperatorError> {
         let options = OperatorOptions::of(spec);
-        Operators::build(&self.skin.mesh, &self.skin.shape_names, &self.markers, &options)
+        Operators::build_at(&self.skin.mesh, &self.skin.shape_names, &self.markers, &options)
     }
 
     /// The pack of frames `first..end` (counted from 0), with a margin for the head's low-pass.
@@ -314,6 +404,8 @@ impl<'a> JoinedTake<'a> {
             head: self.columns.head.clone(),
             head_reference: front_end.head_reference().to_vec(),
             neutral: front_end.neutral().to_vec(),
+            scales: front_end.scales().cloned(),
+            depth: front_end.depth().cloned(),
             positions: self.positions[stored.start * width..stored.end * width].to_vec(),
         };
         Ok(TakePack {
@@ -324,7 +416,7 @@ impl<'a> JoinedTake<'a> {
         })
     }
 
-    fn frames(&self) -> MarkerFrames<'_> {
+    pub(crate) fn frames(&self) -> MarkerFrames<'_> {
         MarkerFrames { positions: &self.positions, columns: self.labels.len() }
     }
 
@@ -332,14 +424,48 @@ impl<'a> JoinedTake<'a> {
         &self,
         operators: &Operators,
         spec: &MethodSpec,
-    ) -> Result<(FrontEnd, Vec<RigidMotion>), FrontEndError> {
+    ) -> Result<(FrontEnd, Vec<RigidMotion>), SolveError> {
         let lowpass = lowpass(spec, self.rate_hz)?;
         let poses = FrontEnd::head_poses(self.frames(), &self.columns, lowpass.as_ref())?;
         let avatar_markers = &operators.parts().marker_positions;
-        let neutral = self.neutral.clone();
-        let front_end =
-            FrontEnd::fit(self.frames(), &self.columns, &poses, neutral, avatar_markers)?;
-        Ok((front_end, poses))
+        let depth = (self.depth == Depth::Surface)
+            .then(|| SurfaceDepth::of(&self.skin.mesh, &self.markers));
+        let front_end = FrontEnd::fit_with(
+            self.frames(),
+            &self.columns,
+            &poses,
+            self.neutral.clone(),
+            avatar_markers,
+            depth,
+        )
+        .map_err(|e| self.by_label(e))?;
+        let scales = self.scales(&front_end, &poses, operators, spec)?;
+        Ok((front_end.with_scales(scales)?, poses))
+    }
+
+    /// The front end's errors with the markers' labels.
+    fn by_label(&self, error: FrontEndError) -> SolveError {
+        let label = |m: usize| self.markers[m].label.clone();
+        match error {
+            FrontEndError::Rbf(RbfError::Coincident(a, b)) => {
+                SolveError::OnePlace { first: label(a), second: label(b) }
+            }
+            FrontEndError::NeutralUnseen { marker } => SolveError::NeutralUnseen(label(marker)),
+            other => other.into(),
+        }
+    }
+
+    /// The places of the markers as numbers: the vertex, or corners and coordinates.
+    fn site_numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        for site in &self.markers {
+            let parts: Vec<(usize, f64)> = site.parts().collect();
+            match parts[..] {
+                [(vertex, _)] => numbers.push(vertex as f64),
+                _ => numbers.extend(parts.iter().flat_map(|&(v, w)| [v as f64, w])),
+            }
+        }
+        numbers
     }
 
     fn head_labels(&self) -> Vec<String> {
@@ -357,8 +483,7 @@ impl<'a> JoinedTake<'a> {
             shapes.extend(shape.vertices.iter().map(|&v| f64::from(v)));
             shapes.extend(shape.deltas.iter().flatten());
         }
-        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
-        Provenance::new()
+        let provenance = Provenance::new()
             .numbers("avatar.positions", mesh.positions.as_flattened())
             .numbers("avatar.triangles", &corners)
             .numbers("avatar.shapes", &shapes)
@@ -366,10 +491,11 @@ impl<'a> JoinedTake<'a> {
             .numbers("capture.positions", &self.positions)
             .numbers("capture.rate", &[self.rate_hz])
             .text("capture.labels", &self.labels.join("\n"))
-            .numbers("map.vertices", &vertices)
+            .numbers("map.vertices", &self.site_numbers())
             .text("map.head", &self.head_labels().join("\n"))
             .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
-            .method(spec)
+            .method(spec);
+        self.adjustments(provenance)
     }
 }
 

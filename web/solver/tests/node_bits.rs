@@ -77,7 +77,7 @@ fn capture(skin: &AvatarSkin, map: &MarkerMap) -> Capture {
     let mut labels: Vec<String> = map.face_labels().map(str::to_owned).collect();
     labels.extend(map.head.iter().cloned());
     let vertices: Vec<usize> =
-        map.resolve(skin).unwrap().into_iter().map(|(_, vertex)| vertex).collect();
+        map.resolve(skin).unwrap().iter().map(MarkerSite::vertex).collect();
     let skull = [[0.1, 0.12, -0.05], [-0.1, 0.12, -0.05], [0.0, 0.16, 0.02], [0.0, 0.1, -0.12]];
     let mut positions = Vec::new();
     let mut noise = 12345u64;

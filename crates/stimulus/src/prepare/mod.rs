@@ -195,6 +195,8 @@ fn to_solve(
     let joined = performance.joined()?;
     let said = joined.warnings().iter().cloned();
     warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
+    let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
+    warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
     let options = format!("{:?}", OperatorOptions::of(spec));
     let markers = joined.marker_key();
     let operators = cache.pack(&["operators", avatar_key, &markers, &options], || {
@@ -205,8 +207,14 @@ fn to_solve(
         .map_err(|e| PrepareError::new(&performance.capture_pointer, e))?;
     let unseen = unseen_shapes(&opened, spec);
     warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
+    // Automatic scale factors follow from the bank between its bounds.
+    let range = if joined.scales_by_bank() {
+        format!("{:?} {:?} {avatar_key}", spec.bounds, spec.locked)
+    } else {
+        String::new()
+    };
     let lowpass = format!("{:?}", spec.head_lowpass_hz);
-    let take = cache.pack(&["take", &markers, &performance.key, &lowpass], || {
+    let take = cache.pack(&["take", &markers, &performance.key, &lowpass, &range], || {
         let take = joined
             .segment(&opened, spec, performance.frames.clone())
             .map_err(|e| performance.error(e))?;
