@@ -66,8 +66,8 @@ mod skin_mesh;
 mod spec_check;
 mod surface_depth;
 mod svd;
-mod synthesis;
 mod symmetry;
+mod synthesis;
 mod thin_shell;
 
 pub use bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
@@ -87,7 +87,7 @@ pub use report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
 pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
 pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
 pub use spec_check::SpecError;
-pub use synthesis::Synthesis;
 pub use surface_depth::{FanTriangle, SurfaceDepth};
 pub use symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
+pub use synthesis::Synthesis;
 pub use thin_shell::{apply_shell, shell_gram};
