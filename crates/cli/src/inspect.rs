@@ -8,8 +8,10 @@ use anyhow::anyhow;
 use mimique_face::Avatar;
 use mimique_face::pack::{decode_pack, pack_kind};
 use mimique_mocap::{CaptureFacts, Format, ReadOptions};
+use mimique_solver::Linking;
 use mimique_stimulus::{
-    AvatarSkin, MarkerMap, TakeContent, WeightsTable, decode_operators, decode_take, sha256_hex,
+    AvatarSkin, BankDiagnosis, MarkerMap, TakeContent, WeightsTable, decode_operators, decode_take,
+    sha256_hex,
 };
 use serde_json::{Value, json};
 
@@ -18,11 +20,20 @@ use serde_json::{Value, json};
 pub struct Args {
     /// Avatar, capture, weight file, marker map, study or pack
     file: PathBuf,
+    /// Hold the avatar's bank of shapes against Kouadio's five rules
+    #[arg(long)]
+    bank: bool,
+    /// With --bank: marker map of the avatar, for the rules about markers
+    #[arg(long, value_name = "MAP", requires = "bank")]
+    markers: Option<PathBuf>,
 }
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let blame = |text: String| anyhow!("{}: {text}", args.file.display());
+    if args.bank {
+        return bank(&args, json);
+    }
     let bytes = std::fs::read(&args.file)
         .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
     let mut facts = facts(&args.file, &bytes).map_err(|e| blame(e.to_string()))?;
@@ -36,6 +47,33 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         shorten_presence(&mut facts);
         tell(&facts, 0, &mut text);
         out.write_all(text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// `--bank`: the five rules.
+fn bank(args: &Args, json: bool) -> anyhow::Result<()> {
+    let blame = |file: &Path, error: &dyn std::fmt::Display| anyhow!("{}: {error}", file.display());
+    let read = mimique_face::read_avatar(&args.file).map_err(|e| blame(&args.file, &e))?;
+    let skin = AvatarSkin::of(&read.avatar).map_err(|e| blame(&args.file, &e))?;
+    let sites = match &args.markers {
+        None => None,
+        Some(path) => {
+            let text = std::fs::read_to_string(path)
+                .map_err(|e| blame(path, &format!("open: {e}; check the path")))?;
+            let map = MarkerMap::from_text(&text).map_err(|e| blame(path, &e))?;
+            Some(map.resolve(&skin).map_err(|e| blame(path, &e))?)
+        }
+    };
+    let diagnosis = BankDiagnosis::of(&skin, sites.as_deref());
+    let mut out = std::io::stdout().lock();
+    if json {
+        let mut value = serde_json::to_value(&diagnosis)?;
+        value["file"] = json!(args.file);
+        value["clean"] = json!(diagnosis.is_clean());
+        writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
+    } else {
+        write!(out, "file: {}\n{}", args.file.display(), diagnosis.text())?;
     }
     Ok(())
 }
@@ -250,7 +288,11 @@ fn operators_facts(bytes: &[u8]) -> anyhow::Result<Value> {
         "laplacian": parts.options.laplacian,
         "k_s": parts.options.k_s,
         "k_b": parts.options.k_b,
-        "sigma_m": parts.options.sigma,
+        "association": parts.options.linking.map(|l| match l {
+            Linking::Points => "points".to_owned(),
+            Linking::Zones { sigma } => format!("zones of {:.1} mm", 1e3 * sigma),
+            Linking::Triangles => "triangles".to_owned(),
+        }),
         "l_mm": 1e3 * operators.data_scale().sqrt(),
         "tau_m2": operators.shell_scale(),
         "shapes_no_marker_sees": unseen.join(", "),

@@ -14,8 +14,8 @@ use indicatif::ProgressBar;
 use mimique_mocap::{LengthUnit, ReadOptions};
 use mimique_solver::{FrontEndError, Method, MethodSpec, TrainingError};
 use mimique_stimulus::{
-    AvatarSkin, MarkerMap, SolveError, SolveReport, SolvedCapture, TakeOptions, Training,
-    VertexFrames, WeightsTable, solve_take,
+    AvatarSkin, Depth, MarkerMap, ScaleRule, SolveError, SolveReport, SolvedCapture, TakeOptions,
+    Training, VertexFrames, WeightsTable, solve_take, split_shapes,
 };
 use serde_json::{Value, json};
 
@@ -74,6 +74,10 @@ pub struct Args {
     /// uniform, umbrella, cotan-clamped or cotan-literal [default: uniform]
     #[arg(long)]
     laplacian: Option<String>,
+    /// Points of the face that a marker moves, in kouadio: points, zones or triangles
+    /// [default: zones]
+    #[arg(long)]
+    association: Option<String>,
     /// Radius of kouadio's zones, with its unit [default: 12mm]
     #[arg(long)]
     sigma: Option<Length>,
@@ -128,6 +132,21 @@ pub struct Args {
     /// Markers that move rigidly with the head (by default the map's)
     #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
     head: Option<Vec<String>>,
+    /// Frames of the range of motion that automatic scale factors come from (Kouadio 5.3)
+    #[arg(long, value_name = "FIRST:END")]
+    scale_automatic: Option<Span>,
+    /// Scale factor of one marker's displacements; may be given again
+    #[arg(long, value_name = "MARKER=S or MARKER=X,Y,Z")]
+    scale: Vec<Named<Factors>>,
+    /// Scale factor of all markers' displacements
+    #[arg(long, value_name = "S or X,Y,Z")]
+    scale_global: Option<Factors>,
+    /// Third coordinate: measured, or surface for a two-dimensional capture (by default the map's)
+    #[arg(long, value_name = "WORD")]
+    depth: Option<Depth>,
+    /// Symmetric shapes to cut into NAME_L and NAME_R along the face's middle (Kouadio 4.5)
+    #[arg(long, value_name = "SHAPE,SHAPE", value_delimiter = ',')]
+    split: Vec<String>,
     /// Unit of the capture where its file does not say: m, cm or mm
     #[arg(long, value_name = "UNIT")]
     mocap_unit: Option<String>,
@@ -147,6 +166,10 @@ struct Span(Range<usize>);
 /// Metres, from `12mm`, `1.2cm` or `0.012m`.
 #[derive(Debug, Clone, Copy)]
 struct Length(f64);
+
+/// A factor, or one for each of x, y, z.
+#[derive(Debug, Clone, Copy)]
+struct Factors([f64; 3]);
 
 /// `NAME=VALUE`.
 #[derive(Debug, Clone)]
@@ -179,7 +202,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 
     progress.set_message("reading");
     let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let skin = AvatarSkin::of(&avatar.avatar).map_err(|e| blame(&args.avatar, e))?;
+    let split = split_shapes(&avatar.avatar, &args.split)
+        .map_err(|e| blame(&args.avatar, format!("--{e}")))?;
+    let skin = AvatarSkin::of(&split).map_err(|e| blame(&args.avatar, e))?;
     let recording = capture(&args, &args.mocap)?;
     let text = std::fs::read_to_string(markers)
         .map_err(|e| blame(markers, format!("open: {e}; check the path")))?;
@@ -187,6 +212,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let options = TakeOptions {
         neutral: args.neutral.as_ref().map(|s| s.0.clone()),
         head: args.head.clone(),
+        scale: ScaleRule {
+            automatic: args.scale_automatic.as_ref().map(|s| s.0.clone()),
+            global: args.scale_global.map(|f| f.0),
+            markers: unique("--scale", &args.scale)?.into_iter().map(|(k, f)| (k, f.0)).collect(),
+        },
+        depth: args.depth,
         training: training(&args)?.map(Box::new),
     };
     let read = seconds();
@@ -271,8 +302,13 @@ fn print(args: &Args, solved: &SolvedCapture, notes: &[String], json: bool) -> a
     }
     writeln!(
         out,
-        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, write {:.3}",
-        seconds.read, seconds.set_up, seconds.front_end, seconds.solve, seconds.write
+        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, check {:.3}, write {:.3}",
+        seconds.read,
+        seconds.set_up,
+        seconds.front_end,
+        seconds.solve,
+        seconds.check,
+        seconds.write
     )?;
     writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
@@ -334,6 +370,7 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         k_s: args.k_s,
         k_b: args.k_b,
         laplacian: None,
+        association: None,
         soft_bounds: args.soft_bounds.map(|p| p.0),
         s: args.s,
         eps: args.eps,
@@ -366,6 +403,12 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         spec.inference = Some(
             serde_json::from_value(json!(word))
                 .map_err(|_| anyhow!("--inference: {word:?}; use sparse or exact"))?,
+        );
+    }
+    if let Some(word) = &args.association {
+        spec.association = Some(
+            serde_json::from_value(json!(word))
+                .map_err(|_| anyhow!("--association: {word:?}; use points, zones or triangles"))?,
         );
     }
     if let Some(word) = &args.unit {
@@ -416,6 +459,7 @@ fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
             args.training.as_deref().unwrap_or(Path::new("--training"))
         }
         SolveError::Surface(_) => &args.avatar,
+        SolveError::NoScaledMarker { .. } | SolveError::ScaleFrames { .. } => markers,
         SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
         SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => markers,
         SolveError::Fit(_) => Path::new("--method"),
@@ -444,6 +488,22 @@ impl FromStr for Pair {
         let numbers =
             text.split_once(':').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
         numbers.map(Pair).ok_or_else(|| "give two numbers as LOW:HIGH".to_owned())
+    }
+}
+
+impl FromStr for Factors {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f64>> = text
+            .split(',')
+            .map(|x| x.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0))
+            .collect();
+        match numbers.as_deref() {
+            Some(&[x]) => Ok(Self([x; 3])),
+            Some(&[x, y, z]) => Ok(Self([x, y, z])),
+            _ => Err("give a number of 0 or more, or three for x, y and z".to_owned()),
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! The commands as a researcher types them: results, exit codes, errors, and nothing half written.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
-use mimique_test_support::real_file;
+use mimique_test_support::{real_file, repository};
 use serde_json::Value;
 
 fn mimique<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
@@ -230,7 +230,7 @@ fn statistical_tests_print_the_expected_values() {
 
 #[test]
 fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
-    let study = |name: &str| text(&root().join("study-config").join(name));
+    let study = |name: &str| text(&repository().join("study-config").join(name));
     ok(&["check", &study("demo.json")]);
     ok(&["check", &study("template.json")]);
     let folder = tempfile::tempdir().expect("a folder");
@@ -253,7 +253,7 @@ fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
 
 #[test]
 fn order_is_the_same_every_time_and_differs_between_participants() {
-    let study = text(&root().join("study-config/demo.json"));
+    let study = text(&repository().join("study-config/demo.json"));
     let of = |participant: &str| ok(&["order", &study, "--participant", participant, "--json"]);
     assert_eq!(of("3"), of("3"));
     let orders: std::collections::BTreeSet<String> = ["1", "2", "3", "4", "5"].map(of).into();

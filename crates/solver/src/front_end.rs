@@ -3,9 +3,12 @@
 
 use std::ops::Range;
 
+use crate::head_pose::{head_poses, head_reference};
 use crate::lowpass::{Lowpass, LowpassError};
+use crate::marker_scales::MarkerScales;
 use crate::rbf::{Rbf, RbfError};
-use crate::rigid_alignment::{Pose, RigidError, RigidMotion, align, align_rigidly};
+use crate::rigid_alignment::{RigidError, RigidMotion, align_rigidly};
+use crate::surface_depth::SurfaceDepth;
 
 /// Frames of marker positions: x, y, z of column 0, then of column 1...; NaN = not seen.
 ///
@@ -87,6 +90,8 @@ pub struct FrontEnd {
     avatar_markers: Vec<[f64; 3]>,
     avatar_from_actor: RigidMotion,
     rbf: Rbf,
+    depth: Option<SurfaceDepth>,
+    scales: Option<MarkerScales>,
 }
 
 /// Memory that a frame needs, kept between frames.
@@ -132,6 +137,22 @@ impl FrontEnd {
         neutral: Range<usize>,
         avatar_markers: &[[f64; 3]],
     ) -> Result<FrontEnd, FrontEndError> {
+        FrontEnd::fit_with(take, columns, poses, neutral, avatar_markers, None)
+    }
+
+    /// The same for a two-dimensional capture: x and y are measured, z is not looked at; `depth`
+    /// gives it back to the displacements.
+    ///
+    /// # Errors
+    /// As [`FrontEnd::fit`].
+    pub fn fit_with(
+        take: MarkerFrames<'_>,
+        columns: &MarkerColumns,
+        poses: &[RigidMotion],
+        neutral: Range<usize>,
+        avatar_markers: &[[f64; 3]],
+        depth: Option<SurfaceDepth>,
+    ) -> Result<FrontEnd, FrontEndError> {
         check_columns(take, columns)?;
         let frames = take.len();
         equal("head poses", poses.len(), frames)?;
@@ -159,7 +180,7 @@ impl FrontEnd {
             *mean = mean.map(|x| x / seen as f64);
         }
         let reference = head_reference(take, columns);
-        FrontEnd::from_neutral(columns.clone(), reference, mean, avatar_markers.to_vec())
+        FrontEnd::from_parts(columns.clone(), reference, mean, avatar_markers.to_vec(), depth)
     }
 
     /// Take up a stored head reference and neutral: what a segment of a take needs to be solved
@@ -176,16 +197,84 @@ impl FrontEnd {
         neutral: Vec<[f64; 3]>,
         avatar_markers: Vec<[f64; 3]>,
     ) -> Result<FrontEnd, FrontEndError> {
+        FrontEnd::from_parts(columns, head_reference, neutral, avatar_markers, None)
+    }
+
+    /// The same for a two-dimensional capture where there is a `depth`.
+    ///
+    /// In the image M0 is turned and shifted onto the avatar's markers; each marker then has the
+    /// depth of its place on the avatar while the adaptation of shape is computed, as the mask of
+    /// 4.3.1 is laid onto the face, and dz follows from the surface.
+    ///
+    /// # Errors
+    /// As [`FrontEnd::from_neutral`].
+    pub fn from_parts(
+        columns: MarkerColumns,
+        head_reference: Vec<[f64; 3]>,
+        neutral: Vec<[f64; 3]>,
+        avatar_markers: Vec<[f64; 3]>,
+        depth: Option<SurfaceDepth>,
+    ) -> Result<FrontEnd, FrontEndError> {
         let p = columns.face.len();
         equal("neutral markers", neutral.len(), p)?;
         equal("markers on the avatar", avatar_markers.len(), p)?;
         let heads = columns.head.as_ref().map_or(0, Vec::len);
         equal("head reference points", head_reference.len(), heads)?;
-        let avatar_from_actor =
-            align_rigidly(&neutral, &avatar_markers).map_err(FrontEndError::Alignment)?;
-        let aligned: Vec<[f64; 3]> = neutral.iter().map(|&p| avatar_from_actor.apply(p)).collect();
+        let (avatar_from_actor, aligned) = match &depth {
+            None => {
+                let motion =
+                    align_rigidly(&neutral, &avatar_markers).map_err(FrontEndError::Alignment)?;
+                (motion, neutral.iter().map(|&p| motion.apply(p)).collect::<Vec<_>>())
+            }
+            Some(depth) => {
+                equal("markers with a depth", depth.fans.len(), p)?;
+                let flat = |points: &[[f64; 3]]| -> Vec<[f64; 3]> {
+                    points.iter().map(|p| [p[0], p[1], 0.0]).collect()
+                };
+                let motion = align_rigidly(&flat(&neutral), &flat(&avatar_markers))
+                    .map_err(FrontEndError::Alignment)?;
+                let lifted = |(p, avatar): (&[f64; 3], &[f64; 3])| {
+                    let moved = motion.apply([p[0], p[1], 0.0]);
+                    [moved[0], moved[1], avatar[2]]
+                };
+                (motion, neutral.iter().zip(&avatar_markers).map(lifted).collect())
+            }
+        };
         let rbf = Rbf::interpolate(&aligned, &avatar_markers)?;
-        Ok(FrontEnd { columns, head_reference, neutral, avatar_markers, avatar_from_actor, rbf })
+        Ok(FrontEnd {
+            columns,
+            head_reference,
+            neutral,
+            avatar_markers,
+            avatar_from_actor,
+            rbf,
+            depth,
+            scales: None,
+        })
+    }
+
+    /// The same with displacements scaled (Kouadio 5.3).
+    ///
+    /// # Errors
+    /// [`FrontEndError::Size`] unless there are factors for each face marker.
+    pub fn with_scales(mut self, scales: Option<MarkerScales>) -> Result<FrontEnd, FrontEndError> {
+        if let Some(scales) = &scales {
+            let p = self.columns.face.len();
+            equal("scale factors", scales.positive.len(), p)?;
+            equal("scale factors", scales.negative.len(), p)?;
+        }
+        self.scales = scales;
+        Ok(self)
+    }
+
+    /// The factors of the displacements, if they are scaled.
+    pub fn scales(&self) -> Option<&MarkerScales> {
+        self.scales.as_ref()
+    }
+
+    /// What gives a two-dimensional capture its depth.
+    pub fn depth(&self) -> Option<&SurfaceDepth> {
+        self.depth.as_ref()
     }
 
     /// The columns that it was fitted with.
@@ -243,8 +332,8 @@ impl FrontEnd {
         head_poses(take, &self.columns, &self.head_reference, lowpass)
     }
 
-    /// d = RBF(M) - avatar markers of one frame, eq. 5.21: 3P numbers, metres; NaN for a marker
-    /// that is not seen. Allocates nothing after the first call with a scratch.
+    /// d = RBF(M) - avatar markers of one frame, eq. 5.21, with depth and scale factors where there
+    /// are some: 3P numbers, metres; NaN for a marker that is not seen. Allocates nothing after the first call with a scratch.
     ///
     /// # Panics
     /// If `frame` or `out` is too short.
@@ -261,7 +350,10 @@ impl FrontEnd {
         }
         let motion = self.avatar_from_actor.after(pose);
         for (marker, &column) in self.columns.face.iter().enumerate() {
-            let moved = motion.apply(point(frame, column));
+            let mut moved = motion.apply(point(frame, column));
+            if self.depth.is_some() {
+                moved[2] = self.avatar_markers[marker][2];
+            }
             for a in 0..3 {
                 scratch.points[a][marker] = moved[a];
             }
@@ -273,6 +365,14 @@ impl FrontEnd {
             for a in 0..3 {
                 out[3 * marker + a] = scratch.adapted[a][marker] - rest[a];
             }
+        }
+        if let Some(depth) = &self.depth {
+            for (marker, d) in out.chunks_exact_mut(3).enumerate().take(p) {
+                d[2] = depth.depth(marker, [d[0], d[1]]);
+            }
+        }
+        if let Some(scales) = &self.scales {
+            scales.apply(out);
         }
     }
 
@@ -294,72 +394,6 @@ impl FrontEnd {
             self.displacements(pose, take.frame(frame), out, &mut scratch);
         }
         Ok(out)
-    }
-}
-
-fn head_reference(take: MarkerFrames<'_>, columns: &MarkerColumns) -> Vec<[f64; 3]> {
-    let head = columns.head.as_deref().unwrap_or_default();
-    if take.is_empty() {
-        Vec::new()
-    } else {
-        head.iter().map(|&c| point(take.frame(0), c)).collect()
-    }
-}
-
-fn head_poses(
-    take: MarkerFrames<'_>,
-    columns: &MarkerColumns,
-    reference: &[[f64; 3]],
-    lowpass: Option<&Lowpass>,
-) -> Result<Vec<RigidMotion>, FrontEndError> {
-    let Some(head) = &columns.head else {
-        return Ok(vec![RigidMotion::IDENTITY; take.len()]);
-    };
-    let mut poses = Vec::with_capacity(take.len());
-    for frame in 0..take.len() {
-        let here = take.frame(frame);
-        let pairs = head.iter().map(|&c| point(here, c)).zip(reference.iter().copied());
-        poses.push(align(pairs).map_err(|cause| FrontEndError::Head { frame, cause })?);
-    }
-    if let Some(lowpass) = lowpass {
-        smooth(&mut poses, lowpass);
-    }
-    Ok(poses.iter().map(Pose::motion).collect())
-}
-
-/// Low-pass the motion of the head: its turn as a quaternion, and where it takes the reference's
-/// centroid from.
-fn smooth(poses: &mut [Pose], lowpass: &Lowpass) {
-    // Markers that come and go move the centroid of a frame; the place of one and the same point
-    // of the head does not jump.
-    let Some(anchor) = poses.first().map(|p| p.to_centroid) else { return };
-    let mut tracks: [Vec<f64>; 7] = Default::default();
-    let mut last = [1.0, 0.0, 0.0, 0.0];
-    for pose in poses.iter() {
-        let mut q = pose.quaternion;
-        if (0..4).fold(0.0, |s, k| s + q[k] * last[k]) < 0.0 {
-            q = q.map(|x| -x);
-        }
-        last = q;
-        let at = pose.motion().inverse().apply(anchor);
-        for k in 0..4 {
-            tracks[k].push(q[k]);
-        }
-        for k in 0..3 {
-            tracks[4 + k].push(at[k]);
-        }
-    }
-    for track in &mut tracks {
-        lowpass.filter(track);
-    }
-    for (i, pose) in poses.iter_mut().enumerate() {
-        let q: [f64; 4] = std::array::from_fn(|k| tracks[k][i]);
-        let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
-        *pose = Pose {
-            quaternion: q.map(|x| x / length),
-            from_centroid: std::array::from_fn(|k| tracks[4 + k][i]),
-            to_centroid: anchor,
-        };
     }
 }
 
@@ -385,7 +419,7 @@ fn equal(what: &'static str, found: usize, expected: usize) -> Result<(), FrontE
     if found == expected { Ok(()) } else { Err(FrontEndError::Size { what, found, expected }) }
 }
 
-fn point(frame: &[f64], column: usize) -> [f64; 3] {
+pub(crate) fn point(frame: &[f64], column: usize) -> [f64; 3] {
     [frame[3 * column], frame[3 * column + 1], frame[3 * column + 2]]
 }
 

@@ -21,7 +21,7 @@
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
 //! | K of eq. 2.16, its P x P for the whole surface | [`SurfaceResponse`] | S x S, P x P | 1 |
 //! | X, Y, K(X, X') (eq. 3.2-3.4) | [`Regression`], [`Kernel`] | m x 3P, m x N | |
-//! | w_i, N_i, sigma (Kouadio 4.4-4.7) | [`LinkedRows`] | P x N(N+1)/2 | m^2 |
+//! | w_i, N_i, sigma (Kouadio 4.4-4.7); r, u, v (4.8-4.11) | [`LinkedRows`], [`MarkerSite`] | P x N(N+1)/2 | m^2 |
 //!
 //! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
 //! is written down, nothing is fused, `tan` is that of `libm` and `exp` our own.
@@ -37,6 +37,7 @@
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
+mod bank;
 mod box_qp;
 mod cholesky;
 mod dense;
@@ -44,10 +45,14 @@ mod exp;
 mod fit;
 mod front_end;
 mod gaussian_process;
+mod head_pose;
 mod hyper_parameters;
 mod laplacian;
 mod linked;
 mod lowpass;
+mod marker_scales;
+mod marker_site;
+mod mask;
 mod method;
 mod method_spec;
 mod newton;
@@ -65,20 +70,25 @@ mod sparse_cholesky;
 mod sparse_process;
 mod spec_check;
 mod surface;
+mod surface_depth;
 mod surface_fit;
 mod svd;
+mod symmetry;
 mod synthesis;
 mod thin_shell;
 
+pub use bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
 pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
 pub use front_end::{FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns, MarkerFrames};
 pub use gaussian_process::{ExactProcess, Kernel, log_marginal_likelihood};
 pub use hyper_parameters::maximise_likelihood;
 pub use laplacian::{Laplacian, mixed_voronoi_areas};
-pub use linked::LinkedRows;
+pub use linked::{LinkedRows, Linking};
 pub use lowpass::{Lowpass, LowpassError};
+pub use marker_scales::{Extent, LEAST_RANGE_M, MarkerScales, bank_extents, motion_extents};
+pub use marker_site::{MarkerSite, SurfacePoint};
 pub use method::Method;
-pub use method_spec::{Hold, Inference, LaplacianKind, MethodSpec, Unit};
+pub use method_spec::{Association, Hold, Inference, LaplacianKind, MethodSpec, Unit};
 pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use problem::FitError;
 pub use rbf::{Rbf, RbfError};
@@ -91,6 +101,8 @@ pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
 pub use sparse_process::SparseProcess;
 pub use spec_check::SpecError;
 pub use surface::{SurfaceError, SurfaceResponse, surface_shape_names};
+pub use surface_depth::{FanTriangle, SurfaceDepth};
 pub use surface_fit::METRES_PER_WEIGHT;
+pub use symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
 pub use synthesis::Synthesis;
 pub use thin_shell::{apply_shell, shell_gram};

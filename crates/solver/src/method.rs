@@ -32,7 +32,7 @@ pub enum Method {
     Nnls,
     /// Unbounded least squares.
     PseudoInverse,
-    /// Kouadio 1997: Gaussian zones.
+    /// Kouadio 1997: least squares over the points that the markers move.
     Kouadio,
     /// The mesh moved by the thin shell, without shapes.
     ThinShellSurface,
@@ -100,7 +100,7 @@ impl Method {
             Method::ThinShellOnly => &[&["alpha", "kappa"], SHELL, COMMON],
             Method::Box => &[&["bounds"], COMMON],
             Method::Nnls | Method::PseudoInverse => &[COMMON],
-            Method::Kouadio => &[&["sigma", "bounds"], COMMON],
+            Method::Kouadio => &[&["association", "sigma", "bounds"], COMMON],
             Method::ThinShellSurface => {
                 &[SHELL, &["stiffness", "hold", "importance", "headLowpassHz"]]
             }

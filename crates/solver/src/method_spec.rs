@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::linked::Linking;
 use crate::method::Method;
 
 /// The weights of the discrete Laplacian (thesis 5.1.2).
@@ -71,6 +72,19 @@ impl Unit {
     }
 }
 
+/// Which points of the face a marker moves (Kouadio 1997, 4.3.1).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Association {
+    /// Its own alone, eq. 4.3.
+    Points,
+    /// All within sigma, by a Gaussian of their distance, eq. 4.4-4.7.
+    #[default]
+    Zones,
+    /// Those over the triangles between it and its neighbours, eq. 4.8-4.11.
+    Triangles,
+}
+
 /// A method with its parameters; what is absent takes the method's default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
@@ -103,7 +117,10 @@ pub struct MethodSpec {
     /// `thesis-literal`, 0.001 mm for `short-literal`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eps: Option<f64>,
-    /// Radius of a marker's Gaussian zone, metres (`kouadio`). Default 0.012.
+    /// Which points of the face a marker moves (`kouadio`). Default zones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub association: Option<Association>,
+    /// Radius of a marker's Gaussian zone, metres (`kouadio` with zones). Default 0.012.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<f64>,
     /// Weight of the soft bounds in `bounds-only`. Default 0.001.
@@ -164,6 +181,7 @@ impl MethodSpec {
             soft_bounds: None,
             s: None,
             eps: None,
+            association: None,
             sigma: None,
             bounds_weight: None,
             unit: None,
@@ -195,7 +213,10 @@ impl MethodSpec {
                 "softBounds" => spec.soft_bounds = Some(self.soft_bounds()),
                 "s" => spec.s = Some(self.s()),
                 "eps" => spec.eps = Some(self.eps()),
-                "sigma" => spec.sigma = Some(self.sigma()),
+                "association" => spec.association = Some(self.association.unwrap_or_default()),
+                "sigma" if matches!(self.linking(), Linking::Zones { .. }) => {
+                    spec.sigma = Some(self.sigma());
+                }
                 "boundsWeight" => spec.bounds_weight = Some(self.bounds_weight()),
                 "unit" => spec.unit = Some(self.unit()),
                 "stiffness" => spec.stiffness = Some(self.stiffness()),
@@ -255,6 +276,15 @@ impl MethodSpec {
             Method::ShortLiteral => 1e-6 * self.unit().per_metre(),
             _ => 0.0,
         })
+    }
+
+    /// The association with its radius, or zones of 12 mm.
+    pub fn linking(&self) -> Linking {
+        match self.association.unwrap_or_default() {
+            Association::Points => Linking::Points,
+            Association::Zones => Linking::Zones { sigma: self.sigma() },
+            Association::Triangles => Linking::Triangles,
+        }
     }
 
     /// sigma, or 12 mm; metres.

@@ -2,7 +2,8 @@
 
 use crate::dense::packed_len;
 use crate::laplacian::Laplacian;
-use crate::linked::LinkedRows;
+use crate::linked::{LinkedRows, Linking};
+use crate::marker_site::MarkerSite;
 use crate::method::Method;
 use crate::method_spec::{LaplacianKind, MethodSpec};
 use crate::regression::{Regression, TrainingError};
@@ -18,8 +19,8 @@ pub struct OperatorOptions {
     pub k_s: f64,
     /// Resistance to bending.
     pub k_b: f64,
-    /// Radius of Kouadio's zones in metres; none leaves the linked rows out.
-    pub sigma: Option<f64>,
+    /// Kouadio's association of the face's points with the markers; none leaves his rows out.
+    pub linking: Option<Linking>,
 }
 
 /// D, H and the names, as plain data: what is stored and sent.
@@ -108,51 +109,65 @@ impl OperatorOptions {
             laplacian: spec.laplacian(),
             k_s: spec.k_s(),
             k_b: spec.k_b(),
-            sigma: (spec.method == Method::Kouadio).then(|| spec.sigma()),
+            linking: (spec.method == Method::Kouadio).then(|| spec.linking()),
         }
     }
 }
 
 impl Default for OperatorOptions {
     fn default() -> OperatorOptions {
-        OperatorOptions { laplacian: LaplacianKind::Uniform, k_s: 1.0, k_b: 1.0, sigma: None }
+        OperatorOptions { laplacian: LaplacianKind::Uniform, k_s: 1.0, k_b: 1.0, linking: None }
     }
 }
 
 impl Operators {
-    /// Compute D, H and the linked rows of a welded mesh ([`SkinMesh::weld`]).
-    ///
-    /// `markers` are the face markers: label and vertex of the welded mesh. O(S) time and memory.
+    /// Compute D, H and the linked rows of a welded mesh ([`SkinMesh::weld`]) with markers at
+    /// vertices: label and vertex of the welded mesh. O(S) time and memory.
     ///
     /// # Errors
-    /// [`OperatorError`] for a mesh, a name list or a marker that does not fit, or shapes that move
-    /// no marker.
+    /// As [`Operators::build_at`].
     pub fn build(
         mesh: &SkinMesh,
         shape_names: &[String],
         markers: &[(String, usize)],
         options: &OperatorOptions,
     ) -> Result<Operators, OperatorError> {
+        let sites: Vec<MarkerSite> =
+            markers.iter().map(|(label, v)| MarkerSite::at_vertex(label, *v)).collect();
+        Operators::build_at(mesh, shape_names, &sites, options)
+    }
+
+    /// The same with markers at vertices or inside triangles.
+    ///
+    /// # Errors
+    /// [`OperatorError`] for a mesh, a name list or a marker that does not fit, or shapes that move
+    /// no marker.
+    pub fn build_at(
+        mesh: &SkinMesh,
+        shape_names: &[String],
+        sites: &[MarkerSite],
+        options: &OperatorOptions,
+    ) -> Result<Operators, OperatorError> {
         mesh.check()?;
         let count = mesh.positions.len();
-        for (label, vertex) in markers {
-            if *vertex >= count {
-                let (label, vertex) = (label.clone(), *vertex);
+        for site in sites {
+            if let Some(&vertex) = site.corners.iter().find(|&&v| v >= count) {
+                let label = site.label.clone();
                 return Err(OperatorError::MarkerVertex { label, vertex, count });
             }
         }
         expect_count("shape names", shape_names.len(), mesh.shapes.len(), "name every shape")?;
-        let vertices: Vec<usize> = markers.iter().map(|m| m.1).collect();
+        let vertices: Vec<usize> = sites.iter().map(MarkerSite::vertex).collect();
         let laplacian = Laplacian::new(&mesh.positions, &mesh.triangles, options.laplacian);
         Operators::from_parts(OperatorParts {
             options: *options,
             shape_names: shape_names.to_vec(),
-            marker_labels: markers.iter().map(|m| m.0.clone()).collect(),
-            marker_positions: vertices.iter().map(|&v| mesh.positions[v]).collect(),
+            marker_labels: sites.iter().map(|s| s.label.clone()).collect(),
+            marker_positions: sites.iter().map(|s| s.position(mesh)).collect(),
             vertex_count: count,
-            marker_deltas: marker_deltas(mesh, &vertices),
+            marker_deltas: marker_deltas(mesh, sites),
             shell_gram: shell_gram(mesh, &laplacian, options.k_s, options.k_b, &vertices),
-            linked: options.sigma.map(|sigma| LinkedRows::build(mesh, &vertices, sigma)),
+            linked: options.linking.map(|linking| LinkedRows::build(mesh, sites, linking)),
             regression: None,
         })
     }
@@ -249,15 +264,13 @@ impl Operators {
 }
 
 /// D: 3P x N, marker-major rows.
-fn marker_deltas(mesh: &SkinMesh, marker_vertices: &[usize]) -> Vec<f64> {
+fn marker_deltas(mesh: &SkinMesh, sites: &[MarkerSite]) -> Vec<f64> {
     let n = mesh.shapes.len();
-    let mut d = vec![0.0; 3 * marker_vertices.len() * n];
-    for (k, shape) in mesh.shapes.iter().enumerate() {
-        for (m, &vertex) in marker_vertices.iter().enumerate() {
-            if let Ok(at) = shape.vertices.binary_search(&(vertex as u32)) {
-                for a in 0..3 {
-                    d[(3 * m + a) * n + k] = shape.deltas[at][a];
-                }
+    let mut d = vec![0.0; 3 * sites.len() * n];
+    for k in 0..n {
+        for (m, site) in sites.iter().enumerate() {
+            for (a, x) in site.delta(mesh, k).into_iter().enumerate() {
+                d[(3 * m + a) * n + k] = x;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A method's parameters and an avatar's operators put together: weights of the energies, bounds,
 //! which shapes are free, how much each marker counts.
 
-use crate::linked::LinkedRows;
+use crate::linked::{LinkedRows, Linking};
 use crate::method::Method;
 use crate::method_spec::MethodSpec;
 use crate::objective::{Objective, Term};
@@ -255,13 +255,17 @@ fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitEr
     let asked = OperatorOptions::of(spec);
     let shell = !spec.method.parameters().contains(&"kS")
         || (built.laplacian, built.k_s, built.k_b) == (asked.laplacian, asked.k_s, asked.k_b);
-    let linked = asked.sigma.is_none() || built.sigma == asked.sigma;
+    let linked = asked.linking.is_none() || built.linking == asked.linking;
     if shell && linked {
         return Ok(());
     }
     let words = |o: &OperatorOptions| {
-        let sigma = o.sigma.map_or("none".to_owned(), |s| format!("{s} m"));
-        format!("laplacian {:?}, kS {}, kB {}, sigma {sigma}", o.laplacian, o.k_s, o.k_b)
+        let linking = match o.linking {
+            None => "none".to_owned(),
+            Some(Linking::Zones { sigma }) => format!("zones of {sigma} m"),
+            Some(other) => format!("{other:?}").to_lowercase(),
+        };
+        format!("laplacian {:?}, kS {}, kB {}, association {linking}", o.laplacian, o.k_s, o.k_b)
     };
     Err(FitError::OtherOperators { built: words(built), asked: words(&asked) })
 }

@@ -181,6 +181,19 @@ fn best_quaternion(m: &[[f64; 3]; 3]) -> [f64; 4] {
     q.map(|x| x / sign)
 }
 
+/// Unit eigenvectors of a symmetric 3 x 3 matrix, that of the smallest eigenvalue first.
+pub(crate) fn eigenvectors(m: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut a = [[0.0; 4]; 4];
+    for i in 0..3 {
+        a[i][..3].copy_from_slice(&m[i]);
+    }
+    // The fourth coordinate turns with no other: its column is 0 but for the diagonal.
+    let v = jacobi_eigenvectors(&mut a);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| a[i][i].total_cmp(&a[j][j]));
+    order.map(|k| std::array::from_fn(|i| v[i][k]))
+}
+
 /// Cyclic Jacobi: diagonalises `a` in place, eigenvectors in the columns of the result.
 fn jacobi_eigenvectors(a: &mut [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     let mut v = [[0.0; 4]; 4];

@@ -1,7 +1,7 @@
 //! What is wrong with a method's parameters: all of it, each with its field, value and remedy.
 
 use crate::method::Method;
-use crate::method_spec::{Inference, MethodSpec};
+use crate::method_spec::{Association, Inference, MethodSpec};
 
 /// Something wrong in a [`MethodSpec`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -37,6 +37,12 @@ impl MethodSpec {
         found.number("eps", self.eps, "0 or more", |v| v >= 0.0);
         found
             .number("sigma", self.sigma, "above 0 and at most 1 (metres)", |v| v > 0.0 && v <= 1.0);
+        if let (Some(association), Some(sigma)) = (self.association, self.sigma)
+            && association != Association::Zones
+        {
+            let message = format!("is {sigma}, but only zones have a radius; remove it");
+            found.add("sigma", message);
+        }
         found.number("boundsWeight", self.bounds_weight, "above 0", |v| v > 0.0);
         found.number("stiffness", self.stiffness, "0 (markers are met exactly) or more", |v| {
             v >= 0.0
@@ -105,6 +111,7 @@ impl MethodSpec {
             ("softBounds", self.soft_bounds.is_some()),
             ("s", self.s.is_some()),
             ("eps", self.eps.is_some()),
+            ("association", self.association.is_some()),
             ("sigma", self.sigma.is_some()),
             ("boundsWeight", self.bounds_weight.is_some()),
             ("unit", self.unit.is_some()),

@@ -16,6 +16,7 @@
 //! All of this runs where packs are prepared, and browsers get the result.
 
 use crate::laplacian::Laplacian;
+use crate::marker_site::MarkerSite;
 use crate::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 use crate::skin_mesh::{MeshError, SkinMesh};
 use crate::sparse_cholesky::{SparseCholesky, SymmetricRows};
@@ -139,11 +140,11 @@ impl SurfaceResponse {
     /// each axis.
     ///
     /// # Errors
-    /// [`OperatorError`] where `markers` (label and vertex) are not those of [`Self::build`].
+    /// [`OperatorError`] where `markers`, each at its own vertex, are not those of [`Self::build`].
     pub fn operators(
         &self,
         mesh: &SkinMesh,
-        markers: &[(String, usize)],
+        markers: &[MarkerSite],
         options: &OperatorOptions,
     ) -> Result<Operators, OperatorError> {
         let p = markers.len();
@@ -160,10 +161,10 @@ impl SurfaceResponse {
             }
         }
         Operators::from_parts(OperatorParts {
-            options: OperatorOptions { sigma: None, ..*options },
-            shape_names: surface_shape_names(markers.iter().map(|(label, _)| label.as_str())),
-            marker_labels: markers.iter().map(|(label, _)| label.clone()).collect(),
-            marker_positions: markers.iter().map(|&(_, v)| mesh.positions[v]).collect(),
+            options: OperatorOptions { linking: None, ..*options },
+            shape_names: surface_shape_names(markers.iter().map(|site| site.label.as_str())),
+            marker_labels: markers.iter().map(|site| site.label.clone()).collect(),
+            marker_positions: markers.iter().map(|site| mesh.positions[site.vertex()]).collect(),
             vertex_count: mesh.positions.len(),
             marker_deltas,
             shell_gram,

@@ -5,8 +5,9 @@
 //! with exact operations only, since `sin` and `exp` of the platform differ in their last bits.
 
 use mimique_solver::{
-    Fit, FrontEnd, Lowpass, MarkerColumns, MarkerFrames, Method, MethodSpec, OperatorOptions,
-    Operators, Regression, SkinMesh, SparseDeltas, SurfaceResponse, TrainingOptions,
+    Fit, FrontEnd, Lowpass, MarkerColumns, MarkerFrames, MarkerSite, Method, MethodSpec,
+    OperatorOptions, Operators, Regression, SkinMesh, SparseDeltas, SurfaceResponse,
+    TrainingOptions,
 };
 
 /// Numbers in -1..1 from a linear congruence: the same on every machine.
@@ -69,7 +70,9 @@ fn surface(spec: &MethodSpec) -> Operators {
     let (options, held) = (OperatorOptions::of(spec), vec![false; mesh.positions.len()]);
     let vertices: Vec<usize> = markers.iter().map(|m| m.1).collect();
     let response = SurfaceResponse::build(&mesh, &vertices, &held, &options).unwrap();
-    response.operators(&mesh, &markers, &options).unwrap()
+    let sites: Vec<MarkerSite> =
+        markers.into_iter().map(|(label, v)| MarkerSite::at_vertex(label, v)).collect();
+    response.operators(&mesh, &sites, &options).unwrap()
 }
 
 /// What is learnt of the take itself, with the weights of least squares.

@@ -421,8 +421,9 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert_eq!(
         say(&|s| s.laplacian = Some(LaplacianKind::Umbrella), Method::Lsts),
-        "operators built with laplacian Uniform, kS 1, kB 1, sigma none, the method asks for \
-         laplacian Umbrella, kS 1, kB 1, sigma none; build them with OperatorOptions::of"
+        "operators built with laplacian Uniform, kS 1, kB 1, association none, the method asks \
+         for laplacian Umbrella, kS 1, kB 1, association none; build them with \
+         OperatorOptions::of"
     );
     assert_eq!(
         say(&|_| (), Method::Recorded),

@@ -3,8 +3,8 @@
 mod common;
 
 use mimique_solver::{
-    Fit, Laplacian, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
-    SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
+    Fit, Laplacian, LaplacianKind, Linking, Method, MethodSpec, OperatorOptions, OperatorParts,
+    Operators, SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
 };
 use mimique_test_support::real_data;
 
@@ -229,7 +229,10 @@ fn stored_operators_of_a_real_head() {
         }
     }
     close("AB", &ab, &common::numbers(&stored["ABrows_uniform"]));
-    let kouadio = OperatorOptions { sigma: Some(0.012), ..OperatorOptions::default() };
+    let kouadio = OperatorOptions {
+        linking: Some(Linking::Zones { sigma: 0.012 }),
+        ..OperatorOptions::default()
+    };
     let linked = common::operators(&data, &kouadio).parts().linked.as_ref().unwrap().vertex_count;
     let expected = &constants["variants"]["kouadio_box_sigma12mm"]["linked_vertices"];
     assert_eq!(linked as u64, expected.as_u64().unwrap());
@@ -304,7 +307,10 @@ fn wrong_meshes_and_parts_are_refused_in_words() {
 #[test]
 fn parts_restore_the_same_bits() {
     let Some(data) = real_data("parts_restore_the_same_bits") else { return };
-    let options = OperatorOptions { sigma: Some(0.012), ..OperatorOptions::default() };
+    let options = OperatorOptions {
+        linking: Some(Linking::Zones { sigma: 0.012 }),
+        ..OperatorOptions::default()
+    };
     let built = common::operators(&data, &options);
     let parts: OperatorParts = built.parts().clone();
     let restored = Operators::from_parts(parts).unwrap();

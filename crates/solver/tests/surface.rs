@@ -6,8 +6,9 @@ mod common;
 use std::collections::BTreeMap;
 
 use mimique_solver::{
-    Fit, FitError, FrameWarning, Hold, Laplacian, LaplacianKind, METRES_PER_WEIGHT, Method,
-    MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas, SurfaceError, SurfaceResponse,
+    Fit, FitError, FrameWarning, Hold, Laplacian, LaplacianKind, METRES_PER_WEIGHT, MarkerSite,
+    Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas, SurfaceError,
+    SurfaceResponse,
 };
 
 const WIDTH: usize = 13;
@@ -49,7 +50,7 @@ fn response(mesh: &SkinMesh, markers: &[usize], options: &OperatorOptions) -> Su
 }
 
 fn options(laplacian: LaplacianKind) -> OperatorOptions {
-    OperatorOptions { laplacian, k_s: 0.7, k_b: 1.6, sigma: None }
+    OperatorOptions { laplacian, k_s: 0.7, k_b: 1.6, linking: None }
 }
 
 fn spec(options: &OperatorOptions, stiffness: f64) -> MethodSpec {
@@ -64,7 +65,9 @@ fn spec(options: &OperatorOptions, stiffness: f64) -> MethodSpec {
 
 fn operators(mesh: &SkinMesh, markers: &[usize], options: &OperatorOptions) -> Operators {
     let response = response(mesh, markers, options);
-    response.operators(mesh, &labelled(markers), options).unwrap()
+    let sites: Vec<MarkerSite> =
+        labelled(markers).into_iter().map(|(label, v)| MarkerSite::at_vertex(label, v)).collect();
+    response.operators(mesh, &sites, options).unwrap()
 }
 
 /// Marker displacements that have nothing to do with the sheet, metres.

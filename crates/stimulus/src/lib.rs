@@ -9,6 +9,9 @@
 //!                                              solve_packs (server, browser) --> weights
 //! ```
 
+mod bank_diagnosis;
+mod head_check;
+mod label_check;
 mod marker_map;
 mod operators_pack;
 #[cfg(feature = "prepare")]
@@ -21,8 +24,11 @@ mod skin;
 mod solve_packs;
 #[cfg(feature = "prepare")]
 mod solve_take;
+mod split_shapes;
 #[cfg(feature = "prepare")]
 mod surface_avatar;
+mod take_adjustments;
+mod take_checks;
 mod take_pack;
 #[cfg(feature = "prepare")]
 mod training;
@@ -30,7 +36,13 @@ mod training;
 mod vertex_frames;
 mod weights_file;
 
-pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
+pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
+pub use head_check::{HeadMarker, STILL_MM};
+pub use label_check::{LabelFault, LabelProblem};
+pub use marker_map::{
+    Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
+    REACH_M, ScaleRule, TOLERANCE_M,
+};
 pub use operators_pack::{decode_operators, encode_operators};
 #[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
@@ -42,6 +54,7 @@ pub use skin::AvatarSkin;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]
 pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
+pub use split_shapes::{SplitError, split_shapes};
 #[cfg(feature = "prepare")]
 pub use surface_avatar::surface_avatar;
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};

@@ -1,16 +1,18 @@
 //! The operators pack (`MMOP`): what the solver needs of avatar and marker map, and no mesh.
 //!
-//! Body: options (Laplacian, k_s, k_b, sigma), shape names, marker labels, S, marker positions, D,
-//! H as f64, then Kouadio's linked rows where they were asked for, then what `regression` has learnt
-//! where it has. l^2 and tau follow from D and H. A surface's operators are of the same form.
+//! Body: options (Laplacian, k_s, k_b, association, sigma), shape names, marker labels, S, marker
+//! positions, D, H as f64, then Kouadio's linked rows where they were asked for, then what
+//! `regression` has learnt where it has. l^2 and tau follow from D and H. A surface's operators are
+//! of the same form.
 
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
 use mimique_solver::{
-    Kernel, LaplacianKind, LinkedRows, OperatorOptions, OperatorParts, Operators, Regression,
+    Kernel, LaplacianKind, LinkedRows, Linking, OperatorOptions, OperatorParts, Operators,
+    Regression,
 };
 
 const KIND: &str = "MMOP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const LAPLACIANS: [LaplacianKind; 4] = [
     LaplacianKind::Uniform,
@@ -27,7 +29,14 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     w.u8(kind.unwrap_or(0) as u8);
     w.f64(parts.options.k_s);
     w.f64(parts.options.k_b);
-    w.f64(parts.options.sigma.unwrap_or(f64::NAN));
+    let (linking, sigma) = match parts.options.linking {
+        None => (0, 0.0),
+        Some(Linking::Points) => (1, 0.0),
+        Some(Linking::Zones { sigma }) => (2, sigma),
+        Some(Linking::Triangles) => (3, 0.0),
+    };
+    w.u8(linking);
+    w.f64(sigma);
     w.texts(&parts.shape_names);
     w.texts(&parts.marker_labels);
     w.u64(parts.vertex_count as u64);
@@ -37,7 +46,6 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     all(&parts.shell_gram);
     w.u8(u8::from(parts.linked.is_some()) | u8::from(parts.regression.is_some()) << 1);
     if let Some(linked) = &parts.linked {
-        w.f64(linked.sigma);
         w.u64(linked.vertex_count as u64);
         linked.grams.iter().chain(&linked.sums).for_each(|&x| w.f64(x));
     }
@@ -63,9 +71,15 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
     let Some(&laplacian) = LAPLACIANS.get(usize::from(kind)) else {
         return r.refuse(format!("Laplacian {kind}"));
     };
-    let (k_s, k_b, sigma) = (r.f64()?, r.f64()?, r.f64()?);
-    let options =
-        OperatorOptions { laplacian, k_s, k_b, sigma: (!sigma.is_nan()).then_some(sigma) };
+    let (k_s, k_b) = (r.f64()?, r.f64()?);
+    let linking = match (r.u8()?, r.f64()?) {
+        (0, _) => None,
+        (1, _) => Some(Linking::Points),
+        (2, sigma) => Some(Linking::Zones { sigma }),
+        (3, _) => Some(Linking::Triangles),
+        (other, _) => return r.refuse(format!("association {other}")),
+    };
+    let options = OperatorOptions { laplacian, k_s, k_b, linking };
     let shape_names = r.texts()?;
     let marker_labels = r.texts()?;
     let (n, p) = (shape_names.len(), marker_labels.len());
@@ -77,15 +91,15 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
     if more > 3 {
         return r.refuse(format!("flags {more}"));
     }
-    let linked = if more & 1 == 0 {
-        None
-    } else {
-        Some(LinkedRows {
-            sigma: r.f64()?,
+    let linked = match (more & 1, linking) {
+        (0, _) => None,
+        (_, Some(linking)) => Some(LinkedRows {
+            linking,
             vertex_count: r.u64()? as usize,
             grams: numbers(&mut r, p, n.saturating_mul(n + 1) / 2)?,
             sums: numbers(&mut r, 3 * p, n)?,
-        })
+        }),
+        (_, None) => return r.refuse("linked rows without an association".to_owned()),
     };
     let regression = if more & 2 == 0 { None } else { Some(regression(&mut r, 3 * p, n)?) };
     let left = r.left();

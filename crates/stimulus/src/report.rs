@@ -5,6 +5,8 @@ use mimique_solver::{FrameReport, FrameWarning, Kernel, MethodSpec};
 use mimique_solver::{Method, Operators, Regression};
 use serde::Serialize;
 
+use crate::{HeadMarker, LabelProblem};
+
 /// Residual, iterations and convergence over the frames of a take.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct FrameStatistics {
@@ -113,6 +115,8 @@ pub struct StageSeconds {
     pub front_end: f64,
     /// The weights.
     pub solve: f64,
+    /// Looking for swapped labels and head markers that move.
+    pub check: f64,
     /// Writing the files (filled in by the caller).
     pub write: f64,
 }
@@ -198,6 +202,10 @@ pub struct SolveReport {
     pub seconds: StageSeconds,
     /// What should be said, a sentence each.
     pub warnings: Vec<String>,
+    /// How still the head markers are on the head.
+    pub head_markers: Vec<HeadMarker>,
+    /// Labels that are swapped or stand at one place.
+    pub label_problems: Vec<LabelProblem>,
     /// SHA-256 of the weights.
     pub weights_hash: String,
     /// SHA-256 of all that the weights come from, and of the weights.

@@ -38,12 +38,22 @@ impl AvatarSkin {
 
     /// The vertex nearest to `point` (metres) and its distance; `None` for an empty skin.
     pub fn nearest(&self, point: [f64; 3]) -> Option<(usize, f64)> {
+        self.nearest_where(point, |_| true)
+    }
+
+    /// The same among the vertices that `may` be it.
+    pub fn nearest_where(
+        &self,
+        point: [f64; 3],
+        may: impl Fn(usize) -> bool,
+    ) -> Option<(usize, f64)> {
         let square = |p: &[f64; 3]| -> f64 { (0..3).map(|a| (p[a] - point[a]).powi(2)).sum() };
         self.mesh
             .positions
             .iter()
             .map(square)
             .enumerate()
+            .filter(|(v, _)| may(*v))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(v, square)| (v, square.sqrt()))
     }

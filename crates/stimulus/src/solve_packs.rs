@@ -3,8 +3,8 @@
 
 use mimique_face::pack::PackError;
 use mimique_solver::{
-    Fit, FitError, FrontEnd, FrontEndError, Lowpass, MarkerColumns, MarkerFrames, MethodSpec,
-    Operators,
+    Fit, FitError, FrontEnd, FrontEndError, Lowpass, MarkerColumns, MarkerFrames, MarkerScales,
+    MethodSpec, Operators, SurfaceDepth,
 };
 
 use crate::operators_pack::decode_operators;
@@ -109,20 +109,30 @@ fn solve_markers(
 ) -> Result<SolvedTake, SolvePacksError> {
     let parts = operators.parts();
     // The operators' order of markers, whatever the take's.
-    let mut face = Vec::new();
-    let mut neutral = Vec::new();
+    let mut order = Vec::new();
     for label in &parts.marker_labels {
         let found = markers.face.iter().position(|&column| markers.labels[column] == *label);
         let found = found.ok_or_else(|| SolvePacksError::NoMarker(label.clone()))?;
-        face.push(markers.face[found]);
-        neutral.push(markers.neutral[found]);
+        order.push(found);
     }
-    let front_end = FrontEnd::from_neutral(
+    let face = order.iter().map(|&i| markers.face[i]).collect();
+    let in_order = |points: &[[f64; 3]]| order.iter().map(|&i| points[i]).collect();
+    let scales = markers
+        .scales
+        .as_ref()
+        .map(|s| MarkerScales { positive: in_order(&s.positive), negative: in_order(&s.negative) });
+    let depth = markers
+        .depth
+        .as_ref()
+        .map(|d| SurfaceDepth { fans: order.iter().map(|&i| d.fans[i].clone()).collect() });
+    let front_end = FrontEnd::from_parts(
         MarkerColumns { face, head: markers.head.clone() },
         markers.head_reference.clone(),
-        neutral,
+        in_order(&markers.neutral),
         parts.marker_positions.clone(),
-    )?;
+        depth,
+    )?
+    .with_scales(scales)?;
     let lowpass = lowpass(spec, take.rate_hz)?;
     let frames = MarkerFrames { positions: &markers.positions, columns: markers.labels.len() };
     let poses = front_end.segment_poses(frames, lowpass.as_ref())?;

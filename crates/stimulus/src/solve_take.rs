@@ -4,19 +4,21 @@ use std::ops::Range;
 
 use mimique_mocap::Capture;
 use mimique_solver::{
-    Fit, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MeshError, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion, SurfaceError,
-    SurfaceResponse, TrainingError,
+    Fit, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite,
+    MeshError, Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError,
+    RigidMotion, SurfaceDepth, SurfaceError, SurfaceResponse, TrainingError,
 };
 
+use crate::head_check::moving_skin;
 use crate::provenance::{Provenance, weights_hash};
 use crate::report::{
     FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds, unseen_shapes,
 };
 use crate::solve_packs::lowpass;
+use crate::take_adjustments::{refuse_flat, scale_rule};
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
 use crate::training::Training;
-use crate::{AvatarSkin, MapError, MarkerMap, WeightsTable};
+use crate::{AvatarSkin, Depth, LabelProblem, MapError, MarkerMap, ScaleRule, WeightsTable};
 
 /// Frames that a neutral should be the mean of.
 const NEUTRAL_FRAMES: usize = 60;
@@ -34,6 +36,10 @@ pub struct TakeOptions {
     pub head: Option<Vec<String>>,
     /// What `regression` learns from.
     pub training: Option<Box<Training>>,
+    /// Scale factors of the displacements; what is given here stands before the map's.
+    pub scale: ScaleRule,
+    /// Where the third coordinate comes from; the map's where not given.
+    pub depth: Option<Depth>,
 }
 
 /// Why a take cannot be solved.
@@ -63,6 +69,51 @@ pub enum SolveError {
         /// Some labels of the capture.
         capture: String,
     },
+    /// A marker that is to be scaled is not on the face.
+    #[error("scale of marker {label}: not a face marker of map and capture, which have {markers}")]
+    NoScaledMarker {
+        /// The label.
+        label: String,
+        /// Some face markers.
+        markers: String,
+    },
+    /// The frames of the range of motion are not in the capture.
+    #[error(
+        "automatic scale, frames {first}:{end} of {frames}; give the frames of the range of motion"
+    )]
+    ScaleFrames {
+        /// First frame.
+        first: usize,
+        /// One past the last.
+        end: usize,
+        /// Frames there are.
+        frames: usize,
+    },
+    /// All markers lie in a plane of constant z.
+    #[error(
+        "capture: two-dimensional (z is {z_mm} mm throughout); take the depth from the surface \
+         (--depth surface, or \"depth\": \"surface\" in the marker map)"
+    )]
+    Flat {
+        /// The one depth, millimetres.
+        z_mm: f64,
+    },
+    /// Two labels at one place, on the neutral face.
+    #[error(
+        "markers {first} and {second}: at one place on the neutral face; one of the two labels is wrong"
+    )]
+    OnePlace {
+        /// One label.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A marker that is never seen while the face is neutral.
+    #[error(
+        "face marker {0} is not seen in any neutral frame; give other neutral frames or leave the \
+         marker out of the map"
+    )]
+    NeutralUnseen(String),
     /// The capture is empty.
     #[error("capture: no frames; record or export the take again")]
     NoFrames,
@@ -139,18 +190,20 @@ pub struct SetUp {
 /// Avatar, marker map and capture brought together; solves any method and any segment.
 #[derive(Debug, Clone)]
 pub struct JoinedTake<'a> {
-    skin: &'a AvatarSkin,
-    /// Face markers that the capture has: label and welded vertex.
-    markers: Vec<(String, usize)>,
+    pub(crate) skin: &'a AvatarSkin,
+    /// Face markers that the capture has, on the welded skin.
+    pub(crate) markers: Vec<MarkerSite>,
     /// Labels of the columns of `positions`.
-    labels: Vec<String>,
-    columns: MarkerColumns,
+    pub(crate) labels: Vec<String>,
+    pub(crate) columns: MarkerColumns,
     /// Frames x 3 columns, metres.
-    positions: Vec<f64>,
-    neutral: Range<usize>,
-    rate_hz: f64,
-    first_frame: u64,
-    warnings: Vec<String>,
+    pub(crate) positions: Vec<f64>,
+    pub(crate) neutral: Range<usize>,
+    pub(crate) scale: ScaleRule,
+    pub(crate) depth: Depth,
+    pub(crate) rate_hz: f64,
+    pub(crate) first_frame: u64,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Solves a capture with one method.
@@ -184,9 +237,22 @@ pub fn solve_take(
     let front = clock();
     seconds.front_end = front - set_up;
     let solution = fit.solve_take(&displacements)?;
-    seconds.solve = clock() - front;
+    let solve = clock();
+    seconds.solve = solve - front;
 
     let mut warnings = joined.warnings.clone();
+    let head_markers = joined.head_markers()?;
+    warnings.extend(moving_skin(&head_markers));
+    // Only what is fitted to the markers leaves a residual that tells of labels.
+    let fitted = !matches!(spec.method, Method::ThinShellSurface | Method::Regression);
+    let label_problems = if fitted {
+        let front = (&front_end, poses.as_slice());
+        joined.label_problems(&operators, &fit, front, &displacements, &solution.weights)
+    } else {
+        Vec::new()
+    };
+    warnings.extend(label_problems.iter().map(LabelProblem::sentence));
+    seconds.check = clock() - solve;
     warnings.extend(unseen_shapes(&operators, spec));
     if let Some(training) = &options.training {
         warnings.extend(training.warnings(&skin.shape_names));
@@ -216,7 +282,7 @@ pub fn solve_take(
         avatar: skin.name.clone(),
         vertices: skin.mesh.positions.len(),
         shapes: operators.shape_count(),
-        markers: joined.markers.iter().map(|(label, _)| label.clone()).collect(),
+        markers: joined.markers.iter().map(|site| site.label.clone()).collect(),
         head: joined.head_labels(),
         neutral: [joined.neutral.start, joined.neutral.end],
         rate_hz: joined.rate_hz,
@@ -227,6 +293,8 @@ pub fn solve_take(
         seconds,
         warnings,
         regression: operators.parts().regression.as_ref().map(RegressionSummary::of),
+        head_markers,
+        label_problems,
         provenance: match &options.training {
             Some(training) => joined.provenance(spec).text("training", &training.key()),
             None => joined.provenance(spec),
@@ -239,6 +307,13 @@ pub fn solve_take(
     let names = operators.parts().shape_names.clone();
     let table = WeightsTable::at_rate(names, solution.weights, joined.first_frame, joined.rate_hz);
     Ok(SolvedCapture { table, surface, report })
+}
+
+/// The face markers of a take, and how their displacements are read.
+struct TakeMarkers {
+    markers: Vec<MarkerSite>,
+    scale: ScaleRule,
+    depth: Depth,
 }
 
 impl<'a> JoinedTake<'a> {
@@ -258,7 +333,7 @@ impl<'a> JoinedTake<'a> {
         let mut warnings = Vec::new();
         let resolved = map.resolve(skin)?;
         let (markers, absent): (Vec<_>, Vec<_>) =
-            resolved.into_iter().partition(|(label, _)| capture.marker_index(label).is_some());
+            resolved.into_iter().partition(|site| capture.marker_index(&site.label).is_some());
         if markers.is_empty() {
             return Err(SolveError::NoCommonLabel {
                 map: some(map.face_labels()),
@@ -269,12 +344,17 @@ impl<'a> JoinedTake<'a> {
             warnings.push(format!(
                 "{} markers of the map are not in the capture: {}",
                 absent.len(),
-                some(absent.iter().map(|(label, _)| label.as_str()))
+                some(absent.iter().map(|site| site.label.as_str()))
             ));
         }
         let head = options.head.as_ref().unwrap_or(&map.head);
         let neutral = options.neutral.clone().or_else(|| map.neutral.clone());
-        Self::of_markers(skin, capture, markers, head, neutral, warnings)
+        let from = TakeMarkers {
+            markers,
+            scale: scale_rule(options, map),
+            depth: options.depth.unwrap_or(map.depth),
+        };
+        Self::of_markers(skin, capture, from, head, neutral, warnings)
     }
 
     /// Another take of the same markers on the same skin, such as the one that is learnt from.
@@ -288,20 +368,27 @@ impl<'a> JoinedTake<'a> {
         neutral: Option<Range<usize>>,
     ) -> Result<Self, SolveError> {
         let absent: Vec<&str> = (self.markers.iter())
-            .map(|(label, _)| label.as_str())
+            .map(|site| site.label.as_str())
             .filter(|label| capture.marker_index(label).is_none())
             .collect();
         if !absent.is_empty() {
             return Err(SolveError::TrainingMarkers { missing: some(absent.into_iter()) });
         }
         let head = head.map_or_else(|| self.head_labels(), <[String]>::to_vec);
-        Self::of_markers(self.skin, capture, self.markers.clone(), &head, neutral, Vec::new())
+        // Its own range of motion scales it.
+        let automatic = self.scale.automatic.as_ref().map(|_| 0..capture.frames());
+        let from = TakeMarkers {
+            markers: self.markers.clone(),
+            scale: ScaleRule { automatic, ..self.scale.clone() },
+            depth: self.depth,
+        };
+        Self::of_markers(self.skin, capture, from, &head, neutral, Vec::new())
     }
 
     fn of_markers(
         skin: &'a AvatarSkin,
         capture: &Capture,
-        markers: Vec<(String, usize)>,
+        TakeMarkers { markers, scale, depth }: TakeMarkers,
         head: &[String],
         neutral: Option<Range<usize>>,
         mut warnings: Vec<String>,
@@ -311,7 +398,7 @@ impl<'a> JoinedTake<'a> {
             return Err(SolveError::NoFrames);
         }
         // Columns: face markers, then the head markers that are none.
-        let mut labels: Vec<String> = markers.iter().map(|(label, _)| label.clone()).collect();
+        let mut labels: Vec<String> = markers.iter().map(|site| site.label.clone()).collect();
         let face = (0..labels.len()).collect();
         let mut head_columns = Vec::new();
         for label in head {
@@ -340,16 +427,31 @@ impl<'a> JoinedTake<'a> {
                 neutral.len()
             ));
         }
+        let positions = metres(capture, &labels);
+        if depth == Depth::Measured {
+            refuse_flat(&positions)?;
+        }
+        if let Some(label) = scale.markers.keys().find(|l| !labels[..markers.len()].contains(l)) {
+            let markers = some(labels[..markers.len()].iter().map(String::as_str));
+            return Err(SolveError::NoScaledMarker { label: label.clone(), markers });
+        }
+        if let Some(Range { start: first, end }) = scale.automatic
+            && (first >= end || end > frames)
+        {
+            return Err(SolveError::ScaleFrames { first, end, frames });
+        }
         Ok(Self {
             skin,
             markers,
-            positions: metres(capture, &labels),
+            positions,
             labels,
             columns: MarkerColumns {
                 face,
                 head: (!head_columns.is_empty()).then_some(head_columns),
             },
             neutral,
+            scale,
+            depth,
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
             warnings,
@@ -361,6 +463,12 @@ impl<'a> JoinedTake<'a> {
         &self.warnings
     }
 
+    /// Whether scale factors come from the bank's range of motion.
+    #[cfg(feature = "prepare")]
+    pub(crate) fn scales_by_bank(&self) -> bool {
+        self.scale.automatic.is_some()
+    }
+
     /// Number of frames.
     pub fn frame_count(&self) -> usize {
         self.frames().len()
@@ -369,11 +477,10 @@ impl<'a> JoinedTake<'a> {
     /// A hash of the face markers and their vertices.
     #[cfg(feature = "prepare")]
     pub(crate) fn marker_key(&self) -> String {
-        let labels: Vec<&str> = self.markers.iter().map(|(label, _)| label.as_str()).collect();
-        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
+        let labels: Vec<&str> = self.markers.iter().map(|site| site.label.as_str()).collect();
         Provenance::default()
             .text("labels", &labels.join("\n"))
-            .numbers("vertices", &vertices)
+            .numbers("vertices", &self.site_numbers())
             .hash()
     }
 
@@ -394,7 +501,7 @@ impl<'a> JoinedTake<'a> {
                     Hold::Unmoved => mesh.unmoved(UNMOVED_M),
                     Hold::Nothing => vec![false; mesh.positions.len()],
                 };
-                let vertices: Vec<usize> = self.markers.iter().map(|m| m.1).collect();
+                let vertices: Vec<usize> = self.markers.iter().map(MarkerSite::vertex).collect();
                 let surface = SurfaceResponse::build(mesh, &vertices, &held, &options)?;
                 let operators = surface.operators(mesh, &self.markers, &options)?;
                 Ok(SetUp { operators, surface: Some(surface) })
@@ -412,14 +519,14 @@ impl<'a> JoinedTake<'a> {
     /// d of every frame: frames x 3P, metres.
     ///
     /// # Errors
-    /// [`FrontEndError`].
+    /// [`SolveError`] of the front end.
     pub(crate) fn displacements(
         &self,
         bank: &Operators,
         spec: &MethodSpec,
-    ) -> Result<Vec<f64>, FrontEndError> {
+    ) -> Result<Vec<f64>, SolveError> {
         let (front_end, poses) = self.front_end(bank, spec)?;
-        front_end.take_displacements(self.frames(), &poses)
+        Ok(front_end.take_displacements(self.frames(), &poses)?)
     }
 
     /// D, H and l of the avatar's shapes for a method.
@@ -428,7 +535,7 @@ impl<'a> JoinedTake<'a> {
     /// [`OperatorError`] for a skin or markers that cannot be used.
     pub fn operators(&self, spec: &MethodSpec) -> Result<Operators, OperatorError> {
         let options = OperatorOptions::of(spec);
-        Operators::build(&self.skin.mesh, &self.skin.shape_names, &self.markers, &options)
+        Operators::build_at(&self.skin.mesh, &self.skin.shape_names, &self.markers, &options)
     }
 
     /// The pack of frames `first..end` (counted from 0), with a margin for the head's low-pass.
@@ -456,6 +563,8 @@ impl<'a> JoinedTake<'a> {
             head: self.columns.head.clone(),
             head_reference: front_end.head_reference().to_vec(),
             neutral: front_end.neutral().to_vec(),
+            scales: front_end.scales().cloned(),
+            depth: front_end.depth().cloned(),
             positions: self.positions[stored.start * width..stored.end * width].to_vec(),
         };
         Ok(TakePack {
@@ -466,7 +575,7 @@ impl<'a> JoinedTake<'a> {
         })
     }
 
-    fn frames(&self) -> MarkerFrames<'_> {
+    pub(crate) fn frames(&self) -> MarkerFrames<'_> {
         MarkerFrames { positions: &self.positions, columns: self.labels.len() }
     }
 
@@ -474,14 +583,48 @@ impl<'a> JoinedTake<'a> {
         &self,
         operators: &Operators,
         spec: &MethodSpec,
-    ) -> Result<(FrontEnd, Vec<RigidMotion>), FrontEndError> {
+    ) -> Result<(FrontEnd, Vec<RigidMotion>), SolveError> {
         let lowpass = lowpass(spec, self.rate_hz)?;
         let poses = FrontEnd::head_poses(self.frames(), &self.columns, lowpass.as_ref())?;
         let avatar_markers = &operators.parts().marker_positions;
-        let neutral = self.neutral.clone();
-        let front_end =
-            FrontEnd::fit(self.frames(), &self.columns, &poses, neutral, avatar_markers)?;
-        Ok((front_end, poses))
+        let depth = (self.depth == Depth::Surface)
+            .then(|| SurfaceDepth::of(&self.skin.mesh, &self.markers));
+        let front_end = FrontEnd::fit_with(
+            self.frames(),
+            &self.columns,
+            &poses,
+            self.neutral.clone(),
+            avatar_markers,
+            depth,
+        )
+        .map_err(|e| self.by_label(e))?;
+        let scales = self.scales(&front_end, &poses, operators, spec)?;
+        Ok((front_end.with_scales(scales)?, poses))
+    }
+
+    /// The front end's errors with the markers' labels.
+    fn by_label(&self, error: FrontEndError) -> SolveError {
+        let label = |m: usize| self.markers[m].label.clone();
+        match error {
+            FrontEndError::Rbf(RbfError::Coincident(a, b)) => {
+                SolveError::OnePlace { first: label(a), second: label(b) }
+            }
+            FrontEndError::NeutralUnseen { marker } => SolveError::NeutralUnseen(label(marker)),
+            other => other.into(),
+        }
+    }
+
+    /// The places of the markers as numbers: the vertex, or corners and coordinates.
+    fn site_numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        for site in &self.markers {
+            let parts: Vec<(usize, f64)> = site.parts().collect();
+            match parts[..] {
+                [(vertex, _)] => numbers.push(vertex as f64),
+                _ => numbers.extend(parts.iter().flat_map(|&(v, w)| [v as f64, w])),
+            }
+        }
+        numbers
     }
 
     fn head_labels(&self) -> Vec<String> {
@@ -499,8 +642,7 @@ impl<'a> JoinedTake<'a> {
             shapes.extend(shape.vertices.iter().map(|&v| f64::from(v)));
             shapes.extend(shape.deltas.iter().flatten());
         }
-        let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
-        Provenance::new()
+        let provenance = Provenance::new()
             .numbers("avatar.positions", mesh.positions.as_flattened())
             .numbers("avatar.triangles", &corners)
             .numbers("avatar.shapes", &shapes)
@@ -508,10 +650,11 @@ impl<'a> JoinedTake<'a> {
             .numbers("capture.positions", &self.positions)
             .numbers("capture.rate", &[self.rate_hz])
             .text("capture.labels", &self.labels.join("\n"))
-            .numbers("map.vertices", &vertices)
+            .numbers("map.vertices", &self.site_numbers())
             .text("map.head", &self.head_labels().join("\n"))
             .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
-            .method(spec)
+            .method(spec);
+        self.adjustments(provenance)
     }
 }
 

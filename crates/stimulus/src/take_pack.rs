@@ -2,15 +2,17 @@
 //!
 //! Markers: the columns that are needed, in metres, in steps of a hundredth of a millimetre (a
 //! sensor's noise is ten times that), with a margin of frames on both sides for filters to settle;
-//! the head's reference and the neutral face of the whole capture as f64. What is stored of each
+//! the head's reference, the neutral face of the whole capture, scale factors and the surface that
+//! gives a flat capture its depth as f64. What is stored of each
 //! coordinate is its change from frame to frame.
 
 use std::ops::Range;
 
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
+use mimique_solver::{FanTriangle, MarkerScales, SurfaceDepth};
 
 const KIND: &str = "MMTK";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Step of the markers' coordinates, metres.
 const STEP_M: f64 = 1e-5;
 /// Step of recorded weights.
@@ -56,6 +58,10 @@ pub struct SegmentMarkers {
     pub head_reference: Vec<[f64; 3]>,
     /// The stabilised neutral of the face markers, metres.
     pub neutral: Vec<[f64; 3]>,
+    /// Factors of the displacements of the face markers; none = as measured.
+    pub scales: Option<MarkerScales>,
+    /// The surface at the face markers where the capture is two-dimensional.
+    pub depth: Option<SurfaceDepth>,
     /// Frames x 3C, metres, NaN where a marker is not seen.
     pub positions: Vec<f64>,
 }
@@ -74,6 +80,8 @@ pub fn encode_take(take: &TakePack) -> Vec<u8> {
             columns_to(&mut w, Some(&m.face));
             columns_to(&mut w, m.head.as_ref());
             m.head_reference.iter().chain(&m.neutral).flatten().for_each(|&x| w.f64(x));
+            scales_to(&mut w, m.scales.as_ref());
+            depth_to(&mut w, m.depth.as_ref());
             tracks_to(&mut w, &m.positions, 3 * m.labels.len(), STEP_M);
         }
         TakeContent::Weights { shape_names, weights } => {
@@ -109,10 +117,21 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             let heads = head.as_ref().map_or(0, Vec::len);
             let head_reference = points(&mut r, heads)?;
             let neutral = points(&mut r, face.len())?;
+            let scales = scales_from(&mut r, face.len())?;
+            let depth = depth_from(&mut r, face.len())?;
             let columns = 3 * labels.len();
             let positions = tracks_from(&mut r, columns, STEP_M)?;
             let frames = positions.len() / columns.max(1);
-            let markers = SegmentMarkers { labels, face, head, head_reference, neutral, positions };
+            let markers = SegmentMarkers {
+                labels,
+                face,
+                head,
+                head_reference,
+                neutral,
+                scales,
+                depth,
+                positions,
+            };
             (TakeContent::Markers(markers), frames)
         }
         1 => {
@@ -166,6 +185,57 @@ fn points(r: &mut PackReader<'_>, count: usize) -> Result<Vec<[f64; 3]>, PackErr
         return r.refuse(format!("{count} points, {} bytes left", r.left()));
     }
     (0..count).map(|_| Ok([r.f64()?, r.f64()?, r.f64()?])).collect()
+}
+
+/// A flag, then the factors of positive and of negative coordinates, marker by marker.
+fn scales_to(w: &mut PackWriter, scales: Option<&MarkerScales>) {
+    w.u8(u8::from(scales.is_some()));
+    if let Some(scales) = scales {
+        scales.positive.iter().chain(&scales.negative).flatten().for_each(|&x| w.f64(x));
+    }
+}
+
+fn scales_from(r: &mut PackReader<'_>, face: usize) -> Result<Option<MarkerScales>, PackError> {
+    match r.u8()? {
+        0 => return Ok(None),
+        1 => {}
+        other => return r.refuse(format!("scale flag {other}")),
+    }
+    let (positive, negative) = (points(r, face)?, points(r, face)?);
+    if !positive.iter().chain(&negative).flatten().all(|x| x.is_finite()) {
+        return r.refuse("a scale factor is not finite");
+    }
+    Ok(Some(MarkerScales { positive, negative }))
+}
+
+/// A flag, then for each marker its triangles: two edges and two slopes.
+fn depth_to(w: &mut PackWriter, depth: Option<&SurfaceDepth>) {
+    w.u8(u8::from(depth.is_some()));
+    for fan in depth.iter().flat_map(|d| &d.fans) {
+        w.varint(fan.len() as u32);
+        for t in fan {
+            t.edges.iter().chain([&t.slope]).flatten().for_each(|&x| w.f64(x));
+        }
+    }
+}
+
+fn depth_from(r: &mut PackReader<'_>, face: usize) -> Result<Option<SurfaceDepth>, PackError> {
+    match r.u8()? {
+        0 => return Ok(None),
+        1 => {}
+        other => return r.refuse(format!("depth flag {other}")),
+    }
+    let mut fans = Vec::new();
+    for _ in 0..face {
+        let count = r.count(48)?;
+        let mut fan = Vec::with_capacity(count);
+        for _ in 0..count {
+            let mut pair = || Ok([r.f64()?, r.f64()?]);
+            fan.push(FanTriangle { edges: [pair()?, pair()?], slope: pair()? });
+        }
+        fans.push(fan);
+    }
+    Ok(Some(SurfaceDepth { fans }))
 }
 
 /// Frame count; then for every column the runs of missing and present frames, and the changes of

@@ -1,7 +1,10 @@
 //! Operators and take packs: what goes in comes out, damage is refused and never panics.
 
 use mimique_face::pack::{open_pack, seal_pack};
-use mimique_solver::{LinkedRows, Method, MethodSpec, OperatorOptions, OperatorParts, Operators};
+use mimique_solver::{
+    LinkedRows, Linking, MarkerScales, Method, MethodSpec, OperatorOptions, OperatorParts,
+    Operators,
+};
 use mimique_stimulus::{
     SegmentMarkers, TakeContent, TakePack, decode_operators, decode_take, encode_operators,
     encode_take, solve_packs,
@@ -16,9 +19,9 @@ fn operators(linked: bool) -> Operators {
     };
     let mut shell_gram = vec![0.0; n * n];
     (0..n).for_each(|i| shell_gram[i * n + i] = 0.1 + i as f64);
-    let sigma = linked.then_some(0.012);
+    let linking = linked.then_some(Linking::Zones { sigma: 0.012 });
     Operators::from_parts(OperatorParts {
-        options: OperatorOptions { sigma, ..OperatorOptions::default() },
+        options: OperatorOptions { linking, ..OperatorOptions::default() },
         shape_names: ["jawOpen", "smile, left", "\u{e9}"].map(str::to_owned).to_vec(),
         marker_labels: (0..p).map(|m| format!("M{m}")).collect(),
         marker_positions: (0..p)
@@ -28,7 +31,7 @@ fn operators(linked: bool) -> Operators {
         marker_deltas: numbers(3 * p * n, 0.3),
         shell_gram,
         linked: linked.then(|| LinkedRows {
-            sigma: 0.012,
+            linking: Linking::Zones { sigma: 0.012 },
             vertex_count: 40,
             grams: numbers(p * n * (n + 1) / 2, 1.0),
             sums: numbers(3 * p * n, 2.0),
@@ -60,6 +63,11 @@ fn take() -> TakePack {
             head: Some(vec![0, 1, 4]),
             head_reference: vec![rest[0], rest[1], [f64::NAN; 3]],
             neutral: rest,
+            scales: Some(MarkerScales {
+                positive: vec![[1.0, 1.5, 0.75]; 5],
+                negative: vec![[1.0, 0.5, 1.25]; 5],
+            }),
+            depth: None,
             positions,
         }),
     }
@@ -129,12 +137,12 @@ proptest! {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
         let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
-            let body = open_pack(kind, 1, whole).unwrap();
+            let body = open_pack(kind, 2, whole).unwrap();
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;
                 let at = at % damaged.len();
                 if cut { damaged.truncate(at) } else { damaged[at] = value }
-                let damaged = if sealed { seal_pack(kind, 1, &damaged) } else { damaged };
+                let damaged = if sealed { seal_pack(kind, 2, &damaged) } else { damaged };
                 // Neither unpacking nor solving may panic, whatever comes of it.
                 let [(_, operators), (_, take)] = &packs;
                 let _ = match *kind {

@@ -9,7 +9,10 @@ use std::process::Command;
 use mimique_face::{Avatar, Mesh, Part, SparseShape};
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_solver::{Method, MethodSpec};
-use mimique_stimulus::{AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, encode_operators, encode_take, solve_packs, Training, WeightsTable};
+use mimique_stimulus::{
+    AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, Training,
+    WeightsTable, encode_operators, encode_take, solve_packs,
+};
 use serde_json::json;
 
 fn repository() -> PathBuf {
@@ -73,8 +76,7 @@ fn avatar() -> Avatar {
 fn capture(skin: &AvatarSkin, map: &MarkerMap) -> Capture {
     let mut labels: Vec<String> = map.face_labels().map(str::to_owned).collect();
     labels.extend(map.head.iter().cloned());
-    let vertices: Vec<usize> =
-        map.resolve(skin).unwrap().into_iter().map(|(_, vertex)| vertex).collect();
+    let vertices: Vec<usize> = map.resolve(skin).unwrap().iter().map(MarkerSite::vertex).collect();
     let skull = [[0.1, 0.12, -0.05], [-0.1, 0.12, -0.05], [0.0, 0.16, 0.02], [0.0, 0.1, -0.12]];
     let mut positions = Vec::new();
     let mut noise = 12345u64;

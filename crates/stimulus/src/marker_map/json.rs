@@ -1,12 +1,15 @@
 //! The JSON form: `{"unit": "m", "markers": {LABEL: {"position": [x, y, z], "vertex": i}}, ...}`.
 
 use std::fmt;
+use std::ops::Range;
 
 use mimique_mocap::LengthUnit;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
-use super::{MapFileError, MappedMarker, MarkerMap, MarkerPlace};
+use super::{
+    Depth, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace, ScaleRule,
+};
 
 #[derive(Deserialize)]
 struct File {
@@ -16,12 +19,32 @@ struct File {
     #[serde(default)]
     head: Vec<String>,
     neutral: Option<[usize; 2]>,
+    association: Option<String>,
+    #[serde(default)]
+    scale: Scale,
+    depth: Option<String>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct Scale {
+    automatic: Option<[usize; 2]>,
+    global: Option<Factors>,
+}
+
+/// A factor for x, y and z alike, or one for each.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(untagged)]
+enum Factors {
+    One(f64),
+    Each([f64; 3]),
 }
 
 #[derive(Deserialize)]
 struct Marker {
     vertex: Option<u32>,
     position: Option<[f64; 3]>,
+    scale: Option<Factors>,
 }
 
 /// The markers in the file's order; a label that stands twice is an error, not a loss.
@@ -77,7 +100,12 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
     }
     .metres();
     let mut face = Vec::new();
+    let mut scale = ScaleRule::default();
     for (label, marker) in file.markers.0 {
+        if let Some(given) = marker.scale {
+            let factors = factors(given, &format!("markers.{label}.scale"))?;
+            scale.markers.insert(label.clone(), factors);
+        }
         let place = match (marker.position, marker.vertex) {
             (Some(p), _) if p.iter().all(|x| x.is_finite()) => {
                 // Dividing keeps "1 mm" the nearest number to 0.001.
@@ -94,16 +122,55 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
         };
         face.push(MappedMarker { label, place });
     }
-    let neutral = match file.neutral {
-        None => None,
-        Some([first, end]) if first < end => Some(first..end),
-        Some([first, end]) => {
-            return Err(wrong(
-                "neutral",
-                format!("frames {first}:{end} are none"),
-                "give the first frame and the one after the last",
-            ));
+    let neutral = span(file.neutral, "neutral")?;
+    scale.automatic = span(file.scale.automatic, "scale.automatic")?;
+    scale.global = file.scale.global.map(|given| factors(given, "scale.global")).transpose()?;
+    let association = match file.association.as_deref() {
+        None | Some("vertex") => MarkerAssociation::Vertex,
+        Some("nearest") => MarkerAssociation::Nearest,
+        Some("triangle") => MarkerAssociation::Triangle,
+        Some(other) => {
+            let remedy = "write vertex, nearest or triangle";
+            return Err(wrong("association", format!("{other:?} is none"), remedy));
         }
     };
-    Ok(MarkerMap { avatar: file.avatar, face, head: file.head, neutral })
+    let depth = match file.depth.as_deref().map(str::parse::<Depth>) {
+        None => Depth::Measured,
+        Some(Ok(depth)) => depth,
+        Some(Err(_)) => {
+            let what = format!("{:?} is none", file.depth.unwrap_or_default());
+            return Err(wrong("depth", what, "write measured or surface"));
+        }
+    };
+    let (avatar, head) = (file.avatar, file.head);
+    Ok(MarkerMap { avatar, face, head, neutral, association, scale, depth })
+}
+
+/// A range of frames.
+fn span(given: Option<[usize; 2]>, place: &str) -> Result<Option<Range<usize>>, MapFileError> {
+    match given {
+        None => Ok(None),
+        Some([first, end]) if first < end => Ok(Some(first..end)),
+        Some([first, end]) => Err(MapFileError {
+            place: place.to_owned(),
+            what: format!("frames {first}:{end} are none"),
+            remedy: "give the first frame and the one after the last",
+        }),
+    }
+}
+
+/// Scale factors, which are positive: a negative one would mirror the motion.
+fn factors(given: Factors, place: &str) -> Result<[f64; 3], MapFileError> {
+    let factors = match given {
+        Factors::One(x) => [x; 3],
+        Factors::Each(each) => each,
+    };
+    match factors.iter().find(|x| !(x.is_finite() && **x >= 0.0)) {
+        None => Ok(factors),
+        Some(x) => Err(MapFileError {
+            place: place.to_owned(),
+            what: format!("is {x}"),
+            remedy: "give a number of 0 or more, or three for x, y and z",
+        }),
+    }
 }

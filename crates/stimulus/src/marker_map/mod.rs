@@ -7,9 +7,10 @@ mod csv;
 mod json;
 mod resolve;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-pub use resolve::{MapError, TOLERANCE_M};
+pub use resolve::{MapError, REACH_M, TOLERANCE_M};
 
 /// A marker map as read; [`MarkerMap::resolve`] finds its vertices on a skin.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,6 +23,65 @@ pub struct MarkerMap {
     pub head: Vec<String>,
     /// Frames of the neutral face, counted from 0, the end not included.
     pub neutral: Option<Range<usize>>,
+    /// How positions are tied to the skin.
+    pub association: MarkerAssociation,
+    /// Scale factors of the displacements.
+    pub scale: ScaleRule,
+    /// Where the third coordinate comes from.
+    pub depth: Depth,
+}
+
+/// How a marker's position is tied to the skin (Kouadio 4.3.1).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum MarkerAssociation {
+    /// To the vertex there, within [`TOLERANCE_M`].
+    #[default]
+    Vertex,
+    /// Point to point: to the nearest vertex that no marker before it has, within [`REACH_M`].
+    Nearest,
+    /// To the nearest point of the surface, inside a triangle by its barycentric coordinates
+    /// (eq. 4.8-4.11), within [`REACH_M`].
+    Triangle,
+}
+
+/// Factors of the markers' displacements (Kouadio 5.3, eq. 5.1); none given = as measured.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ScaleRule {
+    /// Frames of the range of motion, counted from 0, that the automatic factors come from.
+    pub automatic: Option<Range<usize>>,
+    /// Factors of x, y, z for all markers, in the avatar's axes.
+    pub global: Option<[f64; 3]>,
+    /// Factors by hand, by label.
+    pub markers: BTreeMap<String, [f64; 3]>,
+}
+
+/// Where the third coordinate of the displacements comes from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Depth {
+    /// From the capture.
+    #[default]
+    Measured,
+    /// The capture is two-dimensional (x, y): from the skin's surface (Kouadio, eq. 4.12).
+    Surface,
+}
+
+impl ScaleRule {
+    /// Whether nothing is scaled.
+    pub fn is_none(&self) -> bool {
+        self.automatic.is_none() && self.global.is_none() && self.markers.is_empty()
+    }
+}
+
+impl std::str::FromStr for Depth {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        match word {
+            "measured" => Ok(Self::Measured),
+            "surface" => Ok(Self::Surface),
+            _ => Err(format!("{word:?}; write measured or surface")),
+        }
+    }
 }
 
 /// A face marker and its place on the skin.
@@ -100,6 +160,23 @@ mod tests {
     }
 
     #[test]
+    fn json_says_how_markers_are_tied_and_scaled() {
+        let map = MarkerMap::from_text(
+            r#"{"markers": {"A": {"vertex": 1, "scale": 1.5}, "B": {"vertex": 2}},
+               "association": "triangle", "depth": "surface",
+               "scale": {"automatic": [0, 600], "global": [1, 1.2, 0.8]}}"#,
+        )
+        .unwrap();
+        assert_eq!((map.association, map.depth), (MarkerAssociation::Triangle, Depth::Surface));
+        assert_eq!(map.scale.automatic, Some(0..600));
+        assert_eq!(map.scale.global, Some([1.0, 1.2, 0.8]));
+        assert_eq!(map.scale.markers, BTreeMap::from([("A".to_owned(), [1.5; 3])]));
+        assert!(
+            MarkerMap::from_text(r#"{"markers": {"A": {"vertex": 1}}}"#).unwrap().scale.is_none()
+        );
+    }
+
+    #[test]
     fn csv_knows_face_and_head() {
         let map =
             MarkerMap::from_text("marker,role,vertex\r\nA,face,3\r\nH0,head,9\r\n\r\n").unwrap();
@@ -118,6 +195,14 @@ mod tests {
             (r#"{"markers": {"A": {}}}"#, "markers.A", "neither position nor vertex"),
             (r#"{"markers": {"A": {"vertex": 1}}, "unit": "inch"}"#, "unit", "inch"),
             (r#"{"markers": {"A": {"vertex": 1}}, "neutral": [60, 0]}"#, "neutral", "60:0"),
+            (r#"{"markers": {"A": {"vertex": 1}}, "association": "glue"}"#, "association", "glue"),
+            (r#"{"markers": {"A": {"vertex": 1}}, "depth": "guess"}"#, "depth", "guess"),
+            (
+                r#"{"markers": {"A": {"vertex": 1}}, "scale": {"automatic": [9, 9]}}"#,
+                "scale",
+                "9:9",
+            ),
+            (r#"{"markers": {"A": {"vertex": 1, "scale": -1}}}"#, "markers.A.scale", "-1"),
             (r#"{"markers": {}}"#, "marker map", "no face marker"),
             (r#"{"markers": "#, "JSON", ""),
             ("", "line 1", ""),

@@ -242,6 +242,8 @@ fn to_solve(
         let said = training.warnings(&avatar.avatar.shape_names);
         warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
     }
+    let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
+    warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
     let options = format!("{:?}", OperatorOptions::of(spec));
     let markers = joined.marker_key();
     let more = match spec.method {
@@ -292,8 +294,14 @@ fn to_solve(
     };
     let unseen = unseen_shapes(&opened, spec);
     warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
+    // Automatic scale factors follow from the bank between its bounds.
+    let range = if joined.scales_by_bank() {
+        format!("{:?} {:?} {}", spec.bounds, spec.locked, avatar.key)
+    } else {
+        String::new()
+    };
     let lowpass = format!("{:?}", spec.head_lowpass_hz);
-    let take = cache.pack(&["take", &markers, &performance.key, &lowpass], || {
+    let take = cache.pack(&["take", &markers, &performance.key, &lowpass, &range], || {
         let take = joined
             .segment(&opened, spec, performance.frames.clone())
             .map_err(|e| performance.error(e))?;

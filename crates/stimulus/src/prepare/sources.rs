@@ -16,7 +16,10 @@ use mimique_study::{
 
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
-use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, Training, WeightsTable};
+use crate::{
+    AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, Training, WeightsTable,
+    split_shapes,
+};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -111,6 +114,14 @@ impl<'a> Sources<'a> {
                 return Err(PrepareError::new(pointer(&["stimuli", "avatars", id]), message));
             }
         };
+        let split = self.study.stimuli.avatars.get(id).map_or(&[][..], |a| &a.split);
+        let (key, avatar) = if split.is_empty() {
+            (key, avatar)
+        } else {
+            let avatar =
+                split_shapes(&avatar, split).map_err(|e| PrepareError::new(at("split"), e))?;
+            (format!("{key} split {}", split.join(" ")), avatar)
+        };
         let file = Rc::new(AvatarFile { key, avatar, sites, skin: OnceCell::new(), pointer });
         self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
         Ok(file)
@@ -166,7 +177,7 @@ impl<'a> Sources<'a> {
         let options = TakeOptions {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
-            training: None,
+            ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
             (Some(Span::Frames { first, end }), None) => first..end,
@@ -382,12 +393,14 @@ impl Performance {
     /// An error of the solve, at the part of the study file that it comes from.
     pub fn error(&self, error: SolveError) -> PrepareError {
         let field = match &error {
-            SolveError::Map(_) | SolveError::NoCommonLabel { .. } => "/markers",
+            SolveError::Map(_)
+            | SolveError::NoCommonLabel { .. }
+            | SolveError::NoScaledMarker { .. }
+            | SolveError::ScaleFrames { .. } => "/markers",
             SolveError::NoHeadMarker { .. } => "/head",
             SolveError::FrontEnd(FrontEndError::Head { .. }) => "/head",
-            SolveError::FrontEnd(
-                FrontEndError::NeutralRange { .. } | FrontEndError::NeutralUnseen { .. },
-            ) => "/neutral",
+            SolveError::FrontEnd(FrontEndError::NeutralRange { .. })
+            | SolveError::NeutralUnseen(_) => "/neutral",
             SolveError::FrontEnd(FrontEndError::Lowpass(_)) => "/headLowpassHz",
             SolveError::Segment { .. } => return PrepareError::new(&self.pointer, error),
             _ => "",

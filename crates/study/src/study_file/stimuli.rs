@@ -49,6 +49,9 @@ pub struct Avatar {
     /// How a head is drawn.
     #[serde(default, skip_serializing_if = "AvatarLook::is_stimulus")]
     pub look: AvatarLook,
+    /// Symmetric shapes to cut into `NAME_L` and `NAME_R` along the face's middle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub split: Vec<String>,
     /// Factors of the clips shown with it.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
