@@ -106,9 +106,9 @@ impl Default for GapFill {
 /// others stay missing, as do those at the ends of the take. Returns every gap and what was done.
 pub fn fill_gaps(capture: &mut Capture, how: &GapFill) -> Vec<FilledGap> {
     // Neighbours are taken as measured: no filled position serves to fill another.
-    let measured = capture.clone();
+    let measured = &*capture;
     let frames = measured.frames();
-    gaps(&measured)
+    let found: Vec<(Gap, Option<(Vec<[f64; 3]>, GapRepair)>)> = gaps(measured)
         .into_iter()
         .map(|gap| {
             let seconds = gap.frames() as f64 / measured.rate_hz;
@@ -118,12 +118,18 @@ pub fn fill_gaps(capture: &mut Capture, how: &GapFill) -> Vec<FilledGap> {
             let filled = if !inside {
                 None
             } else if seconds <= how.spline_s + half_frame {
-                Some((spline::fill(&measured, gap), GapRepair::Spline))
+                Some((spline::fill(measured, gap), GapRepair::Spline))
             } else if seconds <= how.rigid_s + half_frame {
-                rigid::fill(&measured, gap).map(|p| (p, GapRepair::RigidNeighbourhood))
+                rigid::fill(measured, gap).map(|p| (p, GapRepair::RigidNeighbourhood))
             } else {
                 None
             };
+            (gap, filled)
+        })
+        .collect();
+    found
+        .into_iter()
+        .map(|(gap, filled)| {
             let Some((positions, repair)) = filled else {
                 return FilledGap { gap, repair: GapRepair::LeftMissing };
             };
