@@ -12,7 +12,8 @@ use indicatif::ProgressBar;
 use mimique_mocap::{LengthUnit, ReadOptions};
 use mimique_solver::{FrontEndError, Method, MethodSpec};
 use mimique_stimulus::{
-    AvatarSkin, MarkerMap, SolveError, SolveReport, SolvedCapture, TakeOptions, solve_take,
+    AvatarSkin, MarkerMap, RepairSidecar, SolveError, SolveReport, SolvedCapture, TakeOptions,
+    solve_take,
 };
 use serde_json::{Value, json};
 
@@ -103,7 +104,7 @@ struct Pair([f64; 2]);
 
 /// `FIRST:END`.
 #[derive(Debug, Clone)]
-struct Span(Range<usize>);
+pub(crate) struct Span(pub(crate) Range<usize>);
 
 /// Metres, from `12mm`, `1.2cm` or `0.012m`.
 #[derive(Debug, Clone, Copy)]
@@ -116,10 +117,6 @@ struct Named<T>(String, T);
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let spec = method_spec(&args)?;
-    let options = TakeOptions {
-        neutral: args.neutral.as_ref().map(|s| s.0.clone()),
-        head: args.head.clone(),
-    };
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(Duration::from_millis(100));
     let origin = Instant::now();
@@ -131,6 +128,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let bytes = std::fs::read(&args.mocap).map_err(|e| {
         blame(&args.mocap, format!("open: {e}; check the path and its permissions"))
     })?;
+    let sidecar = RepairSidecar::beside(&args.mocap, &bytes).map_err(|e| anyhow!("{e}"))?;
+    let options = TakeOptions {
+        neutral: args.neutral.as_ref().map(|s| s.0.clone()),
+        head: args.head.clone(),
+        repair: sidecar.as_ref().map(RepairSidecar::hash),
+    };
     let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
     let recording = mimique_mocap::read_recording(
         &args.mocap.to_string_lossy(),
@@ -149,7 +152,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             .map_err(|e| blame(at_fault(&e, &args), e))?;
     let notes = avatar.notes.iter().map(|n| (&args.avatar, n));
     let notes = notes.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
-    let notes: Vec<String> = notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+    let mut notes: Vec<String> =
+        notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+    notes.extend(sidecar.map(|s| {
+        format!("{}: repaired from {}: {}", args.mocap.display(), s.source.file, s.repair.summary())
+    }));
 
     progress.set_message("writing");
     let start = seconds();
@@ -295,7 +302,7 @@ fn blame(file: &Path, error: impl std::fmt::Display) -> anyhow::Error {
 }
 
 /// The unit of a word.
-fn length_unit(word: &str) -> anyhow::Result<LengthUnit> {
+pub(crate) fn length_unit(word: &str) -> anyhow::Result<LengthUnit> {
     match word {
         "mm" => Ok(LengthUnit::Millimetre),
         "cm" => Ok(LengthUnit::Centimetre),

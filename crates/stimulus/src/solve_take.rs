@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use mimique_mocap::Capture;
+use mimique_mocap::{Capture, stabilise, stillest};
 use mimique_solver::{
     Fit, FitError, FrontEnd, FrontEndError, MarkerColumns, MarkerFrames, MeshError, Method,
     MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion,
@@ -22,10 +22,13 @@ const MARGIN_SECONDS: f64 = 0.25;
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TakeOptions {
-    /// Frames of the neutral face, counted from 0; the map's, or the first 60, where not given.
+    /// Frames of the neutral face, counted from 0; the map's where not given, else the stillest
+    /// second.
     pub neutral: Option<Range<usize>>,
     /// Labels of the markers that stabilise the head; the map's where not given.
     pub head: Option<Vec<String>>,
+    /// What the capture's repair is known by: a hash of its record.
+    pub repair: Option<String>,
 }
 
 /// Why a take cannot be solved.
@@ -105,6 +108,7 @@ pub struct JoinedTake<'a> {
     neutral: Range<usize>,
     rate_hz: f64,
     first_frame: u64,
+    repair: Option<String>,
     warnings: Vec<String>,
 }
 
@@ -235,8 +239,13 @@ impl<'a> JoinedTake<'a> {
                     .to_owned(),
             );
         }
-        let neutral = options.neutral.clone().or_else(|| map.neutral.clone());
-        let neutral = neutral.unwrap_or(0..NEUTRAL_FRAMES.min(frames));
+        let named = options.neutral.clone().or_else(|| map.neutral.clone());
+        let neutral = named.unwrap_or_else(|| {
+            let head: Vec<String> = head_columns.iter().map(|&c| labels[c].clone()).collect();
+            let (found, said) = found_neutral(capture, &labels, markers.len(), &head);
+            warnings.push(said);
+            found
+        });
         if neutral.start < neutral.end && neutral.len() < NEUTRAL_FRAMES {
             warnings.push(format!(
                 "the neutral is the mean of {} frames: {NEUTRAL_FRAMES} or more are steadier",
@@ -255,6 +264,7 @@ impl<'a> JoinedTake<'a> {
             neutral,
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
+            repair: options.repair.clone(),
             warnings,
         })
     }
@@ -358,7 +368,11 @@ impl<'a> JoinedTake<'a> {
             shapes.extend(shape.deltas.iter().flatten());
         }
         let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
-        Provenance::new()
+        let provenance = match &self.repair {
+            Some(repair) => Provenance::new().text("capture.repair", repair),
+            None => Provenance::new(),
+        };
+        provenance
             .numbers("avatar.positions", mesh.positions.as_flattened())
             .numbers("avatar.triangles", &corners)
             .numbers("avatar.shapes", &shapes)
@@ -370,6 +384,47 @@ impl<'a> JoinedTake<'a> {
             .text("map.head", &self.head_labels().join("\n"))
             .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
             .method(spec)
+    }
+}
+
+/// The neutral where none is named: the stillest second of the face, its head held still; and what
+/// is to be said of it. The first `face` labels are those of the face.
+fn found_neutral(
+    capture: &Capture,
+    labels: &[String],
+    face: usize,
+    head: &[String],
+) -> (Range<usize>, String) {
+    let columns: Vec<usize> = labels.iter().filter_map(|l| capture.marker_index(l)).collect();
+    let mut part = Capture {
+        labels: labels.to_vec(),
+        positions: (0..capture.frames())
+            .flat_map(|frame| columns.iter().map(move |&c| capture.frame(frame)[c]))
+            .collect(),
+        notes: Vec::new(),
+        ..*capture
+    };
+    let mut held = "";
+    if !head.is_empty() && stabilise(&mut part, head).is_err() {
+        held = ", the head not held still";
+    }
+    let width = part.labels.len();
+    part.positions = part.positions.chunks(width).flat_map(|row| row[..face].to_vec()).collect();
+    part.labels.truncate(face);
+    match stillest(&part, 1.0) {
+        Some(found) => {
+            let Range { start, end } = found.frames;
+            let mm = found.deviation * capture.unit.metres() * 1e3;
+            let said = format!(
+                "no neutral is named: frames {start}:{end} are taken, the stillest second \
+                 ({mm:.2} mm rms{held}); see whether the face is neutral there, or name it"
+            );
+            (start..end, said)
+        }
+        None => (
+            0..NEUTRAL_FRAMES.min(capture.frames()),
+            "no neutral is named and no marker is seen: the first frames are taken".to_owned(),
+        ),
     }
 }
 

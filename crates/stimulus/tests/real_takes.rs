@@ -19,7 +19,7 @@ fn map(path: &Path) -> MarkerMap {
 
 fn solve_lsts(root: &Path, take: &str, spec: &MethodSpec) -> SolvedCapture {
     let capture = mimique_mocap::read(&root.join("lsts").join(take)).unwrap();
-    let options = TakeOptions { neutral: Some(0..60), head: None };
+    let options = TakeOptions { neutral: Some(0..60), ..TakeOptions::default() };
     let skin = skin(&root.join("lsts/avatar_skin.glb"));
     let map = map(&root.join("lsts/mapping.csv"));
     solve_take(&skin, &capture, &map, spec, &options, &mut || 0.0).unwrap()
@@ -78,7 +78,7 @@ fn a_c3d_gives_the_weights_of_its_rounded_numbers() {
     let mut rounded = mimique_mocap::read(&root.join("lsts/take_n01.csv")).unwrap();
     rounded.positions.iter_mut().for_each(|p| *p = p.map(|x| f64::from(x as f32)));
     let c3d = mimique_mocap::read(&root.join("lsts/take_n01.c3d")).unwrap();
-    let options = TakeOptions { neutral: Some(0..60), head: None };
+    let options = TakeOptions { neutral: Some(0..60), ..TakeOptions::default() };
     let spec = MethodSpec::new(Method::Box);
     let hash = |capture| {
         solve_take(&skin, capture, &map, &spec, &options, &mut || 0.0).unwrap().report.weights_hash
@@ -92,7 +92,7 @@ fn a_segment_s_packs_give_the_take_s_weights() {
     let capture = mimique_mocap::read(&root.join("lsts/take_n01.csv")).unwrap();
     let skin = skin(&root.join("lsts/avatar_skin.glb"));
     let map = map(&root.join("lsts/mapping.csv"));
-    let options = TakeOptions { neutral: Some(0..60), head: None };
+    let options = TakeOptions { neutral: Some(0..60), ..TakeOptions::default() };
     let spec = MethodSpec { head_lowpass_hz: Some(10.0), ..lsts(0.3) };
     let whole = solve_take(&skin, &capture, &map, &spec, &options, &mut || 0.0).unwrap();
 

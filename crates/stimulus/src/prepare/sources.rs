@@ -16,7 +16,9 @@ use mimique_study::{
 
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
-use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, WeightsTable};
+use crate::{
+    AvatarSkin, JoinedTake, MarkerMap, RepairSidecar, SolveError, TakeOptions, WeightsTable,
+};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -41,6 +43,8 @@ struct CaptureFile {
     key: String,
     capture: Capture,
     head: Vec<String>,
+    /// What its repair is known by.
+    repair: Option<String>,
     /// Neutral and played frames of a built-in performance.
     known: Option<(Range<usize>, Range<usize>)>,
 }
@@ -162,8 +166,11 @@ impl<'a> Sources<'a> {
         let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
         let neutral = entry.neutral.map(|[first, end]| first..end);
         let known = file.known.as_ref().map(|(neutral, _)| neutral.clone());
-        let options =
-            TakeOptions { neutral: neutral.or(known), head: (!head.is_empty()).then_some(head) };
+        let options = TakeOptions {
+            neutral: neutral.or(known),
+            head: (!head.is_empty()).then_some(head),
+            repair: file.repair.clone(),
+        };
         let frames = match (segment.span(), &file.known) {
             (Some(Span::Frames { first, end }), None) => first..end,
             (Some(Span::Performance(_)), Some((_, played))) => played.clone(),
@@ -243,6 +250,7 @@ impl<'a> Sources<'a> {
                     key: builtin::take_key(&take.capture),
                     capture: take.capture,
                     head: take.head,
+                    repair: None,
                     known: Some((take.neutral, take.played)),
                 };
                 (name, file)
@@ -261,7 +269,10 @@ impl<'a> Sources<'a> {
                         })?;
                 let key = format!("{} {unit:?}", sha256_hex(&bytes));
                 let capture = recording.capture;
-                (id.clone(), CaptureFile { key, capture, head: vec![], known: None })
+                let repair = RepairSidecar::beside(&path, &bytes)
+                    .map_err(|e| PrepareError::new(of("file"), e))?
+                    .map(|sidecar| sidecar.hash());
+                (id.clone(), CaptureFile { key, capture, head: vec![], repair, known: None })
             }
             (None, _) => {
                 let message = "give exactly one of builtin and file";
@@ -327,6 +338,11 @@ impl AvatarFile {
 }
 
 impl Performance {
+    /// What the capture's repair is known by; `None` for one as it was recorded.
+    pub fn repair(&self) -> Option<String> {
+        self.capture.repair.clone()
+    }
+
     /// Frames a second of the capture.
     pub fn rate_hz(&self) -> f64 {
         self.capture.capture.rate_hz
