@@ -33,9 +33,10 @@ pub(crate) fn swaps_and_jumps(capture: &Capture) -> (Vec<Swap>, Vec<Jump>) {
     let metres = capture.unit.metres();
     let (swaps, others) = swaps_and_others(capture);
     let name = |marker: usize| capture.labels[marker].clone();
-    let swaps = swaps
-        .into_iter()
-        .map(|(frame, cycle)| Swap { labels: cycle.into_iter().map(name).collect(), frame });
+    let swaps = swaps.into_iter().map(|change| Swap {
+        labels: change.cycle.into_iter().map(name).collect(),
+        frame: change.frame,
+    });
     let jumps = others.iter().filter(|(_, s)| s.step * metres >= JUMP_M).map(|(frame, s)| Jump {
         label: name(s.marker),
         frame: *frame,

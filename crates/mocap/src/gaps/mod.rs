@@ -102,13 +102,16 @@ impl Default for GapFill {
     }
 }
 
+/// Positions for a gap, and how they were found.
+type Filling = (Vec<[f64; 3]>, GapRepair);
+
 /// Fill gaps in place: short ones by a cubic, longer ones by the rigid motion of the neighbours,
 /// others stay missing, as do those at the ends of the take. Returns every gap and what was done.
 pub fn fill_gaps(capture: &mut Capture, how: &GapFill) -> Vec<FilledGap> {
     // Neighbours are taken as measured: no filled position serves to fill another.
     let measured = &*capture;
     let frames = measured.frames();
-    let found: Vec<(Gap, Option<(Vec<[f64; 3]>, GapRepair)>)> = gaps(measured)
+    let found: Vec<(Gap, Option<Filling>)> = gaps(measured)
         .into_iter()
         .map(|gap| {
             let seconds = gap.frames() as f64 / measured.rate_hz;

@@ -31,30 +31,28 @@ pub struct MendedSwap {
 }
 
 /// One change: the marker under label `cycle[i]` goes on under label `cycle[i + 1]`.
-struct Change {
-    frame: usize,
-    cycle: Vec<usize>,
+pub(crate) struct Change {
+    /// First frame after it.
+    pub(crate) frame: usize,
+    /// The markers.
+    pub(crate) cycle: Vec<usize>,
 }
 
 /// Moves that are swaps, and those that are none, in order of time.
-pub(crate) fn swaps_and_others(
-    capture: &Capture,
-) -> (Vec<(usize, Vec<usize>)>, Vec<(usize, Sudden)>) {
+pub(crate) fn swaps_and_others(capture: &Capture) -> (Vec<Change>, Vec<(usize, Sudden)>) {
     let (mut swaps, mut others) = (Vec::new(), Vec::new());
     each_sudden(capture, |frame, sudden| {
         let cycles = cycles(sudden);
         let swapped = |marker: usize| cycles.iter().any(|c| c.contains(&marker));
         others.extend(sudden.iter().filter(|s| !swapped(s.marker)).map(|s| (frame, *s)));
-        swaps.extend(cycles.into_iter().map(|cycle| (frame, cycle)));
+        swaps.extend(cycles.into_iter().map(|cycle| Change { frame, cycle }));
     });
     (swaps, others)
 }
 
 /// Mend every swap in place. Returns the stretches that were found.
 pub(crate) fn mend_swaps(capture: &mut Capture) -> Vec<MendedSwap> {
-    let (swaps, _) = swaps_and_others(capture);
-    let changes: Vec<Change> =
-        swaps.into_iter().map(|(frame, cycle)| Change { frame, cycle }).collect();
+    let (changes, _) = swaps_and_others(capture);
     if changes.is_empty() {
         return Vec::new();
     }

@@ -349,12 +349,14 @@ fn split(
         let before = if i == 0 { start } else { inside[i - 1].max(start) };
         let after = inside.get(i + 1).copied().unwrap_or(whole.end);
         let (Some(a), Some(b)) = (held(before..border), held(border + 1..after)) else { continue };
-        let calm = 0.5 * root[border];
+        // Both are held, and neither is the other's last trace.
+        let calm = 0.25 * root[border];
+        let (less, more) = (level[a].min(level[b]), level[a].max(level[b]));
         let change: f64 = tracks.iter().map(|t| (t[a] - t[b]).abs()).sum();
         // A face that only fades changes by the difference of the levels, another face by up to
         // their sum: 0 and 1 on this scale.
-        let otherness = (change - (level[a] - level[b]).abs()) / (2.0 * level[a].min(level[b]));
-        if root[a] < calm && root[b] < calm && otherness > 0.5 {
+        let otherness = (change - (more - less)) / (2.0 * less);
+        if root[a] < calm && root[b] < calm && less > 0.3 * more && otherness > 0.5 {
             parts.push(start..border);
             start = border;
         }
