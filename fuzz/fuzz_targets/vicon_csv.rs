@@ -1,4 +1,5 @@
 #![no_main]
+//! A fuzz target: what the recogniser takes for this format, through its reader.
 
 #[path = "../../crates/mocap/tests/support/invariants.rs"]
 mod invariants;

@@ -9,6 +9,7 @@
 //!                                              solve_packs (server, browser) --> weights
 //! ```
 
+mod lids;
 mod marker_map;
 mod operators_pack;
 #[cfg(feature = "prepare")]
@@ -25,6 +26,7 @@ mod solve_take;
 mod take_pack;
 mod weights_file;
 
+pub use lids::{Lid, LidEdge};
 pub use marker_map::{MapError, MapFileError, MappedMarker, MarkerMap, MarkerPlace, TOLERANCE_M};
 pub use operators_pack::{decode_operators, encode_operators};
 #[cfg(feature = "prepare")]

@@ -8,9 +8,10 @@ use mimique_solver::{
     MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion,
 };
 
+use crate::lids::{LidEdge, LidRange, actor_range, lid_weights};
 use crate::provenance::{Provenance, weights_hash};
 use crate::report::{FrameRow, FrameStatistics, SolveReport, StageSeconds, unseen_shapes};
-use crate::solve_packs::lowpass;
+use crate::solve_packs::{lowpass, put_driven};
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
 use crate::{AvatarSkin, MapError, MarkerMap, WeightsTable};
 
@@ -109,7 +110,20 @@ pub struct JoinedTake<'a> {
     rate_hz: f64,
     first_frame: u64,
     repair: Option<String>,
+    lids: Vec<JoinedLid>,
     warnings: Vec<String>,
+}
+
+/// A lid marker of the capture and the shapes of the avatar that it drives.
+#[derive(Debug, Clone)]
+struct JoinedLid {
+    label: String,
+    column: usize,
+    edge: LidEdge,
+    closed: String,
+    wide: Option<String>,
+    /// Vertical travel of the marker's vertex from closed to wide, metres.
+    travel: LidRange,
 }
 
 /// Solves a capture with one method.
@@ -133,6 +147,7 @@ pub fn solve_take(
     let mut seconds = StageSeconds::default();
     let start = clock();
     let joined = JoinedTake::new(skin, capture, map, options)?;
+    let spec = &joined.with_lids_locked(spec);
     let operators = joined.operators(spec)?;
     let fit = Fit::new(&operators, spec)?;
     let set_up = clock();
@@ -142,7 +157,9 @@ pub fn solve_take(
     let displacements = front_end.take_displacements(take, &poses)?;
     let front = clock();
     seconds.front_end = front - set_up;
-    let solution = fit.solve_take(&displacements)?;
+    let mut solution = fit.solve_take(&displacements)?;
+    let (driven_shapes, driven) = joined.lid_tracks(&front_end, &poses, 0..take.len());
+    put_driven(&mut solution.weights, &skin.shape_names, &driven_shapes, &driven);
     seconds.solve = clock() - front;
 
     let mut warnings = joined.warnings.clone();
@@ -199,7 +216,8 @@ impl<'a> JoinedTake<'a> {
             return Err(SolveError::NoFrames);
         }
         let mut warnings = Vec::new();
-        let resolved = map.resolve(skin)?;
+        let (lid_places, resolved): (Vec<_>, Vec<_>) = (map.resolve(skin)?.into_iter())
+            .partition(|(label, _)| map.lids.iter().any(|lid| lid.marker == *label));
         let (markers, absent): (Vec<_>, Vec<_>) =
             resolved.into_iter().partition(|(label, _)| capture.marker_index(label).is_some());
         if markers.is_empty() {
@@ -233,6 +251,37 @@ impl<'a> JoinedTake<'a> {
             });
             head_columns.push(column);
         }
+        let mut lids = Vec::new();
+        for lid in &map.lids {
+            let place = lid_places.iter().find(|(label, _)| *label == lid.marker);
+            let (Some((_, vertex)), true) = (place, capture.marker_index(&lid.marker).is_some())
+            else {
+                warnings.push(format!("lid marker {} is not in the capture", lid.marker));
+                continue;
+            };
+            let Some(closed) = travel_of(skin, &lid.closed, *vertex) else {
+                warnings.push(format!(
+                    "lid marker {}: the avatar has no shape {}; name the shape that closes the lid",
+                    lid.marker, lid.closed
+                ));
+                continue;
+            };
+            let wide = lid.wide.as_ref().and_then(|name| travel_of(skin, name, *vertex));
+            let ends = [closed, wide.unwrap_or(0.0), 0.0];
+            let travel = [ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0)];
+            let column = labels.iter().position(|l| *l == lid.marker).unwrap_or_else(|| {
+                labels.push(lid.marker.clone());
+                labels.len() - 1
+            });
+            lids.push(JoinedLid {
+                label: lid.marker.clone(),
+                column,
+                edge: lid.edge,
+                closed: lid.closed.clone(),
+                wide: lid.wide.clone().filter(|_| wide.is_some()),
+                travel,
+            });
+        }
         if head_columns.is_empty() {
             warnings.push(
                 "no head markers are named: the capture is taken to be free of head motion"
@@ -265,8 +314,70 @@ impl<'a> JoinedTake<'a> {
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
             repair: options.repair.clone(),
+            lids,
             warnings,
         })
+    }
+
+    /// The method with the lids' shapes locked, so that no other marker moves them.
+    pub fn with_lids_locked(&self, spec: &MethodSpec) -> MethodSpec {
+        let mut spec = spec.clone();
+        for name in self.lids.iter().flat_map(|l| [Some(&l.closed), l.wide.as_ref()]).flatten() {
+            let bounded = spec.bounds.contains_key(name);
+            if !bounded && !spec.locked.contains(name) {
+                spec.locked.push(name.clone());
+            }
+        }
+        spec
+    }
+
+    /// The shapes that lid markers drive and their weights in some frames. The lids' travel and
+    /// neutral are those of the whole take.
+    fn lid_tracks(
+        &self,
+        front_end: &FrontEnd,
+        poses: &[RigidMotion],
+        frames: Range<usize>,
+    ) -> (Vec<String>, Vec<f64>) {
+        let mut tracks: Vec<(String, Vec<f64>)> = Vec::new();
+        for lid in &self.lids {
+            let places: Vec<[f64; 3]> = (poses.iter().enumerate())
+                .map(|(frame, pose)| {
+                    let at = 3 * (frame * self.labels.len() + lid.column);
+                    let p = &self.positions[at..at + 3];
+                    front_end.avatar_from_actor().rotate(pose.apply([p[0], p[1], p[2]]))
+                })
+                .collect();
+            let rest: Vec<f64> =
+                places[self.neutral.clone()].iter().map(|p| p[1]).filter(|y| !y.is_nan()).collect();
+            let rest = rest.iter().sum::<f64>() / rest.len() as f64;
+            let heights: Vec<f64> = places.iter().map(|p| p[1] - rest).collect();
+            let actor = actor_range(&heights, lid.travel, lid.edge);
+            // A lid that is not seen stays where it was last.
+            let mut last = 0.0;
+            let weights: Vec<(f64, f64)> = heights
+                .into_iter()
+                .map(|y| {
+                    last = if y.is_finite() { y } else { last };
+                    lid_weights(last, actor, lid.travel, lid.edge)
+                })
+                .collect();
+            let shapes = [Some((&lid.closed, true)), lid.wide.as_ref().map(|w| (w, false))];
+            for (name, closes) in shapes.into_iter().flatten() {
+                let own = weights[frames.clone()].iter().map(|w| if closes { w.0 } else { w.1 });
+                match tracks.iter_mut().find(|(n, _)| n == name) {
+                    // Of two markers that drive one shape the stronger counts.
+                    Some((_, track)) => {
+                        track.iter_mut().zip(own).for_each(|(a, b)| *a = a.max(b));
+                    }
+                    None => tracks.push((name.clone(), own.collect())),
+                }
+            }
+        }
+        let (names, tracks): (Vec<String>, Vec<Vec<f64>>) = tracks.into_iter().unzip();
+        let rows = (0..frames.len()).flat_map(|f| tracks.iter().map(move |t| t[f]));
+        let weights = rows.collect();
+        (names, weights)
     }
 
     /// What should be said of map, capture and avatar together.
@@ -314,11 +425,14 @@ impl<'a> JoinedTake<'a> {
         if first >= end || end > frames {
             return Err(SolveError::Segment { first, end, frames });
         }
-        let (front_end, _) = self.front_end(operators, spec)?;
+        let (front_end, poses) = self.front_end(operators, spec)?;
         let margin = (MARGIN_SECONDS * self.rate_hz).ceil() as usize;
         let stored = first.saturating_sub(margin)..(end + margin).min(frames);
         let width = 3 * self.labels.len();
+        let (driven_shapes, driven_weights) = self.lid_tracks(&front_end, &poses, stored.clone());
         let markers = SegmentMarkers {
+            driven_shapes,
+            driven_weights,
             labels: self.labels.clone(),
             face: self.columns.face.clone(),
             head: self.columns.head.clone(),
@@ -368,9 +482,16 @@ impl<'a> JoinedTake<'a> {
             shapes.extend(shape.deltas.iter().flatten());
         }
         let vertices: Vec<f64> = self.markers.iter().map(|(_, v)| *v as f64).collect();
+        let lids: Vec<String> = (self.lids.iter())
+            .map(|l| format!("{} {:?} {} {:?}", l.label, l.edge, l.closed, l.wide))
+            .collect();
         let provenance = match &self.repair {
             Some(repair) => Provenance::new().text("capture.repair", repair),
             None => Provenance::new(),
+        };
+        let provenance = match lids.len() {
+            0 => provenance,
+            _ => provenance.text("map.lids", &lids.join("\n")),
         };
         provenance
             .numbers("avatar.positions", mesh.positions.as_flattened())
@@ -385,6 +506,14 @@ impl<'a> JoinedTake<'a> {
             .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
             .method(spec)
     }
+}
+
+/// Vertical displacement of a vertex by a shape at weight 1, metres; `None` without such a shape.
+fn travel_of(skin: &AvatarSkin, shape: &str, vertex: usize) -> Option<f64> {
+    let shape = skin.shape_names.iter().position(|n| n == shape)?;
+    let moved = &skin.mesh.shapes[shape];
+    let place = moved.vertices.iter().position(|v| *v as usize == vertex);
+    Some(place.map_or(0.0, |p| moved.deltas[p][1]))
 }
 
 /// The neutral where none is named: the stillest second of the face, its head held still; and what

@@ -10,7 +10,7 @@ use std::ops::Range;
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
 
 const KIND: &str = "MMTK";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Step of the markers' coordinates, metres.
 const STEP_M: f64 = 1e-5;
 /// Step of recorded weights.
@@ -58,6 +58,10 @@ pub struct SegmentMarkers {
     pub neutral: Vec<[f64; 3]>,
     /// Frames x 3C, metres, NaN where a marker is not seen.
     pub positions: Vec<f64>,
+    /// Shapes whose weights do not come from the solve: those of the lids.
+    pub driven_shapes: Vec<String>,
+    /// Their weights, frames x driven shapes.
+    pub driven_weights: Vec<f64>,
 }
 
 /// Packs a take. Coordinates and weights are rounded to the pack's steps.
@@ -75,6 +79,10 @@ pub fn encode_take(take: &TakePack) -> Vec<u8> {
             columns_to(&mut w, m.head.as_ref());
             m.head_reference.iter().chain(&m.neutral).flatten().for_each(|&x| w.f64(x));
             tracks_to(&mut w, &m.positions, 3 * m.labels.len(), STEP_M);
+            w.texts(&m.driven_shapes);
+            if !m.driven_shapes.is_empty() {
+                tracks_to(&mut w, &m.driven_weights, m.driven_shapes.len(), STEP_WEIGHT);
+            }
         }
         TakeContent::Weights { shape_names, weights } => {
             w.u8(1);
@@ -112,7 +120,26 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             let columns = 3 * labels.len();
             let positions = tracks_from(&mut r, columns, STEP_M)?;
             let frames = positions.len() / columns.max(1);
-            let markers = SegmentMarkers { labels, face, head, head_reference, neutral, positions };
+            let driven_shapes = r.texts()?;
+            let driven_weights = match driven_shapes.len() {
+                0 => vec![],
+                shapes => tracks_from(&mut r, shapes, STEP_WEIGHT)?,
+            };
+            if driven_weights.len() != driven_shapes.len() * frames
+                || driven_weights.iter().any(|w| w.is_nan())
+            {
+                return r.refuse("driven weights that are not one a frame");
+            }
+            let markers = SegmentMarkers {
+                labels,
+                face,
+                head,
+                head_reference,
+                neutral,
+                positions,
+                driven_shapes,
+                driven_weights,
+            };
             (TakeContent::Markers(markers), frames)
         }
         1 => {

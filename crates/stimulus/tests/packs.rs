@@ -59,6 +59,8 @@ fn take() -> TakePack {
             head: Some(vec![0, 1, 4]),
             head_reference: vec![rest[0], rest[1], [f64::NAN; 3]],
             neutral: rest,
+            driven_shapes: vec!["blink".to_owned(), "wide".to_owned()],
+            driven_weights: (0..2 * positions.len() / 15).map(|i| i as f64 / 128.0 % 1.0).collect(),
             positions,
         }),
     }
@@ -126,16 +128,16 @@ proptest! {
     #[test]
     fn damage_is_refused_or_harmless(at in 0usize..5000, value: u8, cut: bool, linked: bool) {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
-        let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
-        for (kind, whole) in &packs {
-            let body = open_pack(kind, 1, whole).unwrap();
+        let packs = [("MMOP", 1, encode_operators(&operators(linked))), ("MMTK", 2, encode_take(&take()))];
+        for (kind, version, whole) in &packs {
+            let body = open_pack(kind, *version, whole).unwrap();
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;
                 let at = at % damaged.len();
                 if cut { damaged.truncate(at) } else { damaged[at] = value }
-                let damaged = if sealed { seal_pack(kind, 1, &damaged) } else { damaged };
+                let damaged = if sealed { seal_pack(kind, *version, &damaged) } else { damaged };
                 // Neither unpacking nor solving may panic, whatever comes of it.
-                let [(_, operators), (_, take)] = &packs;
+                let [(_, _, operators), (_, _, take)] = &packs;
                 let _ = match *kind {
                     "MMOP" => solve_packs(&damaged, take, &spec),
                     _ => solve_packs(operators, &damaged, &spec),

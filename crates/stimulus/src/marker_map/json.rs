@@ -6,6 +6,8 @@ use mimique_mocap::LengthUnit;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
+use crate::Lid;
+
 use super::{MapFileError, MappedMarker, MarkerMap, MarkerPlace};
 
 #[derive(Deserialize)]
@@ -16,6 +18,8 @@ struct File {
     #[serde(default)]
     head: Vec<String>,
     neutral: Option<[usize; 2]>,
+    #[serde(default)]
+    lids: Vec<Lid>,
 }
 
 #[derive(Deserialize)]
@@ -105,5 +109,12 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
             ));
         }
     };
-    Ok(MarkerMap { avatar: file.avatar, face, head: file.head, neutral })
+    if let Some(lid) = file.lids.iter().find(|lid| face.iter().all(|m| m.label != lid.marker)) {
+        return Err(wrong(
+            "lids",
+            format!("marker {:?} is not among the markers", lid.marker),
+            "give its place there",
+        ));
+    }
+    Ok(MarkerMap { avatar: file.avatar, face, head: file.head, neutral, lids: file.lids })
 }

@@ -9,6 +9,8 @@ mod resolve;
 
 use std::ops::Range;
 
+use crate::Lid;
+
 pub use resolve::{MapError, TOLERANCE_M};
 
 /// A marker map as read; [`MarkerMap::resolve`] finds its vertices on a skin.
@@ -22,6 +24,8 @@ pub struct MarkerMap {
     pub head: Vec<String>,
     /// Frames of the neutral face, counted from 0, the end not included.
     pub neutral: Option<Range<usize>>,
+    /// Lid markers and the shapes that they drive; they take no part in the solve.
+    pub lids: Vec<Lid>,
 }
 
 /// A face marker and its place on the skin.

@@ -132,7 +132,7 @@ fn prepare_clip(
         (entry.spec.clone(), take.clone(), take, recording.pointer, None)
     } else {
         let performance = sources.performance(&clip.segment, &avatar)?;
-        let spec = with_lowpass(&entry.spec, &performance);
+        let spec = performance.joined()?.with_lids_locked(&with_lowpass(&entry.spec, &performance));
         spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
         let (operators, take) = to_solve(&spec, &performance, &avatar.key, cache, warnings)?;
         let repair = performance.repair();

@@ -109,8 +109,8 @@ fn bridge(track: &mut [f64]) {
     for pair in known.windows(2) {
         let [a, b] = [pair[0], pair[1]];
         let (p, q) = (track[a], track[b]);
-        for f in a + 1..b {
-            track[f] = p + (q - p) * (f - a) as f64 / (b - a) as f64;
+        for (step, value) in track[a + 1..b].iter_mut().enumerate() {
+            *value = p + (q - p) * (step + 1) as f64 / (b - a) as f64;
         }
     }
 }
