@@ -1,5 +1,7 @@
 //! `mimique solve`: avatar, capture and marker map in, weights a frame and a report out.
 
+mod recorded;
+
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::ops::Range;
@@ -10,10 +12,10 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, anyhow, bail};
 use indicatif::ProgressBar;
 use mimique_mocap::{LengthUnit, ReadOptions};
-use mimique_solver::{FrontEndError, Method, MethodSpec};
+use mimique_solver::{FrontEndError, Method, MethodSpec, TrainingError};
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, RepairSidecar, SolveError, SolveReport, SolvedCapture, TakeOptions,
-    solve_take,
+    Training, VertexFrames, WeightsTable, solve_take,
 };
 use serde_json::{Value, json};
 
@@ -23,20 +25,26 @@ pub struct Args {
     /// Avatar with blendshapes: .glb or .gltf
     #[arg(long, value_name = "FILE")]
     avatar: PathBuf,
-    /// Capture: C3D, TRC, CSV...
+    /// Capture: C3D, TRC, CSV...; for recorded the weights: Live Link Face, or CSV
     #[arg(long, value_name = "FILE")]
     mocap: PathBuf,
-    /// Marker map: JSON, or CSV with marker,role,vertex
+    /// Marker map: JSON, or CSV with marker,role,vertex (not for recorded)
     #[arg(long, value_name = "FILE")]
-    markers: PathBuf,
-    /// Where the weights go: CSV with frame,time and a column a shape
+    markers: Option<PathBuf>,
+    /// Where the weights go: CSV with frame,time and a column a shape; for thin-shell-surface the
+    /// columns are LABEL.x, LABEL.y, LABEL.z, the way of each marker's vertex in centimetres
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Where the report goes: JSON with residual, iterations and KKT error of every frame
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Where the positions of the skin's vertices go: NumPy, frames x vertices x 3, metres, the
+    /// vertices in the file's order
+    #[arg(long, value_name = "FILE.npy")]
+    vertices: Option<PathBuf>,
     /// lsts, lsts-soft, lsts-norm, lsts-short, thesis-literal, short-literal, bounds-only,
-    /// thin-shell-only, box, nnls, pseudo-inverse or kouadio
+    /// thin-shell-only, box, nnls, pseudo-inverse, kouadio, thin-shell-surface, regression or
+    /// recorded
     #[arg(long, default_value = "lsts")]
     method: String,
     /// Weight of the thin shell against the bounds, 0 to 1 (by default 0.3 for lsts, else 0.5)
@@ -72,6 +80,36 @@ pub struct Args {
     /// Weight of the bounds in bounds-only [default: 0.001]
     #[arg(long)]
     bounds_weight: Option<f64>,
+    /// How far the surface may leave its markers to be smoother (thin-shell-surface) [default: 0]
+    #[arg(long)]
+    stiffness: Option<f64>,
+    /// What of the surface rests: unmoved (by every shape) or nothing [default: unmoved]
+    #[arg(long)]
+    hold: Option<String>,
+    /// Range-of-motion take that regression learns from
+    #[arg(long, value_name = "FILE", requires = "training_weights")]
+    training: Option<PathBuf>,
+    /// Weights played in it: CSV or Live Link Face, a row a frame
+    #[arg(long, value_name = "FILE", requires = "training")]
+    training_weights: Option<PathBuf>,
+    /// Neutral frames of the training take [default: 0:60]
+    #[arg(long, value_name = "FIRST:END", requires = "training")]
+    training_neutral: Option<Span>,
+    /// How regression learns: sparse or exact [default: sparse]
+    #[arg(long)]
+    inference: Option<String>,
+    /// Most basis vectors of the sparse process [default: 200]
+    #[arg(long)]
+    basis_vectors: Option<u32>,
+    /// Length scale of the kernel [default: by the marginal likelihood]
+    #[arg(long)]
+    length_scale: Option<f64>,
+    /// Standard deviation of the process, in weights [default: by the marginal likelihood]
+    #[arg(long)]
+    signal: Option<f64>,
+    /// Standard deviation of the noise on the training weights [default: by the marginal likelihood]
+    #[arg(long)]
+    noise: Option<f64>,
     /// Cut-off of the zero-phase low-pass of the head's pose, Hz [default: no filter]
     #[arg(long, value_name = "HZ")]
     head_lowpass: Option<f64>,
@@ -117,6 +155,23 @@ struct Named<T>(String, T);
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let spec = method_spec(&args)?;
+    if spec.method == Method::Recorded {
+        return recorded::run(&args, json);
+    }
+    let Some(markers) = &args.markers else {
+        bail!("--markers: {} needs a marker map; name the file", spec.method);
+    };
+    if args.training.is_some() != (spec.method == Method::Regression) {
+        bail!(
+            "--training: {}",
+            if args.training.is_some() {
+                format!("{} learns nothing; remove it, or take --method regression", spec.method)
+            } else {
+                "regression learns from a range of motion; give --training and --training-weights"
+                    .to_owned()
+            }
+        );
+    }
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(Duration::from_millis(100));
     let origin = Instant::now();
@@ -125,25 +180,18 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     progress.set_message("reading");
     let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
     let skin = AvatarSkin::of(&avatar.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let bytes = std::fs::read(&args.mocap).map_err(|e| {
-        blame(&args.mocap, format!("open: {e}; check the path and its permissions"))
-    })?;
-    let sidecar = RepairSidecar::beside(&args.mocap, &bytes).map_err(|e| anyhow!("{e}"))?;
+    let recording = capture(&args, &args.mocap)?;
+    let text = std::fs::read_to_string(markers)
+        .map_err(|e| blame(markers, format!("open: {e}; check the path")))?;
+    let map = MarkerMap::from_text(&text).map_err(|e| blame(markers, e))?;
+    let sidecar = RepairSidecar::beside(&args.mocap, &read_bytes(&args.mocap)?)
+        .map_err(|e| anyhow!("{e}"))?;
     let options = TakeOptions {
         neutral: args.neutral.as_ref().map(|s| s.0.clone()),
         head: args.head.clone(),
+        training: training(&args)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
-    let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
-    let recording = mimique_mocap::read_recording(
-        &args.mocap.to_string_lossy(),
-        &bytes,
-        &ReadOptions { unit, rate_hz: args.mocap_rate },
-    )
-    .map_err(|e| blame(&args.mocap, e))?;
-    let text = std::fs::read_to_string(&args.markers)
-        .map_err(|e| blame(&args.markers, format!("open: {e}; check the path")))?;
-    let map = MarkerMap::from_text(&text).map_err(|e| blame(&args.markers, e))?;
     let read = seconds();
 
     progress.set_message(format!("solving {} frames", recording.capture.frames()));
@@ -162,6 +210,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let start = seconds();
     std::fs::write(&args.out, solved.table.to_csv())
         .map_err(|e| blame(&args.out, format!("{e}; check the folder and its permissions")))?;
+    if let Some(path) = &args.vertices {
+        let mut npy = VertexFrames::new(&skin, &solved);
+        write_whole(path, |out| npy.write(out))?;
+    }
     solved.report.seconds.read = read;
     solved.report.seconds.write = seconds() - start;
     if let Some(path) = &args.report {
@@ -212,6 +264,18 @@ fn print(args: &Args, solved: &SolvedCapture, notes: &[String], json: bool) -> a
         summary.iterations_most,
         summary.kkt_worst,
     )?;
+    if let Some(learnt) = &report.regression {
+        writeln!(
+            out,
+            "learnt from {} frames, {} basis vectors; length scale {:.3}, signal {:.3}, noise {:.4}; predictive deviation {:.3} at worst",
+            learnt.training_frames,
+            learnt.basis_vectors,
+            learnt.kernel.length,
+            learnt.kernel.signal,
+            learnt.kernel.noise,
+            summary.deviation_worst.unwrap_or(0.0),
+        )?;
+    }
     writeln!(
         out,
         "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, write {:.3}",
@@ -221,6 +285,50 @@ fn print(args: &Args, solved: &SolvedCapture, notes: &[String], json: bool) -> a
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
     report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))?;
     Ok(())
+}
+
+/// The capture of a file.
+fn capture(args: &Args, file: &Path) -> anyhow::Result<mimique_mocap::Recording> {
+    let bytes = read_bytes(file)?;
+    let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
+    let options = ReadOptions { unit, rate_hz: args.mocap_rate };
+    mimique_mocap::read_recording(&file.to_string_lossy(), &bytes, &options)
+        .map_err(|e| blame(file, e))
+}
+
+fn read_bytes(file: &Path) -> anyhow::Result<Vec<u8>> {
+    std::fs::read(file)
+        .map_err(|e| blame(file, format!("open: {e}; check the path and its permissions")))
+}
+
+/// What regression learns from.
+fn training(args: &Args) -> anyhow::Result<Option<Training>> {
+    let (Some(take), Some(weights)) = (&args.training, &args.training_weights) else {
+        return Ok(None);
+    };
+    Ok(Some(Training {
+        capture: capture(args, take)?.capture,
+        weights: WeightsTable::from_recording(weights, &read_bytes(weights)?)
+            .map_err(|e| blame(weights, e))?,
+        neutral: args.training_neutral.as_ref().map(|s| s.0.clone()),
+        head: None,
+    }))
+}
+
+/// Writes a file that is whole or absent.
+fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
+) -> anyhow::Result<()> {
+    let part = path.with_extension("part");
+    let written = std::fs::File::create(&part)
+        .map(std::io::BufWriter::new)
+        .and_then(|mut file| write(&mut file).and_then(|()| file.flush()))
+        .and_then(|()| std::fs::rename(&part, path));
+    written.map_err(|e| {
+        let _ = std::fs::remove_file(&part);
+        blame(path, format!("{e}; check the folder and its permissions"))
+    })
 }
 
 fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
@@ -239,6 +347,11 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         sigma: args.sigma.map(|l| l.0),
         bounds_weight: args.bounds_weight,
         unit: None,
+        stiffness: args.stiffness,
+        basis_vectors: args.basis_vectors,
+        length_scale: args.length_scale,
+        signal: args.signal,
+        noise: args.noise,
         locked: args.lock.clone(),
         importance: unique("--importance", &args.importance)?,
         bounds: unique("--bounds", &args.bounds)?.into_iter().map(|(k, p)| (k, p.0)).collect(),
@@ -249,6 +362,18 @@ fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         spec.laplacian = Some(serde_json::from_value(json!(word)).map_err(|_| {
             anyhow!("--laplacian: {word:?}; use uniform, umbrella, cotan-clamped or cotan-literal")
         })?);
+    }
+    if let Some(word) = &args.hold {
+        spec.hold = Some(
+            serde_json::from_value(json!(word))
+                .map_err(|_| anyhow!("--hold: {word:?}; use unmoved or nothing"))?,
+        );
+    }
+    if let Some(word) = &args.inference {
+        spec.inference = Some(
+            serde_json::from_value(json!(word))
+                .map_err(|_| anyhow!("--inference: {word:?}; use sparse or exact"))?,
+        );
     }
     if let Some(word) = &args.unit {
         spec.unit = Some(
@@ -288,10 +413,18 @@ fn unique<T: Clone>(option: &str, list: &[Named<T>]) -> anyhow::Result<BTreeMap<
 
 /// The file or option that an error of the solve comes from.
 fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
+    let markers = args.markers.as_deref().unwrap_or(Path::new("--markers"));
     match error {
-        SolveError::Map(_) | SolveError::NoCommonLabel { .. } => &args.markers,
+        SolveError::Map(_) | SolveError::NoCommonLabel { .. } => markers,
+        SolveError::Training(TrainingError::Frames { .. }) | SolveError::TrainingShapes { .. } => {
+            args.training_weights.as_deref().unwrap_or(Path::new("--training-weights"))
+        }
+        SolveError::Training(_) | SolveError::TrainingMarkers { .. } => {
+            args.training.as_deref().unwrap_or(Path::new("--training"))
+        }
+        SolveError::Surface(_) => &args.avatar,
         SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
-        SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => &args.markers,
+        SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => markers,
         SolveError::Fit(_) => Path::new("--method"),
         _ => &args.mocap,
     }
@@ -361,6 +494,7 @@ impl<T: FromStr> FromStr for Named<T> {
 #[cfg(test)]
 mod tests {
     use clap::Parser;
+    use mimique_solver::Hold;
 
     use super::*;
 
@@ -401,6 +535,27 @@ mod tests {
     }
 
     #[test]
+    fn surface_and_regression_have_their_options() {
+        let surface = spec(&[
+            "--method",
+            "thin-shell-surface",
+            "--stiffness",
+            "0.1",
+            "--hold",
+            "nothing",
+            "--importance",
+            "M03=2",
+            "--laplacian",
+            "umbrella",
+        ])
+        .unwrap();
+        assert_eq!((surface.stiffness, surface.hold), (Some(0.1), Some(Hold::Nothing)));
+        let words = ["--method", "regression", "--basis-vectors", "50", "--noise", "0.02"];
+        let learnt = spec(&words).unwrap();
+        assert_eq!((learnt.basis_vectors, learnt.noise), (Some(50), Some(0.02)));
+    }
+
+    #[test]
     fn what_a_method_does_not_use_is_refused_by_its_option() {
         for (words, option) in [
             (vec!["--method", "box", "--bounds-weight", "1"], "--bounds-weight: "),
@@ -409,6 +564,10 @@ mod tests {
             (vec!["--alpha", "2"], "--alpha: "),
             (vec!["--laplacian", "cotan"], "--laplacian: "),
             (vec!["--importance", "A=1", "--importance", "A=2"], "--importance: "),
+            (vec!["--hold", "neck"], "--hold: "),
+            (vec!["--inference", "dense"], "--inference: "),
+            (vec!["--stiffness", "1"], "--stiffness: "),
+            (vec!["--method", "regression", "--basis-vectors", "3"], "--basis-vectors: "),
         ] {
             let error = spec(&words).unwrap_err().to_string();
             assert!(error.starts_with(option), "{words:?}: {error}");

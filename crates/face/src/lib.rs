@@ -11,6 +11,7 @@ mod parts;
 mod read;
 #[cfg(feature = "readers")]
 mod read_error;
+mod shape_names;
 
 pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
 pub use driven::{Driven, DrivenError};
@@ -21,6 +22,7 @@ pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar};
 #[cfg(feature = "readers")]
 pub use read_error::ReadError;
+pub use shape_names::{ARKIT_SHAPES, ShapeMap, arkit_shapes, map_shapes};
 
 #[cfg(feature = "parametric")]
 mod parametric_head;
@@ -33,5 +35,5 @@ mod performance;
 #[cfg(feature = "parametric")]
 pub use performance::{
     Clip, Emotion, HeadPose, Performance, Segment, SyntheticTake, performance_weights,
-    synthetic_take,
+    range_of_motion, range_of_motion_take, synthetic_take,
 };

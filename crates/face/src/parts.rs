@@ -1,6 +1,6 @@
 //! What each mesh is of a face, told from its names; and how eyeballs turn.
 
-use crate::{Avatar, Eyeball, Look, Part};
+use crate::{Avatar, Eyeball, Look, Part, arkit_shapes};
 
 /// What is known of a mesh before its part is.
 pub(crate) struct PartName<'a> {
@@ -73,12 +73,12 @@ fn on_the_left(name: &str, positions: &[[f32; 3]]) -> bool {
 /// Angles of the four eye-look shapes at weight 1, degrees. ARKit publishes none; these are the
 /// usual ranges of rigs that carry its names, within the eye's own 25 to 35 degrees of easy gaze.
 const LOOKS: [(&str, f32); 4] =
-    [("lookup", 25.0), ("lookdown", 30.0), ("lookin", 30.0), ("lookout", 30.0)];
+    [("eyeLookUp", 25.0), ("eyeLookDown", 30.0), ("eyeLookIn", 30.0), ("eyeLookOut", 30.0)];
 
 /// The eyeballs of an avatar: each mesh that is an eye, with its centre, and the looks that turn it.
 ///
-/// Looks are those shapes whose name holds `eyeLookUp`, `Down`, `In` or `Out` and the eye's side
-/// (`_L`, `Left`...); none where such a shape already moves the eye's vertices.
+/// Looks are those shapes whose name means ARKit's `eyeLookUp`, `Down`, `In` or `Out` of that eye
+/// ([`crate::arkit_shapes`]); none where such a shape already moves the eye's vertices.
 pub fn find_eyeballs(avatar: &Avatar) -> Vec<Eyeball> {
     let mut out = Vec::new();
     for (index, mesh) in avatar.meshes.iter().enumerate() {
@@ -107,27 +107,17 @@ pub fn find_eyeballs(avatar: &Avatar) -> Vec<Eyeball> {
 
 /// The rotation that an eye-look shape's name stands for, if it is one of this side.
 fn look_of_name(name: &str, shape: usize, left: bool) -> Option<Look> {
-    let plain: String =
-        name.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == '_').collect();
-    let joined = plain.replace('_', "");
-    let (word, degrees) = LOOKS.into_iter().find(|(word, _)| joined.contains(word))?;
-    let rest = &joined[joined.find(word)? + word.len()..];
-    let side_left = match rest {
-        "l" | "left" => true,
-        "r" | "right" => false,
-        _ if joined.starts_with("left") => true,
-        _ if joined.starts_with("right") => false,
-        _ => return None,
-    };
-    if side_left != left || !joined.contains("eye") {
-        return None;
-    }
+    let side = if left { "Left" } else { "Right" };
+    let (word, degrees) = arkit_shapes(name).into_iter().find_map(|meant| {
+        let feature = meant.strip_suffix(side)?;
+        LOOKS.into_iter().find(|(word, _)| *word == feature)
+    })?;
     // Out is away from the nose: towards +X for the left eye, which is a turn about +Y.
     let outward = if left { 1.0 } else { -1.0 };
     let axis = match word {
-        "lookup" => [-1.0, 0.0, 0.0],
-        "lookdown" => [1.0, 0.0, 0.0],
-        "lookout" => [0.0, outward, 0.0],
+        "eyeLookUp" => [-1.0, 0.0, 0.0],
+        "eyeLookDown" => [1.0, 0.0, 0.0],
+        "eyeLookOut" => [0.0, outward, 0.0],
         _ => [0.0, -outward, 0.0],
     };
     Some(Look { shape, axis, radians: degrees.to_radians() })

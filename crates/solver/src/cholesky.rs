@@ -42,6 +42,12 @@ impl Cholesky {
         factor_upper(&mut self.u, &mut self.inverse_diagonal, self.stride)
     }
 
+    /// ln det A, of the variables that were not taken out.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        let kept = self.inverse_diagonal.iter().filter(|x| **x > 0.0);
+        kept.fold(0.0, |sum, x| sum - 2.0 * libm::log(*x))
+    }
+
     /// b := A^-1 b.
     pub(crate) fn solve(&self, b: &mut [f64]) {
         solve_upper(&self.u, &self.inverse_diagonal, self.stride, b);

@@ -7,6 +7,7 @@ use crate::newton::NewtonState;
 use crate::objective::{Matrices, Objective, Target, Term};
 use crate::operators::Operators;
 use crate::problem::{Engine, FitError, Problem};
+use crate::regression::RegressionScratch;
 use crate::report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
 use crate::seen::Seen;
 
@@ -34,6 +35,7 @@ pub struct FrameSolver<'a> {
     scratch: Vec<f64>,
     qp: BoxState,
     newton: NewtonState,
+    learnt: RegressionScratch,
 }
 
 impl Fit {
@@ -69,6 +71,7 @@ impl Fit {
             scratch: Vec::new(),
             qp: BoxState::default(),
             newton: NewtonState::default(),
+            learnt: RegressionScratch::default(),
         }
     }
 
@@ -164,7 +167,8 @@ impl FrameSolver<'_> {
         self.right.clear();
         self.right.resize(n, 0.0);
         let d = &self.displacements;
-        let mut smoothed = false;
+        let (mut smoothed, mut far) = (false, false);
+        let (mut energy, mut deviation) = (None, None);
         let outcome = match &problem.engine {
             Engine::Quadratic { data_weight, bounds, .. } => {
                 mul_transposed(&seen.deltas, d, &mut self.right);
@@ -183,6 +187,34 @@ impl FrameSolver<'_> {
                     }
                 }
                 self.qp.solve(&seen.system, &self.right, bounds, &mut self.weights)
+            }
+            Engine::Surface(surface) => {
+                let (outcome, found) = surface.solve(
+                    &seen.system,
+                    &seen.missing,
+                    &problem.importance,
+                    d,
+                    &mut self.weights,
+                );
+                energy = Some(found);
+                outcome
+            }
+            Engine::Learnt { model, bounds } => {
+                self.scratch.resize(problem.shape_count, 0.0);
+                let (found, is_far) = model.predict(
+                    d,
+                    &seen.missing,
+                    &seen.system,
+                    &mut self.scratch,
+                    &mut self.learnt,
+                );
+                (deviation, far) = (Some(found), is_far);
+                for ((w, &k), [low, high]) in self.weights.iter_mut().zip(&problem.free).zip(bounds)
+                {
+                    *w = self.scratch[k].max(*low).min(*high);
+                }
+                // The nearest point of a box: nothing is left to improve.
+                Outcome { iterations: 1, kkt_error: 0.0, converged: true }
             }
             Engine::PseudoInverse => {
                 mul(&seen.system, d, &mut self.weights);
@@ -234,6 +266,8 @@ impl FrameSolver<'_> {
             Some(FrameWarning::NotConverged)
         } else if no_markers {
             Some(FrameWarning::NoMarkers)
+        } else if far {
+            Some(FrameWarning::FarFromTraining)
         } else {
             smoothed.then_some(FrameWarning::Smoothed)
         };
@@ -241,6 +275,8 @@ impl FrameSolver<'_> {
             residual: if no_markers { 0.0 } else { (misfit / importance).sqrt() },
             iterations: outcome.iterations,
             kkt_error: outcome.kkt_error,
+            energy,
+            deviation,
             missing_markers,
             warning,
         }

@@ -61,6 +61,42 @@ impl Laplacian {
         l
     }
 
+    /// The two factors of a Laplacian W_v L (thesis 2.3.4: M^-1 L*): the symmetric L with its edge
+    /// weights alone, and M, the S inverses of W_v. `CotanLiteral` measures areas in mm^2.
+    pub fn symmetric(
+        positions: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        kind: LaplacianKind,
+    ) -> (Laplacian, Vec<f64>) {
+        let sums = |l: &Laplacian| -> Vec<f64> {
+            (0..l.len()).map(|i| l.row(i).fold(0.0, |sum, (_, w)| sum + w)).collect()
+        };
+        match kind {
+            LaplacianKind::Uniform => {
+                (Laplacian::uniform(positions.len(), triangles), vec![1.0; positions.len()])
+            }
+            LaplacianKind::Umbrella => {
+                let l = Laplacian::uniform(positions.len(), triangles);
+                let masses = sums(&l);
+                (l, masses)
+            }
+            LaplacianKind::CotanClamped => {
+                let mut l = Laplacian::cotangent(positions, triangles);
+                for w in &mut l.weights {
+                    *w = w.clamp(0.0, 10.0);
+                }
+                let masses = sums(&l);
+                (l, masses)
+            }
+            LaplacianKind::CotanLiteral => {
+                let unit = LITERAL_UNIT_PER_METRE * LITERAL_UNIT_PER_METRE;
+                let areas = mixed_voronoi_areas(positions, triangles);
+                let l = Laplacian::cotangent(positions, triangles);
+                (l, areas.into_iter().map(|area| area * unit).collect())
+            }
+        }
+    }
+
     /// Number of vertices, S.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

@@ -19,6 +19,8 @@
 //! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
 //! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
+//! | K of eq. 2.16, its P x P for the whole surface | [`SurfaceResponse`] | S x S, P x P | 1 |
+//! | X, Y, K(X, X') (eq. 3.2-3.4) | [`Regression`], [`Kernel`] | m x 3P, m x N | |
 //! | w_i, N_i, sigma (Kouadio 4.4-4.7) | [`LinkedRows`] | P x N(N+1)/2 | m^2 |
 //!
 //! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
@@ -43,6 +45,8 @@ mod dense;
 mod exp;
 mod fit;
 mod front_end;
+mod gaussian_process;
+mod hyper_parameters;
 mod laplacian;
 mod linked;
 mod lowpass;
@@ -53,29 +57,42 @@ mod objective;
 mod operators;
 mod problem;
 mod rbf;
+mod regression;
 mod report;
 mod rigid_alignment;
 mod seen;
 mod shell_patch;
 mod skin_mesh;
+mod sparse_cholesky;
+mod sparse_process;
 mod spec_check;
+mod surface;
+mod surface_fit;
 mod svd;
 mod synthesis;
 mod thin_shell;
 
 pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
 pub use front_end::{FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns, MarkerFrames};
+pub use gaussian_process::{ExactProcess, Kernel, log_marginal_likelihood};
+pub use hyper_parameters::maximise_likelihood;
 pub use laplacian::{Laplacian, mixed_voronoi_areas};
 pub use linked::LinkedRows;
 pub use lowpass::{Lowpass, LowpassError};
 pub use method::Method;
-pub use method_spec::{LaplacianKind, MethodSpec, Unit};
+pub use method_spec::{Hold, Inference, LaplacianKind, MethodSpec, Unit};
 pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use problem::FitError;
 pub use rbf::{Rbf, RbfError};
+pub use regression::{
+    LEAST_TRAINING_FRAMES, MOST_EXACT_FRAMES, Regression, TrainingError, TrainingOptions,
+};
 pub use report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
 pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
 pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
+pub use sparse_process::SparseProcess;
 pub use spec_check::SpecError;
+pub use surface::{SurfaceError, SurfaceResponse, surface_shape_names};
+pub use surface_fit::METRES_PER_WEIGHT;
 pub use synthesis::Synthesis;
 pub use thin_shell::{apply_shell, shell_gram};

@@ -101,8 +101,13 @@ impl Method {
             Method::Box => &[&["bounds"], COMMON],
             Method::Nnls | Method::PseudoInverse => &[COMMON],
             Method::Kouadio => &[&["sigma", "bounds"], COMMON],
-            Method::ThinShellSurface => &[&["kS", "kB", "laplacian", "headLowpassHz"]],
-            Method::Regression => &[&["headLowpassHz"]],
+            Method::ThinShellSurface => {
+                &[SHELL, &["stiffness", "hold", "importance", "headLowpassHz"]]
+            }
+            Method::Regression => &[
+                &["inference", "basisVectors", "lengthScale", "signal", "noise"],
+                &["bounds", "locked", "headLowpassHz"],
+            ],
             Method::Recorded => &[],
         };
         groups.concat()

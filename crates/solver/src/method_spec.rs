@@ -25,6 +25,28 @@ pub enum LaplacianKind {
     CotanLiteral,
 }
 
+/// Which vertices of a surface that moves without shapes stay where they are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hold {
+    /// Those that no blendshape moves: skull and neck, as in every other method.
+    #[default]
+    Unmoved,
+    /// None, as in the equation: the whole skin follows the markers.
+    Nothing,
+}
+
+/// How a Gaussian process learns.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Inference {
+    /// On a set of basis vectors, frame by frame (Csató & Opper 2002).
+    #[default]
+    Sparse,
+    /// On all frames.
+    Exact,
+}
+
 /// The unit in which a literal form of the papers measures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -90,13 +112,37 @@ pub struct MethodSpec {
     /// Unit of the literal forms. Default millimetres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
+    /// How far the surface may leave its markers to be smoother (`thin-shell-surface`): weight of
+    /// its energy, normalised, against the squared distances. Default 0: markers are met exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
+    /// Which vertices rest (`thin-shell-surface`). Default `unmoved`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hold: Option<Hold>,
+    /// How a Gaussian process learns (`regression`). Default `sparse`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inference: Option<Inference>,
+    /// Most basis vectors of the sparse process. Default 200.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub basis_vectors: Option<u32>,
+    /// Length scale of the kernel over standardised displacements; found by the marginal likelihood
+    /// where not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_scale: Option<f64>,
+    /// Standard deviation of the process, in weights; likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signal: Option<f64>,
+    /// Standard deviation of the noise on the training weights; likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<f64>,
     /// Shapes held at 0, by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<String>,
     /// Importance of markers, by label; a marker that is not named has 1.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub importance: BTreeMap<String, f64>,
-    /// Bounds of single shapes, by name, instead of 0 and 1 (`lsts`, `box`, `kouadio`) or of
+    /// Bounds of single shapes, by name, instead of 0 and 1 (`lsts`, `box`, `kouadio`,
+    /// `regression`) or of
     /// `softBounds` (the methods with soft bounds).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bounds: BTreeMap<String, [f64; 2]>,
@@ -121,6 +167,13 @@ impl MethodSpec {
             sigma: None,
             bounds_weight: None,
             unit: None,
+            stiffness: None,
+            hold: None,
+            inference: None,
+            basis_vectors: None,
+            length_scale: None,
+            signal: None,
+            noise: None,
             locked: Vec::new(),
             importance: BTreeMap::new(),
             bounds: BTreeMap::new(),
@@ -145,6 +198,12 @@ impl MethodSpec {
                 "sigma" => spec.sigma = Some(self.sigma()),
                 "boundsWeight" => spec.bounds_weight = Some(self.bounds_weight()),
                 "unit" => spec.unit = Some(self.unit()),
+                "stiffness" => spec.stiffness = Some(self.stiffness()),
+                "hold" => spec.hold = Some(self.hold()),
+                "inference" => spec.inference = Some(self.inference()),
+                "basisVectors" if self.inference() == Inference::Sparse => {
+                    spec.basis_vectors = Some(self.basis_vectors());
+                }
                 "headLowpassHz" => {
                     spec.head_lowpass_hz = Some(self.head_lowpass_hz.unwrap_or(0.0));
                 }
@@ -206,6 +265,26 @@ impl MethodSpec {
     /// The weight of the soft bounds in `bounds-only`, or 0.001.
     pub fn bounds_weight(&self) -> f64 {
         self.bounds_weight.unwrap_or(1e-3)
+    }
+
+    /// The stiffness of the surface against its markers, or 0.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness.unwrap_or(0.0)
+    }
+
+    /// What of the surface rests, or what no shape moves.
+    pub fn hold(&self) -> Hold {
+        self.hold.unwrap_or_default()
+    }
+
+    /// How the Gaussian process learns, or sparsely.
+    pub fn inference(&self) -> Inference {
+        self.inference.unwrap_or_default()
+    }
+
+    /// The most basis vectors of the sparse process, or 200.
+    pub fn basis_vectors(&self) -> u32 {
+        self.basis_vectors.unwrap_or(200)
     }
 
     /// The unit of the literal forms, or millimetres.

@@ -5,6 +5,7 @@ use crate::laplacian::Laplacian;
 use crate::linked::LinkedRows;
 use crate::method::Method;
 use crate::method_spec::{LaplacianKind, MethodSpec};
+use crate::regression::{Regression, TrainingError};
 use crate::skin_mesh::{MeshError, SkinMesh};
 use crate::thin_shell::shell_gram;
 
@@ -41,6 +42,8 @@ pub struct OperatorParts {
     pub shell_gram: Vec<f64>,
     /// Kouadio's linked rows, when asked for.
     pub linked: Option<LinkedRows>,
+    /// What `regression` has learnt, when it has.
+    pub regression: Option<Regression>,
 }
 
 /// Checked [`OperatorParts`] with the scales that follow from them.
@@ -57,6 +60,9 @@ pub enum OperatorError {
     /// The mesh is not usable.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// A stored regression is damaged.
+    #[error(transparent)]
+    Regression(#[from] TrainingError),
     /// Names and data do not have the same number.
     #[error("{what}: {found} of them, {expected} expected; {remedy}")]
     Count {
@@ -147,6 +153,7 @@ impl Operators {
             marker_deltas: marker_deltas(mesh, &vertices),
             shell_gram: shell_gram(mesh, &laplacian, options.k_s, options.k_b, &vertices),
             linked: options.sigma.map(|sigma| LinkedRows::build(mesh, &vertices, sigma)),
+            regression: None,
         })
     }
 
@@ -165,6 +172,11 @@ impl Operators {
             expect_count("linked Gram matrices", linked.grams.len(), p * packed_len(n), again)?;
             expect_count("linked sums", linked.sums.len(), 3 * p * n, again)?;
             finite("linked rows", linked.grams.iter().chain(&linked.sums))?;
+        }
+        if let Some(model) = &parts.regression {
+            expect_count("inputs of the regression", model.width(), 3 * p, again)?;
+            expect_count("outputs of the regression", model.shape_count, n, again)?;
+            model.check()?;
         }
         finite("marker positions", parts.marker_positions.iter().flatten())?;
         finite("D", &parts.marker_deltas)?;
@@ -186,6 +198,14 @@ impl Operators {
         let data_scale = squares / n as f64;
         let shell_scale = trace / n as f64;
         Ok(Operators { parts, data_scale, shell_scale })
+    }
+
+    /// The same with what `regression` has learnt.
+    ///
+    /// # Errors
+    /// [`OperatorError`] where the model has other markers or shapes.
+    pub fn with_regression(self, model: Regression) -> Result<Operators, OperatorError> {
+        Operators::from_parts(OperatorParts { regression: Some(model), ..self.parts })
     }
 
     /// D, H and the names.

@@ -5,8 +5,10 @@ use crate::linked::LinkedRows;
 use crate::method::Method;
 use crate::method_spec::MethodSpec;
 use crate::objective::{Objective, Term};
-use crate::operators::{OperatorOptions, Operators};
+use crate::operators::{OperatorOptions, OperatorParts, Operators};
+use crate::regression::Regression;
 use crate::spec_check::SpecError;
+use crate::surface_fit::{METRES_PER_WEIGHT, SurfaceProblem};
 
 /// Why a method cannot be set up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,6 +31,15 @@ pub enum FitError {
         /// What is asked for.
         asked: String,
     },
+    /// The operators are a blendshape bank's.
+    #[error(
+        "method: 'thin-shell-surface' moves vertices, and these operators are a blendshape bank's; \
+         build them with SurfaceResponse::operators"
+    )]
+    NoSurface,
+    /// Nothing was learnt.
+    #[error("method: 'regression' has learnt nothing; give a training take and its weights")]
+    NotTrained,
     /// Every shape is locked.
     #[error("locked: all {0} shapes; leave some of them free")]
     AllLocked(usize),
@@ -53,6 +64,10 @@ pub(crate) enum Engine {
     Smooth { objective: Objective, fallback_eps: f64 },
     /// c = D^+ d.
     PseudoInverse,
+    /// The surface's markers, a problem a coordinate.
+    Surface(SurfaceProblem),
+    /// What was learnt, in a box.
+    Learnt { model: Box<Regression>, bounds: Vec<[f64; 2]> },
 }
 
 /// The matrices over the n free shapes, and the engine.
@@ -121,7 +136,7 @@ impl Problem {
         Ok(Problem {
             shape_count: n_all,
             marker_count: operators.marker_count(),
-            engine: engine(spec, &scales, &names),
+            engine: engine(spec, &scales, &names, parts)?,
             linked: linked.map(|l| l.restricted(&free, n_all)),
             free,
             deltas,
@@ -143,7 +158,12 @@ struct Scales {
 }
 
 /// The rows of METHOD's table, for lengths in metres.
-fn engine(spec: &MethodSpec, scales: &Scales, names: &[&str]) -> Engine {
+fn engine(
+    spec: &MethodSpec,
+    scales: &Scales,
+    names: &[&str],
+    parts: &OperatorParts,
+) -> Result<Engine, FitError> {
     let bounds = |default: [f64; 2]| -> Vec<[f64; 2]> {
         names.iter().map(|&n| spec.bounds.get(n).copied().unwrap_or(default)).collect()
     };
@@ -157,7 +177,7 @@ fn engine(spec: &MethodSpec, scales: &Scales, names: &[&str]) -> Engine {
     let data_weight = 1.0 / scales.data;
     let shell_weight = kappa * alpha / scales.shell;
     let unbounded = || vec![[f64::NEG_INFINITY, f64::INFINITY]; names.len()];
-    match spec.method {
+    Ok(match spec.method {
         Method::Lsts => Engine::Quadratic { data_weight, shell_weight, bounds: box_bounds() },
         Method::ThinShellOnly => {
             Engine::Quadratic { data_weight, shell_weight, bounds: unbounded() }
@@ -205,12 +225,30 @@ fn engine(spec: &MethodSpec, scales: &Scales, names: &[&str]) -> Engine {
                 1.0 - alpha,
             )
         }
-        // The others were refused before: they give no weights from markers.
-        Method::PseudoInverse
-        | Method::ThinShellSurface
-        | Method::Regression
-        | Method::Recorded => Engine::PseudoInverse,
-    }
+        Method::ThinShellSurface => {
+            let markers = parts.marker_labels.len();
+            if !is_surface(parts) {
+                return Err(FitError::NoSurface);
+            }
+            Engine::Surface(SurfaceProblem::new(&parts.shell_gram, markers, spec.stiffness()))
+        }
+        Method::Regression => {
+            let model = parts.regression.clone().ok_or(FitError::NotTrained)?;
+            Engine::Learnt { model: Box::new(model), bounds: box_bounds() }
+        }
+        // Recorded weights were refused before: nothing is solved.
+        Method::PseudoInverse | Method::Recorded => Engine::PseudoInverse,
+    })
+}
+
+/// Whether the "shapes" are the markers themselves, each along x, y and z.
+fn is_surface(parts: &OperatorParts) -> bool {
+    let n = 3 * parts.marker_labels.len();
+    parts.shape_names.len() == n
+        && (0..n * n).all(|at| {
+            let expected = if at / n == at % n { METRES_PER_WEIGHT } else { 0.0 };
+            parts.marker_deltas[at] == expected
+        })
 }
 
 fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitError> {

@@ -11,6 +11,11 @@ pub struct FrameReport {
     /// How far a single weight could still move to improve the objective, in units of weight: the
     /// largest violation of the Karush-Kuhn-Tucker conditions divided by the curvature.
     pub kkt_error: f64,
+    /// Thin-shell energy of the surface (`thin-shell-surface`), d^T K d of eq. 2.16 summed over the
+    /// coordinates, m^2.
+    pub energy: Option<f64>,
+    /// Predictive standard deviation of the weights (`regression`), before the bounds.
+    pub deviation: Option<f64>,
     /// Face markers not seen in the frame; their rows were dropped.
     pub missing_markers: u32,
     /// What is to be said aloud.
@@ -29,6 +34,9 @@ pub enum FrameWarning {
     /// The residual vanished and the norm had to be smoothed with eps = 1e-4 l.
     #[error("the markers are met exactly, where the norm has no slope; smoothed with eps = 1e-4 l")]
     Smoothed,
+    /// Nothing like the frame is among the frames that the regression has learnt from.
+    #[error("far from the training data: more than half of the prior variance is left")]
+    FarFromTraining,
 }
 
 /// The answer of one frame.
@@ -55,6 +63,8 @@ impl Default for FrameReport {
             residual: 0.0,
             iterations: 0,
             kkt_error: 0.0,
+            energy: None,
+            deviation: None,
             missing_markers: 0,
             warning: None,
         }

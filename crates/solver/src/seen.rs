@@ -16,7 +16,8 @@ pub(crate) struct Seen {
     /// Q^T and R of D = Q R (empty but for the smooth methods).
     pub(crate) orthogonal: Vec<f64>,
     pub(crate) triangle: Vec<f64>,
-    /// Q of the quadratic programme (empty for the smooth methods), or D^+.
+    /// Q of the quadratic programme (empty for the smooth methods), or D^+, or what takes a surface's
+    /// markers from where they are seen, or fills lost ones in for the regression.
     pub(crate) system: Vec<f64>,
     /// Sum of the importances.
     pub(crate) importance: f64,
@@ -39,6 +40,8 @@ impl Seen {
                 .collect(),
             Engine::Linked { .. } => linked_system(problem, &missing),
             Engine::PseudoInverse => pseudo_inverse(&deltas, 3 * problem.marker_count, n),
+            Engine::Surface(surface) => surface.matrix(&missing, &problem.importance),
+            Engine::Learnt { model, .. } => model.fill(&missing),
             Engine::Smooth { .. } => Vec::new(),
         };
         let (orthogonal, triangle) = match &problem.engine {

@@ -117,6 +117,18 @@ impl SkinMesh {
         Ok(())
     }
 
+    /// Which vertices no shape moves by more than `tolerance` metres at weight 1.
+    pub fn unmoved(&self, tolerance: f64) -> Vec<bool> {
+        let mut out = vec![true; self.positions.len()];
+        for (v, d) in self.shapes.iter().flat_map(|s| s.vertices.iter().zip(&s.deltas)) {
+            let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+            if length > tolerance {
+                out[*v as usize] = false;
+            }
+        }
+        out
+    }
+
     /// Close seams: vertices with exactly the same position and the same deltas become one, as
     /// exporters split them where textures meet. Open seams change H by 10 %.
     ///

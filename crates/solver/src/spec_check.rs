@@ -1,7 +1,7 @@
 //! What is wrong with a method's parameters: all of it, each with its field, value and remedy.
 
 use crate::method::Method;
-use crate::method_spec::MethodSpec;
+use crate::method_spec::{Inference, MethodSpec};
 
 /// Something wrong in a [`MethodSpec`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -28,13 +28,6 @@ impl MethodSpec {
     /// and a marker map: `Fit::new` checks them.
     pub fn problems(&self) -> Vec<SpecError> {
         let mut found = Problems(Vec::new());
-        match self.method {
-            Method::ThinShellSurface | Method::Regression => found.add(
-                "method",
-                format!("'{}' is not available yet; use lsts, box or kouadio", self.method),
-            ),
-            _ => {}
-        }
         self.refuse_unused(&mut found);
         found.number("alpha", self.alpha, "between 0 and 1", |v| (0.0..=1.0).contains(&v));
         found.number("kappa", self.kappa, "above 0", |v| v > 0.0);
@@ -45,6 +38,25 @@ impl MethodSpec {
         found
             .number("sigma", self.sigma, "above 0 and at most 1 (metres)", |v| v > 0.0 && v <= 1.0);
         found.number("boundsWeight", self.bounds_weight, "above 0", |v| v > 0.0);
+        found.number("stiffness", self.stiffness, "0 (markers are met exactly) or more", |v| {
+            v >= 0.0
+        });
+        let basis_vectors = self.basis_vectors.map(f64::from);
+        found.number("basisVectors", basis_vectors, "from 10 to 2000", |v| {
+            (10.0..=2000.0).contains(&v)
+        });
+        for (field, value) in
+            [("lengthScale", self.length_scale), ("signal", self.signal), ("noise", self.noise)]
+        {
+            found.number(field, value, "above 0", |v| v > 0.0);
+        }
+        if self.basis_vectors.is_some() && self.inference == Some(Inference::Exact) {
+            found.add(
+                "basisVectors",
+                "the exact process has every frame for a basis vector; remove it, or take \
+                 inference sparse",
+            );
+        }
         found.number("headLowpassHz", self.head_lowpass_hz, "0 (no filter) or more", |v| v >= 0.0);
         if self.k_s() == 0.0 && self.k_b() == 0.0 && self.method.parameters().contains(&"kS") {
             found.add("kS", "kS and kB are both 0, which leaves no thin shell; make one positive");
@@ -58,6 +70,16 @@ impl MethodSpec {
         for (label, &importance) in &self.importance {
             let field = format!("importance.{label}");
             found.number(&field, Some(importance), "0 or more", |v| v >= 0.0);
+            let met_exactly = self.method == Method::ThinShellSurface && self.stiffness() == 0.0;
+            if met_exactly && importance > 0.0 && importance != 1.0 {
+                found.add(
+                    &field,
+                    format!(
+                        "is {importance}, but markers are met exactly where stiffness is 0; give \
+                         stiffness above 0, or importance 0 to leave the marker out"
+                    ),
+                );
+            }
         }
         for (i, name) in self.locked.iter().enumerate() {
             if self.locked[..i].contains(name) {
@@ -86,6 +108,13 @@ impl MethodSpec {
             ("sigma", self.sigma.is_some()),
             ("boundsWeight", self.bounds_weight.is_some()),
             ("unit", self.unit.is_some()),
+            ("stiffness", self.stiffness.is_some()),
+            ("hold", self.hold.is_some()),
+            ("inference", self.inference.is_some()),
+            ("basisVectors", self.basis_vectors.is_some()),
+            ("lengthScale", self.length_scale.is_some()),
+            ("signal", self.signal.is_some()),
+            ("noise", self.noise.is_some()),
             ("locked", !self.locked.is_empty()),
             ("importance", !self.importance.is_empty()),
             ("bounds", !self.bounds.is_empty()),

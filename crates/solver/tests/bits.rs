@@ -6,7 +6,7 @@
 
 use mimique_solver::{
     Fit, FrontEnd, Lowpass, MarkerColumns, MarkerFrames, Method, MethodSpec, OperatorOptions,
-    Operators, SkinMesh, SparseDeltas,
+    Operators, Regression, SkinMesh, SparseDeltas, SurfaceResponse, TrainingOptions,
 };
 
 /// Numbers in -1..1 from a linear congruence: the same on every machine.
@@ -20,8 +20,8 @@ impl Numbers {
     }
 }
 
-/// A bulging sheet of `width` x `width` vertices.
-fn operators(width: usize, options: &OperatorOptions) -> Operators {
+/// A bulging sheet of `width` x `width` vertices, its 14 shapes and 15 markers.
+fn sheet(width: usize) -> (SkinMesh, Vec<String>, Vec<(String, usize)>) {
     let spacing = 64.0 * width as f64 / 12.0;
     let mut noise = Numbers(3);
     let positions: Vec<[f64; 3]> = (0..width * width)
@@ -55,7 +55,30 @@ fn operators(width: usize, options: &OperatorOptions) -> Operators {
     let names: Vec<String> = (0..14).map(|k| format!("shape{k}")).collect();
     let markers: Vec<(String, usize)> =
         (0..15).map(|m| (format!("M{m}"), (m * 29 + 17) % (width * width))).collect();
+    (mesh, names, markers)
+}
+
+fn operators(width: usize, options: &OperatorOptions) -> Operators {
+    let (mesh, names, markers) = sheet(width);
     Operators::build(&mesh, &names, &markers, options).unwrap()
+}
+
+/// The surface moved by the markers.
+fn surface(spec: &MethodSpec) -> Operators {
+    let (mesh, _, markers) = sheet(12);
+    let (options, held) = (OperatorOptions::of(spec), vec![false; mesh.positions.len()]);
+    let vertices: Vec<usize> = markers.iter().map(|m| m.1).collect();
+    let response = SurfaceResponse::build(&mesh, &vertices, &held, &options).unwrap();
+    response.operators(&mesh, &markers, &options).unwrap()
+}
+
+/// What is learnt of the take itself, with the weights of least squares.
+fn learnt(plain: &Operators, d: &[f64]) -> Operators {
+    let spec = MethodSpec::new(Method::Box);
+    let weights = Fit::new(plain, &spec).unwrap().solve_take(d).unwrap().weights;
+    let options = TrainingOptions { capacity: Some(60), given: [None; 3] };
+    let model = Regression::train(d, 45, &weights, 14, &options).unwrap();
+    plain.clone().with_regression(model).unwrap()
 }
 
 /// 150 frames of 15 face markers and 4 head markers; some are lost.
@@ -112,11 +135,21 @@ fn every_method_gives_the_same_bits_everywhere() {
     for method in Method::ALL {
         let spec = MethodSpec::new(method);
         let options = OperatorOptions::of(&spec);
-        if let Ok(fit) = Fit::new(&operators(12, &options), &spec) {
+        let ready = match method {
+            Method::ThinShellSurface => surface(&spec),
+            Method::Regression => learnt(&plain, &d),
+            _ => operators(12, &options),
+        };
+        if let Ok(fit) = Fit::new(&ready, &spec) {
             let solved = fit.solve_take(&d).unwrap();
-            assert!(solved.reports.iter().all(|r| r.warning.is_none()), "{method}");
+            // With few basis vectors some frames are far from what was learnt.
+            let silent = solved.reports.iter().all(|r| r.warning.is_none());
+            assert!(silent || method == Method::Regression, "{method}");
             found.push(format!("{method} {:016x}", hash(&solved.weights)));
         }
     }
+    let soft = MethodSpec { stiffness: Some(0.2), ..MethodSpec::new(Method::ThinShellSurface) };
+    let solved = Fit::new(&surface(&soft), &soft).unwrap().solve_take(&d).unwrap();
+    found.push(format!("soft surface {:016x}", hash(&solved.weights)));
     assert_eq!(found.join("\n"), include_str!("golden/bits.txt").trim());
 }

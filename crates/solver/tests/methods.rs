@@ -431,7 +431,7 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert_eq!(
         say(&|_| (), Method::Regression),
-        "method: 'regression' is not available yet; use lsts, box or kouadio"
+        "method: 'regression' has learnt nothing; give a training take and its weights"
     );
     assert_eq!(
         say(&|s| s.locked = (0..9).map(|k| format!("bump{k}")).collect(), Method::Box),

@@ -16,14 +16,23 @@ mod operators_pack;
 mod prepare;
 mod provenance;
 #[cfg(feature = "prepare")]
+mod recorded;
+#[cfg(feature = "prepare")]
 mod repair_sidecar;
 mod report;
 #[cfg(feature = "prepare")]
 mod segments;
 mod skin;
 mod solve_packs;
+#[cfg(feature = "prepare")]
 mod solve_take;
+#[cfg(feature = "prepare")]
+mod surface_avatar;
 mod take_pack;
+#[cfg(feature = "prepare")]
+mod training;
+#[cfg(feature = "prepare")]
+mod vertex_frames;
 mod weights_file;
 
 pub use lids::{Lid, LidEdge};
@@ -33,8 +42,10 @@ pub use operators_pack::{decode_operators, encode_operators};
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
 pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
 #[cfg(feature = "prepare")]
+pub use recorded::{Driven, RecordedNames, RecordedWeights};
+#[cfg(feature = "prepare")]
 pub use repair_sidecar::{FileHash, RepairSidecar, SidecarError, sidecar_path};
-pub use report::{FrameRow, FrameStatistics, SolveReport, StageSeconds};
+pub use report::{FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds};
 #[cfg(feature = "prepare")]
 pub use segments::{
     Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
@@ -43,6 +54,13 @@ pub use segments::{
 };
 pub use skin::AvatarSkin;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
-pub use solve_take::{JoinedTake, SolveError, SolvedCapture, TakeOptions, solve_take};
+#[cfg(feature = "prepare")]
+pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
+#[cfg(feature = "prepare")]
+pub use surface_avatar::surface_avatar;
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
+#[cfg(feature = "prepare")]
+pub use training::Training;
+#[cfg(feature = "prepare")]
+pub use vertex_frames::VertexFrames;
 pub use weights_file::{WeightsFileError, WeightsTable};

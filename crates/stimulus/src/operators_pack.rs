@@ -1,10 +1,13 @@
 //! The operators pack (`MMOP`): what the solver needs of avatar and marker map, and no mesh.
 //!
 //! Body: options (Laplacian, k_s, k_b, sigma), shape names, marker labels, S, marker positions, D,
-//! H as f64, then Kouadio's linked rows where they were asked for. l^2 and tau follow from D and H.
+//! H as f64, then Kouadio's linked rows where they were asked for, then what `regression` has learnt
+//! where it has. l^2 and tau follow from D and H. A surface's operators are of the same form.
 
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
-use mimique_solver::{LaplacianKind, LinkedRows, OperatorOptions, OperatorParts, Operators};
+use mimique_solver::{
+    Kernel, LaplacianKind, LinkedRows, OperatorOptions, OperatorParts, Operators, Regression,
+};
 
 const KIND: &str = "MMOP";
 const VERSION: u32 = 1;
@@ -32,11 +35,19 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     all(parts.marker_positions.as_flattened());
     all(&parts.marker_deltas);
     all(&parts.shell_gram);
-    w.u8(u8::from(parts.linked.is_some()));
+    w.u8(u8::from(parts.linked.is_some()) | u8::from(parts.regression.is_some()) << 1);
     if let Some(linked) = &parts.linked {
         w.f64(linked.sigma);
         w.u64(linked.vertex_count as u64);
         linked.grams.iter().chain(&linked.sums).for_each(|&x| w.f64(x));
+    }
+    if let Some(model) = &parts.regression {
+        w.u64(model.training_frames as u64);
+        w.varint(model.basis_count() as u32);
+        let Kernel { length, signal, noise } = model.kernel;
+        [length, signal, noise, model.log_likelihood].into_iter().for_each(|x| w.f64(x));
+        let all = [&model.centre, &model.scale, &model.basis, &model.coefficients];
+        all.into_iter().chain([&model.covariance]).flatten().for_each(|&x| w.f64(x));
     }
     seal_pack(KIND, VERSION, &w.into_bytes())
 }
@@ -62,16 +73,21 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
     let positions = numbers(&mut r, 3, p)?;
     let marker_deltas = numbers(&mut r, 3 * p, n)?;
     let shell_gram = numbers(&mut r, n, n)?;
-    let linked = match r.u8()? {
-        0 => None,
-        1 => Some(LinkedRows {
+    let more = r.u8()?;
+    if more > 3 {
+        return r.refuse(format!("flags {more}"));
+    }
+    let linked = if more & 1 == 0 {
+        None
+    } else {
+        Some(LinkedRows {
             sigma: r.f64()?,
             vertex_count: r.u64()? as usize,
             grams: numbers(&mut r, p, n.saturating_mul(n + 1) / 2)?,
             sums: numbers(&mut r, 3 * p, n)?,
-        }),
-        other => return r.refuse(format!("linked flag {other}")),
+        })
     };
+    let regression = if more & 2 == 0 { None } else { Some(regression(&mut r, 3 * p, n)?) };
     let left = r.left();
     if left > 0 {
         return r.refuse(format!("{left} bytes too many"));
@@ -86,8 +102,30 @@ pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
         marker_deltas,
         shell_gram,
         linked,
+        regression,
     })
     .or_else(|e| r.refuse(e.to_string()))
+}
+
+fn regression(
+    r: &mut PackReader<'_>,
+    width: usize,
+    shape_count: usize,
+) -> Result<Regression, PackError> {
+    let training_frames = r.u64()? as usize;
+    let m = r.varint()? as usize;
+    let kernel = Kernel { length: r.f64()?, signal: r.f64()?, noise: r.f64()? };
+    Ok(Regression {
+        kernel,
+        log_likelihood: r.f64()?,
+        training_frames,
+        shape_count,
+        centre: numbers(r, 1, width)?,
+        scale: numbers(r, 1, width)?,
+        basis: numbers(r, m, width)?,
+        coefficients: numbers(r, m, shape_count)?,
+        covariance: numbers(r, m, m)?,
+    })
 }
 
 /// `rows` x `columns` numbers, if the pack has that many.

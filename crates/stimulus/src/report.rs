@@ -1,6 +1,8 @@
 //! What a solve says of itself: per frame, over all frames, in words.
 
-use mimique_solver::{FrameReport, FrameWarning, MethodSpec, Operators};
+use mimique_solver::{FrameReport, FrameWarning, Kernel, MethodSpec};
+#[cfg(feature = "prepare")]
+use mimique_solver::{Method, Operators, Regression};
 use serde::Serialize;
 
 /// Residual, iterations and convergence over the frames of a take.
@@ -26,6 +28,12 @@ pub struct FrameStatistics {
     pub without_markers: Option<(usize, usize)>,
     /// Frames whose norm had to be smoothed.
     pub smoothed: usize,
+    /// Frames far from what a regression has learnt from; the first of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far_from_training: Option<(usize, usize)>,
+    /// Largest predictive standard deviation of a regression.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation_worst: Option<f64>,
 }
 
 impl FrameStatistics {
@@ -51,6 +59,8 @@ impl FrameStatistics {
             not_converged: with(FrameWarning::NotConverged),
             without_markers: with(FrameWarning::NoMarkers),
             smoothed: with(FrameWarning::Smoothed).map_or(0, |(count, _)| count),
+            far_from_training: with(FrameWarning::FarFromTraining),
+            deviation_worst: reports.iter().filter_map(|r| r.deviation).reduce(f64::max),
         }
     }
 
@@ -70,6 +80,14 @@ impl FrameStatistics {
         if let Some((count, first)) = self.without_markers {
             out.push(format!(
                 "{} without any marker (the first is {}): their weights come from the priors alone",
+                frames(count),
+                first as u64 + first_frame
+            ));
+        }
+        if let Some((count, first)) = self.far_from_training {
+            out.push(format!(
+                "{} far from the training data (the first is {}): their weights tend to the \
+                 neutral face; record such expressions in the range of motion",
                 frames(count),
                 first as u64 + first_frame
             ));
@@ -110,11 +128,42 @@ pub struct FrameRow {
     pub iterations: u32,
     /// KKT error, in units of weight.
     pub kkt_error: f64,
+    /// Thin-shell energy of a surface, square millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_mm2: Option<f64>,
+    /// Predictive standard deviation of a regression's weights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f64>,
     /// Markers not seen.
     pub missing_markers: u32,
     /// What is to be said of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub warning: Option<String>,
+}
+
+/// What a regression has learnt.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegressionSummary {
+    /// Frames learnt from.
+    pub training_frames: usize,
+    /// Basis vectors kept.
+    pub basis_vectors: usize,
+    /// Length scale, signal and noise.
+    pub kernel: Kernel,
+    /// Logarithm of the marginal likelihood of the frames that these were found on.
+    pub log_likelihood: f64,
+}
+
+#[cfg(feature = "prepare")]
+impl RegressionSummary {
+    pub(crate) fn of(model: &Regression) -> Self {
+        Self {
+            training_frames: model.training_frames,
+            basis_vectors: model.basis_count(),
+            kernel: model.kernel,
+            log_likelihood: model.log_likelihood,
+        }
+    }
 }
 
 /// What a solve says of itself.
@@ -140,6 +189,9 @@ pub struct SolveReport {
     pub data_scale_mm: f64,
     /// tau = tr(H) / N, square metres.
     pub shell_scale_m2: f64,
+    /// What a regression has learnt from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regression: Option<RegressionSummary>,
     /// Over all frames.
     pub summary: FrameStatistics,
     /// The seconds of each stage.
@@ -155,7 +207,12 @@ pub struct SolveReport {
 }
 
 /// Shapes that move no marker by a millimetre at weight 1, and are not locked.
+#[cfg(feature = "prepare")]
 pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
+    // A surface has no shapes; what a regression knows of a shape it knows from its training.
+    if matches!(spec.method, Method::ThinShellSurface | Method::Regression) {
+        return None;
+    }
     let names: Vec<&str> = operators
         .parts()
         .shape_names

@@ -4,19 +4,25 @@ use std::ops::Range;
 
 use mimique_mocap::{Capture, stabilise, stillest};
 use mimique_solver::{
-    Fit, FitError, FrontEnd, FrontEndError, MarkerColumns, MarkerFrames, MeshError, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion,
+    Fit, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MeshError, Method,
+    MethodSpec, OperatorError, OperatorOptions, Operators, RigidMotion, SurfaceError,
+    SurfaceResponse, TrainingError,
 };
 
 use crate::lids::{LidEdge, LidRange, actor_range, lid_weights};
 use crate::provenance::{Provenance, weights_hash};
-use crate::report::{FrameRow, FrameStatistics, SolveReport, StageSeconds, unseen_shapes};
+use crate::report::{
+    FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds, unseen_shapes,
+};
 use crate::solve_packs::{lowpass, put_driven};
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
+use crate::training::Training;
 use crate::{AvatarSkin, MapError, MarkerMap, WeightsTable};
 
 /// Frames that a neutral should be the mean of.
 const NEUTRAL_FRAMES: usize = 60;
+/// A vertex that no shape moves by more is at rest, metres.
+const UNMOVED_M: f64 = 1e-4;
 /// Seconds of margin on both sides of a segment, for the head's low-pass to settle.
 const MARGIN_SECONDS: f64 = 0.25;
 
@@ -30,6 +36,8 @@ pub struct TakeOptions {
     pub head: Option<Vec<String>>,
     /// What the capture's repair is known by: a hash of its record.
     pub repair: Option<String>,
+    /// What `regression` learns from.
+    pub training: Option<Box<Training>>,
 }
 
 /// Why a take cannot be solved.
@@ -84,15 +92,52 @@ pub enum SolveError {
     /// The method does not solve.
     #[error(transparent)]
     Fit(#[from] FitError),
+    /// The surface has no response to its markers.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// Nothing can be learnt.
+    #[error(transparent)]
+    Training(#[from] TrainingError),
+    /// The training take has other markers.
+    #[error(
+        "training: the take has no marker {missing}, which the take to be solved has; train with \
+         the same markers, or leave them out of the map"
+    )]
+    TrainingMarkers {
+        /// The labels.
+        missing: String,
+    },
+    /// The training weights are of other shapes.
+    #[error(
+        "training: none of the weights' shapes ({weights}) is one of the avatar's ({avatar}); give \
+         weights under the avatar's names, or ARKit's"
+    )]
+    TrainingShapes {
+        /// Some names of the weights.
+        weights: String,
+        /// Some names of the avatar.
+        avatar: String,
+    },
 }
 
 /// Weights and what is said of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolvedCapture {
-    /// The weights, a row a frame.
+    /// The weights, a row a frame; for `thin-shell-surface` where its markers go, in centimetres.
     pub table: WeightsTable,
+    /// The surface that the weights of `thin-shell-surface` move.
+    pub surface: Option<SurfaceResponse>,
     /// How it went.
     pub report: SolveReport,
+}
+
+/// What a method is set up with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetUp {
+    /// What its frames need.
+    pub operators: Operators,
+    /// The surface of `thin-shell-surface`.
+    pub surface: Option<SurfaceResponse>,
 }
 
 /// Avatar, marker map and capture brought together; solves any method and any segment.
@@ -148,7 +193,7 @@ pub fn solve_take(
     let start = clock();
     let joined = JoinedTake::new(skin, capture, map, options)?;
     let spec = &joined.with_lids_locked(spec);
-    let operators = joined.operators(spec)?;
+    let SetUp { operators, surface } = joined.set_up(spec, options.training.as_deref())?;
     let fit = Fit::new(&operators, spec)?;
     let set_up = clock();
     seconds.set_up = set_up - start;
@@ -159,11 +204,21 @@ pub fn solve_take(
     seconds.front_end = front - set_up;
     let mut solution = fit.solve_take(&displacements)?;
     let (driven_shapes, driven) = joined.lid_tracks(&front_end, &poses, 0..take.len());
-    put_driven(&mut solution.weights, &skin.shape_names, &driven_shapes, &driven);
+    let shape_names = &operators.parts().shape_names;
+    put_driven(&mut solution.weights, shape_names, &driven_shapes, &driven);
     seconds.solve = clock() - front;
 
     let mut warnings = joined.warnings.clone();
     warnings.extend(unseen_shapes(&operators, spec));
+    if let Some(training) = &options.training {
+        warnings.extend(training.warnings(&skin.shape_names));
+    }
+    let adrift = surface.as_ref().map_or(0, |surface| surface.without_marker);
+    if adrift > 0 {
+        warnings.push(format!(
+            "{adrift} vertices are in pieces of the skin without a marker: they rest"
+        ));
+    }
     let summary = FrameStatistics::of(&solution.reports);
     warnings.extend(summary.warnings(joined.first_frame));
     let frames = (solution.reports.iter().zip(joined.first_frame..))
@@ -172,6 +227,8 @@ pub fn solve_take(
             residual_mm: 1e3 * r.residual,
             iterations: r.iterations,
             kkt_error: r.kkt_error,
+            energy_mm2: r.energy.map(|energy| 1e6 * energy),
+            deviation: r.deviation,
             missing_markers: r.missing_markers,
             warning: r.warning.map(|w| w.to_string()),
         })
@@ -180,7 +237,7 @@ pub fn solve_take(
     let report = SolveReport {
         avatar: skin.name.clone(),
         vertices: skin.mesh.positions.len(),
-        shapes: skin.shape_names.len(),
+        shapes: operators.shape_count(),
         markers: joined.markers.iter().map(|(label, _)| label.clone()).collect(),
         head: joined.head_labels(),
         neutral: [joined.neutral.start, joined.neutral.end],
@@ -191,13 +248,19 @@ pub fn solve_take(
         summary,
         seconds,
         warnings,
-        provenance: joined.provenance(spec).text("weights", &weights_hash).hash(),
+        regression: operators.parts().regression.as_ref().map(RegressionSummary::of),
+        provenance: match &options.training {
+            Some(training) => joined.provenance(spec).text("training", &training.key()),
+            None => joined.provenance(spec),
+        }
+        .text("weights", &weights_hash)
+        .hash(),
         weights_hash,
         frames,
     };
-    let names = skin.shape_names.clone();
+    let names = operators.parts().shape_names.clone();
     let table = WeightsTable::at_rate(names, solution.weights, joined.first_frame, joined.rate_hz);
-    Ok(SolvedCapture { table, report })
+    Ok(SolvedCapture { table, surface, report })
 }
 
 impl<'a> JoinedTake<'a> {
@@ -211,8 +274,7 @@ impl<'a> JoinedTake<'a> {
         map: &MarkerMap,
         options: &TakeOptions,
     ) -> Result<Self, SolveError> {
-        let frames = capture.frames();
-        if frames == 0 {
+        if capture.frames() == 0 {
             return Err(SolveError::NoFrames);
         }
         let mut warnings = Vec::new();
@@ -234,6 +296,84 @@ impl<'a> JoinedTake<'a> {
             ));
         }
         let head = options.head.as_ref().unwrap_or(&map.head);
+        let neutral = options.neutral.clone().or_else(|| map.neutral.clone());
+        let mut joined = Self::of_markers(skin, capture, markers, head, neutral, warnings)?;
+        joined.repair = options.repair.clone();
+        joined.add_lids(capture, map, &lid_places);
+        Ok(joined)
+    }
+
+    /// The lid markers as columns after the others.
+    fn add_lids(&mut self, capture: &Capture, map: &MarkerMap, lid_places: &[(String, usize)]) {
+        for lid in &map.lids {
+            let place = lid_places.iter().find(|(label, _)| *label == lid.marker);
+            let (Some((_, vertex)), true) = (place, capture.marker_index(&lid.marker).is_some())
+            else {
+                self.warnings.push(format!("lid marker {} is not in the capture", lid.marker));
+                continue;
+            };
+            let Some(closed) = travel_of(self.skin, &lid.closed, *vertex) else {
+                self.warnings.push(format!(
+                    "lid marker {}: the avatar has no shape {}; name the shape that closes the lid",
+                    lid.marker, lid.closed
+                ));
+                continue;
+            };
+            let wide = lid.wide.as_ref().and_then(|name| travel_of(self.skin, name, *vertex));
+            let ends = [closed, wide.unwrap_or(0.0), 0.0];
+            let travel = [ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0)];
+            let labels = &mut self.labels;
+            let column = labels.iter().position(|l| *l == lid.marker).unwrap_or_else(|| {
+                labels.push(lid.marker.clone());
+                labels.len() - 1
+            });
+            self.lids.push(JoinedLid {
+                label: lid.marker.clone(),
+                column,
+                edge: lid.edge,
+                closed: lid.closed.clone(),
+                wide: lid.wide.clone().filter(|_| wide.is_some()),
+                travel,
+            });
+        }
+        if !self.lids.is_empty() {
+            self.positions = metres(capture, &self.labels);
+        }
+    }
+
+    /// Another take of the same markers on the same skin, such as the one that is learnt from.
+    ///
+    /// # Errors
+    /// [`SolveError`]: a face or head marker that it does not have, no frames.
+    pub(crate) fn of_other_capture(
+        &self,
+        capture: &Capture,
+        head: Option<&[String]>,
+        neutral: Option<Range<usize>>,
+    ) -> Result<Self, SolveError> {
+        let absent: Vec<&str> = (self.markers.iter())
+            .map(|(label, _)| label.as_str())
+            .filter(|label| capture.marker_index(label).is_none())
+            .collect();
+        if !absent.is_empty() {
+            return Err(SolveError::TrainingMarkers { missing: some(absent.into_iter()) });
+        }
+        let head = head.map_or_else(|| self.head_labels(), <[String]>::to_vec);
+        Self::of_markers(self.skin, capture, self.markers.clone(), &head, neutral, Vec::new())
+    }
+
+    fn of_markers(
+        skin: &'a AvatarSkin,
+        capture: &Capture,
+        markers: Vec<(String, usize)>,
+        head: &[String],
+        neutral: Option<Range<usize>>,
+        mut warnings: Vec<String>,
+    ) -> Result<Self, SolveError> {
+        let frames = capture.frames();
+        if frames == 0 {
+            return Err(SolveError::NoFrames);
+        }
         // Columns: face markers, then the head markers that are none.
         let mut labels: Vec<String> = markers.iter().map(|(label, _)| label.clone()).collect();
         let face = (0..labels.len()).collect();
@@ -251,45 +391,13 @@ impl<'a> JoinedTake<'a> {
             });
             head_columns.push(column);
         }
-        let mut lids = Vec::new();
-        for lid in &map.lids {
-            let place = lid_places.iter().find(|(label, _)| *label == lid.marker);
-            let (Some((_, vertex)), true) = (place, capture.marker_index(&lid.marker).is_some())
-            else {
-                warnings.push(format!("lid marker {} is not in the capture", lid.marker));
-                continue;
-            };
-            let Some(closed) = travel_of(skin, &lid.closed, *vertex) else {
-                warnings.push(format!(
-                    "lid marker {}: the avatar has no shape {}; name the shape that closes the lid",
-                    lid.marker, lid.closed
-                ));
-                continue;
-            };
-            let wide = lid.wide.as_ref().and_then(|name| travel_of(skin, name, *vertex));
-            let ends = [closed, wide.unwrap_or(0.0), 0.0];
-            let travel = [ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0)];
-            let column = labels.iter().position(|l| *l == lid.marker).unwrap_or_else(|| {
-                labels.push(lid.marker.clone());
-                labels.len() - 1
-            });
-            lids.push(JoinedLid {
-                label: lid.marker.clone(),
-                column,
-                edge: lid.edge,
-                closed: lid.closed.clone(),
-                wide: lid.wide.clone().filter(|_| wide.is_some()),
-                travel,
-            });
-        }
         if head_columns.is_empty() {
             warnings.push(
                 "no head markers are named: the capture is taken to be free of head motion"
                     .to_owned(),
             );
         }
-        let named = options.neutral.clone().or_else(|| map.neutral.clone());
-        let neutral = named.unwrap_or_else(|| {
+        let neutral = neutral.unwrap_or_else(|| {
             let head: Vec<String> = head_columns.iter().map(|&c| labels[c].clone()).collect();
             let (found, said) = found_neutral(capture, &labels, markers.len(), &head);
             warnings.push(said);
@@ -313,8 +421,8 @@ impl<'a> JoinedTake<'a> {
             neutral,
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
-            repair: options.repair.clone(),
-            lids,
+            repair: None,
+            lids: Vec::new(),
             warnings,
         })
     }
@@ -322,6 +430,9 @@ impl<'a> JoinedTake<'a> {
     /// The method with the lids' shapes locked, so that no other marker moves them.
     pub fn with_lids_locked(&self, spec: &MethodSpec) -> MethodSpec {
         let mut spec = spec.clone();
+        if !spec.method.parameters().contains(&"locked") {
+            return spec;
+        }
         for name in self.lids.iter().flat_map(|l| [Some(&l.closed), l.wide.as_ref()]).flatten() {
             let bounded = spec.bounds.contains_key(name);
             if !bounded && !spec.locked.contains(name) {
@@ -401,7 +512,52 @@ impl<'a> JoinedTake<'a> {
             .hash()
     }
 
-    /// D, H and l for a method.
+    /// Everything that a method is set up with: a bank's operators, a surface, a regression that
+    /// has learnt from `training`.
+    ///
+    /// # Errors
+    /// [`SolveError`] for a skin, markers or training that cannot be used.
+    pub fn set_up(
+        &self,
+        spec: &MethodSpec,
+        training: Option<&Training>,
+    ) -> Result<SetUp, SolveError> {
+        match spec.method {
+            Method::ThinShellSurface => {
+                let (mesh, options) = (&self.skin.mesh, OperatorOptions::of(spec));
+                let held = match spec.hold() {
+                    Hold::Unmoved => mesh.unmoved(UNMOVED_M),
+                    Hold::Nothing => vec![false; mesh.positions.len()],
+                };
+                let vertices: Vec<usize> = self.markers.iter().map(|m| m.1).collect();
+                let surface = SurfaceResponse::build(mesh, &vertices, &held, &options)?;
+                let operators = surface.operators(mesh, &self.markers, &options)?;
+                Ok(SetUp { operators, surface: Some(surface) })
+            }
+            Method::Regression => {
+                let bank = self.operators(spec)?;
+                let training = training.ok_or(FitError::NotTrained)?;
+                let model = training.learn(self, &bank, spec)?;
+                Ok(SetUp { operators: bank.with_regression(model)?, surface: None })
+            }
+            _ => Ok(SetUp { operators: self.operators(spec)?, surface: None }),
+        }
+    }
+
+    /// d of every frame: frames x 3P, metres.
+    ///
+    /// # Errors
+    /// [`FrontEndError`].
+    pub(crate) fn displacements(
+        &self,
+        bank: &Operators,
+        spec: &MethodSpec,
+    ) -> Result<Vec<f64>, FrontEndError> {
+        let (front_end, poses) = self.front_end(bank, spec)?;
+        front_end.take_displacements(self.frames(), &poses)
+    }
+
+    /// D, H and l of the avatar's shapes for a method.
     ///
     /// # Errors
     /// [`OperatorError`] for a skin or markers that cannot be used.
@@ -573,7 +729,7 @@ fn metres(capture: &Capture, labels: &[String]) -> Vec<f64> {
 }
 
 /// The first few of some labels.
-fn some<'l>(labels: impl Iterator<Item = &'l str>) -> String {
+pub(crate) fn some<'l>(labels: impl Iterator<Item = &'l str>) -> String {
     let labels: Vec<&str> = labels.collect();
     let named = labels.iter().take(6).copied().collect::<Vec<_>>().join(", ");
     match labels.len() {

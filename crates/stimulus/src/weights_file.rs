@@ -79,6 +79,20 @@ impl WeightsTable {
         out
     }
 
+    /// Weights from a Live Link Face export or from Mimique's own CSV.
+    ///
+    /// # Errors
+    /// What is wrong, with its line.
+    #[cfg(feature = "prepare")]
+    pub fn from_recording(path: &std::path::Path, bytes: &[u8]) -> Result<Self, String> {
+        if mimique_mocap::recognise(bytes) == Some(mimique_mocap::Format::LiveLinkCsv) {
+            let take = mimique_mocap::read_weights(&path.to_string_lossy(), bytes)
+                .map_err(|e| e.to_string())?;
+            return Ok(Self::at_rate(take.names, take.weights, 0, take.rate_hz));
+        }
+        Self::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
+    }
+
     /// Reads the CSV text. A file without the column `time` gets times from `rate_hz`.
     ///
     /// # Errors

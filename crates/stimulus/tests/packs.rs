@@ -33,6 +33,7 @@ fn operators(linked: bool) -> Operators {
             grams: numbers(p * n * (n + 1) / 2, 1.0),
             sums: numbers(3 * p * n, 2.0),
         }),
+        regression: None,
     })
     .unwrap()
 }

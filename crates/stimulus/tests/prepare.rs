@@ -125,8 +125,9 @@ fn recorded_weights_are_played_as_they_are() {
     }));
     let places = Places { study: folder.path().into(), data: None, packs: folder.path().into() };
     let prepared = prepare(&study, &places, &mut |_| {}).unwrap();
-    assert_eq!(prepared.warnings.len(), 1);
+    assert_eq!(prepared.warnings.len(), 2);
     assert!(prepared.warnings[0].1.contains("noSuchShape"), "{:?}", prepared.warnings);
+    assert!(prepared.warnings[1].1.contains("mouthSmileRight"), "{:?}", prepared.warnings);
     let clip = &prepared.clips["s.phone"];
     assert!(played(&prepared, folder.path(), "s.phone") > 0.005);
     let take = std::fs::read(folder.path().join(&clip.take)).unwrap();
@@ -135,6 +136,103 @@ fn recorded_weights_are_played_as_they_are() {
     assert_eq!(solved.frames(), 10);
     assert!((solved.rate_hz - 30.0).abs() < 1e-9);
     assert!((solved.weights[jaw] - 10.0 / 30.0).abs() <= 0.5e-4);
+}
+
+/// The weights of a clip as a browser solves them, and its shapes.
+fn weights(prepared: &Prepared, packs: &Path, clip: &str) -> (Vec<String>, Vec<f64>) {
+    let source = &prepared.clips[clip];
+    let read = |hash: &str| std::fs::read(packs.join(hash)).unwrap();
+    let solved =
+        solve_packs(&read(&source.operators), &read(&source.take), &source.method).unwrap();
+    (solved.shape_names, solved.weights)
+}
+
+#[test]
+fn locked_shapes_bounds_and_importance_of_the_study_file_are_obeyed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stimuli = builtin();
+    stimuli["segments"] = json!([{"id": "joy3", "capture": "actor",
+        "performance": {"expression": "joy", "intensity": 3}}]);
+    stimuli["methods"] = json!({
+        "plain": {"method": "box"},
+        "locked": {"method": "box", "locked": ["mouthSmileLeft"]},
+        "bounded": {"method": "box", "bounds": {"mouthSmileLeft": [0.0, 0.2]}},
+        "weighed": {"method": "box", "importance": {"MARKER": 0.0}},
+    });
+    let places = places(folder.path(), None);
+    let wrong = prepare(&study(stimuli.clone()), &places, &mut |_| {}).unwrap_err();
+    assert_eq!(wrong.pointer, "/stimuli/methods/weighed");
+    assert!(wrong.message.contains("no marker 'MARKER'"), "{wrong}");
+    let label = wrong.message.split("use names of ").nth(1).unwrap().split(',').next().unwrap();
+    stimuli["methods"]["weighed"]["importance"] = json!({ label: 0.0 });
+    let prepared = prepare(&study(stimuli), &places, &mut |_| {}).unwrap();
+    let smile = |method: &str| -> (f64, Vec<f64>) {
+        let (names, weights) = weights(&prepared, folder.path(), &format!("joy3.{method}"));
+        let at = names.iter().position(|n| n == "mouthSmileLeft").unwrap();
+        let most = weights.chunks_exact(names.len()).map(|row| row[at]).fold(0.0, f64::max);
+        (most, weights)
+    };
+    let plain = smile("plain");
+    assert!(plain.0 > 0.4, "{}", plain.0);
+    assert_eq!(smile("locked").0, 0.0);
+    assert_eq!(smile("bounded").0, 0.2);
+    assert_ne!(smile("weighed").1, plain.1);
+}
+
+#[test]
+fn a_surface_and_a_regression_are_prepared_and_play() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stimuli = builtin();
+    stimuli["captures"]["trainer"] = json!({"builtin": {"actor": 1}});
+    stimuli["segments"] = json!([{"id": "joy3", "capture": "actor",
+        "performance": {"expression": "joy", "intensity": 3}}]);
+    stimuli["methods"] = json!({
+        "lsts": {"method": "lsts"},
+        "surface": {"method": "thin-shell-surface"},
+        "soft": {"method": "thin-shell-surface", "stiffness": 0.05},
+        "free": {"method": "thin-shell-surface", "hold": "nothing"},
+        "learnt": {"method": "regression", "basisVectors": 60, "training": {"capture": "trainer"}},
+    });
+    let places = places(folder.path(), None);
+    let study_of = |stimuli: &Value| study(stimuli.clone());
+    let prepared = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap();
+    for (id, source) in &prepared.clips {
+        let moved = played(&prepared, folder.path(), id);
+        eprintln!("{id}: {moved:.4} m, {} bytes", source.bytes);
+        assert!((0.002..0.08).contains(&moved), "{id} moves by {moved} m");
+    }
+    let pack = |clip: &str, of: fn(&mimique_study::wire::ClipSource) -> &String| {
+        of(&prepared.clips[&format!("joy3.{clip}")]).clone()
+    };
+    // A surface has an avatar of its own; how hard the markers pull changes none of the packs.
+    assert_ne!(pack("surface", |c| &c.avatar), pack("lsts", |c| &c.avatar));
+    assert_eq!(pack("surface", |c| &c.avatar), pack("soft", |c| &c.avatar));
+    assert_eq!(pack("surface", |c| &c.operators), pack("soft", |c| &c.operators));
+    assert_ne!(pack("surface", |c| &c.weights_hash), pack("soft", |c| &c.weights_hash));
+    assert_ne!(pack("surface", |c| &c.avatar), pack("free", |c| &c.avatar));
+    assert_eq!(pack("learnt", |c| &c.avatar), pack("lsts", |c| &c.avatar));
+    assert_eq!(pack("learnt", |c| &c.take), pack("lsts", |c| &c.take));
+    // What was learnt plays like what was fitted: the smile is there.
+    let (names, fitted) = weights(&prepared, folder.path(), "joy3.lsts");
+    let (_, learnt) = weights(&prepared, folder.path(), "joy3.learnt");
+    let smile = names.iter().position(|n| n == "mouthSmileLeft").unwrap();
+    let most = |w: &[f64]| w.chunks_exact(names.len()).map(|r| r[smile]).fold(0.0, f64::max);
+    eprintln!("smile: fitted {:.2}, learnt {:.2}", most(&fitted), most(&learnt));
+    assert!(most(&learnt) > 0.5 * most(&fitted));
+    // Again: nothing is made anew, and nothing changes.
+    assert_eq!(prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap(), prepared);
+
+    // Bad training, at its place.
+    stimuli["methods"]["learnt"]["training"] = Value::Null;
+    stimuli["methods"]["learnt"].as_object_mut().unwrap().remove("training");
+    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err();
+    assert_eq!(error.pointer, "/stimuli/methods/learnt/training");
+    std::fs::write(folder.path().join("rom.csv"), "frame,time,jawOpen\n0,0,0\n1,0.01,1\n").unwrap();
+    stimuli["methods"]["learnt"]["training"] =
+        json!({"capture": "trainer", "weights": folder.path().join("rom.csv")});
+    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err();
+    assert_eq!(error.pointer, "/stimuli/methods/learnt/training");
+    assert!(error.message.contains("built-in actor"), "{error}");
 }
 
 #[test]

@@ -9,10 +9,7 @@ use std::process::Command;
 use mimique_face::{Avatar, Mesh, Part, SparseShape};
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_solver::{Method, MethodSpec};
-use mimique_stimulus::{
-    AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, encode_operators,
-    encode_take, solve_packs,
-};
+use mimique_stimulus::{AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, encode_operators, encode_take, solve_packs, Training, WeightsTable};
 use serde_json::json;
 
 fn repository() -> PathBuf {
@@ -128,6 +125,17 @@ fn write_cases(folder: &Path) {
     };
     let capture = capture(&skin, &map);
     let joined = JoinedTake::new(&skin, &capture, &map, &TakeOptions::default()).unwrap();
+    // What the regression learns is any smooth map: the bits are what counts here.
+    let frames = capture.frames();
+    let course = |f: usize, k: usize| (0.05 * f as f64 * (1.0 + 0.1 * k as f64)).sin().abs();
+    let n = skin.shape_names.len();
+    let weights = (0..frames * n).map(|at| course(at / n, at % n)).collect();
+    let training = Training {
+        weights: WeightsTable::at_rate(skin.shape_names.clone(), weights, 0, capture.rate_hz),
+        capture: capture.clone(),
+        neutral: None,
+        head: None,
+    };
     let mut cases = Vec::new();
     for method in Method::ALL {
         let mut spec = MethodSpec::new(method);
@@ -135,7 +143,8 @@ fn write_cases(folder: &Path) {
         if method == Method::Recorded || spec.validate().is_err() {
             continue;
         }
-        let operators = joined.operators(&spec).unwrap();
+        let learns = method == Method::Regression;
+        let operators = joined.set_up(&spec, learns.then_some(&training)).unwrap().operators;
         let take = encode_take(&joined.segment(&operators, &spec, 80..290).unwrap());
         let operators = encode_operators(&operators);
         let solved = solve_packs(&operators, &take, &spec).unwrap();
@@ -156,7 +165,7 @@ fn write_cases(folder: &Path) {
             "frames": solved.frames(),
         }));
     }
-    assert!(cases.len() >= 12, "{} methods", cases.len());
+    assert!(cases.len() >= 14, "{} methods", cases.len());
     let text = serde_json::to_string(&cases).unwrap();
     std::fs::write(folder.join("cases.json"), text).unwrap();
 }

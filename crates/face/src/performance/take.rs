@@ -1,5 +1,6 @@
 //! Synthetic motion capture: a built-in head performs clips with markers stuck to it.
 
+use super::range_of_motion::range_of_motion;
 use super::weights::{Clip, HeadPose, performance_weights};
 use crate::avatar::Avatar;
 use crate::parametric_head::MarkerSites;
@@ -51,6 +52,8 @@ impl SyntheticTake {
 
 /// Frames a second of the synthetic cameras.
 const RATE_HZ: f64 = 200.0;
+/// Frames a second of a range of motion: slow enough to be learnt from in seconds.
+const TRAINING_RATE_HZ: f64 = 30.0;
 /// Seconds of a clip.
 const CLIP_S: f64 = 4.0;
 /// Neutral frames before the first clip.
@@ -72,44 +75,20 @@ pub fn synthetic_take(
     seed: u64,
     noise_mm: f64,
 ) -> SyntheticTake {
-    let mut rng = Rng::new(seed ^ 0x7461_6b65_5f6e_6f69);
-    let markers = Markers::new(actor, sites);
     let n = actor.shape_names.len();
-    let mut take = SyntheticTake {
-        labels: markers.labels.clone(),
-        head_labels: sites
-            .head_labels()
-            .iter()
-            .filter(|l| markers.labels.contains(l))
-            .cloned()
-            .collect(),
-        rate_hz: RATE_HZ,
-        positions: Vec::new(),
-        neutral: [0, NEUTRAL_FRAMES],
-        segments: Vec::new(),
-        truth: Vec::new(),
-        shape_names: actor.shape_names.clone(),
-    };
-    let mut record = |weights: &[f64], pose: &HeadPose, take: &mut SyntheticTake| {
-        for marker in &markers.markers {
-            let noise = v3(rng.normal(), rng.normal(), rng.normal()) * noise_mm;
-            let p = placed(marker.at(weights), pose) + noise;
-            take.positions.push([p.x, p.y, p.z]);
-        }
-        take.truth.extend_from_slice(weights);
-    };
+    let mut session = Session::new(actor, sites, seed, noise_mm, RATE_HZ);
     let rest = vec![0.0; n];
     for _ in 0..NEUTRAL_FRAMES {
-        record(&rest, &HeadPose::default(), &mut take);
+        session.record(&rest, &HeadPose::default());
     }
     let mut first = NEUTRAL_FRAMES;
     for clip in clips {
         let played = performance_weights(&actor.shape_names, clip, RATE_HZ, CLIP_S);
         for f in 0..played.frames() {
-            record(played.frame(f), &played.head[f], &mut take);
+            session.record(played.frame(f), &played.head[f]);
         }
         let emotion = clip.emotion.name();
-        take.segments.push(Segment {
+        session.take.segments.push(Segment {
             name: format!("{emotion}{}", clip.intensity),
             first,
             end: first + played.frames(),
@@ -118,7 +97,69 @@ pub fn synthetic_take(
         });
         first += played.frames();
     }
-    take
+    session.take
+}
+
+/// The actor's range of motion ([`range_of_motion`]) after a neutral start, at a slower rate: what
+/// a regression learns from, with the truth beside it. One segment, `rangeOfMotion`.
+pub fn range_of_motion_take(
+    actor: &Avatar,
+    sites: &MarkerSites,
+    seed: u64,
+    noise_mm: f64,
+) -> SyntheticTake {
+    let mut session = Session::new(actor, sites, seed, noise_mm, TRAINING_RATE_HZ);
+    let rest = vec![0.0; actor.shape_names.len()];
+    for _ in 0..NEUTRAL_FRAMES {
+        session.record(&rest, &HeadPose::default());
+    }
+    let played = range_of_motion(&actor.shape_names, seed, TRAINING_RATE_HZ);
+    for f in 0..played.frames() {
+        session.record(played.frame(f), &played.head[f]);
+    }
+    session.take.segments.push(Segment {
+        name: "rangeOfMotion".to_owned(),
+        first: NEUTRAL_FRAMES,
+        end: NEUTRAL_FRAMES + played.frames(),
+        emotion: "none".to_owned(),
+        intensity: 0,
+    });
+    session.take
+}
+
+/// A capture that is being recorded.
+struct Session {
+    rng: Rng,
+    noise_mm: f64,
+    markers: Markers,
+    take: SyntheticTake,
+}
+
+impl Session {
+    fn new(actor: &Avatar, sites: &MarkerSites, seed: u64, noise_mm: f64, rate_hz: f64) -> Session {
+        let markers = Markers::new(actor, sites);
+        let head_labels = sites.head_labels().iter().filter(|l| markers.labels.contains(l));
+        let take = SyntheticTake {
+            labels: markers.labels.clone(),
+            head_labels: head_labels.cloned().collect(),
+            rate_hz,
+            positions: Vec::new(),
+            neutral: [0, NEUTRAL_FRAMES],
+            segments: Vec::new(),
+            truth: Vec::new(),
+            shape_names: actor.shape_names.clone(),
+        };
+        Session { rng: Rng::new(seed ^ 0x7461_6b65_5f6e_6f69), noise_mm, markers, take }
+    }
+
+    fn record(&mut self, weights: &[f64], pose: &HeadPose) {
+        for marker in &self.markers.markers {
+            let noise = v3(self.rng.normal(), self.rng.normal(), self.rng.normal()) * self.noise_mm;
+            let p = placed(marker.at(weights), pose) + noise;
+            self.take.positions.push([p.x, p.y, p.z]);
+        }
+        self.take.truth.extend_from_slice(weights);
+    }
 }
 
 /// One marker: its place at rest and what each shape does to it, mm.

@@ -4,18 +4,21 @@ use std::ops::Range;
 
 use mimique_face::{
     Avatar, Density, Emotion, HeadSpec, Identity, SyntheticTake, build_head, marker_sites,
-    synthetic_take,
+    range_of_motion_take, synthetic_take,
 };
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_study::{BuiltinAvatar, BuiltinCapture, BuiltinExpression};
 
 use crate::provenance::Provenance;
-use crate::{MappedMarker, MarkerMap, MarkerPlace, WeightsTable};
+use crate::{MappedMarker, MarkerMap, MarkerPlace, Training, WeightsTable};
 
 /// Noise of the built-in actors' sensors where the study gives none, millimetres.
 const NOISE_MM: f64 = 0.1;
 /// Actors are other people than the avatars of the same seed.
 const ACTORS: u64 = 0x6163_746f_7273_0000;
+
+/// A range of motion has noise of its own.
+const TRAINING: u64 = 0x726f_6d00_0000_0000;
 
 /// A take of one performance.
 pub(super) struct BuiltinTake {
@@ -83,10 +86,7 @@ fn played(take: &SyntheticTake) -> Range<usize> {
 }
 
 fn synthetic(actor: &BuiltinCapture, what: mimique_study::Performance) -> SyntheticTake {
-    let spec = HeadSpec {
-        identity: Identity::from_seed(actor.actor ^ ACTORS),
-        density: Density::default(),
-    };
+    let spec = actor_head(actor);
     let emotion = match what.expression {
         BuiltinExpression::Anger => Emotion::Anger,
         BuiltinExpression::Disgust => Emotion::Disgust,
@@ -100,6 +100,32 @@ fn synthetic(actor: &BuiltinCapture, what: mimique_study::Performance) -> Synthe
     // Every performance has noise of its own.
     let seed = actor.actor ^ ((emotion as u64 + 1) << 40) ^ (u64::from(what.intensity) << 48);
     synthetic_take(&build_head(&spec), &marker_sites(&spec), &[clip], seed, noise_mm)
+}
+
+/// An actor's range of motion with its weights: what a regression learns from.
+pub(super) fn training(actor: &BuiltinCapture) -> Training {
+    let spec = actor_head(actor);
+    let noise_mm = actor.noise_mm.unwrap_or(NOISE_MM);
+    let seed = actor.actor ^ TRAINING;
+    let take = range_of_motion_take(&build_head(&spec), &marker_sites(&spec), seed, noise_mm);
+    let [first, end] = take.neutral;
+    Training {
+        weights: WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz),
+        capture: Capture {
+            labels: take.labels,
+            rate_hz: take.rate_hz,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions: take.positions,
+            notes: vec![],
+        },
+        neutral: Some(first..end),
+        head: Some(take.head_labels),
+    }
+}
+
+fn actor_head(actor: &BuiltinCapture) -> HeadSpec {
+    HeadSpec { identity: Identity::from_seed(actor.actor ^ ACTORS), density: Density::default() }
 }
 
 /// What a take made by code is known by: its numbers.

@@ -8,21 +8,29 @@ mod builtin;
 mod cache;
 mod sources;
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use mimique_face::pack::encode_pack;
 use mimique_solver::{Method, MethodSpec, OperatorOptions};
 use mimique_study::wire::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
 use self::cache::{Cache, StoredPack};
-use self::sources::{Film, Performance, Recording, Sources};
+use self::sources::{AvatarFile, Film, Performance, Recording, Sources};
 use crate::provenance::Provenance;
 use crate::report::unseen_shapes;
-use crate::{TakeContent, TakePack, encode_operators, encode_take, solve_packs};
+use crate::{
+    RecordedWeights, SetUp, SolveError, TakeContent, TakePack, Training, encode_operators,
+    encode_take, solve_packs, surface_avatar,
+};
 
 /// Cut-off of the head's low-pass where the study file gives none, Hz.
 const HEAD_LOWPASS_HZ: f64 = 10.0;
+
+/// Blendshapes that the stage's shader holds.
+const MOST_STAGE_SHAPES: usize = 256;
 
 /// Where things are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -123,21 +131,32 @@ fn prepare_clip(
         PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
     })?;
     let method_pointer = pointer(&["stimuli", "methods", &clip.method]);
-    let avatar_pack = cache.pack(&["avatar", &avatar.key], || Ok(avatar.pack()))?;
-    let (spec, operators, take, segment_pointer, repair) = if entry.spec.method == Method::Recorded
-    {
-        let recording = sources.recording(&clip.segment)?;
-        let take = cache.store(recorded(&recording, &avatar.avatar.shape_names, warnings)?)?;
-        // Nothing is solved: the page needs no operators, and loads the one pack once.
-        (entry.spec.clone(), take.clone(), take, recording.pointer, None)
-    } else {
-        let performance = sources.performance(&clip.segment, &avatar)?;
-        let spec = performance.joined()?.with_lids_locked(&with_lowpass(&entry.spec, &performance));
-        spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
-        let (operators, take) = to_solve(&spec, &performance, &avatar.key, cache, warnings)?;
-        let repair = performance.repair();
-        (spec, operators, take, performance.pointer, repair)
-    };
+    let own_pack = || cache.pack(&["avatar", &avatar.key], || Ok(avatar.pack()));
+    let (spec, avatar_pack, operators, take, segment_pointer, repair) =
+        if entry.spec.method == Method::Recorded {
+            let recording = sources.recording(&clip.segment)?;
+            let take = cache.store(recorded(&recording, &avatar.avatar.shape_names, warnings)?)?;
+            // Nothing is solved: the page needs no operators, and loads the one pack once.
+            (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer, None)
+        } else {
+            let performance = sources.performance(&clip.segment, &avatar)?;
+            let spec = with_lowpass(&entry.spec, &performance);
+            let spec = performance.joined()?.with_lids_locked(&spec);
+            spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
+            let learns = spec.method == Method::Regression;
+            let training = learns.then(|| sources.training(&clip.method)).transpose()?;
+            let wanted = Wanted {
+                spec: &spec,
+                training: training.as_deref(),
+                method_pointer: &method_pointer,
+                performance: &performance,
+                avatar: &avatar,
+            };
+            let (moved, operators, take) = to_solve(&wanted, cache, warnings)?;
+            let avatar_pack = moved.map_or_else(own_pack, Ok)?;
+            let repair = performance.repair();
+            (spec, avatar_pack, operators, take, performance.pointer, repair)
+        };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(&method_pointer, e))?;
     warnings.extend(solved.warnings.iter().map(|w| (segment_pointer.clone(), w.clone())));
@@ -190,25 +209,93 @@ fn prepare_film(
     })
 }
 
-/// Operators and take of a clip that is solved from markers.
+/// A clip that is solved from markers.
+struct Wanted<'a> {
+    spec: &'a MethodSpec,
+    training: Option<&'a Training>,
+    method_pointer: &'a str,
+    performance: &'a Performance,
+    avatar: &'a AvatarFile,
+}
+
+impl Wanted<'_> {
+    /// An error of the set-up, at the part of the study file that it comes from.
+    fn error(&self, error: SolveError) -> PrepareError {
+        match error {
+            SolveError::Training(_)
+            | SolveError::TrainingMarkers { .. }
+            | SolveError::TrainingShapes { .. } => {
+                PrepareError::new(format!("{}/training", self.method_pointer), error)
+            }
+            SolveError::Surface(_) => PrepareError::new(self.method_pointer, error),
+            other => self.performance.error(other),
+        }
+    }
+}
+
+/// Operators and take of a clip that is solved from markers; with a surface the avatar that shows it.
 fn to_solve(
-    spec: &MethodSpec,
-    performance: &Performance,
-    avatar_key: &str,
+    wanted: &Wanted<'_>,
     cache: &Cache,
     warnings: &mut Vec<(String, String)>,
-) -> Result<(StoredPack, StoredPack), PrepareError> {
+) -> Result<(Option<StoredPack>, StoredPack, StoredPack), PrepareError> {
+    let Wanted { spec, training, performance, avatar, .. } = *wanted;
     let joined = performance.joined()?;
     let said = joined.warnings().iter().cloned();
     warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
+    if let Some(training) = training {
+        let pointer = format!("{}/training", wanted.method_pointer);
+        let said = training.warnings(&avatar.avatar.shape_names);
+        warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
+    }
     let options = format!("{:?}", OperatorOptions::of(spec));
     let markers = joined.marker_key();
-    let operators = cache.pack(&["operators", avatar_key, &markers, &options], || {
-        let operators = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
-        Ok(encode_operators(&operators))
-    })?;
+    let more = match spec.method {
+        Method::ThinShellSurface => format!("surface {:?}", spec.hold()),
+        Method::Regression => {
+            let numbers = (spec.basis_vectors(), spec.length_scale, spec.signal, spec.noise);
+            let key = training.map(Training::key).unwrap_or_default();
+            format!("{key} {:?} {numbers:?} {:?}", spec.inference(), spec.head_lowpass_hz)
+        }
+        _ => String::new(),
+    };
+    let mut key = vec!["operators", &avatar.key, &markers, &options];
+    key.extend((!more.is_empty()).then_some(more.as_str()));
+    // Both packs of a surface need it; made once, and only where one of them is not there.
+    let set_up = OnceCell::new();
+    let ready = || -> Result<&SetUp, PrepareError> {
+        if set_up.get().is_none() {
+            let made = joined.set_up(spec, training).map_err(|e| wanted.error(e))?;
+            let _ = set_up.set(made);
+        }
+        set_up.get().ok_or_else(|| PrepareError::new(wanted.method_pointer, "not set up"))
+    };
+    let operators = cache.pack(&key, || Ok(encode_operators(&ready()?.operators)))?;
     let opened = crate::decode_operators(&operators.bytes)
         .map_err(|e| PrepareError::new(&performance.capture_pointer, e))?;
+    let moved = if spec.method == Method::ThinShellSurface {
+        key[0] = "surface avatar";
+        Some(cache.pack(&key, || {
+            let surface = ready()?.surface.as_ref().ok_or_else(|| {
+                PrepareError::new(wanted.method_pointer, "the method moves no surface")
+            })?;
+            let bank = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
+            let most = MOST_STAGE_SHAPES / 3;
+            if bank.marker_count() > most {
+                let message = format!(
+                    "{} markers: the stage moves a surface by {most} at most; leave some out of \
+                     the map",
+                    bank.marker_count()
+                );
+                return Err(PrepareError::new(wanted.method_pointer, message));
+            }
+            let moved = surface_avatar(&avatar.avatar, avatar.skin()?, surface, &bank)
+                .map_err(|e| PrepareError::new(wanted.method_pointer, e))?;
+            Ok(encode_pack(&moved).bytes)
+        })?)
+    } else {
+        None
+    };
     let unseen = unseen_shapes(&opened, spec);
     warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
     let lowpass = format!("{:?}", spec.head_lowpass_hz);
@@ -218,7 +305,7 @@ fn to_solve(
             .map_err(|e| performance.error(e))?;
         Ok(encode_take(&take))
     })?;
-    Ok((operators, take))
+    Ok((moved, operators, take))
 }
 
 /// The take pack of recorded weights, in the avatar's order of shapes.
@@ -227,26 +314,12 @@ fn recorded(
     shape_names: &[String],
     warnings: &mut Vec<(String, String)>,
 ) -> Result<Vec<u8>, PrepareError> {
-    let table = &recording.table;
-    let columns: Vec<Option<usize>> = shape_names
-        .iter()
-        .map(|name| table.shape_names.iter().position(|column| same_shape(name, column)))
-        .collect();
-    let lost: Vec<&str> = (0..table.shape_names.len())
-        .filter(|column| !columns.contains(&Some(*column)))
-        .map(|column| table.shape_names[column].as_str())
-        .collect();
-    if !lost.is_empty() {
-        let message = format!("the avatar has no shape {}: left out", lost.join(", "));
-        warnings.push((recording.pointer.clone(), message));
-    }
+    let RecordedWeights { table, names } = RecordedWeights::of(&recording.table, shape_names);
+    warnings.extend(names.warnings().into_iter().map(|w| (recording.pointer.clone(), w)));
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
     })?;
-    let weights = recording
-        .frames
-        .clone()
-        .flat_map(|frame| columns.iter().map(move |c| c.map_or(0.0, |c| table.row(frame)[c])));
+    let weights = recording.frames.clone().flat_map(|frame| table.row(frame).iter().copied());
     Ok(encode_take(&TakePack {
         rate_hz,
         first_frame: table.frames[recording.frames.start],
@@ -256,22 +329,6 @@ fn recorded(
             weights: weights.collect(),
         },
     }))
-}
-
-/// Whether two names mean one shape: `browDown_L`, `browDownLeft`, `BrowDownLeft`.
-fn same_shape(a: &str, b: &str) -> bool {
-    let plain = |name: &str| {
-        let name: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
-        let name = name.to_lowercase();
-        match (name.strip_suffix("left"), name.strip_suffix("right")) {
-            // `mouthLeft` and `jawLeft` are whole names.
-            (Some("mouth" | "jaw"), _) | (_, Some("mouth" | "jaw")) => name,
-            (Some(stem), _) => format!("{stem}l"),
-            (_, Some(stem)) => format!("{stem}r"),
-            _ => name,
-        }
-    };
-    a == b || plain(a) == plain(b)
 }
 
 /// The head's low-pass of a clip: the method's own, or the capture's, or 10 Hz.

@@ -3,12 +3,12 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use mimique_face::Avatar;
 use mimique_face::pack::encode_pack;
-use mimique_mocap::{Capture, Format, LengthUnit, ReadOptions};
+use mimique_mocap::{Capture, LengthUnit, ReadOptions};
 use mimique_solver::FrontEndError;
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
@@ -17,7 +17,8 @@ use mimique_study::{
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
 use crate::{
-    AvatarSkin, JoinedTake, MarkerMap, RepairSidecar, SolveError, TakeOptions, WeightsTable,
+    AvatarSkin, JoinedTake, MarkerMap, RepairSidecar, SolveError, TakeOptions, Training,
+    WeightsTable,
 };
 
 /// Everything that a study file names.
@@ -26,6 +27,7 @@ pub(super) struct Sources<'a> {
     places: &'a Places,
     avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
+    trainings: RefCell<BTreeMap<String, Rc<Training>>>,
 }
 
 /// An avatar, and what its bytes or its making are known by.
@@ -85,8 +87,8 @@ pub(super) struct Recording {
 
 impl<'a> Sources<'a> {
     pub fn new(study: &'a Study, places: &'a Places) -> Self {
-        let (avatars, captures) = Default::default();
-        Self { study, places, avatars, captures }
+        let (avatars, captures, trainings) = Default::default();
+        Self { study, places, avatars, captures, trainings }
     }
 
     /// The avatar of that identifier.
@@ -170,6 +172,7 @@ impl<'a> Sources<'a> {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
             repair: file.repair.clone(),
+            training: None,
         };
         let frames = match (segment.span(), &file.known) {
             (Some(Span::Frames { first, end }), None) => first..end,
@@ -181,7 +184,8 @@ impl<'a> Sources<'a> {
                 ));
             }
         };
-        let key = format!("{} {map_key} {options:?} {frames:?}", file.key);
+        let key =
+            format!("{} {map_key} {:?} {:?} {frames:?}", file.key, options.neutral, options.head);
         Ok(Performance {
             pointer: at,
             capture_pointer,
@@ -193,6 +197,45 @@ impl<'a> Sources<'a> {
             map,
             options,
         })
+    }
+
+    /// What the regression of that identifier learns from.
+    pub fn training(&self, method: &str) -> Result<Rc<Training>, PrepareError> {
+        if let Some(found) = self.trainings.borrow().get(method) {
+            return Ok(found.clone());
+        }
+        let at = format!("{}/training", pointer(&["stimuli", "methods", method]));
+        let entry = self.study.stimuli.methods.get(method).and_then(|m| m.training.as_ref());
+        let entry = entry.ok_or_else(|| {
+            PrepareError::new(&at, "a regression learns from a range of motion; name its capture")
+        })?;
+        let id = &entry.capture;
+        let capture_at = pointer(&["stimuli", "captures", id]);
+        let source = self.study.stimuli.captures.get(id);
+        let training = match (source.and_then(|c| c.source()), &entry.weights) {
+            (Some(CaptureSource::Builtin(actor)), None) => builtin::training(actor),
+            (Some(CaptureSource::File(path)), Some(weights_file)) => {
+                let source = &self.study.stimuli.captures[id];
+                let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
+                let at = format!("{at}/weights");
+                let (path, bytes) = self.read(weights_file, &at)?;
+                let weights = WeightsTable::from_recording(&path, &bytes)
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                Training {
+                    capture,
+                    weights,
+                    neutral: source.neutral.map(|[first, end]| first..end),
+                    head: (!source.head.is_empty()).then(|| source.head.clone()),
+                }
+            }
+            _ => {
+                let message = "give a capture of a file and its weights, or a built-in actor";
+                return Err(PrepareError::new(at, message));
+            }
+        };
+        let training = Rc::new(training);
+        self.trainings.borrow_mut().insert(method.to_owned(), training.clone());
+        Ok(training)
     }
 
     /// The segment of that identifier as recorded weights.
@@ -213,7 +256,7 @@ impl<'a> Sources<'a> {
             }
         };
         let (path, bytes) = self.read(file, &pointer)?;
-        let table = weights(&path, &bytes)
+        let table = WeightsTable::from_recording(&path, &bytes)
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
             Some(Span::Frames { first, end }) if end <= table.frames.len() => {
@@ -237,7 +280,6 @@ impl<'a> Sources<'a> {
     /// The capture of a segment; for a built-in actor the take of its performance.
     fn capture(&self, segment: &Segment, at: &str) -> Result<Rc<CaptureFile>, PrepareError> {
         let id = &segment.capture;
-        let of = |field: &str| pointer(&["stimuli", "captures", id, field]);
         let entry = self.study.stimuli.captures.get(id);
         let (name, file) = match (entry.and_then(|c| c.source()), segment.span()) {
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
@@ -259,19 +301,9 @@ impl<'a> Sources<'a> {
                 if let Some(found) = self.captures.borrow().get(id) {
                     return Ok(found.clone());
                 }
-                let (path, bytes) = self.read(path, &of("file"))?;
                 let unit = entry.and_then(|c| c.unit.as_deref());
-                let options = ReadOptions { unit: unit_of(unit, &of("unit"))?, rate_hz: None };
-                let recording =
-                    mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
-                        .map_err(|e| {
-                            PrepareError::new(of("file"), format!("{}: {e}", path.display()))
-                        })?;
-                let key = format!("{} {unit:?}", sha256_hex(&bytes));
-                let capture = recording.capture;
-                let repair = RepairSidecar::beside(&path, &bytes)
-                    .map_err(|e| PrepareError::new(of("file"), e))?
-                    .map(|sidecar| sidecar.hash());
+                let at = pointer(&["stimuli", "captures", id]);
+                let (key, capture, repair) = self.read_capture(path, unit, &at)?;
                 (id.clone(), CaptureFile { key, capture, head: vec![], repair, known: None })
             }
             (None, _) => {
@@ -288,6 +320,24 @@ impl<'a> Sources<'a> {
         Ok(file)
     }
 
+    /// The capture of a file, and what it is known by.
+    fn read_capture(
+        &self,
+        file: &str,
+        unit: Option<&str>,
+        at: &str,
+    ) -> Result<(String, Capture, Option<String>), PrepareError> {
+        let at_file = format!("{at}/file");
+        let (path, bytes) = self.read(file, &at_file)?;
+        let options = ReadOptions { unit: unit_of(unit, &format!("{at}/unit"))?, rate_hz: None };
+        let recording = mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
+            .map_err(|e| PrepareError::new(&at_file, format!("{}: {e}", path.display())))?;
+        let repair = RepairSidecar::beside(&path, &bytes)
+            .map_err(|e| PrepareError::new(&at_file, e))?
+            .map(|sidecar| sidecar.hash());
+        Ok((format!("{} {unit:?}", sha256_hex(&bytes)), recording.capture, repair))
+    }
+
     /// The file that a path of the study names.
     fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
         let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
@@ -300,16 +350,6 @@ impl<'a> Sources<'a> {
             }
         }
     }
-}
-
-/// Weights from a Live Link Face export or from Mimique's own CSV.
-fn weights(path: &Path, bytes: &[u8]) -> Result<WeightsTable, String> {
-    if mimique_mocap::recognise(bytes) == Some(Format::LiveLinkCsv) {
-        let take = mimique_mocap::read_weights(&path.to_string_lossy(), bytes)
-            .map_err(|e| e.to_string())?;
-        return Ok(WeightsTable::at_rate(take.names, take.weights, 0, take.rate_hz));
-    }
-    WeightsTable::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
 }
 
 fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
@@ -328,7 +368,7 @@ impl AvatarFile {
         encode_pack(&self.avatar).bytes
     }
 
-    fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
+    pub fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
         if let Some(skin) = self.skin.get() {
             return Ok(skin);
         }

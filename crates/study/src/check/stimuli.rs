@@ -29,6 +29,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         identifier(name, &below("/stimuli/methods", name), issues);
     }
     methods(subject, issues);
+    training(subject, lookup, issues);
     references(subject, issues);
     factors(subject, issues);
     look(subject, issues);
@@ -159,6 +160,48 @@ fn methods(subject: &Subject<'_>, issues: &mut Issues) {
                 None => (problem.message, "mend the value".to_owned()),
             };
             issues.error(pointer.replace("~1", "/"), "bad-parameter", message, hint);
+        }
+    }
+}
+
+/// What a regression learns from.
+fn training(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues) {
+    let stimuli = &subject.study.stimuli;
+    let captures: Vec<&str> = stimuli.captures.keys().map(String::as_str).collect();
+    for (name, method) in &stimuli.methods {
+        let learns = method.spec.method == mimique_solver::Method::Regression;
+        let pointer = below("/stimuli/methods", name);
+        let Some(training) = &method.training else {
+            if learns {
+                let message = "no training: a regression learns from a range of motion";
+                let hint = "add \"training\": {\"capture\": \"...\", \"weights\": \"weights.csv\"}";
+                issues.error(pointer, "no-training", message, hint);
+            }
+            continue;
+        };
+        let place = below(&pointer, "training");
+        if !learns {
+            let message = format!("\"{}\" learns nothing", method.word());
+            issues.error(place, "not-needed", message, "remove training, or take regression");
+            continue;
+        }
+        file(training.weights.as_deref(), &below(&place, "weights"), lookup, issues);
+        let Some(capture) = stimuli.captures.get(&training.capture) else {
+            let message = format!("there is no capture \"{}\"", training.capture);
+            let hint = suggestion(&training.capture, &captures);
+            issues.error(below(&place, "capture"), "unknown-reference", message, hint);
+            continue;
+        };
+        match (capture.source(), &training.weights) {
+            (Some(CaptureSource::File(_)), None) => {
+                let message = "no weights: nothing says what the take's frames are";
+                issues.error(place, "no-weights", message, "add \"weights\": \"weights.csv\"");
+            }
+            (Some(CaptureSource::Builtin(_)), Some(_)) => {
+                let message = "a built-in actor brings the weights along";
+                issues.error(below(&place, "weights"), "not-needed", message, "remove weights");
+            }
+            _ => {}
         }
     }
 }
@@ -306,7 +349,9 @@ fn unused(subject: &Subject<'_>, issues: &mut Issues) {
         complain(&segment.id, "segment", used, below("/stimuli/segments", index));
     }
     for name in stimuli.captures.keys() {
-        let used = stimuli.segments.iter().any(|segment| segment.capture == *name);
+        let mut training = stimuli.methods.values().filter_map(|each| each.training.as_ref());
+        let used = stimuli.segments.iter().any(|segment| segment.capture == *name)
+            || training.any(|training| training.capture == *name);
         complain(name, "capture", used, below("/stimuli/captures", name));
     }
 }

@@ -11,7 +11,7 @@ use crate::json_reader::read_value;
 
 /// A method, its parameters, and what the analysis calls it.
 ///
-/// In JSON the solver's parameters, `factors` and `label` stand side by side:
+/// In JSON the solver's parameters, `factors`, `label` and `training` stand side by side:
 /// `{"method": "lsts", "alpha": 0.3, "factors": {"method": "lsts30"}}`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodEntry {
@@ -21,6 +21,20 @@ pub struct MethodEntry {
     pub factors: Factors,
     /// Name for people.
     pub label: Option<LocalText>,
+    /// What `regression` learns from.
+    pub training: Option<MethodTraining>,
+}
+
+/// A range-of-motion take with known weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct MethodTraining {
+    /// Key of `stimuli.captures`: a file, or a built-in actor, who then shows the whole range of
+    /// motion.
+    pub capture: String,
+    /// CSV of the weights played in it, a row a frame; a built-in actor brings them along.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<String>,
 }
 
 impl MethodEntry {
@@ -44,8 +58,12 @@ impl<'de> Deserialize<'de> for MethodEntry {
             Some(value) => Some(read_value(value).map_err(D::Error::custom)?),
             None => None,
         };
+        let training = match map.remove("training") {
+            Some(value) => Some(read_value(value).map_err(D::Error::custom)?),
+            None => None,
+        };
         let spec = read_value(Value::Object(map)).map_err(D::Error::custom)?;
-        Ok(Self { spec, factors, label })
+        Ok(Self { spec, factors, label, training })
     }
 }
 
@@ -61,6 +79,10 @@ impl Serialize for MethodEntry {
             if let Some(label) = &self.label {
                 let label = serde_json::to_value(label).map_err(S::Error::custom)?;
                 map.insert("label".to_owned(), label);
+            }
+            if let Some(training) = &self.training {
+                let training = serde_json::to_value(training).map_err(S::Error::custom)?;
+                map.insert("training".to_owned(), training);
             }
         }
         value.serialize(serializer)
@@ -101,6 +123,8 @@ impl JsonSchema for MethodEntry {
         );
         properties.insert("factors".to_owned(), generator.subschema_for::<Factors>().into());
         properties.insert("label".to_owned(), generator.subschema_for::<LocalText>().into());
+        properties
+            .insert("training".to_owned(), generator.subschema_for::<MethodTraining>().into());
         json_schema!({
             "type": "object",
             "description": "A method, its parameters, and the factors of the clips made with it",

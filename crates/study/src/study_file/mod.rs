@@ -26,7 +26,7 @@ pub use general::{
 };
 pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
 pub use local_text::LocalText;
-pub use method::{MethodEntry, method_keys};
+pub use method::{MethodEntry, MethodTraining, method_keys};
 pub use paths::{PathError, resolve_path};
 pub use questions::{
     AttentionCheck, Choice, Comparison, Condition, Grid, Likert, Matrix, MultipleChoice,
