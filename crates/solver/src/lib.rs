@@ -30,11 +30,9 @@
 //!
 //! A Newton step at N = 53 is some 61 kflop, of which the factor is 50; a core that does 8
 //! double-precision operations a cycle at 2.8 GHz could not make more than 370,000 a second, and the
-//! divisions and roots on the diagonal halve that. Measured in processor time on one such core that
-//! others used too, on the planted take (5,660 frames): `lsts` 41,800 frames/s (4.2 exchanges of the
-//! active set each; SciPy's `lsq_linear(method="bvls")` 370 on the same 53 x 53 problem), `lsts-norm`
-//! 13,800 (2.9 factors each), front end 270,000; in WebAssembly with 128-bit vectors 0.8 to 0.9 of
-//! that. `cargo bench -p mimique-solver` measures again.
+//! divisions and roots on the diagonal halve that. `lsts` exchanges its active set some four times
+//! a frame, `lsts-norm` needs about two factors; `docs/solver-benchmarks.md` has what was measured
+//! beside SciPy, and `cargo xtask bench` measures again.
 
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]

@@ -69,7 +69,8 @@ pub fn aligned_rank_transform(
         });
     }
     let columns: Vec<&Factor> = factors.iter().copied().chain([block]).collect();
-    let (rows, dropped) = complete_rows(&[response], &columns)?;
+    let complete = complete_rows(&[response], &columns)?;
+    let (rows, dropped) = (complete.to_vec(), complete.dropped());
     let used: Vec<Factor> = factors.iter().map(|factor| factor.rows(&rows)).collect();
     for factor in &used {
         factor.require_levels(2)?;

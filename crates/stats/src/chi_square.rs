@@ -30,17 +30,18 @@ pub struct Contingency {
 impl Contingency {
     /// Counts two factors.
     pub fn of(rows: &Factor, columns: &Factor) -> Result<Self, Refusal> {
-        let (kept, dropped) = complete_rows(&[], &[rows, columns])?;
-        let (rows, columns) = (rows.rows(&kept), columns.rows(&kept));
+        let complete = complete_rows(&[], &[rows, columns])?;
+        let dropped = complete.dropped();
+        let (rows, columns) = (complete.factor(rows), complete.factor(columns));
         let mut counts = vec![vec![0; columns.levels.len()]; rows.levels.len()];
         for (&row, &column) in rows.codes.iter().zip(&columns.codes) {
             counts[row as usize][column as usize] += 1;
         }
         Ok(Self {
-            row_name: rows.name,
-            column_name: columns.name,
-            rows: rows.levels,
-            columns: columns.levels,
+            row_name: rows.name.clone(),
+            column_name: columns.name.clone(),
+            rows: rows.levels.clone(),
+            columns: columns.levels.clone(),
             counts,
             dropped,
             left_out: Vec::new(),

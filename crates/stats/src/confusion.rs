@@ -54,8 +54,9 @@ impl Confusion {
 
 /// Counts answers. Truths and answers need not have the same labels.
 pub fn confusion(truth: &Factor, answer: &Factor) -> Result<Confusion, Refusal> {
-    let (rows, dropped) = complete_rows(&[], &[truth, answer])?;
-    let (truth, answer) = (truth.rows(&rows), answer.rows(&rows));
+    let complete = complete_rows(&[], &[truth, answer])?;
+    let dropped = complete.dropped();
+    let (truth, answer) = (complete.factor(truth), complete.factor(answer));
     let mut labels = truth.levels.clone();
     labels.extend(answer.levels.iter().filter(|level| !truth.levels.contains(level)).cloned());
     labels.sort_by(|a, b| match (a.parse::<f64>(), b.parse::<f64>()) {

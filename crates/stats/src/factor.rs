@@ -39,7 +39,9 @@ impl Factor {
                 }),
             });
         }
-        let numbers: Option<Vec<f64>> = labels.iter().map(|label| number(label)).collect();
+        // -0 and 0 are one level.
+        let numbers: Option<Vec<f64>> =
+            labels.iter().map(|label| number(label).map(|value| value + 0.0)).collect();
         let mut order: Vec<usize> = (0..labels.len()).collect();
         let compare = |&a: &usize, &b: &usize| match &numbers {
             Some(numbers) => numbers[a].total_cmp(&numbers[b]),
@@ -120,6 +122,24 @@ impl Factor {
             .map(|&row| new_code.get(self.codes[row] as usize).copied().unwrap_or(Self::MISSING))
             .collect();
         Self { name: self.name.clone(), levels, codes }
+    }
+
+    /// Whether each level occurs.
+    pub(crate) fn uses_all_levels(&self) -> bool {
+        let mut used = vec![false; self.levels.len()];
+        let mut left = used.len();
+        for &code in &self.codes {
+            if let Some(used) = used.get_mut(code as usize)
+                && !*used
+            {
+                *used = true;
+                left -= 1;
+                if left == 0 {
+                    return true;
+                }
+            }
+        }
+        left == 0
     }
 
     /// Level of a row.

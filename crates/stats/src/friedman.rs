@@ -114,7 +114,8 @@ pub struct Blocks {
 impl Blocks {
     /// Arranges rows by block and group. Refuses two responses in one place, naming it.
     pub fn of(response: &Numbers, group: &Factor, block: &Factor) -> Result<Self, Refusal> {
-        let (rows, dropped) = complete_rows(&[response], &[group, block])?;
+        let complete = complete_rows(&[response], &[group, block])?;
+        let (rows, dropped) = (complete.to_vec(), complete.dropped());
         // A block whose every response is missing is still an incomplete block.
         let with_group: Vec<usize> =
             (0..block.codes.len()).filter(|&r| block.codes[r] != Factor::MISSING).collect();

@@ -8,11 +8,10 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use crate::adjust::Adjustment;
-use crate::describe::median;
 use crate::factor::Factor;
+use crate::grouped::Grouped;
 use crate::outcome::{Labelled, Outcome, Refusal};
 use crate::ranks::Ranks;
-use crate::sample::complete_rows;
 use crate::table::Numbers;
 use crate::tail::{Alternative, chi_square_upper, normal_tail};
 
@@ -104,34 +103,17 @@ pub fn kruskal_wallis(
     response: &Numbers,
     group: &Factor,
 ) -> Result<Outcome<KruskalWallis>, Refusal> {
-    let (rows, dropped) = complete_rows(&[response], &[group])?;
-    let group = group.rows(&rows);
-    group.require_levels(2)?;
-    let values: Vec<f64> = rows.iter().map(|&row| response.values[row]).collect();
-    let ranks = Ranks::of(&values);
-    if ranks.values.len() == 1 {
-        return Ok(Outcome::undefined(format!(
-            "column \"{}\": all {} values are equal ({}), so ranks do not differ",
-            response.name,
-            values.len(),
-            ranks.values[0]
-        )));
-    }
-
-    let k = group.levels.len();
-    let n = values.len();
-    let mut by_group: Vec<Vec<f64>> = vec![Vec::new(); k];
-    let mut doubled_sums = vec![0u64; k];
-    for (observation, &code) in group.codes.iter().enumerate() {
-        by_group[code as usize].push(values[observation]);
-        doubled_sums[code as usize] += ranks.doubled_rank(observation);
-    }
-    let sizes: Vec<usize> = by_group.iter().map(Vec::len).collect();
+    let grouped = match Grouped::of(response, group)? {
+        Outcome::Undefined { reason } => return Ok(Outcome::Undefined { reason }),
+        Outcome::Ok(grouped) => grouped,
+    };
+    let Grouped { ranks, group, dropped, sizes, doubled_sums, .. } = &grouped;
+    let (k, n) = (group.levels.len(), ranks.len());
     let mean_ranks: Vec<f64> =
-        doubled_sums.iter().zip(&sizes).map(|(&sum, &n)| sum as f64 / 2.0 / n as f64).collect();
+        doubled_sums.iter().zip(sizes).map(|(&sum, &n)| sum as f64 / 2.0 / n as f64).collect();
     let grand_mean = (n as f64 + 1.0) / 2.0;
     let between: f64 =
-        mean_ranks.iter().zip(&sizes).map(|(m, &n)| n as f64 * (m - grand_mean).powi(2)).sum();
+        mean_ranks.iter().zip(sizes).map(|(m, &n)| n as f64 * (m - grand_mean).powi(2)).sum();
     let total = ranks.sum_of_squares();
     let statistic = (n - 1) as f64 * between / total;
     let tail = chi_square_upper(statistic, (k - 1) as f64);
@@ -149,7 +131,7 @@ pub fn kruskal_wallis(
         test: "kruskal-wallis",
         variant: "chi-square approximation, corrected for ties",
         n,
-        dropped,
+        dropped: *dropped,
         k,
         statistic,
         df: k - 1,
@@ -159,9 +141,9 @@ pub fn kruskal_wallis(
         epsilon_squared: statistic / (n - 1) as f64,
         eta_squared_h: (n > k).then(|| (statistic - k as f64 + 1.0) / (n - k) as f64),
         group_n: Labelled::zip(&group.levels, sizes.iter().copied()),
-        medians: Labelled::zip(&group.levels, by_group.iter_mut().map(|values| median(values))),
-        exact_permutation_p: permutation_p(&ranks, &sizes, &doubled_sums),
-        dunn: dunn(&group.levels, &mean_ranks, &sizes, total / (n - 1) as f64),
+        medians: Labelled::zip(&group.levels, grouped.medians()),
+        exact_permutation_p: permutation_p(ranks, sizes, doubled_sums),
+        dunn: dunn(&group.levels, &mean_ranks, sizes, total / (n - 1) as f64),
         mean_ranks: Labelled::zip(&group.levels, mean_ranks),
         warnings,
     }))

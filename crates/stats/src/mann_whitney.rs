@@ -4,9 +4,8 @@
 use serde::Serialize;
 
 use crate::factor::Factor;
+use crate::grouped::Grouped;
 use crate::outcome::{Labelled, Outcome, Refusal};
-use crate::ranks::Ranks;
-use crate::sample::complete_rows;
 use crate::table::Numbers;
 use crate::tail::{Alternative, Tail, normal_quantile_upper, normal_tail};
 use crate::walsh::{LEVEL, cut_of, two_sample_interval};
@@ -53,34 +52,19 @@ pub struct MannWhitney {
 /// Does the first of two groups tend to larger responses? `group` must have two levels among the rows
 /// used. Undefined if all responses are equal.
 pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWhitney>, Refusal> {
-    let (rows, dropped) = complete_rows(&[response], &[group])?;
-    let used = group.rows(&rows);
-    used.require_levels(2)?;
+    let grouped = match Grouped::of(response, group)? {
+        Outcome::Undefined { reason } => return Ok(Outcome::Undefined { reason }),
+        Outcome::Ok(grouped) => grouped,
+    };
+    let used = &grouped.group;
     if used.levels.len() > 2 {
         let problem = format!("{} levels, this test compares two", used.levels.len());
         return Err(Refusal::column(&group.name, problem, "choose two with --levels A,B"));
     }
-    let values: Vec<f64> = rows.iter().map(|&row| response.values[row]).collect();
-    let ranks = Ranks::of(&values);
-    if ranks.values.len() == 1 {
-        return Ok(Outcome::undefined(format!(
-            "column \"{}\": all {} values are equal ({}), so ranks do not differ",
-            response.name,
-            values.len(),
-            ranks.values[0]
-        )));
-    }
-    let sample = |wanted: u32| -> Vec<f64> {
-        let mut sample: Vec<f64> =
-            (0..values.len()).filter(|&i| used.codes[i] == wanted).map(|i| values[i]).collect();
-        sample.sort_unstable_by(f64::total_cmp);
-        sample
-    };
-    let (x, y) = (sample(0), sample(1));
-    let (m, n) = (x.len(), y.len());
-    let doubled_sum: u64 =
-        (0..values.len()).filter(|&i| used.codes[i] == 0).map(|i| ranks.doubled_rank(i)).sum();
-    let u = (doubled_sum - (m * (m + 1)) as u64) as f64 / 2.0;
+    let (ranks, dropped) = (&grouped.ranks, grouped.dropped);
+    let (x, y) = (grouped.tally(0), grouped.tally(1));
+    let (m, n) = (grouped.sizes[0], grouped.sizes[1]);
+    let u = (grouped.doubled_sums[0] - (m * (m + 1)) as u64) as f64 / 2.0;
     let pairs = (m * n) as f64;
 
     let total = (m + n) as f64;
@@ -108,7 +92,7 @@ pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWh
             warnings.push("cannot compute exact confidence intervals with ties".to_owned());
         }
         // Inverting the test: only ties inside a sample remain at every shift.
-        let inner = Ranks::of(&x).tie_term() + Ranks::of(&y).tie_term();
+        let inner = x.tie_term() + y.tie_term();
         let reach =
             0.5 + normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance(inner).max(0.0).sqrt();
         let cut = (pairs / 2.0 - reach).floor();

@@ -2,10 +2,8 @@
 //!
 //! With few distinct values (ratings) nothing of the length of the data is sorted.
 
-use std::collections::HashMap;
-
-/// Distinct values beyond which sorting replaces counting.
-const COUNTED: usize = 4096;
+use crate::radix;
+use crate::tally::Found;
 
 /// Midranks of a sample without missing values.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,45 +81,26 @@ impl Ranks {
 }
 
 fn by_counting(sample: &[f64]) -> Option<(Vec<f64>, Vec<u32>)> {
-    let mut code_of: HashMap<u64, u32> = HashMap::new();
-    let mut found: Vec<f64> = Vec::new();
+    let mut found = Found::new();
     let mut codes = Vec::with_capacity(sample.len());
-    let mut last: Option<(u64, u32)> = None;
     for &value in sample {
-        let value = value + 0.0; // -0 becomes 0
-        let bits = value.to_bits();
-        let code = match last {
-            Some((same, code)) if same == bits => code,
-            _ => *code_of.entry(bits).or_insert_with(|| {
-                found.push(value);
-                found.len() as u32 - 1
-            }),
-        };
-        if found.len() > COUNTED {
-            return None;
-        }
-        last = Some((bits, code));
-        codes.push(code);
+        codes.push(found.code(value)?);
     }
-    let mut order: Vec<u32> = (0..found.len() as u32).collect();
-    order.sort_by(|&a, &b| found[a as usize].total_cmp(&found[b as usize]));
-    let mut new_code = vec![0; found.len()];
+    let order = found.order();
+    let mut new_code = vec![0; order.len()];
     for (new, &old) in order.iter().enumerate() {
         new_code[old as usize] = new as u32;
     }
     for code in &mut codes {
         *code = new_code[*code as usize];
     }
-    Some((order.iter().map(|&old| found[old as usize]).collect(), codes))
+    Some((order.iter().map(|&old| found.values[old as usize]).collect(), codes))
 }
 
 fn by_sorting(sample: &[f64]) -> (Vec<f64>, Vec<u32>) {
-    let mut order: Vec<(f64, u32)> =
-        sample.iter().enumerate().map(|(i, &value)| (value + 0.0, i as u32)).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut values: Vec<f64> = Vec::new();
     let mut codes = vec![0; sample.len()];
-    for (value, observation) in order {
+    for (value, observation) in radix::sorted_with_places(sample) {
         if values.last() != Some(&value) {
             values.push(value);
         }

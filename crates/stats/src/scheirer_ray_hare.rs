@@ -6,6 +6,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::factor::Factor;
+use crate::grouped::equal_values;
 use crate::outcome::{Outcome, Refusal};
 use crate::ranks::Ranks;
 use crate::sample::complete_rows;
@@ -111,18 +112,16 @@ pub fn scheirer_ray_hare(
     factors: [&Factor; 2],
     ss_type: SumsOfSquares,
 ) -> Result<Outcome<ScheirerRayHare>, Refusal> {
-    let (rows, dropped) = complete_rows(&[response], &factors)?;
-    let [first, second] = factors.map(|factor| factor.rows(&rows));
+    let rows = complete_rows(&[response], &factors)?;
+    let dropped = rows.dropped();
+    let [first, second] = factors.map(|factor| rows.factor(factor));
     first.require_levels(2)?;
     second.require_levels(2)?;
-    let values: Vec<f64> = rows.iter().map(|&row| response.values[row]).collect();
+    let values = rows.numbers(response);
     let ranks = Ranks::of(&values);
     let n = values.len();
     if ranks.values.len() == 1 {
-        return Ok(Outcome::undefined(format!(
-            "column \"{}\": all {n} values are equal ({}), so ranks do not differ",
-            response.name, ranks.values[0]
-        )));
+        return Ok(Outcome::undefined(equal_values(&response.name, n, ranks.values[0])));
     }
     let (a, b) = (first.levels.len(), second.levels.len());
     let mut counts = vec![0u64; a * b];

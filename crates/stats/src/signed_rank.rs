@@ -1,7 +1,7 @@
 //! Signed ranks of differences, and the distribution of their positive sum when signs are coin tosses.
 
-use crate::ranks::Ranks;
 use crate::tail::{Alternative, Tail, normal_tail};
+use crate::tally::Tally;
 
 /// What becomes of differences that are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,54 +14,97 @@ pub(crate) enum Zeros {
     Split,
 }
 
-/// Midranks of absolute differences with their signs, doubled so that they are integers.
+/// Midranks of absolute differences with their signs, doubled so that they are integers; a group of
+/// equal absolute differences at a time.
 #[derive(Debug, Clone)]
 pub(crate) struct SignedRanks {
-    /// Doubled midranks that a coin toss gives to one side or the other.
-    tossed: Vec<u64>,
+    /// Doubled midranks that a coin toss gives to one side or the other, and how often each occurs.
+    tossed: Vec<(u64, u64)>,
     doubled_plus: u64,
     doubled_minus: u64,
     mean: f64,
     variance: f64,
 }
 
+/// Differences of one absolute value.
+#[derive(Debug, Clone, Copy)]
+struct Magnitude {
+    plus: u64,
+    minus: u64,
+}
+
+/// Distinct absolute values in ascending order, zero left out.
+fn magnitudes(differences: &Tally) -> Vec<Magnitude> {
+    let Tally { values, counts } = differences;
+    let mut below = values.partition_point(|&value| value < 0.0);
+    let mut above = values.partition_point(|&value| value <= 0.0);
+    let mut found = Vec::with_capacity(values.len());
+    while below > 0 || above < values.len() {
+        let minus = if below > 0 { -values[below - 1] } else { f64::INFINITY };
+        let plus = values.get(above).copied().unwrap_or(f64::INFINITY);
+        let mut magnitude = Magnitude { plus: 0, minus: 0 };
+        if minus <= plus {
+            below -= 1;
+            magnitude.minus = counts[below];
+        }
+        if plus <= minus {
+            magnitude.plus = counts[above];
+            above += 1;
+        }
+        found.push(magnitude);
+    }
+    found
+}
+
 impl SignedRanks {
     /// At least one difference must be other than zero.
-    pub(crate) fn of(differences: &[f64], zeros: Zeros) -> Self {
-        let kept: Vec<f64> = match zeros {
-            Zeros::Drop => differences.iter().copied().filter(|&d| d != 0.0).collect(),
-            Zeros::Pratt | Zeros::Split => differences.to_vec(),
-        };
-        let ranks = Ranks::of(&kept.iter().map(|d| d.abs()).collect::<Vec<_>>());
-        let (mut plus, mut minus, mut of_zeros) = (0u64, 0u64, 0u64);
-        let mut tossed = Vec::with_capacity(kept.len());
-        for (i, &difference) in kept.iter().enumerate() {
-            let rank = ranks.doubled_rank(i);
-            if difference == 0.0 {
-                of_zeros += rank;
-                continue;
-            }
-            tossed.push(rank);
-            if difference > 0.0 {
-                plus += rank;
-            } else {
-                minus += rank;
-            }
+    pub(crate) fn of(differences: &Tally, zeros: Zeros) -> Self {
+        let groups = magnitudes(differences);
+        let zero_count =
+            differences.total() - groups.iter().map(|group| group.plus + group.minus).sum::<u64>();
+        let ranked_zeros = if zeros == Zeros::Drop { 0 } else { zero_count };
+        let tie = |count: u64| (count as f64) * ((count * count) as f64 - 1.0);
+        let (mut plus, mut minus) = (0u64, 0u64);
+        let (mut below, mut tie_term) = (ranked_zeros, tie(ranked_zeros));
+        let mut tossed = Vec::with_capacity(groups.len());
+        for group in groups {
+            let count = group.plus + group.minus;
+            let rank = 2 * below + count + 1;
+            below += count;
+            tie_term += tie(count);
+            plus += group.plus * rank;
+            minus += group.minus * rank;
+            tossed.push((rank, count));
         }
         // Zeros that are split add the same to both sides; as other tools do, the variance then counts
         // their ranks as if they had a sign, and corrects for their tie.
         let (mean, variance) = if zeros == Zeros::Split {
+            let of_zeros = ranked_zeros * (ranked_zeros + 1);
             plus += of_zeros / 2;
             minus += of_zeros / 2;
-            let n = kept.len() as f64;
+            let n = below as f64;
             let full = n * (n + 1.0) * (2.0 * n + 1.0);
-            (n * (n + 1.0) / 4.0, (full - ranks.tie_term() / 2.0) / 24.0)
+            (n * (n + 1.0) / 4.0, (full - tie_term / 2.0) / 24.0)
         } else {
-            let sum: u64 = tossed.iter().sum();
-            let squares: f64 = tossed.iter().map(|&rank| (rank as f64 / 2.0).powi(2)).sum();
+            let sum: u64 = tossed.iter().map(|(rank, count)| rank * count).sum();
+            let squares: f64 = tossed
+                .iter()
+                .map(|&(rank, count)| (rank as f64 / 2.0).powi(2) * count as f64)
+                .sum();
             (sum as f64 / 4.0, squares / 4.0)
         };
         Self { tossed, doubled_plus: plus, doubled_minus: minus, mean, variance }
+    }
+
+    /// Doubled midranks one by one.
+    fn each(&self) -> Vec<u64> {
+        let each = |&(rank, count): &(u64, u64)| std::iter::repeat_n(rank, count as usize);
+        self.tossed.iter().flat_map(each).collect()
+    }
+
+    /// Whether any two differences other than zero have one absolute value.
+    pub(crate) fn has_ties(&self) -> bool {
+        self.tossed.iter().any(|(_, count)| *count > 1)
     }
 
     /// W+.
@@ -89,7 +132,7 @@ impl SignedRanks {
 
     /// Exact distribution of W+ over all signs, given the observed ranks with their ties.
     pub(crate) fn exact(&self, alternative: Alternative) -> Tail {
-        let distribution = toss_distribution(&self.tossed);
+        let distribution = toss_distribution(&self.each());
         let observed = self.doubled_plus as usize;
         let at_most: f64 = distribution[..=observed].iter().sum();
         let at_least: f64 = distribution[observed..].iter().rev().sum();
@@ -125,11 +168,12 @@ mod tests {
 
     /// Tails by trying every combination of signs.
     fn enumerated(differences: &[f64], zeros: Zeros) -> (f64, f64) {
-        let ranks = SignedRanks::of(differences, zeros);
-        let n = ranks.tossed.len();
+        let ranks = SignedRanks::of(&Tally::of(differences), zeros);
+        let tossed = ranks.each();
+        let n = tossed.len();
         let (mut at_most, mut at_least) = (0u64, 0u64);
         for signs in 0..1u64 << n {
-            let sum: u64 = (0..n).filter(|i| signs >> i & 1 == 1).map(|i| ranks.tossed[i]).sum();
+            let sum: u64 = (0..n).filter(|i| signs >> i & 1 == 1).map(|i| tossed[i]).sum();
             at_most += u64::from(sum <= ranks.doubled_plus);
             at_least += u64::from(sum >= ranks.doubled_plus);
         }
@@ -148,7 +192,7 @@ mod tests {
         ];
         for sample in samples {
             for zeros in [Zeros::Drop, Zeros::Pratt] {
-                let ranks = SignedRanks::of(sample, zeros);
+                let ranks = SignedRanks::of(&Tally::of(sample), zeros);
                 let (at_most, at_least) = enumerated(sample, zeros);
                 assert_eq!(ranks.exact(Alternative::Less).p, at_most);
                 assert_eq!(ranks.exact(Alternative::Greater).p, at_least);

@@ -54,10 +54,9 @@ pub struct Spearman {
 
 /// Do two variables rise together? Undefined if one of them is constant, naming it.
 pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> {
-    let (rows, dropped) = complete_rows(&[x, y], &[])?;
-    let n = rows.len();
-    let take = |column: &Numbers| rows.iter().map(|&r| column.values[r]).collect::<Vec<f64>>();
-    let (rank_x, rank_y) = (Ranks::of(&take(x)), Ranks::of(&take(y)));
+    let rows = complete_rows(&[x, y], &[])?;
+    let (n, dropped) = (rows.len(), rows.dropped());
+    let (rank_x, rank_y) = (Ranks::of(&rows.numbers(x)), Ranks::of(&rows.numbers(y)));
     for (ranks, column) in [(&rank_x, x), (&rank_y, y)] {
         if ranks.values.len() == 1 {
             return Ok(Outcome::undefined(format!(
@@ -138,11 +137,8 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
 fn two_sided(tail: &dyn Fn(f64, bool) -> f64, s: f64, n: usize) -> f64 {
     let s = s.round();
     let size = n as f64;
-    let one_sided = if s > size * (size * size - 1.0) / 6.0 {
-        tail(s - 1.0, true)
-    } else {
-        tail(s + 2.0, false)
-    };
+    let one_sided =
+        if s > size * (size * size - 1.0) / 6.0 { tail(s, true) } else { tail(s + 2.0, false) };
     Tail::from_p(one_sided).doubled().p
 }
 

@@ -6,10 +6,10 @@
 use serde::Serialize;
 
 use crate::outcome::{Labelled, Outcome, Refusal};
-use crate::ranks::Ranks;
 use crate::signed_rank::{SignedRanks, Zeros};
 use crate::table::Numbers;
 use crate::tail::{Alternative, Tail};
+use crate::tally::Tally;
 use crate::walsh::{HodgesLehmann, one_sample_interval, one_sample_location, thesis_interval};
 
 /// Up to this many non-zero differences the conditional distribution is computed exactly.
@@ -111,17 +111,18 @@ pub fn wilcoxon(
     differences: &Numbers,
     options: WilcoxonOptions,
 ) -> Result<Outcome<Wilcoxon>, Refusal> {
-    let given: Vec<f64> = differences.values.iter().copied().filter(|d| d.is_finite()).collect();
-    let dropped = differences.values.len() - given.len();
-    if given.is_empty() {
+    let given = differences.values.iter().copied().filter(|d| d.is_finite());
+    let all: Vec<f64> = given.map(rounded).collect();
+    let dropped = differences.values.len() - all.len();
+    if all.is_empty() {
         return Err(Refusal::NoRows { column: differences.name.clone(), dropped });
     }
-    let all: Vec<f64> = given.iter().map(|&d| rounded(d)).collect();
-    let nonzero: Vec<f64> = all.iter().copied().filter(|&d| d != 0.0).collect();
-    if nonzero.is_empty() {
+    let all = Tally::of(&all);
+    let nonzero = all.without(0.0);
+    let (n, n_used) = (all.total() as usize, nonzero.total() as usize);
+    if n_used == 0 {
         return Ok(Outcome::undefined(format!(
-            "all differences are zero ({} of \"{}\"), so there is nothing to rank",
-            all.len(),
+            "all differences are zero ({n} of \"{}\"), so there is nothing to rank",
             differences.name
         )));
     }
@@ -129,8 +130,7 @@ pub fn wilcoxon(
     let dropping = SignedRanks::of(&all, Zeros::Drop);
     let pratt = SignedRanks::of(&all, Zeros::Pratt);
     let split = SignedRanks::of(&all, Zeros::Split);
-    let ties = Ranks::of(&nonzero.iter().map(|d| d.abs()).collect::<Vec<_>>()).has_ties();
-    let (n, n_used) = (all.len(), nonzero.len());
+    let ties = dropping.has_ties();
     let zeros = n > n_used;
 
     let exact = |ranks: &SignedRanks| (n_used <= EXACT_UP_TO).then(|| ranks.exact(alternative));
@@ -211,6 +211,7 @@ pub fn wilcoxon(
     .collect();
 
     let (plus, minus) = (dropping.plus(), dropping.minus());
+    let interval = one_sample_interval(&all);
     Ok(Outcome::Ok(Wilcoxon {
         test: "wilcoxon",
         variant: words,
@@ -228,9 +229,13 @@ pub fn wilcoxon(
         p_value: tail.p,
         ln_p: tail.ln_p,
         rank_biserial: (plus - minus) / (plus + minus),
-        hodges_lehmann_walsh_median: one_sample_location(&all),
-        hodges_lehmann_zeros_dropped: one_sample_location(&nonzero),
-        hodges_lehmann_ci: one_sample_interval(&all),
+        hodges_lehmann_walsh_median: interval.estimate,
+        hodges_lehmann_zeros_dropped: if zeros {
+            one_sample_location(&nonzero)
+        } else {
+            interval.estimate
+        },
+        hodges_lehmann_ci: interval,
         R_ci: thesis_interval(&nonzero, thesis_is_exact),
         p_by_semantics: Labelled(p_by_semantics),
         warnings,
@@ -239,14 +244,14 @@ pub fn wilcoxon(
 
 /// Two-sided p as R of 2019, on differences as they are. None if all are zero.
 pub(crate) fn thesis_p_without_rounding(differences: &[f64]) -> Option<f64> {
-    let nonzero: Vec<f64> = differences.iter().copied().filter(|&d| d != 0.0).collect();
-    if nonzero.is_empty() {
+    let all = Tally::of(differences);
+    let nonzero = all.without(0.0);
+    if nonzero.values.is_empty() {
         return None;
     }
-    let magnitudes: Vec<f64> = nonzero.iter().map(|d| d.abs()).collect();
-    let plain = nonzero.len() == differences.len() && !Ranks::of(&magnitudes).has_ties();
     let ranks = SignedRanks::of(&nonzero, Zeros::Drop);
-    let tail = if plain && nonzero.len() < 50 {
+    let plain = nonzero.total() == all.total() && !ranks.has_ties();
+    let tail = if plain && nonzero.total() < 50 {
         ranks.exact(Alternative::TwoSided)
     } else {
         ranks.normal(Alternative::TwoSided, true)
@@ -256,6 +261,11 @@ pub(crate) fn thesis_p_without_rounding(differences: &[f64]) -> Option<f64> {
 
 /// Rounded to 9 decimals, where that changes anything.
 pub(crate) fn rounded(difference: f64) -> f64 {
+    // Ratings and their halves are exact as they are.
+    let doubled = difference * 2.0;
+    if doubled.abs() < 1e6 && f64::from(doubled as i32) == doubled {
+        return difference;
+    }
     let scaled = difference * 1e9;
     if scaled.abs() < 9e15 { scaled.round() / 1e9 } else { difference }
 }

@@ -42,6 +42,11 @@ fn holds_every_part_under_its_own_name() {
             "figures/believability-by-method.svg",
             "figures/believability-by-method-differences.svg",
             "figures/response-times.svg",
+            "figures/believability-by-method-people.svg",
+            "figures/emotion-people.svg",
+            "figures/course-believability.svg",
+            "figures/course-emotion-rt.svg",
+            "figures/late-frames-share.svg",
         ] {
             assert!(paths.contains(path), "{path} is missing among {paths:?}");
         }
@@ -120,4 +125,118 @@ fn an_export_without_trials_or_columns_is_refused() {
     let table = Table::parse(b"a,b\n1,2\n").unwrap();
     let refusal = analyze(&table, &study, Language::English).unwrap_err().to_string();
     assert!(refusal.contains("column \"participant_id\": there is no such column"), "{refusal}");
+}
+
+/// Numbers of a table's row as its CSV has them.
+fn row<'t>(report: &'t mimique_stats::Report, path: &str, start: &str) -> Vec<&'t str> {
+    let file = report.files.iter().find(|file| file.path == path).unwrap();
+    let line = file.text.lines().find(|line| line.starts_with(start));
+    line.unwrap_or_else(|| panic!("no row {start} in\n{}", file.text)).split(',').collect()
+}
+
+#[test]
+fn tables_stand_in_the_layout_that_the_study_gives() {
+    let study = support::parameter_study();
+    let raters = Raters { people: 28, effect: 1.0, seed: 19 };
+    let table = Table::parse(export(&study, &raters).as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::English).unwrap();
+    for laid_out in &study.tables {
+        let path = format!("tables/table-{}.csv", laid_out.id.to_lowercase());
+        assert!(report.files.iter().any(|file| file.path == path), "{path}");
+    }
+    // Planted: the first value of the parameter is rated a point higher.
+    let means = row(&report, "tables/table-6-6.csv", "Believable?");
+    let means: Vec<f64> = means[2..].iter().map(|cell| cell.parse().unwrap()).collect();
+    assert!(means[0] > means[1] + 0.5 && means[0] > means[2] + 0.5, "{means:?}");
+    let pairs = row(&report, "tables/table-6-4.csv", "How intense?");
+    assert_eq!(pairs[1..4], ["0.3", "<0.001", "<0.001"]);
+    assert_eq!(pairs[4..], ["<0.001", "<0.001"], "{pairs:?}");
+    let last = row(&report, "tables/table-6-4.csv", ",0.5");
+    assert_eq!((last[2], last[4]), ("", ""), "below the diagonal is nothing");
+    // Table A.2: numbers about people by Spearman, words by Kruskal-Wallis or chi-square.
+    let influences = row(&report, "tables/table-a-2.csv", "How intense?");
+    let names: Vec<char> = influences[2..].iter().filter_map(|cell| cell.chars().next()).collect();
+    assert_eq!(names, ['ρ', 'H', 'ρ', 'H', 'ρ', 'H'], "{influences:?}");
+    let influences = row(&report, "tables/table-a-2.csv", "Which emotion?");
+    let names: Vec<char> = influences[2..].iter().filter_map(|cell| cell.chars().next()).collect();
+    assert_eq!(names, ['ρ', 'χ', 'ρ', 'χ', 'χ', 'χ'], "{influences:?}");
+    // Nobody is counted twice, levels that nobody chose are there.
+    let people = row(&report, "tables/table-fig-a-1a.csv", "people");
+    assert_eq!(people.len(), 2 + 7);
+    let counted: usize = people[2..].iter().map(|cell| cell.parse::<usize>().unwrap()).sum();
+    assert_eq!(counted, 27);
+    let by_sight = row(&report, "tables/table-fig-a-1b.csv", "How intense?,1 (very weak) to 7");
+    assert_eq!(by_sight.len(), 5);
+}
+
+#[test]
+fn every_table_is_there_as_latex() {
+    let study = support::parameter_study();
+    let raters = Raters { people: 8, effect: 1.0, seed: 2 };
+    let table = Table::parse(export(&study, &raters).as_bytes()).unwrap();
+    for language in [Language::English, Language::French] {
+        let report = analyze(&table, &study, language).unwrap();
+        let find = |path: &str| report.files.iter().find(|file| file.path == path);
+        let all = &find("tables/all.tex").unwrap().text;
+        let mut tables = 0;
+        for file in report.files.iter().filter(|file| file.path.ends_with(".csv")) {
+            let path = file.path.replace(".csv", ".tex");
+            let Some(latex) = find(&path) else { continue };
+            let latex = &latex.text;
+            tables += 1;
+            let columns = latex.lines().find(|line| line.starts_with("\\begin{tabular}")).unwrap();
+            let columns = columns["\\begin{tabular}{".len()..].replace("{7cm}", "").len() - 1;
+            for line in latex.lines().skip_while(|line| *line != "\\midrule").skip(1) {
+                if line == "\\bottomrule" {
+                    break;
+                }
+                let cells = line.replace("\\&", "").matches(" & ").count() + 1;
+                assert_eq!(cells, columns, "{path}: {line}");
+                assert!(line.ends_with(" \\\\"), "{path}: {line}");
+            }
+            let strange = |c: char| !c.is_ascii() && !('\u{a0}'..='\u{17f}').contains(&c);
+            assert!(!latex.contains(strange), "{path} has a letter that LaTeX lacks:\n{latex}");
+        }
+        assert!(tables > 30, "{tables}");
+        assert!(all.contains("\\input{table-6-3}") && all.ends_with("\\end{document}\n"));
+    }
+}
+
+/// Of two methods only one has the parameter: what is asked of the parameter is asked of its trials.
+#[test]
+fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
+    let mut study = support::parameter_study();
+    let box_entry = serde_json::from_value(serde_json::json!({ "method": "box" })).unwrap();
+    study.stimuli.methods.insert("box".to_owned(), box_entry);
+    let raters = Raters { people: 13, effect: 1.0, seed: 23 };
+    let with_box = export(&study, &raters);
+    let without_box: String = with_box
+        .lines()
+        .filter(|line| !line.contains(".box,"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let results_of = |text: &str| {
+        let table = Table::parse(text.as_bytes()).unwrap();
+        results(&analyze(&table, &study, Language::English).unwrap())
+    };
+    let (both, one) = (results_of(&with_box), results_of(&without_box));
+    for (with, without) in
+        both["hypotheses"].as_array().unwrap().iter().zip(one["hypotheses"].as_array().unwrap())
+    {
+        assert_eq!(with["factors"][0], "alpha");
+        assert_eq!(with["as_in_the_thesis"], without["as_in_the_thesis"]);
+        assert_eq!(with["recommended"], without["recommended"]);
+        assert_eq!(with["trials_without_level"], 12 * 18, "{with}");
+        assert_eq!(without["trials_without_level"], 0);
+        assert!(
+            with["reading"].as_str().unwrap().contains("216 trials have no value of the factor")
+        );
+    }
+    let alpha = |results: &serde_json::Value| {
+        let all = results["comparisons"].as_array().unwrap().clone();
+        all.into_iter().find(|c| c["factor"] == "alpha" && c["measure"] == "difficulty").unwrap()
+    };
+    assert_eq!(alpha(&both)["levels"], serde_json::json!(["0.3", "0.5", "0.7"]));
+    assert_eq!(alpha(&both)["recommended"], alpha(&one)["recommended"]);
+    assert_eq!(alpha(&both)["trials_without_level"], 216);
 }

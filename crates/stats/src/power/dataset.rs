@@ -235,6 +235,8 @@ impl<'d> Data<'d> {
         let needs = &self.design.needs;
         let mut trial = Trial {
             stimulus: self.model.clips[clip].id.clone(),
+            // The order of trials has no part in the study's tests.
+            order: None,
             levels: self.levels[clip].clone(),
             frames: None,
             late: None,
@@ -425,7 +427,7 @@ mod tests {
         // Every rule that leaves people or trials out, a response time, and a condition.
         value["exclusions"] = serde_json::json!({
             "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
-            "longestFrameMs": 120.0, "shortestRtMs": 4200.0,
+            "longestFrameMs": 33.0, "shortestRtMs": 4200.0,
         });
         value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
             "id": "H5", "statement": "s", "test": "wilcoxon", "response": "believability",

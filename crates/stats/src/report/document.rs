@@ -62,6 +62,12 @@ impl DataTable {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
+    /// Whether every cell of a column is a number or blank.
+    pub(crate) fn is_number_column(&self, place: usize) -> bool {
+        let mut cells = self.rows.iter().filter_map(|row| row.get(place));
+        cells.all(|cell| is_number(cell) || cell.is_empty())
+    }
+
     /// Columns with the heading of their group in front, where there are groups.
     pub(crate) fn full_columns(&self) -> Vec<String> {
         let groups = self.groups.iter().flat_map(|(text, columns)| vec![text.as_str(); *columns]);
@@ -88,7 +94,13 @@ impl DataTable {
     }
 }
 
-fn csv_cell(cell: &str) -> String {
+/// Whether people read a cell as a number.
+pub(crate) fn is_number(cell: &str) -> bool {
+    cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−' | '<' | '–'))
+        && cell.chars().filter(|c| c.is_alphabetic() && *c != 'e').count() == 0
+}
+
+pub(crate) fn csv_cell(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r', ';']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {

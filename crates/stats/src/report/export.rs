@@ -48,6 +48,8 @@ pub(crate) struct Answer {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
     pub stimulus: String,
+    /// Place among the person's trials, from 1.
+    pub order: Option<usize>,
     /// Value of each of [`Export::factors`].
     pub levels: Vec<Option<String>>,
     pub frames: Option<f64>,
@@ -178,6 +180,7 @@ impl Export {
                     self.people[person].trials += 1;
                     let trial = Trial {
                         stimulus: rows.text("stimulus", row).unwrap_or_default().to_owned(),
+                        order: rows.number("trial_order", row)?.map(|order| order as usize),
                         levels: self
                             .factors
                             .iter()

@@ -1,8 +1,8 @@
 //! The figures of a report, each with alternative text and its data as a table.
 
-use super::comparison::Pair;
 use super::document::{DataTable, Figure};
 use super::language::Language;
+use super::person_level::Pair;
 use super::svg::{Anchor, Axis, Svg, WIDTH, clipped, shade};
 use crate::confusion::Confusion;
 use crate::describe::quantile_sorted;

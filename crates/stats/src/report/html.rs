@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::document::{Block, DataTable, Document, Figure, escape};
+use super::document::{Block, DataTable, Document, Figure, escape, is_number};
 use super::language::Language;
 
 pub(crate) fn html(document: &Document, language: Language) -> String {
@@ -104,12 +104,7 @@ fn table(body: &mut String, data: &DataTable) {
     body.push_str("<tr>");
     for (place, column) in data.columns.iter().enumerate() {
         // Headings stand where the cells below them stand.
-        let numbers = place > 0
-            && data
-                .rows
-                .iter()
-                .filter_map(|row| row.get(place))
-                .all(|cell| is_number(cell) || cell.is_empty());
+        let numbers = place > 0 && data.is_number_column(place);
         let class = if numbers { r#" class="number""# } else { "" };
         let _ = write!(body, r#"<th scope="col"{class}>{}</th>"#, typeset(column));
     }
@@ -127,11 +122,6 @@ fn table(body: &mut String, data: &DataTable) {
         body.push_str("</tr>\n");
     }
     body.push_str("</tbody></table></div>\n");
-}
-
-fn is_number(cell: &str) -> bool {
-    cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−' | '<'))
-        && cell.chars().filter(|c| c.is_alphabetic() && *c != 'e').count() == 0
 }
 
 fn figure(body: &mut String, drawing: &Figure, language: Language) {

@@ -3,20 +3,17 @@
 use mimique_study::{Hypothesis, Measure as What, Study, TestName};
 use serde::Serialize;
 
-use super::comparison::{
-    PersonLevel, TestLine, TrialLevel, between, correlation, correlation_within_people,
-    person_level, person_level_two_way, trial_level_chi_square, trial_level_mann_whitney,
-    trial_level_overall, trial_level_two_way, trial_level_wilcoxon,
-};
+use super::comparison::without_level;
 use super::export::{AskedQuestion, Export};
 use super::language::Language;
-use super::measure::{Measure, MeasureKind};
+use super::measure::{Measure, MeasureKind, as_numbers};
 use super::naming::Naming;
+use super::person_level::{self, PersonLevel};
 use super::reading;
+use super::test_line::TestLine;
+use super::trial_level::{self, TrialLevel};
 use crate::factor::Factor;
-use crate::kruskal_wallis::kruskal_wallis;
 use crate::outcome::Outcome;
-use crate::table::Numbers;
 
 /// A hypothesis and what came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,6 +26,8 @@ pub(crate) struct HypothesisResult {
     pub factors: Vec<String>,
     pub as_in_the_thesis: TrialLevel,
     pub recommended: PersonLevel,
+    /// Trials without a value of a factor, such as those of a method without that parameter: not used.
+    pub trials_without_level: usize,
     /// p of the recommended test that decides.
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
@@ -56,7 +55,12 @@ pub(crate) fn test_hypothesis(
         )),
     };
     let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let (trials, people, reading) = match (tested, &measure) {
+    let trials_without_level = measure.as_ref().map_or(0, |measure| {
+        let of_clips = hypothesis.factors.iter().filter(|name| export.factors.contains(name));
+        let counts = of_clips.map(|name| without_level(&measure.factor(export, name, &[])));
+        counts.max().unwrap_or(0)
+    });
+    let (trials, people, mut reading) = match (tested, &measure) {
         (Ok((trials, people)), Some(measure)) => {
             // A hypothesis of two factors is about their interaction, which stands last.
             let mut read = people.clone();
@@ -79,6 +83,12 @@ pub(crate) fn test_hypothesis(
             (vec![Outcome::undefined(reason)], nothing, reading)
         }
     };
+    if trials_without_level > 0 {
+        reading += &language.pick(
+            format!(" {trials_without_level} trials have no value of the factor and take no part."),
+            format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
+        );
+    }
     HypothesisResult {
         id: hypothesis.id.clone(),
         statement: hypothesis.statement.in_language(language.code()).to_owned(),
@@ -86,7 +96,8 @@ pub(crate) fn test_hypothesis(
         kind: measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind),
         measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
         factors: hypothesis.factors.clone(),
-        as_in_the_thesis: TrialLevel { assumes: "independent observations", tests: trials },
+        trials_without_level,
+        as_in_the_thesis: TrialLevel::new(trials),
         p: deciding_p(&people),
         p_holm_over_hypotheses: None,
         recommended: people,
@@ -147,7 +158,10 @@ fn tests(
     match factors.as_slice() {
         [(first, _), (second, _), ..] if two_way(hypothesis.test) => {
             let both = [first, second];
-            Ok((trial_level_two_way(measure, both), person_level_two_way(export, measure, both)))
+            Ok((
+                TestLine::scheirer_ray_hare(&measure.numbers(), both, "trials"),
+                person_level::two_way(export, measure, both),
+            ))
         }
         [(factor, true), ..] => Ok(within_people(export, hypothesis, measure, factor)),
         [(factor, false), ..] => Ok(between_people(hypothesis, measure, factor)),
@@ -161,56 +175,26 @@ fn within_people(
     measure: &Measure,
     factor: &Factor,
 ) -> (Vec<Outcome<TestLine>>, PersonLevel) {
-    let mut people = person_level(&measure.person_means(export, factor));
+    let mut people = person_level::within(export, measure, factor);
+    let rating = measure.kind != MeasureKind::Recognition;
     let trials = match hypothesis.test {
-        TestName::Wilcoxon if measure.kind != MeasureKind::Recognition => {
-            if factor.levels.len() == 2 {
-                vec![trial_level_wilcoxon(export, measure, factor)]
-            } else {
-                all_pairs(factor)
-                    .into_iter()
-                    .filter_map(|levels| factor.restricted(&levels).ok())
-                    .map(|pair| trial_level_wilcoxon(export, measure, &pair))
-                    .collect()
-            }
+        TestName::Wilcoxon if rating => {
+            trial_level::pairs(export, measure, factor).into_iter().map(|(.., line)| line).collect()
         }
-        TestName::MannWhitney => vec![trial_level_mann_whitney(measure, factor)],
+        TestName::MannWhitney => {
+            vec![TestLine::mann_whitney(&measure.numbers(), factor, "trials")]
+        }
         TestName::Spearman => {
             let x = as_numbers(factor);
-            people.overall = vec![correlation_within_people(&x.values, measure)];
+            people.overall = vec![person_level::correlation_within_people(&x, measure)];
             people.pairs.clear();
-            vec![correlation(&x, &measure.numbers(), "Spearman of trials")]
+            vec![TestLine::spearman(&x, &measure.numbers(), "trials")]
         }
-        TestName::KruskalWallis if measure.kind == MeasureKind::Recognition => {
-            let result = kruskal_wallis(&measure.numbers(), factor);
-            vec![match result {
-                Ok(Outcome::Ok(result)) => Outcome::Ok(TestLine {
-                    test: "Kruskal-Wallis of trials".to_owned(),
-                    term: String::new(),
-                    statistic_name: "H",
-                    statistic: result.statistic,
-                    df: result.df.to_string(),
-                    p_value: result.p_value,
-                    ln_p: result.ln_p,
-                    p_holm: None,
-                    effect_name: "epsilon squared",
-                    effect: Some(result.epsilon_squared),
-                    n: result.n,
-                }),
-                Ok(Outcome::Undefined { reason }) => Outcome::Undefined { reason },
-                Err(refusal) => Outcome::undefined(refusal.to_string()),
-            }]
+        TestName::KruskalWallis => {
+            vec![TestLine::kruskal_wallis(&measure.numbers(), factor, "trials")]
         }
-        TestName::ChiSquare if measure.kind != MeasureKind::Recognition => {
-            let answers: Vec<String> = measure.values.iter().map(ToString::to_string).collect();
-            let answers = Factor::from_cells(
-                &measure.id,
-                answers.iter().map(|answer| Some(answer.as_str())),
-                |answer| answer.parse().ok(),
-            );
-            vec![trial_level_chi_square(factor, &answers)]
-        }
-        _ => vec![trial_level_overall(measure, factor)],
+        TestName::ChiSquare => vec![trial_level::chi_square(measure, factor)],
+        _ => vec![trial_level::overall(measure, factor)],
     };
     (trials, people)
 }
@@ -222,34 +206,15 @@ fn between_people(
 ) -> (Vec<Outcome<TestLine>>, PersonLevel) {
     if hypothesis.test == TestName::Spearman {
         let x = as_numbers(factor);
-        let means = measure.overall_person_means();
-        let values = |of: &dyn Fn(usize, f64) -> f64| Numbers {
-            name: measure.id.clone(),
-            values: means.iter().map(|(&person, &mean)| of(person, mean)).collect(),
-        };
-        let first_row = measure.first_rows();
-        let trait_of =
-            |person: usize| first_row.get(&person).map_or(f64::NAN, |&row| x.values[row]);
-        let mut trait_values = values(&|person, _| trait_of(person));
-        trait_values.name.clone_from(&factor.name);
-        let people = PersonLevel {
-            people: means.len(),
-            incomplete: 0,
-            overall: vec![correlation(
-                &trait_values,
-                &values(&|_, mean| mean),
-                "Spearman of person means",
-            )],
-            pairs: Vec::new(),
-        };
-        return (vec![correlation(&x, &measure.numbers(), "Spearman of trials")], people);
+        let people = person_level::correlation(&x, measure);
+        return (vec![TestLine::spearman(&x, &measure.numbers(), "trials")], people);
     }
-    let people = between(measure, factor);
     let trials = match hypothesis.test {
-        TestName::MannWhitney => trial_level_mann_whitney(measure, factor),
-        _ => trial_level_overall(measure, factor),
+        TestName::MannWhitney => TestLine::mann_whitney(&measure.numbers(), factor, "trials"),
+        TestName::KruskalWallis => TestLine::kruskal_wallis(&measure.numbers(), factor, "trials"),
+        _ => trial_level::overall(measure, factor),
     };
-    (vec![trials], people)
+    (vec![trials], person_level::between(measure, factor))
 }
 
 /// The p that a hypothesis stands or falls by: the interaction if there is one, the overall test of
@@ -264,22 +229,4 @@ fn deciding_p(people: &PersonLevel) -> Option<f64> {
         (None, [one]) => p(&one.wilcoxon),
         (None, _) => None,
     }
-}
-
-fn all_pairs(factor: &Factor) -> Vec<Vec<String>> {
-    let levels = &factor.levels;
-    (0..levels.len())
-        .flat_map(|a| {
-            (a + 1..levels.len()).map(move |b| vec![levels[a].clone(), levels[b].clone()])
-        })
-        .collect()
-}
-
-/// A factor's levels as numbers; if they are words, their places in order.
-fn as_numbers(factor: &Factor) -> Numbers {
-    let numbers: Option<Vec<f64>> = factor.levels.iter().map(|level| level.parse().ok()).collect();
-    let numbers = numbers.unwrap_or_else(|| (1..=factor.levels.len()).map(|i| i as f64).collect());
-    let values =
-        factor.codes.iter().map(|&code| numbers.get(code as usize).copied().unwrap_or(f64::NAN));
-    Numbers { name: factor.name.clone(), values: values.collect() }
 }

@@ -36,6 +36,29 @@ pub(crate) struct Measure {
     pub trial: Vec<usize>,
 }
 
+/// Means of the people who have a value at each level of a factor.
+pub(crate) struct PersonMeans {
+    /// Places in [`Export::people`].
+    pub people: Vec<usize>,
+    /// A mean a level, of each of them.
+    pub means: Vec<Vec<f64>>,
+    /// People without a value at some level.
+    pub incomplete: usize,
+}
+
+impl PersonMeans {
+    /// As blocks of a test.
+    pub(crate) fn blocks(self, export: &Export, factor: &Factor) -> Blocks {
+        Blocks {
+            groups: factor.levels.clone(),
+            blocks: self.people.iter().map(|&person| export.people[person].id.clone()).collect(),
+            responses: self.means,
+            incomplete: self.incomplete,
+            dropped: 0,
+        }
+    }
+}
+
 impl Measure {
     /// Answers to a question as numbers: ratings as they are, right answers as 1. None if the question
     /// gives no numbers.
@@ -120,6 +143,11 @@ impl Measure {
     /// Mean of each person at each level of a factor; people without a value at some level are
     /// incomplete.
     pub(crate) fn person_means(&self, export: &Export, factor: &Factor) -> Blocks {
+        self.person_means_by_place(factor).blocks(export, factor)
+    }
+
+    /// The same, with the people's places in the export.
+    pub(crate) fn person_means_by_place(&self, factor: &Factor) -> PersonMeans {
         let k = factor.levels.len();
         let mut sums: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
         for (i, &value) in self.values.iter().enumerate() {
@@ -132,21 +160,15 @@ impl Measure {
                 cell.1 += 1.0;
             }
         }
-        let people = sums.len();
-        let (mut blocks, mut responses) = (Vec::new(), Vec::new());
+        let all = sums.len();
+        let (mut people, mut means): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
         for (person, cells) in sums {
             if cells.iter().all(|(_, count)| *count > 0.0) {
-                blocks.push(export.people[person].id.clone());
-                responses.push(cells.iter().map(|(sum, count)| sum / count).collect());
+                people.push(person);
+                means.push(cells.iter().map(|(sum, count)| sum / count).collect());
             }
         }
-        Blocks {
-            groups: factor.levels.clone(),
-            incomplete: people - blocks.len(),
-            blocks,
-            responses,
-            dropped: 0,
-        }
+        PersonMeans { incomplete: all - people.len(), people, means }
     }
 
     /// Mean of each person over all trials.
@@ -172,11 +194,7 @@ impl Measure {
     /// Trials of one person that differ in the tested factor only, as blocks: the pairs of trial-level
     /// tests. What else must be equal is every other factor that occurs at each of its levels.
     pub(crate) fn matched_trials(&self, export: &Export, factor: &Factor) -> Blocks {
-        let others: Vec<usize> = (0..export.factors.len())
-            .filter(|&place| {
-                export.factors[place] != factor.name && self.is_crossed(export, factor, place)
-            })
-            .collect();
+        let others = self.crossed_places(export, factor);
         let k = factor.levels.len();
         // Person and other levels -> sum and count at each level of the factor.
         type Sums = Vec<(f64, f64)>;
@@ -211,6 +229,20 @@ impl Measure {
         }
     }
 
+    /// The factors that are equal within a pair of matched trials.
+    pub(crate) fn matched_factors(&self, export: &Export, factor: &Factor) -> Vec<String> {
+        let places = self.crossed_places(export, factor);
+        places.into_iter().map(|place| export.factors[place].clone()).collect()
+    }
+
+    fn crossed_places(&self, export: &Export, factor: &Factor) -> Vec<usize> {
+        let other = |place: &usize| export.factors[*place] != factor.name;
+        (0..export.factors.len())
+            .filter(other)
+            .filter(|&place| self.is_crossed(export, factor, place))
+            .collect()
+    }
+
     fn is_crossed(&self, export: &Export, factor: &Factor, place: usize) -> bool {
         let mut found: BTreeSet<(u32, &str)> = BTreeSet::new();
         let mut levels: BTreeSet<&str> = BTreeSet::new();
@@ -228,4 +260,13 @@ impl Measure {
         }
         levels.len() * factor.levels.len() == found.len()
     }
+}
+
+/// A factor's levels as numbers; if they are words, their places in order.
+pub(crate) fn as_numbers(factor: &Factor) -> Numbers {
+    let numbers: Option<Vec<f64>> = factor.levels.iter().map(|level| level.parse().ok()).collect();
+    let numbers = numbers.unwrap_or_else(|| (1..=factor.levels.len()).map(|i| i as f64).collect());
+    let values =
+        factor.codes.iter().map(|&code| numbers.get(code as usize).copied().unwrap_or(f64::NAN));
+    Numbers { name: factor.name.clone(), values: values.collect() }
 }

@@ -4,34 +4,44 @@
 //! input. Each test stands in two columns: as in the thesis (trials taken for independent
 //! observations) and as recommended (one value a person).
 
+mod call;
 mod comparison;
 mod document;
 mod export;
 mod figure;
+mod figure_people;
 mod flow_chart;
 mod html;
 mod hypothesis;
 mod language;
+mod latex;
+mod layout_tests;
+mod layouts;
 mod markdown;
 mod measure;
 mod naming;
+mod person_level;
 mod reading;
+mod replay;
+mod section_course;
 mod section_measures;
 mod sections;
 mod svg;
 mod tables;
+mod test_line;
+mod trial_level;
 
 use mimique_study::Study;
 
 use crate::outcome::Refusal;
 use crate::table::Table;
-pub(crate) use comparison::TestLine;
 use document::Block;
 pub(crate) use export::{Answer, Export, Person, Trial, exclude_people, why_left_out};
 pub(crate) use hypothesis::test_hypothesis;
 pub use language::Language;
 pub(crate) use naming::Naming;
 pub(crate) use svg::{Anchor, Axis, Svg};
+pub(crate) use test_line::TestLine;
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,13 +83,14 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
             "collect answers first, or look at the study's exclusions",
         ));
     }
-    let sections::Sections { document, results, readings } =
+    let sections::Sections { document, results, readings, replay } =
         sections::write(&export, study, language);
     let mut files = vec![
         ReportFile { path: "report.html".to_owned(), text: html::html(&document, language) },
         ReportFile { path: "report.md".to_owned(), text: markdown::markdown(&document) },
         ReportFile { path: "results.json".to_owned(), text: results },
     ];
+    let mut in_latex = Vec::new();
     for block in &document.blocks {
         match block {
             Block::Table(data) => {
@@ -87,6 +98,11 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
                     path: format!("tables/{}.csv", data.id),
                     text: data.to_csv(),
                 });
+                files.push(ReportFile {
+                    path: format!("tables/{}.tex", data.id),
+                    text: latex::table(data),
+                });
+                in_latex.push(data.id.as_str());
             }
             Block::Figure(figure) => {
                 files.push(ReportFile {
@@ -97,10 +113,19 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
                     path: format!("tables/figure-{}.csv", figure.data.id),
                     text: figure.data.to_csv(),
                 });
+                files.push(ReportFile {
+                    path: format!("tables/figure-{}.tex", figure.data.id),
+                    text: latex::table(&figure.data),
+                });
             }
             _ => {}
         }
     }
+    files.extend(replay);
+    files.push(ReportFile {
+        path: "tables/all.tex".to_owned(),
+        text: latex::document(&document.title, &in_latex),
+    });
     Ok(Report {
         files,
         people: (export.flow.people_used, export.flow.people),

@@ -49,6 +49,39 @@ impl Naming<'_> {
         level.to_owned()
     }
 
+    /// Levels of a factor or answers to a question in the study's order; none where the study leaves
+    /// them open.
+    pub(crate) fn level_order(&self, name: &str) -> Vec<String> {
+        let mut levels: Vec<String> = Vec::new();
+        for clip in self.study.clips() {
+            let level = clip.factors.get(name).map(ToString::to_string);
+            levels.extend(level.filter(|level| !levels.contains(level)));
+        }
+        if levels.iter().all(|level| level.parse::<f64>().is_ok()) {
+            let number = |level: &String| level.parse::<f64>().unwrap_or(0.0);
+            levels.sort_by(|a, b| number(a).total_cmp(&number(b)));
+        }
+        if !levels.is_empty() {
+            return levels;
+        }
+        match self.study.all_questions().find(|question| question.id == name).map(|q| &q.kind) {
+            Some(QuestionKind::Likert(likert)) => {
+                (likert.start..=likert.end()).map(|point| point.to_string()).collect()
+            }
+            Some(kind) => kind.options().iter().map(|option| option.value.clone()).collect(),
+            None => levels,
+        }
+    }
+
+    /// A factor, or what a question about the person asks.
+    pub(crate) fn column(&self, name: &str) -> String {
+        let question = self.study.all_questions().find(|question| question.id == name);
+        question.map_or_else(
+            || self.factor(name),
+            |question| question.prompt.in_language(self.language.code()).to_owned(),
+        )
+    }
+
     /// `a − b` of two levels.
     pub(crate) fn pair(&self, factor: &str, a: &str, b: &str) -> String {
         format!("{} − {}", self.level(factor, a), self.level(factor, b))

@@ -1,11 +1,13 @@
 //! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
 //! for more than a number.
 
-use super::comparison::{Comparison, Pair, PersonLevel, TestLine};
+use super::comparison::Comparison;
 use super::language::Language;
 use super::measure::MeasureKind;
 use super::naming::Naming;
+use super::person_level::{Pair, PersonLevel};
 use super::tables::effect_symbol;
+use super::test_line::TestLine;
 use crate::outcome::Outcome;
 
 /// The level of a test.

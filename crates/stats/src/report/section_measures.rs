@@ -2,14 +2,18 @@
 
 use mimique_study::QuestionKind;
 
-use super::comparison::{TrialLevel, person_level_two_way, trial_level_two_way, within};
+use super::comparison::within;
 use super::document::{Block, DataTable, slug};
 use super::export::AskedQuestion;
 use super::figure;
+use super::figure_people;
 use super::measure::{Measure, MeasureKind};
+use super::person_level;
 use super::reading;
 use super::sections::{LateFrames, NamedConfusion, TwoWay, Writer};
 use super::tables;
+use super::test_line::TestLine;
+use super::trial_level::TrialLevel;
 use crate::confusion::confusion;
 use crate::factor::Factor;
 use crate::proportion::Proportion;
@@ -67,6 +71,7 @@ impl Writer<'_> {
             );
             let id = format!("{}-shares", slug(&measure.id));
             self.figure(figure::shares(language, &id, caption, chance, &groups));
+            self.person_shares(measure, chance);
             self.paragraph(
                 "These intervals describe the trials; comparisons follow below on one value a person.",
                 "Ces intervalles décrivent les essais ; les comparaisons suivent, sur une valeur par personne.",
@@ -124,8 +129,14 @@ impl Writer<'_> {
                 self.naming.level(truth, label)
             });
             self.figure(drawing);
+            let by = group.clone().filter(|_| level.is_some());
             let of = level.unwrap_or_else(|| "all".to_owned());
-            self.results.confusion.push(NamedConfusion { response: asked.id.clone(), of, result });
+            self.results.confusion.push(NamedConfusion {
+                response: asked.id.clone(),
+                by,
+                of,
+                result,
+            });
         }
     }
 
@@ -198,10 +209,17 @@ impl Writer<'_> {
             }
             let result = within(self.export, measure, &factor);
             let shown = self.naming.factor(&name);
+            let without = result.trials_without_level;
             self.blocks.push(Block::Heading(
                 3,
                 language.pick(format!("By {shown}"), format!("Par {shown}")),
             ));
+            if without > 0 {
+                self.blocks.push(Block::Paragraph(language.pick(
+                    format!("{without} trials have no value of {shown} (their method has no such parameter): they take no part in this comparison."),
+                    format!("{without} essais n’ont pas de valeur de {shown} (leur méthode n’a pas ce paramètre) : ils ne prennent pas part à cette comparaison."),
+                )));
+            }
             let id = format!("{}-by-{}", slug(&measure.id), slug(&name));
             let caption = language.pick(
                 format!("{} by {shown}", measure.label),
@@ -227,8 +245,11 @@ impl Writer<'_> {
                 tables::descriptions(&self.naming, format!("{id}-described"), caption, &result)
             };
             self.blocks.push(Block::Table(table));
+            if self.factors.first() == Some(&name) {
+                self.person_lines(measure, &factor);
+            }
             if result.recommended.people > 0 && (1..=3).contains(&result.recommended.pairs.len()) {
-                let pairs: Vec<(String, &super::comparison::Pair)> = result
+                let pairs: Vec<(String, &person_level::Pair)> = result
                     .recommended
                     .pairs
                     .iter()
@@ -272,11 +293,9 @@ impl Writer<'_> {
             return;
         }
         let both = [&factors[0], &factors[1]];
-        let trials = TrialLevel {
-            assumes: "independent observations",
-            tests: trial_level_two_way(measure, both),
-        };
-        let people = person_level_two_way(self.export, measure, both);
+        let trials =
+            TrialLevel::new(TestLine::scheirer_ray_hare(&measure.numbers(), both, "trials"));
+        let people = person_level::two_way(self.export, measure, both);
         let shown = names.map(|name| self.naming.factor(name)).join(" × ");
         self.blocks.push(Block::Heading(3, shown.clone()));
         let table = tables::two_columns(
@@ -396,6 +415,31 @@ impl Writer<'_> {
             self.results.late_frames.push(result);
         }
         self.blocks.push(Block::Table(table));
+        let rows: Vec<(String, Vec<f64>)> = factor
+            .levels
+            .iter()
+            .enumerate()
+            .map(|(code, level)| {
+                let own = self.export.trials.iter().zip(&factor.codes);
+                let own = own.filter(|(_, own)| **own as usize == code).map(|(trial, _)| trial);
+                let shares = own.filter_map(|trial| Some((trial.late?, trial.frames?)));
+                let shares = shares.filter(|(_, frames)| *frames > 0.0);
+                (self.naming.level(name, level), shares.map(|(late, all)| late / all).collect())
+            })
+            .filter(|(_, shares): &(String, Vec<f64>)| !shares.is_empty())
+            .collect();
+        if !rows.is_empty() {
+            let caption = language.pick(
+                format!("Trials by their share of late frames, by {}", self.naming.factor(name)),
+                format!(
+                    "Essais selon leur part d’images en retard, par {}",
+                    self.naming.factor(name)
+                ),
+            );
+            let drawing =
+                figure_people::late_frames(language, "late-frames-share", &caption, &rows);
+            self.figure(drawing);
+        }
     }
 }
 

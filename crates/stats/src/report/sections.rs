@@ -5,16 +5,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use mimique_study::Study;
 use serde::Serialize;
 
-use super::comparison::{Comparison, PersonLevel, TrialLevel};
+use super::ReportFile;
+use super::comparison::Comparison;
 use super::document::{Block, DataTable, Document, Figure, escape, slug};
 use super::export::{AskedQuestion, Export, Flow, Person};
 use super::flow_chart::flow_chart;
 use super::hypothesis::{HypothesisResult, test_hypothesis};
 use super::language::Language;
+use super::layouts::LayoutCell;
 use super::measure::Measure;
 use super::naming::Naming;
+use super::person_level::PersonLevel;
 use super::reading;
+use super::replay;
+use super::section_course::Course;
 use super::tables;
+use super::trial_level::TrialLevel;
 use crate::adjust::Adjustment;
 use crate::confusion::Confusion;
 use crate::describe::{Description, describe};
@@ -29,6 +35,7 @@ pub(crate) struct Sections {
     pub document: Document,
     pub results: String,
     pub readings: Vec<(String, String)>,
+    pub replay: Vec<ReportFile>,
 }
 
 /// Everything that was computed, for `results.json`.
@@ -44,6 +51,8 @@ pub(crate) struct Results<'a> {
     pub confusion: Vec<NamedConfusion>,
     pub comparisons: Vec<Comparison>,
     pub two_way: Vec<TwoWay>,
+    pub course: Vec<Course>,
+    pub layouts: Vec<LayoutCell>,
     pub late_frames: Vec<LateFrames>,
 }
 
@@ -61,6 +70,8 @@ pub(crate) enum AboutPeople {
 #[derive(Serialize)]
 pub(crate) struct NamedConfusion {
     pub response: String,
+    /// The factor; none for all trials.
+    pub by: Option<String>,
     /// `all`, or a factor's level.
     pub of: String,
     pub result: Confusion,
@@ -112,7 +123,7 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
             people: &export.people,
             ..Results::default()
         },
-        factors: factors_in_use(export),
+        factors: factors_in_use(export, study),
     };
     let asked = export.questions(study);
     let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
@@ -134,6 +145,12 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
     for (asked, measure) in measures.iter().filter(|(asked, _)| !asked.is_recognition()) {
         writer.rating(asked, measure);
     }
+    writer.layouts();
+    let mut over_time: Vec<&Measure> = measures.iter().map(|(_, measure)| measure).collect();
+    let time =
+        measures.first().and_then(|(asked, _)| Measure::response_time(export, asked, language));
+    over_time.extend(&time);
+    writer.course_of_the_session(&over_time);
     writer.timing();
     writer.notes();
 
@@ -154,20 +171,38 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
             export.flow.trials_used
         ),
     );
+    let replay = replay::files(&writer);
     let mut results =
         serde_json::to_string_pretty(&writer.results).unwrap_or_else(|error| error.to_string());
     results.push('\n');
-    Sections { document: Document { title, subtitle, blocks: writer.blocks }, results, readings }
+    Sections {
+        document: Document { title, subtitle, blocks: writer.blocks },
+        results,
+        readings,
+        replay,
+    }
 }
 
-/// Factors with two levels or more among the trials, the method first. Of two factors that part the
+/// Factors with two levels or more among the trials, those that the methods set first. Of two factors that part the
 /// trials alike only the first is kept.
-fn factors_in_use(export: &Export) -> Vec<String> {
+fn factors_in_use(export: &Export, study: &Study) -> Vec<String> {
+    // What the methods set is compared; then what was played, in the order that people name it.
+    let clips = study.clips();
+    let of_methods = |name: &str| {
+        let mut by_method: BTreeMap<&str, Option<String>> = BTreeMap::new();
+        let alike = clips.iter().all(|clip| {
+            let level = clip.factors.get(name).map(ToString::to_string);
+            *by_method.entry(&clip.method).or_insert_with(|| level.clone()) == level
+        });
+        let levels: BTreeSet<&Option<String>> = by_method.values().collect();
+        alike && levels.len() > 1
+    };
     let rank = |name: &str| match name {
         "method" => 0,
-        "expression" => 1,
-        "intensity" => 2,
-        _ => 3,
+        _ if of_methods(name) => 1,
+        "expression" => 2,
+        "intensity" => 3,
+        _ => 4,
     };
     let mut places: Vec<usize> = (0..export.factors.len()).collect();
     places.sort_by_key(|&place| (rank(&export.factors[place]), place));
@@ -420,12 +455,7 @@ impl Writer<'_> {
             "As in the thesis: Kruskal-Wallis, Wilcoxon (R of 2019: zeros dropped, exact only below 50 differences without ties and zeros, else normal with continuity correction), Scheirer-Ray-Hare (type I sums of squares, corrected for ties) and chi-square (Yates’s correction for two by two) on single trials.",
             "Comme dans la thèse : Kruskal-Wallis, Wilcoxon (R de 2019 : zéros supprimés, exact seulement sous 50 différences sans ex æquo ni zéros, sinon normal avec correction de continuité), Scheirer-Ray-Hare (sommes de carrés de type I, corrigées des ex æquo) et khi-deux (correction de Yates pour deux par deux) sur les essais pris un à un.",
         );
-        let mut clips: BTreeMap<Vec<Option<&str>>, BTreeSet<&str>> = BTreeMap::new();
-        for trial in &self.export.trials {
-            let cell = trial.levels.iter().map(Option::as_deref).collect();
-            clips.entry(cell).or_default().insert(&trial.stimulus);
-        }
-        if clips.values().all(|clips| clips.len() == 1) {
+        if self.one_clip_a_cell() {
             self.blocks.push(Block::Caution(
                 language
                     .pick(
@@ -435,6 +465,16 @@ impl Writer<'_> {
                     .to_owned(),
             ));
         }
+    }
+
+    /// Whether every combination of factors was shown with one clip only.
+    pub(crate) fn one_clip_a_cell(&self) -> bool {
+        let mut clips: BTreeMap<Vec<Option<&str>>, BTreeSet<&str>> = BTreeMap::new();
+        for trial in &self.export.trials {
+            let cell = trial.levels.iter().map(Option::as_deref).collect();
+            clips.entry(cell).or_default().insert(&trial.stimulus);
+        }
+        clips.values().all(|clips| clips.len() == 1)
     }
 
     /// Shares of right answers by the levels of a factor.

@@ -85,6 +85,13 @@ impl Svg {
         );
     }
 
+    /// A line through several points.
+    pub(crate) fn path(&mut self, points: &[[f64; 2]], class: &str) {
+        let points: Vec<String> =
+            points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        let _ = writeln!(self.body, r#"<path d="M{}" class="{class}"/>"#, points.join("L"));
+    }
+
     pub(crate) fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
             self.body,
@@ -133,6 +140,11 @@ const STYLE: &str = "\
 .mm-figure .whisker{stroke:#0a4f86;stroke-width:2}\
 .mm-figure .mark{fill:#0a4f86}\
 .mm-figure .dot{fill:#0a4f86;fill-opacity:.35}\
+.mm-figure .person{fill:none;stroke:#555e68;stroke-width:1;stroke-opacity:.45}\
+.mm-figure .faint{stroke-opacity:.08}\
+.mm-figure .mean{fill:none;stroke:#0a4f86;stroke-width:3}\
+.mm-figure .course{fill:none;stroke:#0a4f86;stroke-width:1.5}\
+.mm-figure .thin{stroke:#0a4f86;stroke-width:1}\
 .mm-figure .box{fill:#cfe1f2;stroke:#0a4f86;stroke-width:1.5}\
 .mm-figure .empty{fill:none;stroke:#c9d0d8;stroke-width:1}\
 @media screen and (prefers-color-scheme:dark){\
@@ -140,7 +152,7 @@ const STYLE: &str = "\
 .mm-figure .on-dark{fill:#fff}.mm-figure .on-light{fill:#10151a}\
 .mm-figure .paper{fill:#15191e}.mm-figure .rule{stroke:#3a434d}.mm-figure .empty{stroke:#3a434d}\
 .mm-figure .zero{stroke:#a9b2bc}.mm-figure .whisker{stroke:#8cc4f2}.mm-figure .mark{fill:#8cc4f2}\
-.mm-figure .dot{fill:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
+.mm-figure .dot{fill:#8cc4f2}.mm-figure .person{stroke:#a9b2bc}.mm-figure .mean{stroke:#8cc4f2}.mm-figure .course,.mm-figure .thin{stroke:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
 
 /// The colour of a shade from 0 (light) to 1 (dark).
 pub(crate) fn shade(shade: f64) -> String {

@@ -1,11 +1,14 @@
 //! Tables of tests: as in the thesis beside recommended.
 
-use super::comparison::{Comparison, Pair, PersonLevel, TestLine, TrialLevel};
+use super::comparison::Comparison;
 use super::document::DataTable;
 use super::language::Language;
 use super::measure::MeasureKind;
 use super::naming::Naming;
+use super::person_level::{Pair, PersonLevel};
 use super::reading;
+use super::test_line::TestLine;
+use super::trial_level::TrialLevel;
 use crate::outcome::{Labelled, Outcome};
 use crate::proportion::Proportion;
 
@@ -84,6 +87,19 @@ fn difference_heading(language: Language, kind: MeasureKind) -> String {
     language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"))
 }
 
+/// Over tests of trials.
+pub(crate) fn thesis_heading(language: Language) -> &'static str {
+    language.pick(
+        "As in the thesis (assumes independent observations)",
+        "Comme dans la thèse (suppose des observations indépendantes)",
+    )
+}
+
+/// Over tests of people.
+pub(crate) fn recommended_heading(language: Language) -> &'static str {
+    language.pick("Recommended (one value a person)", "Recommandé (une valeur par personne)")
+}
+
 /// Both kinds of test of one measure and factor, line by line beside each other.
 pub(crate) fn two_columns(
     naming: &Naming<'_>,
@@ -104,21 +120,8 @@ pub(crate) fn two_columns(
         DataTable::new(id, caption, heading.into_iter().map(str::to_owned).chain([last]));
     table.groups = vec![
         (String::new(), 1),
-        (
-            language
-                .pick(
-                    "As in the thesis (assumes independent observations)",
-                    "Comme dans la thèse (suppose des observations indépendantes)",
-                )
-                .to_owned(),
-            3,
-        ),
-        (
-            language
-                .pick("Recommended (one value a person)", "Recommandé (une valeur par personne)")
-                .to_owned(),
-            4,
-        ),
+        (thesis_heading(language).to_owned(), 3),
+        (recommended_heading(language).to_owned(), 4),
     ];
     // The two kinds of test answer the same question in the same order: overall first, then pairs.
     let overall = people

@@ -1,34 +1,9 @@
 //! A study's export with simulated raters, written as `mimique export --format csv` writes it.
 
-use mimique_study::{Study, responses::FIXED_COLUMNS};
+mod random;
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Standard normal (Box and Muller).
-    pub fn normal(&mut self) -> f64 {
-        let (u, v) = (1.0 - self.uniform(), self.uniform());
-        (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
-    }
-}
+use mimique_study::{Question, QuestionKind, Study, responses::FIXED_COLUMNS};
+use random::Random;
 
 /// What the raters are like.
 pub struct Raters {
@@ -41,7 +16,7 @@ pub struct Raters {
 /// One row a participant, trial and response; the last person stops half-way.
 pub fn export(study: &Study, raters: &Raters) -> String {
     let factors = study.factor_names();
-    let about: Vec<&str> = study
+    let asked: Vec<&str> = study
         .demographics
         .iter()
         .flat_map(|page| &page.questions)
@@ -54,20 +29,23 @@ pub fn export(study: &Study, raters: &Raters) -> String {
             names.extend(factors.iter().map(String::as_str));
         }
     }
-    names.extend(&about);
+    names.extend(&asked);
     let mut text = names.join(",") + "\n";
     let mut random = Random::new(raters.seed);
     let clips = study.clips();
     let emotions = ["anger", "disgust", "fear", "joy", "sadness", "surprise"];
-    let first_method = "lsts";
     for person in 0..raters.people {
         let (level, liking) = (0.6 * random.normal(), 0.3 * random.normal());
         let status = if person + 1 == raters.people { "active" } else { "completed" };
         let trials = if status == "active" { clips.len() / 2 } else { clips.len() };
-        let age = 19 + (random.uniform() * 40.0) as u32;
-        let familiarity = 1 + (random.uniform() * 7.0) as u32;
+        let about: Vec<(&str, String)> = study
+            .demographics
+            .iter()
+            .flat_map(|page| &page.questions)
+            .map(|question| (question.id.as_str(), trait_answer(question, &mut random)))
+            .collect();
         for (order, clip) in clips.iter().take(trials).enumerate() {
-            let lsts = clip.factors["method"].to_string() == first_method;
+            let lsts = clip.method == "lsts30";
             let expression = clip.factors["expression"].to_string();
             let place = emotions.iter().position(|e| *e == expression).unwrap_or(0);
             let right = 0.45 + 0.08 * place as f64 + if lsts { 0.08 * raters.effect } else { 0.0 };
@@ -81,11 +59,19 @@ pub fn export(study: &Study, raters: &Raters) -> String {
                 let value = 4.0 + shift + level + method + random.normal();
                 value.round().clamp(1.0, 7.0).to_string()
             };
-            let answers = [
-                ("emotion", answer.clone()),
-                ("perceived_intensity", rating(0.3 * (place as f64 - 2.5))),
-                ("believability", rating(0.0)),
-            ];
+            let mut answers: Vec<(&str, String)> = Vec::new();
+            for question in &study.questions {
+                match &question.kind {
+                    QuestionKind::SingleChoice(_) => answers.push((&question.id, answer.clone())),
+                    QuestionKind::Likert(_) if question.id == "perceived_intensity" => {
+                        let strength = clip.factors.get("intensity").map(ToString::to_string);
+                        let strength = strength.and_then(|text| text.parse().ok()).unwrap_or(2.0);
+                        let shift = 0.3 * (place as f64 - 2.5) + 0.8 * (strength - 2.0);
+                        answers.push((&question.id, rating(shift)));
+                    }
+                    _ => answers.push((&question.id, rating(0.0))),
+                }
+            }
             let frames = 90 + (random.uniform() * 30.0) as u32;
             let late =
                 if random.uniform() < 0.06 { frames / 3 } else { (random.uniform() * 3.0) as u32 };
@@ -112,11 +98,13 @@ pub fn export(study: &Study, raters: &Raters) -> String {
                         "frames_late" => late.to_string(),
                         "frame_longest_ms" => format!("{:.1}", 17.0 + 3.0 * f64::from(late)),
                         "refresh_hz" => "60".to_owned(),
-                        "age" => age.to_string(),
-                        "familiarity" => familiarity.to_string(),
-                        factor => {
-                            clip.factors.get(factor).map(ToString::to_string).unwrap_or_default()
-                        }
+                        other => match about.iter().find(|(id, _)| *id == other) {
+                            Some((_, answer)) => answer.clone(),
+                            None => {
+                                let level = clip.factors.get(other).map(ToString::to_string);
+                                level.unwrap_or_default()
+                            }
+                        },
                     })
                     .collect();
                 text.push_str(&cells.join(","));
@@ -125,6 +113,25 @@ pub fn export(study: &Study, raters: &Raters) -> String {
         }
     }
     text
+}
+
+fn trait_answer(question: &Question, random: &mut Random) -> String {
+    match &question.kind {
+        QuestionKind::Likert(likert) => {
+            let points = (likert.end() - likert.start + 1) as f64;
+            (likert.start + (random.uniform() * points) as i64).to_string()
+        }
+        QuestionKind::SingleChoice(choice) => {
+            let place = (random.uniform() * choice.options.len() as f64) as usize;
+            choice.options[place].value.clone()
+        }
+        _ => (19 + (random.uniform() * 40.0) as u32).to_string(),
+    }
+}
+
+/// A study of one method with three values of its parameter, 18 clips each, that lays out its tables.
+pub fn parameter_study() -> Study {
+    Study::from_text(include_str!("../fixtures/parameter-study.json")).unwrap()
 }
 
 /// The built-in demonstration study, with a rule on late frames such as a real study has.

@@ -53,6 +53,17 @@ fn is_number(question: &Question) -> bool {
     )
 }
 
+/// What an analysis can group by.
+pub(super) fn factor_names(subject: &Subject<'_>) -> BTreeSet<String> {
+    let mut names: BTreeSet<String> = subject.study.factor_names().into_iter().collect();
+    // People differ by what they say of themselves.
+    names.extend(
+        subject.study.demographics.iter().flat_map(|page| &page.questions).map(|q| q.id.clone()),
+    );
+    names.extend(["avatar", "segment"].map(str::to_owned));
+    names
+}
+
 fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
     let place = below(pointer, "factors");
     let wanted = match hypothesis.test {
@@ -69,12 +80,7 @@ fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues
         };
         issues.error(&place, "wrong-length", message, hint);
     }
-    let mut names: BTreeSet<String> = subject.study.factor_names().into_iter().collect();
-    // People differ by what they say of themselves.
-    names.extend(
-        subject.study.demographics.iter().flat_map(|page| &page.questions).map(|q| q.id.clone()),
-    );
-    names.extend(["avatar", "segment"].map(str::to_owned));
+    let names = factor_names(subject);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     for (index, factor) in hypothesis.factors.iter().enumerate() {
         if !names.contains(&factor.as_str()) {

@@ -1,8 +1,8 @@
 //! Every problem of a study file at once, each with its place and a remedy.
 //!
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
-//! raw types -> [`general`], [`questions`], [`stimuli`], [`sequence`], [`hypotheses`] (what no type
-//! can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
+//! raw types -> [`general`], [`questions`], [`stimuli`], [`sequence`], [`hypotheses`],
+//! [`tables`] (what no type can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
 
 mod avatars;
 mod general;
@@ -14,6 +14,7 @@ mod schema;
 mod sequence;
 mod stimuli;
 mod structure;
+mod tables;
 
 use serde_json::Value;
 
@@ -112,6 +113,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     stimuli::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);
+    tables::examine(&subject, issues);
     Some(CheckedStudy { study, value, config_hash })
 }
 

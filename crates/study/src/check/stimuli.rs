@@ -298,6 +298,10 @@ fn factors_used<'a>(subject: &Subject<'a>) -> BTreeSet<&'a str> {
     for hypothesis in &study.hypotheses {
         used.extend(hypothesis.factors.iter().map(String::as_str));
     }
+    for table in &study.tables {
+        let crossed = table.crossings.iter().flatten();
+        used.extend(table.factors.iter().chain(crossed).map(String::as_str));
+    }
     for question in &study.questions {
         if let QuestionKind::SingleChoice(choice) = &question.kind {
             used.extend(choice.truth.as_deref());

@@ -14,6 +14,7 @@ mod paths;
 mod questions;
 mod sequence;
 mod stimuli;
+mod tables;
 
 use std::collections::BTreeMap;
 
@@ -41,6 +42,7 @@ pub use stimuli::{
     ClipCross, ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
     film_type,
 };
+pub use tables::{Layout, TableLayout};
 
 /// A whole study file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,6 +94,9 @@ pub struct Study {
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<Hypothesis>,
+    /// Tables of the report in the study's own layout; read by `mimique analyze`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tables: Vec<TableLayout>,
     /// Rules, fixed beforehand, that leave trials or people out of the analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exclusions: Option<Exclusions>,

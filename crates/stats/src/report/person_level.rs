@@ -1,0 +1,237 @@
+//! Tests as recommended: every person counts once.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::call::Call;
+use super::export::Export;
+use super::measure::Measure;
+use super::test_line::TestLine;
+use crate::adjust::Adjustment;
+use crate::factor::Factor;
+use crate::friedman::Blocks;
+use crate::outcome::Outcome;
+use crate::spearman::spearman;
+use crate::table::Numbers;
+use crate::walsh::HodgesLehmann;
+use crate::wilcoxon::{WilcoxonOptions, rounded};
+
+/// Two levels compared within people.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Pair {
+    /// First level.
+    pub a: String,
+    /// Second level.
+    pub b: String,
+    /// People.
+    pub n: usize,
+    /// People whose mean is higher at the first level.
+    pub a_higher: usize,
+    /// People whose mean is higher at the second level.
+    pub b_higher: usize,
+    /// The smallest p that so many people can give.
+    pub least_p: f64,
+    /// Exact conditional Wilcoxon, Pratt.
+    pub wilcoxon: Outcome<TestLine>,
+    /// Hodges-Lehmann estimate of a - b, with its interval.
+    pub difference: Option<HodgesLehmann>,
+    /// Difference of each person.
+    pub differences: Vec<f64>,
+}
+
+/// Tests on one value a person.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct PersonLevel {
+    /// People with a value at each level.
+    pub people: usize,
+    /// People without.
+    pub incomplete: usize,
+    /// Overall tests: Iman and Davenport's F of Friedman's test, or others.
+    pub overall: Vec<Outcome<TestLine>>,
+    /// Pairs, Holm-corrected.
+    pub pairs: Vec<Pair>,
+}
+
+/// Friedman with Iman and Davenport's F, then exact paired tests with Holm's correction.
+pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> PersonLevel {
+    let blocks = &measure.person_means(export, factor);
+    let call =
+        |function| Call::new(function).text(&measure.id).text(&factor.name).list(&factor.levels);
+    let n = blocks.responses.len();
+    let mut overall = Vec::new();
+    if blocks.groups.len() > 2 {
+        overall.push(TestLine::friedman(blocks, &call("friedman")));
+    }
+    let mut pairs: Vec<Pair> = blocks
+        .pairs()
+        .into_iter()
+        .map(|(a, b)| pair(blocks, a, b, call("wilcoxon_people").number(a + 1).number(b + 1)))
+        .collect();
+    let p: Vec<Option<f64>> = pairs
+        .iter()
+        .map(|pair| match &pair.wilcoxon {
+            Outcome::Ok(line) => Some(line.p_value),
+            Outcome::Undefined { .. } => None,
+        })
+        .collect();
+    for (pair, p_holm) in pairs.iter_mut().zip(Adjustment::Holm.apply(&p)) {
+        if let Outcome::Ok(line) = &mut pair.wilcoxon {
+            line.p_holm = p_holm;
+        }
+    }
+    PersonLevel { people: n, incomplete: blocks.incomplete, overall, pairs }
+}
+
+fn pair(blocks: &Blocks, a: usize, b: usize, call: Call) -> Pair {
+    let differences = blocks.differences(a, b);
+    let count = |positive: bool| {
+        differences.values.iter().filter(|&&d| (d > 1e-9) == positive && d.abs() > 1e-9).count()
+    };
+    let n = differences.values.len();
+    let (outcome, difference) =
+        TestLine::wilcoxon(&differences, WilcoxonOptions::default(), "on person means", call);
+    Pair {
+        a: blocks.groups[a].clone(),
+        b: blocks.groups[b].clone(),
+        n,
+        a_higher: count(true),
+        b_higher: count(false),
+        least_p: 2.0 * 0.5f64.powi(n.min(1000) as i32),
+        wilcoxon: outcome,
+        difference,
+        differences: differences.values,
+    }
+}
+
+/// Aligned rank transform of the means of each person and combination.
+pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2]) -> PersonLevel {
+    let [first, second] = factors;
+    let joined: Vec<Option<String>> = (0..measure.values.len())
+        .map(|i| Some(format!("{}\u{1f}{}", first.level(i)?, second.level(i)?)))
+        .collect();
+    let cells = Factor::from_cells("cell", joined.iter().map(Option::as_deref), |_| None);
+    let blocks = measure.person_means(export, &cells);
+    let (mut values, mut people, mut level) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
+    for (person, means) in blocks.blocks.iter().zip(&blocks.responses) {
+        for (cell, mean) in blocks.groups.iter().zip(means) {
+            if let Some((a, b)) = cell.split_once('\u{1f}') {
+                values.push(*mean);
+                people.push(person.as_str());
+                level[0].push(a);
+                level[1].push(b);
+            }
+        }
+    }
+    let factor = |name: &str, cells: &[&str]| {
+        Factor::from_cells(name, cells.iter().map(|cell| Some(*cell)), |level| level.parse().ok())
+    };
+    let (a, b) = (factor(&first.name, &level[0]), factor(&second.name, &level[1]));
+    let person = factor("participant_id", &people);
+    let values = Numbers { name: measure.id.clone(), values };
+    let overall = TestLine::aligned_rank_transform(&values, [&a, &b], &person);
+    PersonLevel {
+        people: blocks.blocks.len(),
+        incomplete: blocks.incomplete,
+        overall,
+        pairs: Vec::new(),
+    }
+}
+
+/// Whether people's differences between two levels depend on something about them, a line a pair of
+/// levels.
+pub(crate) fn differences_by_trait(
+    export: &Export,
+    measure: &Measure,
+    within: &Factor,
+    about: &Factor,
+) -> Vec<Outcome<TestLine>> {
+    let means = measure.person_means_by_place(within);
+    let first_rows = measure.first_rows();
+    let rows: Vec<usize> =
+        means.people.iter().filter_map(|person| first_rows.get(person).copied()).collect();
+    let about = about.rows(&rows);
+    let blocks = means.blocks(export, within);
+    blocks
+        .pairs()
+        .into_iter()
+        .map(|(a, b)| {
+            let differences = Numbers {
+                name: measure.id.clone(),
+                values: blocks.differences(a, b).values.iter().map(|d| rounded(*d)).collect(),
+            };
+            let line = TestLine::of_groups(&differences, &about, "person differences");
+            let call = Call::new("differences_by_trait")
+                .text(&measure.id)
+                .text(&within.name)
+                .list(&within.levels)
+                .number(a + 1)
+                .number(b + 1)
+                .text(&about.name)
+                .list(&about.levels);
+            line.map(|line| TestLine { call, ..line })
+        })
+        .collect()
+}
+
+/// One value a person against something about the person.
+pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
+    let means = measure.overall_person_means();
+    let first_rows = measure.first_rows();
+    let first_row: Vec<usize> =
+        means.keys().filter_map(|person| first_rows.get(person).copied()).collect();
+    let factor = factor.rows(&first_row);
+    let values = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
+    let overall = TestLine::of_groups(&values, &factor, "person means");
+    PersonLevel { people: means.len(), incomplete: 0, overall: vec![overall], pairs: Vec::new() }
+}
+
+/// Each person's own rho, then a signed rank test of them against zero.
+pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> Outcome<TestLine> {
+    let name = x.name.clone();
+    let mut by_person: BTreeMap<usize, (Vec<f64>, Vec<f64>)> = BTreeMap::new();
+    for (i, &person) in measure.person.iter().enumerate() {
+        if x.values[i].is_finite() {
+            let cell = by_person.entry(person).or_default();
+            cell.0.push(x.values[i]);
+            cell.1.push(measure.values[i]);
+        }
+    }
+    let rhos: Vec<f64> = by_person
+        .into_values()
+        .filter_map(|(x, y)| {
+            let column = |values| Numbers { name: String::new(), values };
+            Some(spearman(&column(x), &column(y)).ok()?.ok()?.rho)
+        })
+        .collect();
+    let rhos = Numbers { name: "rho".to_owned(), values: rhos };
+    let call = Call::new("wilcoxon_rho").text(&name).text(&measure.id);
+    let options = WilcoxonOptions::default();
+    let (line, estimate) = TestLine::wilcoxon(&rhos, options, "of each person's rho", call);
+    line.map(|line| TestLine {
+        term: String::new(),
+        effect_name: "median rho",
+        effect: estimate.map(|estimate| estimate.estimate),
+        ..line
+    })
+}
+
+/// Something about each person, as numbers a value, against the person's mean.
+pub(crate) fn correlation(x: &Numbers, measure: &Measure) -> PersonLevel {
+    let means = measure.overall_person_means();
+    let first_row = measure.first_rows();
+    let of_people = Numbers {
+        name: x.name.clone(),
+        values: means
+            .keys()
+            .map(|person| first_row.get(person).map_or(f64::NAN, |&row| x.values[row]))
+            .collect(),
+    };
+    let means = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
+    PersonLevel {
+        people: means.values.len(),
+        incomplete: 0,
+        overall: vec![TestLine::spearman(&of_people, &means, "person means")],
+        pairs: Vec::new(),
+    }
+}

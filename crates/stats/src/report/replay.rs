@@ -1,0 +1,421 @@
+//! The report's numbers for other programs: the trials as a table, every number under a key, and
+//! scripts in R and Python that compute them again and compare.
+
+use std::fmt::Write;
+
+use super::ReportFile;
+use super::call::{Argument, Call};
+use super::comparison::Comparison;
+use super::document::csv_cell;
+use super::export::Export;
+use super::language::Language;
+use super::measure::{Measure, MeasureKind};
+use super::person_level::{Pair, PersonLevel};
+use super::sections::{Results, Writer};
+use super::test_line::TestLine;
+use super::trial_level::TrialLevel;
+use crate::outcome::Outcome;
+
+/// One computation: a key, how it is called, and what came out.
+struct Check {
+    key: String,
+    call: Call,
+    values: Vec<(&'static str, f64)>,
+}
+
+/// p-values that are corrected together: keys of their checks, and keys for the corrected ones.
+struct Family {
+    of: Vec<String>,
+    into: Vec<String>,
+    p_holm: Vec<f64>,
+}
+
+/// `analysis.R`, `analysis.py` and what they read.
+pub(crate) fn files(writer: &Writer<'_>) -> Vec<ReportFile> {
+    let (checks, families) = Collector::of(&writer.results);
+    let file = |path: &str, text: String| ReportFile { path: path.to_owned(), text };
+    let r = include_str!("scripts/analysis.R")
+        .replacen("@CALLS@\n", &calls(&checks, &families, Script::R), 1)
+        .replacen("@MODELS@\n", &models(writer), 1);
+    let python = include_str!("scripts/analysis.py").replacen(
+        "@CALLS@\n",
+        &calls(&checks, &families, Script::Python),
+        1,
+    );
+    vec![
+        file("analysis.R", r),
+        file("analysis.py", python),
+        file("data/trials.csv", trials(writer)),
+        file("data/numbers.csv", numbers(&checks, &families)),
+    ]
+}
+
+/// Walks the results.
+#[derive(Default)]
+struct Collector {
+    checks: Vec<Check>,
+    families: Vec<Family>,
+}
+
+impl Collector {
+    fn of(results: &Results<'_>) -> (Vec<Check>, Vec<Family>) {
+        let mut all = Self::default();
+        let mut decided = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        for result in &results.hypotheses {
+            let key = format!("hypothesis:{}", result.id);
+            all.trial_level(&key, &result.as_in_the_thesis);
+            all.person_level(&key, &result.recommended);
+            if let (Some(p_holm), Some(deciding)) =
+                (result.p_holm_over_hypotheses, deciding_key(&key, &result.recommended))
+            {
+                decided.of.push(deciding);
+                decided.into.push(format!("{key}:over hypotheses"));
+                decided.p_holm.push(p_holm);
+            }
+        }
+        all.families.extend((!decided.of.is_empty()).then_some(decided));
+        for matrix in &results.confusion {
+            let by = matrix.by.as_deref().unwrap_or_default();
+            let result = &matrix.result;
+            let [wilson_low, wilson_high] = result.accuracy_ci_wilson;
+            let mut values = vec![
+                ("n", result.n as f64),
+                ("accuracy", result.accuracy),
+                ("wilson_low", wilson_low),
+                ("wilson_high", wilson_high),
+            ];
+            values.extend(result.kappa.map(|kappa| ("kappa", kappa)));
+            let call = Call::new("confusion").text(&matrix.response).text(by);
+            let levels = matrix.by.as_ref().map(|_| matrix.of.clone());
+            all.checks.push(Check {
+                key: format!("confusion:{}:{}", matrix.response, matrix.of),
+                call: call.list(levels.as_slice()),
+                values,
+            });
+        }
+        for comparison in &results.comparisons {
+            all.comparison(comparison);
+        }
+        for two in &results.two_way {
+            let key = format!("two-way:{}:{}", two.measure, two.factors.join(":"));
+            all.trial_level(&key, &two.as_in_the_thesis);
+            all.person_level(&key, &two.recommended);
+        }
+        for course in &results.course {
+            all.line(format!("course:{}", course.measure), &course.trend);
+        }
+        all.layouts(results);
+        (all.checks, all.families)
+    }
+
+    fn comparison(&mut self, comparison: &Comparison) {
+        let (measure, factor) = (&comparison.measure, &comparison.factor);
+        let key = format!("comparison:{measure}:{factor}");
+        for (level, outcome) in comparison.descriptions.iter() {
+            let Outcome::Ok(d) = outcome else { continue };
+            let mut values = vec![
+                ("n", d.n as f64),
+                ("mean", d.mean),
+                ("median", d.median),
+                ("q1", d.q1),
+                ("q3", d.q3),
+            ];
+            values.extend(d.sd.map(|sd| ("sd", sd)));
+            self.checks.push(Check {
+                key: format!("{key}:{level}"),
+                call: Call::new("describe").text(measure).text(factor).text(level),
+                values,
+            });
+        }
+        for (place, (level, mean)) in comparison.person_means.iter().enumerate() {
+            let Some(mean) = mean else { continue };
+            let call = Call::new("person_mean").text(measure).text(factor);
+            self.checks.push(Check {
+                key: format!("{key}:{level}:people"),
+                call: call.list(&comparison.levels).number(place + 1),
+                values: vec![("mean", *mean)],
+            });
+        }
+        self.trial_level(&key, &comparison.as_in_the_thesis);
+        self.person_level(&key, &comparison.recommended);
+    }
+
+    fn layouts(&mut self, results: &Results<'_>) {
+        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let mut row = None;
+        for cell in &results.layouts {
+            let key = format!("table:{}:{}:{}", cell.table, cell.row, cell.column);
+            // The pairs of a row are corrected together.
+            if row.replace((&cell.table, &cell.row)) != Some((&cell.table, &cell.row)) {
+                self.close(&mut family);
+            }
+            if let Some(outcome) = &cell.as_in_the_thesis {
+                self.line(format!("{key}:thesis"), outcome);
+            }
+            if let Some(outcome) = &cell.recommended {
+                let key = format!("{key}:recommended");
+                self.line(key.clone(), outcome);
+                if let Outcome::Ok(TestLine { p_holm: Some(p), call, .. }) = outcome
+                    && call.function == "wilcoxon_people"
+                {
+                    family.of.push(key.clone());
+                    family.into.push(key);
+                    family.p_holm.push(*p);
+                }
+            }
+        }
+        self.close(&mut family);
+    }
+
+    fn close(&mut self, family: &mut Family) {
+        let empty = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let whole = std::mem::replace(family, empty);
+        self.families.extend((!whole.of.is_empty()).then_some(whole));
+    }
+
+    fn trial_level(&mut self, key: &str, trials: &TrialLevel) {
+        for (place, outcome) in trials.tests.iter().enumerate() {
+            self.line(format!("{key}:thesis {}", place + 1), outcome);
+        }
+    }
+
+    fn person_level(&mut self, key: &str, people: &PersonLevel) {
+        for (place, outcome) in people.overall.iter().enumerate() {
+            self.line(overall_key(key, place), outcome);
+        }
+        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        for pair in &people.pairs {
+            let key = pair_key(key, pair);
+            self.line(key.clone(), &pair.wilcoxon);
+            let (Outcome::Ok(line), Some(check)) = (&pair.wilcoxon, self.checks.last_mut()) else {
+                continue;
+            };
+            if let Some(difference) = pair.difference {
+                check.values.extend([
+                    ("estimate", difference.estimate),
+                    ("low", difference.ci_low),
+                    ("high", difference.ci_high),
+                ]);
+            }
+            if let Some(p_holm) = line.p_holm {
+                family.of.push(key.clone());
+                family.into.push(key);
+                family.p_holm.push(p_holm);
+            }
+        }
+        self.close(&mut family);
+    }
+
+    fn line(&mut self, key: String, outcome: &Outcome<TestLine>) {
+        let Outcome::Ok(line) = outcome else { return };
+        let mut values =
+            vec![("statistic", line.statistic), ("p", line.p_value), ("n", line.n as f64)];
+        values.extend(line.effect.map(|effect| ("effect", effect)));
+        if line.call.function == "differences_by_trait" {
+            values.extend(line.p_holm.map(|p| ("p_holm", p)));
+        }
+        self.checks.push(Check { key, call: line.call.clone(), values });
+    }
+}
+
+fn overall_key(key: &str, place: usize) -> String {
+    format!("{key}:recommended {}", place + 1)
+}
+
+fn pair_key(key: &str, pair: &Pair) -> String {
+    format!("{key}:{} | {}", pair.a, pair.b)
+}
+
+/// The check whose p decides a hypothesis.
+fn deciding_key(key: &str, people: &PersonLevel) -> Option<String> {
+    match (people.overall.len(), people.pairs.as_slice()) {
+        (0, [one]) => Some(pair_key(key, one)),
+        (0, _) => None,
+        (several, _) => Some(overall_key(key, several - 1)),
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Script {
+    R,
+    Python,
+}
+
+fn calls(checks: &[Check], families: &[Family], script: Script) -> String {
+    let mut text = String::new();
+    let list = |items: &[String]| {
+        let items: Vec<String> = items.iter().map(|item| quoted(item)).collect();
+        match script {
+            Script::R if items.is_empty() => "character()".to_owned(),
+            Script::R => format!("c({})", items.join(", ")),
+            Script::Python => format!("[{}]", items.join(", ")),
+        }
+    };
+    for check in checks {
+        let arguments: Vec<String> = check
+            .call
+            .arguments
+            .iter()
+            .map(|argument| match argument {
+                Argument::Text(text) => quoted(text),
+                Argument::List(items) => list(items),
+                Argument::Number(number) => number.to_string(),
+            })
+            .collect();
+        let call = format!("{}({})", check.call.function, arguments.join(", "));
+        let _ = writeln!(text, "check({}, {call})", quoted(&check.key));
+    }
+    for family in families {
+        let _ = writeln!(text, "holm({}, {})", list(&family.of), list(&family.into));
+    }
+    text
+}
+
+/// A text between quotes, read alike by R and Python.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            '\n' => quoted.push_str("\\n"),
+            '\r' => quoted.push_str("\\r"),
+            '\t' => quoted.push_str("\\t"),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+fn numbers(checks: &[Check], families: &[Family]) -> String {
+    let mut text = String::from("key,name,value\n");
+    let mut line = |key: &str, name: &str, value: f64| {
+        let _ = writeln!(text, "{},{name},{value:?}", csv_cell(key));
+    };
+    for check in checks {
+        for (name, value) in &check.values {
+            line(&check.key, name, *value);
+        }
+    }
+    for family in families {
+        for (key, p_holm) in family.into.iter().zip(&family.p_holm) {
+            line(key, "p_holm", *p_holm);
+        }
+    }
+    text
+}
+
+/// One line a trial in the analysis: person, clip, factors, answers about the person, every measure.
+fn trials(writer: &Writer<'_>) -> String {
+    let export: &Export = writer.export;
+    let rows = export.trials.len();
+    let mut columns: Vec<(String, Vec<String>)> = Vec::new();
+    let mut person = vec![0; rows];
+    for answer in &export.answers {
+        person[answer.trial] = answer.person;
+    }
+    let blank = || vec![String::new(); rows];
+    columns.push((
+        "participant_id".to_owned(),
+        person.iter().map(|&person| export.people[person].id.clone()).collect(),
+    ));
+    columns.push((
+        "stimulus".to_owned(),
+        export.trials.iter().map(|trial| trial.stimulus.clone()).collect(),
+    ));
+    let orders = export.trials.iter().map(|trial| trial.order);
+    columns.push((
+        "trial_order".to_owned(),
+        orders.map(|order| order.map_or_else(String::new, |order| order.to_string())).collect(),
+    ));
+    for (place, factor) in export.factors.iter().enumerate() {
+        let cells = export.trials.iter().map(|trial| trial.levels[place].clone());
+        columns.push((factor.clone(), cells.map(Option::unwrap_or_default).collect()));
+    }
+    for (name, cells) in &export.about {
+        let cells = person.iter().map(|&person| cells[person].clone().unwrap_or_default());
+        columns.push((name.clone(), cells.collect()));
+    }
+    let mut measures: Vec<Measure> = Vec::new();
+    for asked in export.questions(writer.study) {
+        let measure = Measure::of_question(export, &asked, Language::English);
+        if measure.as_ref().is_some_and(|measure| measure.kind == MeasureKind::Recognition) {
+            let (mut truth, mut given) = (blank(), blank());
+            for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
+                truth[answer.trial] = answer.truth.clone().unwrap_or_default();
+                given[answer.trial].clone_from(&answer.text);
+            }
+            columns.push((format!("{}.truth", asked.id), truth));
+            columns.push((format!("{}.answer", asked.id), given));
+        }
+        measures.extend(measure);
+        measures.extend(Measure::response_time(export, &asked, Language::English));
+    }
+    for measure in measures {
+        let mut cells = blank();
+        for (value, &trial) in measure.values.iter().zip(&measure.trial) {
+            cells[trial] = value.to_string();
+        }
+        columns.push((measure.id, cells));
+    }
+    let mut text = String::new();
+    let names: Vec<String> = columns.iter().map(|(name, _)| csv_cell(name)).collect();
+    text.push_str(&names.join(","));
+    text.push('\n');
+    for row in 0..rows {
+        for (place, (_, cells)) in columns.iter().enumerate() {
+            if place > 0 {
+                text.push(',');
+            }
+            text.push_str(&csv_cell(&cells[row]));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Mixed models of each rating and each recognition on the first two factors.
+fn models(writer: &Writer<'_>) -> String {
+    let mut text = String::new();
+    let Some(first) = writer.factors.first() else { return text };
+    let second = writer.factors.get(1);
+    let fixed = if second.is_some() { "a * b" } else { "a" };
+    let clips = if writer.one_clip_a_cell() { "" } else { " + (1 | clip)" };
+    for asked in writer.export.questions(writer.study) {
+        let Some(measure) = Measure::of_question(writer.export, &asked, Language::English) else {
+            continue;
+        };
+        let data = format!(
+            "data.frame(y = number({}), a = factor(trials[[{}]]), {}person = factor(person), clip = factor(trials$stimulus))",
+            quoted(&measure.id),
+            quoted(first),
+            second.map_or_else(String::new, |second| {
+                format!("b = factor(trials[[{}]]), ", quoted(second))
+            })
+        );
+        let random = format!("(1 | person) + (1 | person:a){clips}");
+        let (title, package, model) = if measure.kind == MeasureKind::Recognition {
+            (
+                format!("Binomial mixed model of {}", measure.id),
+                "lme4",
+                format!("lme4::glmer(y ~ {fixed} + {random}, data, family = binomial)"),
+            )
+        } else if measure.scale.is_some() {
+            (
+                format!("Cumulative link mixed model of {}", measure.id),
+                "ordinal",
+                format!("ordinal::clmm(ordered(y) ~ {fixed} + {random}, data)"),
+            )
+        } else {
+            continue;
+        };
+        let by = second.map_or_else(String::new, |second| format!(", b = {second}"));
+        let title = quoted(&format!("{title} (a = {first}{by})"));
+        let _ = writeln!(
+            text,
+            "fit({title}, \"{package}\", function() {{\n  data <- {data}\n  {model}\n}})"
+        );
+    }
+    text
+}

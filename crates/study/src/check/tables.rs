@@ -1,0 +1,100 @@
+//! Tables that the study lays out: that they name what there is, and as much as their layout takes.
+
+use std::ops::RangeInclusive;
+
+use super::Subject;
+use super::hypotheses::factor_names;
+use super::issue::{Issues, below};
+use super::nearest::suggestion;
+use crate::study_file::{Layout, QuestionKind, TableLayout};
+
+pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
+    let tables = &subject.study.tables;
+    for (index, table) in tables.iter().enumerate() {
+        let pointer = below("/tables", index);
+        if tables[..index].iter().any(|each| each.id == table.id) {
+            let message = format!("two tables \"{}\"", table.id);
+            issues.error(below(&pointer, "id"), "duplicate", message, "give it another name");
+        }
+        counts(subject, table, &pointer, issues);
+        names(subject, table, &pointer, issues);
+    }
+}
+
+/// How many of each list a layout takes.
+fn counts(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut Issues) {
+    const NONE: RangeInclusive<usize> = 0..=0;
+    const SOME: RangeInclusive<usize> = 1..=usize::MAX;
+    let (responses, factors, crossings) = match table.layout {
+        Layout::Hypotheses => (NONE, NONE, NONE),
+        Layout::Pairs => (SOME, 1..=1, NONE),
+        Layout::Means => (SOME, 1..=2, NONE),
+        Layout::Interactions => (SOME, NONE, SOME),
+        Layout::Influences => (SOME, SOME, NONE),
+        Layout::Confusion => (1..=1, 0..=1, NONE),
+    };
+    for (key, wanted, found) in [
+        ("responses", responses, table.responses.len()),
+        ("factors", factors, table.factors.len()),
+        ("crossings", crossings, table.crossings.len()),
+    ] {
+        if wanted.contains(&found) {
+            continue;
+        }
+        let message = format!("{found} {key} in the layout \"{}\"", table.layout.word());
+        let hint = match (*wanted.start(), *wanted.end()) {
+            (_, 0) => "leave them out".to_owned(),
+            (low, usize::MAX) => format!("name at least {low}"),
+            (low, high) if low == high => format!("name {low}"),
+            (low, high) => format!("name {low} to {high}"),
+        };
+        issues.error(below(pointer, key), "wrong-length", message, hint);
+    }
+    if table.layout == Layout::Hypotheses && subject.study.hypotheses.is_empty() {
+        let message = "the study has no hypotheses";
+        issues.error(below(pointer, "layout"), "unknown-reference", message, "state hypotheses");
+    }
+}
+
+fn names(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut Issues) {
+    let questions: Vec<&str> =
+        subject.study.all_questions().map(|question| question.id.as_str()).collect();
+    for (index, response) in table.responses.iter().enumerate() {
+        let place = below(&below(pointer, "responses"), index);
+        // `grid.valence` is a part of the question `grid`.
+        let whole = response.split('.').next().unwrap_or(response);
+        let Some(question) = subject
+            .study
+            .all_questions()
+            .find(|question| question.id == *response || question.id == whole)
+        else {
+            let message = format!("there is no question \"{response}\"");
+            issues.error(place, "unknown-reference", message, suggestion(response, &questions));
+            continue;
+        };
+        let has_truth =
+            matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
+        if table.layout == Layout::Confusion && !has_truth {
+            let message = format!("\"{response}\" has no right answer");
+            issues.error(place, "no-truth", message, "give the question \"truth\"");
+        }
+    }
+    let names = factor_names(subject);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let lists = [("factors".to_owned(), table.factors.as_slice())].into_iter().chain(
+        table
+            .crossings
+            .iter()
+            .enumerate()
+            .map(|(index, pair)| (format!("crossings/{index}"), pair.as_slice())),
+    );
+    for (key, factors) in lists {
+        for (index, factor) in factors.iter().enumerate() {
+            if !names.contains(&factor.as_str()) {
+                let place = below(&format!("{pointer}/{key}"), index);
+                let message = format!("there is no factor \"{factor}\"");
+                issues.error(place, "unknown-reference", message, suggestion(factor, &names));
+            }
+        }
+    }
+}
