@@ -8,7 +8,10 @@ mod check;
 mod export;
 mod inspect;
 mod order;
+mod output;
 mod power;
+mod repair;
+mod segment;
 mod serve;
 mod simulate;
 mod solve;
@@ -42,6 +45,10 @@ enum Command {
     Inspect(inspect::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
+    /// Mend a capture: swaps, spikes, gaps; filter, resample, hold the head still
+    Repair(Box<repair::Args>),
+    /// Suggest the expressions in a long take; convert between CSV and ELAN
+    Segment(Box<segment::Args>),
     /// Write the responses of a study to a file
     Export(export::Args),
     /// Write an export of simulated participants
@@ -69,6 +76,8 @@ fn main() -> ExitCode {
         Command::Order(args) => order::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
+        Command::Repair(args) => repair::run(*args, json),
+        Command::Segment(args) => segment::run(*args, json),
         Command::Export(args) => export::run(args, json),
         Command::Simulate(args) => simulate::run(args, json),
         Command::Power(args) => power::run(args, json),

@@ -14,8 +14,8 @@ use indicatif::ProgressBar;
 use mimique_mocap::{LengthUnit, ReadOptions};
 use mimique_solver::{FrontEndError, Method, MethodSpec, TrainingError};
 use mimique_stimulus::{
-    AvatarSkin, Depth, MarkerMap, ScaleRule, SolveError, SolveReport, SolvedCapture, TakeOptions,
-    Training, VertexFrames, WeightsTable, solve_take, split_shapes,
+    AvatarSkin, Depth, MarkerMap, RepairSidecar, ScaleRule, SolveError, SolveReport, SolvedCapture,
+    TakeOptions, Training, VertexFrames, WeightsTable, solve_take, split_shapes,
 };
 use serde_json::{Value, json};
 
@@ -161,7 +161,7 @@ struct Pair([f64; 2]);
 
 /// `FIRST:END`.
 #[derive(Debug, Clone)]
-struct Span(Range<usize>);
+pub(crate) struct Span(pub(crate) Range<usize>);
 
 /// Metres, from `12mm`, `1.2cm` or `0.012m`.
 #[derive(Debug, Clone, Copy)]
@@ -209,6 +209,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(markers)
         .map_err(|e| blame(markers, format!("open: {e}; check the path")))?;
     let map = MarkerMap::from_text(&text).map_err(|e| blame(markers, e))?;
+    let sidecar = RepairSidecar::beside(&args.mocap, &read_bytes(&args.mocap)?)
+        .map_err(|e| anyhow!("{e}"))?;
     let options = TakeOptions {
         neutral: args.neutral.as_ref().map(|s| s.0.clone()),
         head: args.head.clone(),
@@ -219,6 +221,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         },
         depth: args.depth,
         training: training(&args)?.map(Box::new),
+        repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
     let read = seconds();
 
@@ -228,7 +231,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             .map_err(|e| blame(at_fault(&e, &args), e))?;
     let notes = avatar.notes.iter().map(|n| (&args.avatar, n));
     let notes = notes.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
-    let notes: Vec<String> = notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+    let mut notes: Vec<String> =
+        notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+    notes.extend(sidecar.map(|s| {
+        format!("{}: repaired from {}: {}", args.mocap.display(), s.source.file, s.repair.summary())
+    }));
 
     progress.set_message("writing");
     let start = seconds();
@@ -472,7 +479,7 @@ fn blame(file: &Path, error: impl std::fmt::Display) -> anyhow::Error {
 }
 
 /// The unit of a word.
-fn length_unit(word: &str) -> anyhow::Result<LengthUnit> {
+pub(crate) fn length_unit(word: &str) -> anyhow::Result<LengthUnit> {
     match word {
         "mm" => Ok(LengthUnit::Millimetre),
         "cm" => Ok(LengthUnit::Centimetre),

@@ -1,6 +1,7 @@
 //! Meshes, blendshapes and avatars: vocabulary, readers, the built-in head, the avatar pack.
 
 mod avatar;
+mod driven;
 #[cfg(feature = "readers")]
 mod glb;
 pub mod pack;
@@ -13,6 +14,7 @@ mod read_error;
 mod shape_names;
 
 pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
+pub use driven::{Driven, DrivenError};
 #[cfg(feature = "readers")]
 pub use glb::read_gltf;
 pub use parts::find_eyeballs;

@@ -15,8 +15,11 @@ mod neutral;
 mod plausibility;
 mod read;
 mod recording;
+mod repair;
 mod resample;
 mod rigid_fit;
+mod stabilise;
+mod sudden;
 mod text;
 mod unit;
 mod weight_take;
@@ -24,13 +27,18 @@ mod weight_take;
 pub use c3d::{C3dOptions, C3dStorage, Processor, write_c3d};
 pub use capture::{Capture, LengthUnit};
 pub use error::{ReadError, WriteError};
-pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence, Swap};
+pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence};
 pub use format::{Format, recognise};
 pub use gaps::{FilledGap, Gap, GapFill, GapRepair, fill_gaps, gaps};
 pub use low_pass::{FilterError, LowPass};
 pub use neutral::{Stillest, stillest};
 pub use read::{ReadOptions, read, read_bytes, read_recording, read_weights};
 pub use recording::{Event, Recording};
+pub use repair::{
+    ChangedFrame, MendedSwap, RepairError, RepairPlan, RepairRecord, Repaired, RepairedGap, Spike,
+    Swap, repair,
+};
 pub use resample::{ResampleError, resample};
+pub use stabilise::{Stabilisation, StabiliseError, stabilise};
 pub use text::{write_csv, write_trc};
 pub use weight_take::WeightTake;

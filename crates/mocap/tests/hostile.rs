@@ -1,82 +1,62 @@
-//! No input makes a reader panic or ask for memory beyond the file's size: files of every format
-//! cut anywhere, with bytes flipped, spliced and repeated, and noise.
+//! Hostile files: no reader panics, asks for memory that the file does not warrant, or gives a
+//! capture that is not whole; what fuzzing keeps is replayed.
 
-use mimique_mocap::{
-    C3dOptions, C3dStorage, Capture, LengthUnit, Processor, ReadOptions, read_recording,
-    read_weights, write_c3d, write_csv, write_trc,
-};
+#[path = "support/invariants.rs"]
+mod invariants;
+#[path = "support/seeds.rs"]
+mod seeds;
+
+use std::path::{Path, PathBuf};
+
+use invariants::read_anyhow;
+use mimique_mocap::{Format, recognise};
 use proptest::prelude::*;
+use seeds::seeds;
 
-fn capture() -> Capture {
-    Capture {
-        labels: ["brow left", "brow right", "nose"].map(str::to_owned).to_vec(),
-        rate_hz: 100.0,
-        first_frame: 3,
-        unit: LengthUnit::Millimetre,
-        positions: (0..60)
-            .map(|i| if i == 7 { [f64::NAN; 3] } else { [f64::from(i) * 0.5, 12.0, -99.5] })
-            .collect(),
-        notes: Vec::new(),
+/// The folder of `fuzz/corpus` that a file of that format belongs in.
+fn target(format: Format) -> &'static str {
+    match format {
+        Format::C3d => "c3d",
+        Format::WideCsv => "wide_csv",
+        Format::LongCsv => "long_csv",
+        Format::Trc => "trc",
+        Format::QtmTsv => "qtm_tsv",
+        Format::MotiveCsv => "motive_csv",
+        Format::ViconCsv => "vicon_csv",
+        Format::Bvh => "bvh",
+        Format::LiveLinkCsv => "live_link",
     }
 }
 
-/// A small valid file of every format.
-fn seeds() -> Vec<Vec<u8>> {
-    let mut seeds = Vec::new();
-    for processor in [Processor::Intel, Processor::Dec, Processor::Mips] {
-        for storage in [C3dStorage::Float, C3dStorage::Integer { scale: 0.5 }] {
-            seeds.push(write_c3d(&capture(), &C3dOptions { processor, storage }).unwrap());
-        }
-    }
-    seeds.push(write_csv(&capture()).unwrap().into_bytes());
-    seeds.push(write_trc(&capture(), "a.trc").unwrap().into_bytes());
-    let texts = [
-        "NO_OF_FRAMES\t2\nFREQUENCY\t200\nDATA_INCLUDED\t3D\nEVENT\ta\t1\t0.5\nMARKER_NAMES\ta\tb\n\
-         1\t0\t1\t2\t3\t4\t5\t6\n2\t0.005\t1\t2\t3\t\t\t\n",
-        "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t5\t6\n",
-        "Format Version,1.23,Capture Frame Rate,120,Length Units,Meters\n\n,Type,Marker,Marker,Marker\n\
-         ,Name,a,a,a\n,ID,1,1,1\n,,Position,Position,Position\nFrame,Time,X,Y,Z\n0,0,1,2,3\n1,0.1,,,\n",
-        "Trajectories\n100\n,,a,,,b,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,mm,mm,mm\n\
-         1,0,1,2,3,4,5,6\n2,0,1,2,3\n",
-        "frame,time,marker,x,y,z\n0,0,a,1,2,3\n0,0,b,1,2,3\n1,0.1,a,4,5,6\n",
-        "Timecode,BlendShapeCount,EyeBlinkLeft,JawOpen\n01:00:00:01.000,2,0.1,0.2\n01:00:00:04.000,2,1,0\n",
-        "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
-         JOINT Head\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n\
-         MOTION\nFrames: 2\nFrame Time: 0.01\n0 0 0 0 0 0 0 0 90\n1 0 0 0 0 0 0 0 0\n",
-    ];
-    seeds.extend(texts.iter().map(|t| t.as_bytes().to_vec()));
-    seeds
+fn corpus() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus")
 }
 
-/// Read with and without a rate, so that the paths after it are reached; a capture that comes out
-/// is whole and not larger than its file allows.
-fn read_anyhow(bytes: &[u8]) {
-    if let Ok(take) = read_weights("fuzzed", bytes) {
-        assert!(take.weights.len() <= 8 * bytes.len() + 4096 * take.names.len());
-        assert!(take.frames() * take.names.len() == take.weights.len() && take.rate_hz > 0.0);
-    }
-    for rate_hz in [None, Some(100.0)] {
-        let options = ReadOptions { rate_hz, ..ReadOptions::default() };
-        match read_recording("fuzzed", bytes, &options) {
-            Ok(recording) => {
-                let capture = recording.capture;
-                let markers = capture.labels.len();
-                assert!(markers > 0 && capture.positions.len() % markers == 0);
-                assert!(capture.rate_hz.is_finite() && capture.rate_hz > 0.0);
-                assert!(capture.positions.len() <= 32 * bytes.len() + 4096);
-                for p in &capture.positions {
-                    assert!(p.iter().all(|v| v.is_finite()) || p.iter().all(|v| v.is_nan()));
-                }
-                let mut labels = capture.labels;
-                labels.sort();
-                labels.dedup();
-                assert_eq!(labels.len(), markers, "labels are unique");
-            }
-            Err(error) => {
-                let text = error.to_string();
-                assert!(text.contains(": ") && text.contains("; "), "{text}");
-            }
+/// Seeds and what fuzzing found are committed; each runs as it would in the fuzzer.
+#[test]
+fn the_corpus_of_the_fuzzer_is_replayed() {
+    let mut formats = std::collections::BTreeSet::new();
+    for folder in std::fs::read_dir(corpus()).unwrap().map(|e| e.unwrap().path()) {
+        for file in std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()) {
+            let bytes = std::fs::read(&file).unwrap();
+            read_anyhow(&bytes);
+            formats.extend(recognise(&bytes).map(target));
         }
+    }
+    assert_eq!(formats.len(), 9, "a seed of every format: {formats:?}");
+}
+
+/// `MIMIQUE_UPDATE_GOLDEN=1` writes the corpus anew from the seeds.
+#[test]
+fn the_corpus_holds_every_seed() {
+    for (number, seed) in seeds().into_iter().enumerate() {
+        let Some(format) = recognise(&seed) else { panic!("seed {number} is of no format") };
+        let file = corpus().join(target(format)).join(format!("seed-{number:02}"));
+        if std::env::var_os("MIMIQUE_UPDATE_GOLDEN").is_some() {
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(&file, &seed).unwrap();
+        }
+        assert!(std::fs::read(&file).unwrap() == seed, "{}", file.display());
     }
 }
 

@@ -12,6 +12,7 @@
 mod bank_diagnosis;
 mod head_check;
 mod label_check;
+mod lids;
 mod marker_map;
 mod operators_pack;
 #[cfg(feature = "prepare")]
@@ -19,7 +20,11 @@ mod prepare;
 mod provenance;
 #[cfg(feature = "prepare")]
 mod recorded;
+#[cfg(feature = "prepare")]
+mod repair_sidecar;
 mod report;
+#[cfg(feature = "prepare")]
+mod segments;
 mod skin;
 mod solve_packs;
 #[cfg(feature = "prepare")]
@@ -39,6 +44,7 @@ mod weights_file;
 pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
 pub use head_check::{HeadMarker, STILL_MM};
 pub use label_check::{LabelFault, LabelProblem};
+pub use lids::{Lid, LidEdge};
 pub use marker_map::{
     Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
     REACH_M, ScaleRule, TOLERANCE_M,
@@ -49,7 +55,15 @@ pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
 pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
 #[cfg(feature = "prepare")]
 pub use recorded::{Driven, RecordedNames, RecordedWeights};
+#[cfg(feature = "prepare")]
+pub use repair_sidecar::{FileHash, RepairSidecar, SidecarError, sidecar_path};
 pub use report::{FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds};
+#[cfg(feature = "prepare")]
+pub use segments::{
+    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
+    SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment, Timeline,
+    TimelineSegment, cut, read_segments, suggest, write_segments,
+};
 pub use skin::AvatarSkin;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]

@@ -139,7 +139,10 @@ fn solve_markers(
     let displacements = front_end.take_displacements(frames, &poses)?;
     let width = 3 * parts.marker_labels.len();
     let played = &displacements[take.played.start * width..take.played.end * width];
-    let solution = Fit::new(operators, spec)?.solve_take(played)?;
+    let mut solution = Fit::new(operators, spec)?.solve_take(played)?;
+    let shapes = markers.driven_shapes.len();
+    let driven = &markers.driven_weights[take.played.start * shapes..take.played.end * shapes];
+    put_driven(&mut solution.weights, &parts.shape_names, &markers.driven_shapes, driven);
     let statistics = FrameStatistics::of(&solution.reports);
     Ok(SolvedTake {
         shape_names: parts.shape_names.clone(),
@@ -149,6 +152,22 @@ fn solve_markers(
         warnings: statistics.warnings(take.first_frame),
         statistics: Some(statistics),
     })
+}
+
+/// Puts weights that do not come from the solve in the place of the solved ones.
+pub(crate) fn put_driven(
+    weights: &mut [f64],
+    shape_names: &[String],
+    driven_shapes: &[String],
+    driven: &[f64],
+) {
+    for (column, name) in driven_shapes.iter().enumerate() {
+        let Some(shape) = shape_names.iter().position(|n| n == name) else { continue };
+        let rows = weights.chunks_exact_mut(shape_names.len());
+        for (row, from) in rows.zip(driven.chunks_exact(driven_shapes.len())) {
+            row[shape] = from[column];
+        }
+    }
 }
 
 /// The head's low-pass that a method asks for.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use mimique_mocap::Capture;
+use mimique_mocap::{Capture, stabilise, stillest};
 use mimique_solver::{
     Fit, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite,
     MeshError, Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError,
@@ -10,11 +10,12 @@ use mimique_solver::{
 };
 
 use crate::head_check::moving_skin;
+use crate::lids::{LidEdge, LidRange, actor_range, lid_weights};
 use crate::provenance::{Provenance, weights_hash};
 use crate::report::{
     FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds, unseen_shapes,
 };
-use crate::solve_packs::lowpass;
+use crate::solve_packs::{lowpass, put_driven};
 use crate::take_adjustments::{refuse_flat, scale_rule};
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack};
 use crate::training::Training;
@@ -30,10 +31,13 @@ const MARGIN_SECONDS: f64 = 0.25;
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TakeOptions {
-    /// Frames of the neutral face, counted from 0; the map's, or the first 60, where not given.
+    /// Frames of the neutral face, counted from 0; the map's where not given, else the stillest
+    /// second.
     pub neutral: Option<Range<usize>>,
     /// Labels of the markers that stabilise the head; the map's where not given.
     pub head: Option<Vec<String>>,
+    /// What the capture's repair is known by: a hash of its record.
+    pub repair: Option<String>,
     /// What `regression` learns from.
     pub training: Option<Box<Training>>,
     /// Scale factors of the displacements; what is given here stands before the map's.
@@ -203,7 +207,21 @@ pub struct JoinedTake<'a> {
     pub(crate) depth: Depth,
     pub(crate) rate_hz: f64,
     pub(crate) first_frame: u64,
+    repair: Option<String>,
+    lids: Vec<JoinedLid>,
     pub(crate) warnings: Vec<String>,
+}
+
+/// A lid marker of the capture and the shapes of the avatar that it drives.
+#[derive(Debug, Clone)]
+struct JoinedLid {
+    label: String,
+    column: usize,
+    edge: LidEdge,
+    closed: String,
+    wide: Option<String>,
+    /// Vertical travel of the marker's vertex from closed to wide, metres.
+    travel: LidRange,
 }
 
 /// Solves a capture with one method.
@@ -227,6 +245,7 @@ pub fn solve_take(
     let mut seconds = StageSeconds::default();
     let start = clock();
     let joined = JoinedTake::new(skin, capture, map, options)?;
+    let spec = &joined.with_lids_locked(spec);
     let SetUp { operators, surface } = joined.set_up(spec, options.training.as_deref())?;
     let fit = Fit::new(&operators, spec)?;
     let set_up = clock();
@@ -236,7 +255,10 @@ pub fn solve_take(
     let displacements = front_end.take_displacements(take, &poses)?;
     let front = clock();
     seconds.front_end = front - set_up;
-    let solution = fit.solve_take(&displacements)?;
+    let mut solution = fit.solve_take(&displacements)?;
+    let (driven_shapes, driven) = joined.lid_tracks(&front_end, &poses, 0..take.len());
+    let shape_names = &operators.parts().shape_names;
+    put_driven(&mut solution.weights, shape_names, &driven_shapes, &driven);
     let solve = clock();
     seconds.solve = solve - front;
 
@@ -331,7 +353,8 @@ impl<'a> JoinedTake<'a> {
             return Err(SolveError::NoFrames);
         }
         let mut warnings = Vec::new();
-        let resolved = map.resolve(skin)?;
+        let (lid_places, resolved): (Vec<_>, Vec<_>) = (map.resolve(skin)?.into_iter())
+            .partition(|site| map.lids.iter().any(|lid| lid.marker == site.label));
         let (markers, absent): (Vec<_>, Vec<_>) =
             resolved.into_iter().partition(|site| capture.marker_index(&site.label).is_some());
         if markers.is_empty() {
@@ -354,7 +377,48 @@ impl<'a> JoinedTake<'a> {
             scale: scale_rule(options, map),
             depth: options.depth.unwrap_or(map.depth),
         };
-        Self::of_markers(skin, capture, from, head, neutral, warnings)
+        let mut joined = Self::of_markers(skin, capture, from, head, neutral, warnings)?;
+        joined.repair = options.repair.clone();
+        joined.add_lids(capture, map, &lid_places);
+        Ok(joined)
+    }
+
+    /// The lid markers as columns after the others.
+    fn add_lids(&mut self, capture: &Capture, map: &MarkerMap, lid_places: &[MarkerSite]) {
+        for lid in &map.lids {
+            let place = lid_places.iter().find(|site| site.label == lid.marker);
+            let (Some(place), true) = (place, capture.marker_index(&lid.marker).is_some()) else {
+                self.warnings.push(format!("lid marker {} is not in the capture", lid.marker));
+                continue;
+            };
+            let vertex = place.vertex();
+            let Some(closed) = travel_of(self.skin, &lid.closed, vertex) else {
+                self.warnings.push(format!(
+                    "lid marker {}: the avatar has no shape {}; name the shape that closes the lid",
+                    lid.marker, lid.closed
+                ));
+                continue;
+            };
+            let wide = lid.wide.as_ref().and_then(|name| travel_of(self.skin, name, vertex));
+            let ends = [closed, wide.unwrap_or(0.0), 0.0];
+            let travel = [ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0)];
+            let labels = &mut self.labels;
+            let column = labels.iter().position(|l| *l == lid.marker).unwrap_or_else(|| {
+                labels.push(lid.marker.clone());
+                labels.len() - 1
+            });
+            self.lids.push(JoinedLid {
+                label: lid.marker.clone(),
+                column,
+                edge: lid.edge,
+                closed: lid.closed.clone(),
+                wide: lid.wide.clone().filter(|_| wide.is_some()),
+                travel,
+            });
+        }
+        if !self.lids.is_empty() {
+            self.positions = metres(capture, &self.labels);
+        }
     }
 
     /// Another take of the same markers on the same skin, such as the one that is learnt from.
@@ -420,7 +484,12 @@ impl<'a> JoinedTake<'a> {
                     .to_owned(),
             );
         }
-        let neutral = neutral.unwrap_or(0..NEUTRAL_FRAMES.min(frames));
+        let neutral = neutral.unwrap_or_else(|| {
+            let head: Vec<String> = head_columns.iter().map(|&c| labels[c].clone()).collect();
+            let (found, said) = found_neutral(capture, &labels, markers.len(), &head);
+            warnings.push(said);
+            found
+        });
         if neutral.start < neutral.end && neutral.len() < NEUTRAL_FRAMES {
             warnings.push(format!(
                 "the neutral is the mean of {} frames: {NEUTRAL_FRAMES} or more are steadier",
@@ -454,8 +523,74 @@ impl<'a> JoinedTake<'a> {
             depth,
             rate_hz: capture.rate_hz,
             first_frame: capture.first_frame,
+            repair: None,
+            lids: Vec::new(),
             warnings,
         })
+    }
+
+    /// The method with the lids' shapes locked, so that no other marker moves them.
+    pub fn with_lids_locked(&self, spec: &MethodSpec) -> MethodSpec {
+        let mut spec = spec.clone();
+        if !spec.method.parameters().contains(&"locked") {
+            return spec;
+        }
+        for name in self.lids.iter().flat_map(|l| [Some(&l.closed), l.wide.as_ref()]).flatten() {
+            let bounded = spec.bounds.contains_key(name);
+            if !bounded && !spec.locked.contains(name) {
+                spec.locked.push(name.clone());
+            }
+        }
+        spec
+    }
+
+    /// The shapes that lid markers drive and their weights in some frames. The lids' travel and
+    /// neutral are those of the whole take.
+    fn lid_tracks(
+        &self,
+        front_end: &FrontEnd,
+        poses: &[RigidMotion],
+        frames: Range<usize>,
+    ) -> (Vec<String>, Vec<f64>) {
+        let mut tracks: Vec<(String, Vec<f64>)> = Vec::new();
+        for lid in &self.lids {
+            let places: Vec<[f64; 3]> = (poses.iter().enumerate())
+                .map(|(frame, pose)| {
+                    let at = 3 * (frame * self.labels.len() + lid.column);
+                    let p = &self.positions[at..at + 3];
+                    front_end.avatar_from_actor().rotate(pose.apply([p[0], p[1], p[2]]))
+                })
+                .collect();
+            let rest: Vec<f64> =
+                places[self.neutral.clone()].iter().map(|p| p[1]).filter(|y| !y.is_nan()).collect();
+            let rest = rest.iter().sum::<f64>() / rest.len() as f64;
+            let heights: Vec<f64> = places.iter().map(|p| p[1] - rest).collect();
+            let actor = actor_range(&heights, lid.travel, lid.edge);
+            // A lid that is not seen stays where it was last.
+            let mut last = 0.0;
+            let weights: Vec<(f64, f64)> = heights
+                .into_iter()
+                .map(|y| {
+                    last = if y.is_finite() { y } else { last };
+                    lid_weights(last, actor, lid.travel, lid.edge)
+                })
+                .collect();
+            let shapes = [Some((&lid.closed, true)), lid.wide.as_ref().map(|w| (w, false))];
+            for (name, closes) in shapes.into_iter().flatten() {
+                let own = weights[frames.clone()].iter().map(|w| if closes { w.0 } else { w.1 });
+                match tracks.iter_mut().find(|(n, _)| n == name) {
+                    // Of two markers that drive one shape the stronger counts.
+                    Some((_, track)) => {
+                        track.iter_mut().zip(own).for_each(|(a, b)| *a = a.max(b));
+                    }
+                    None => tracks.push((name.clone(), own.collect())),
+                }
+            }
+        }
+        let (names, tracks): (Vec<String>, Vec<Vec<f64>>) = tracks.into_iter().unzip();
+        let rows = (0..frames.len()).flat_map(|f| tracks.iter().map(move |t| t[f]));
+        let weights = rows.collect();
+        (names, weights)
     }
 
     /// What should be said of map, capture and avatar together.
@@ -553,11 +688,14 @@ impl<'a> JoinedTake<'a> {
         if first >= end || end > frames {
             return Err(SolveError::Segment { first, end, frames });
         }
-        let (front_end, _) = self.front_end(operators, spec)?;
+        let (front_end, poses) = self.front_end(operators, spec)?;
         let margin = (MARGIN_SECONDS * self.rate_hz).ceil() as usize;
         let stored = first.saturating_sub(margin)..(end + margin).min(frames);
         let width = 3 * self.labels.len();
+        let (driven_shapes, driven_weights) = self.lid_tracks(&front_end, &poses, stored.clone());
         let markers = SegmentMarkers {
+            driven_shapes,
+            driven_weights,
             labels: self.labels.clone(),
             face: self.columns.face.clone(),
             head: self.columns.head.clone(),
@@ -642,7 +780,18 @@ impl<'a> JoinedTake<'a> {
             shapes.extend(shape.vertices.iter().map(|&v| f64::from(v)));
             shapes.extend(shape.deltas.iter().flatten());
         }
-        let provenance = Provenance::new()
+        let lids: Vec<String> = (self.lids.iter())
+            .map(|l| format!("{} {:?} {} {:?}", l.label, l.edge, l.closed, l.wide))
+            .collect();
+        let provenance = match &self.repair {
+            Some(repair) => Provenance::new().text("capture.repair", repair),
+            None => Provenance::new(),
+        };
+        let provenance = match lids.len() {
+            0 => provenance,
+            _ => provenance.text("map.lids", &lids.join("\n")),
+        };
+        let provenance = provenance
             .numbers("avatar.positions", mesh.positions.as_flattened())
             .numbers("avatar.triangles", &corners)
             .numbers("avatar.shapes", &shapes)
@@ -655,6 +804,55 @@ impl<'a> JoinedTake<'a> {
             .numbers("map.neutral", &[self.neutral.start as f64, self.neutral.end as f64])
             .method(spec);
         self.adjustments(provenance)
+    }
+}
+
+/// Vertical displacement of a vertex by a shape at weight 1, metres; `None` without such a shape.
+fn travel_of(skin: &AvatarSkin, shape: &str, vertex: usize) -> Option<f64> {
+    let shape = skin.shape_names.iter().position(|n| n == shape)?;
+    let moved = &skin.mesh.shapes[shape];
+    let place = moved.vertices.iter().position(|v| *v as usize == vertex);
+    Some(place.map_or(0.0, |p| moved.deltas[p][1]))
+}
+
+/// The neutral where none is named: the stillest second of the face, its head held still; and what
+/// is to be said of it. The first `face` labels are those of the face.
+fn found_neutral(
+    capture: &Capture,
+    labels: &[String],
+    face: usize,
+    head: &[String],
+) -> (Range<usize>, String) {
+    let columns: Vec<usize> = labels.iter().filter_map(|l| capture.marker_index(l)).collect();
+    let mut part = Capture {
+        labels: labels.to_vec(),
+        positions: (0..capture.frames())
+            .flat_map(|frame| columns.iter().map(move |&c| capture.frame(frame)[c]))
+            .collect(),
+        notes: Vec::new(),
+        ..*capture
+    };
+    let mut held = "";
+    if !head.is_empty() && stabilise(&mut part, head).is_err() {
+        held = ", the head not held still";
+    }
+    let width = part.labels.len();
+    part.positions = part.positions.chunks(width).flat_map(|row| row[..face].to_vec()).collect();
+    part.labels.truncate(face);
+    match stillest(&part, 1.0) {
+        Some(found) => {
+            let Range { start, end } = found.frames;
+            let mm = found.deviation * capture.unit.metres() * 1e3;
+            let said = format!(
+                "no neutral is named: frames {start}:{end} are taken, the stillest second \
+                 ({mm:.2} mm rms{held}); see whether the face is neutral there, or name it"
+            );
+            (start..end, said)
+        }
+        None => (
+            0..NEUTRAL_FRAMES.min(capture.frames()),
+            "no neutral is named and no marker is seen: the first frames are taken".to_owned(),
+        ),
     }
 }
 

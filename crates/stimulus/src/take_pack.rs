@@ -64,6 +64,10 @@ pub struct SegmentMarkers {
     pub depth: Option<SurfaceDepth>,
     /// Frames x 3C, metres, NaN where a marker is not seen.
     pub positions: Vec<f64>,
+    /// Shapes whose weights do not come from the solve: those of the lids.
+    pub driven_shapes: Vec<String>,
+    /// Their weights, frames x driven shapes.
+    pub driven_weights: Vec<f64>,
 }
 
 /// Packs a take. Coordinates and weights are rounded to the pack's steps.
@@ -83,6 +87,10 @@ pub fn encode_take(take: &TakePack) -> Vec<u8> {
             scales_to(&mut w, m.scales.as_ref());
             depth_to(&mut w, m.depth.as_ref());
             tracks_to(&mut w, &m.positions, 3 * m.labels.len(), STEP_M);
+            w.texts(&m.driven_shapes);
+            if !m.driven_shapes.is_empty() {
+                tracks_to(&mut w, &m.driven_weights, m.driven_shapes.len(), STEP_WEIGHT);
+            }
         }
         TakeContent::Weights { shape_names, weights } => {
             w.u8(1);
@@ -122,6 +130,16 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             let columns = 3 * labels.len();
             let positions = tracks_from(&mut r, columns, STEP_M)?;
             let frames = positions.len() / columns.max(1);
+            let driven_shapes = r.texts()?;
+            let driven_weights = match driven_shapes.len() {
+                0 => vec![],
+                shapes => tracks_from(&mut r, shapes, STEP_WEIGHT)?,
+            };
+            if driven_weights.len() != driven_shapes.len() * frames
+                || driven_weights.iter().any(|w| w.is_nan())
+            {
+                return r.refuse("driven weights that are not one a frame");
+            }
             let markers = SegmentMarkers {
                 labels,
                 face,
@@ -131,6 +149,8 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
                 scales,
                 depth,
                 positions,
+                driven_shapes,
+                driven_weights,
             };
             (TakeContent::Markers(markers), frames)
         }

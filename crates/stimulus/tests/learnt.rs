@@ -63,8 +63,8 @@ fn scene() -> Scene {
 fn solve(scene: &Scene, spec: &MethodSpec, training: Option<&Training>) -> SolvedCapture {
     let options = TakeOptions {
         neutral: Some(0..100),
-        head: None,
         training: training.map(|t| Box::new(t.clone())),
+        ..TakeOptions::default()
     };
     solve_take(&scene.skin, &capture(&scene.take), &scene.map, spec, &options, &mut || 0.0).unwrap()
 }
@@ -216,8 +216,11 @@ fn bad_training_is_refused_with_what_to_do() {
     let refuse = |spec: &MethodSpec, change: &dyn Fn(&mut Training)| {
         let mut training = scene.training.clone();
         change(&mut training);
-        let options =
-            TakeOptions { neutral: Some(0..100), head: None, training: Some(Box::new(training)) };
+        let options = TakeOptions {
+            neutral: Some(0..100),
+            training: Some(Box::new(training)),
+            ..TakeOptions::default()
+        };
         let recorded = capture(&scene.take);
         solve_take(&scene.skin, &recorded, &scene.map, spec, &options, &mut || 0.0)
             .unwrap_err()

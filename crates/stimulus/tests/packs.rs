@@ -68,6 +68,8 @@ fn take() -> TakePack {
                 negative: vec![[1.0, 0.5, 1.25]; 5],
             }),
             depth: None,
+            driven_shapes: vec!["blink".to_owned(), "wide".to_owned()],
+            driven_weights: (0..2 * positions.len() / 15).map(|i| i as f64 / 128.0 % 1.0).collect(),
             positions,
         }),
     }

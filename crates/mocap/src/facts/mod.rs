@@ -2,9 +2,10 @@
 
 mod motion;
 
+use crate::repair::Swap;
 use crate::{Event, LengthUnit, Recording, Stillest, gaps, stillest, unit};
 
-pub use motion::{Frozen, Jump, Swap};
+pub use motion::{Frozen, Jump};
 
 /// Facts of a capture, to be printed or serialised.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -129,8 +130,8 @@ impl CaptureFacts {
         for marker in self.presence.iter().filter(|m| m.present == 0) {
             warnings.push(format!("{} is missing in every frame", marker.label));
         }
-        for Swap { labels: [a, b], frame } in &self.swaps {
-            warnings.push(format!("{a} and {b} change places at frame {frame}"));
+        for Swap { labels, frame } in &self.swaps {
+            warnings.push(format!("{} change places at frame {frame}", labels.join(" and ")));
         }
         for Jump { label, frame, distance_m } in &self.jumps {
             warnings.push(format!("{label} jumps {:.1} mm at frame {frame}", distance_m * 1e3));

@@ -102,13 +102,16 @@ impl Default for GapFill {
     }
 }
 
+/// Positions for a gap, and how they were found.
+type Filling = (Vec<[f64; 3]>, GapRepair);
+
 /// Fill gaps in place: short ones by a cubic, longer ones by the rigid motion of the neighbours,
 /// others stay missing, as do those at the ends of the take. Returns every gap and what was done.
 pub fn fill_gaps(capture: &mut Capture, how: &GapFill) -> Vec<FilledGap> {
     // Neighbours are taken as measured: no filled position serves to fill another.
-    let measured = capture.clone();
+    let measured = &*capture;
     let frames = measured.frames();
-    gaps(&measured)
+    let found: Vec<(Gap, Option<Filling>)> = gaps(measured)
         .into_iter()
         .map(|gap| {
             let seconds = gap.frames() as f64 / measured.rate_hz;
@@ -118,12 +121,18 @@ pub fn fill_gaps(capture: &mut Capture, how: &GapFill) -> Vec<FilledGap> {
             let filled = if !inside {
                 None
             } else if seconds <= how.spline_s + half_frame {
-                Some((spline::fill(&measured, gap), GapRepair::Spline))
+                Some((spline::fill(measured, gap), GapRepair::Spline))
             } else if seconds <= how.rigid_s + half_frame {
-                rigid::fill(&measured, gap).map(|p| (p, GapRepair::RigidNeighbourhood))
+                rigid::fill(measured, gap).map(|p| (p, GapRepair::RigidNeighbourhood))
             } else {
                 None
             };
+            (gap, filled)
+        })
+        .collect();
+    found
+        .into_iter()
+        .map(|(gap, filled)| {
             let Some((positions, repair)) = filled else {
                 return FilledGap { gap, repair: GapRepair::LeftMissing };
             };

@@ -24,6 +24,11 @@ impl<'a> Document<'a> {
         Self { text }
     }
 
+    /// Bytes of the text.
+    pub(crate) fn length(&self) -> usize {
+        self.text.len()
+    }
+
     /// Lines with their number (1 = the first), without line ends (`\n`, `\r\n` or `\r`).
     pub(crate) fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
         let end = if self.text.contains('\n') { '\n' } else { '\r' };

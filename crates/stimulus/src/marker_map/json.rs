@@ -7,6 +7,8 @@ use mimique_mocap::LengthUnit;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
+use crate::Lid;
+
 use super::{
     Depth, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace, ScaleRule,
 };
@@ -23,6 +25,8 @@ struct File {
     #[serde(default)]
     scale: Scale,
     depth: Option<String>,
+    #[serde(default)]
+    lids: Vec<Lid>,
 }
 
 #[derive(Deserialize, Default)]
@@ -142,8 +146,15 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
             return Err(wrong("depth", what, "write measured or surface"));
         }
     };
-    let (avatar, head) = (file.avatar, file.head);
-    Ok(MarkerMap { avatar, face, head, neutral, association, scale, depth })
+    if let Some(lid) = file.lids.iter().find(|lid| face.iter().all(|m| m.label != lid.marker)) {
+        return Err(wrong(
+            "lids",
+            format!("marker {:?} is not among the markers", lid.marker),
+            "give its place there",
+        ));
+    }
+    let (avatar, head, lids) = (file.avatar, file.head, file.lids);
+    Ok(MarkerMap { avatar, face, head, neutral, association, scale, depth, lids })
 }
 
 /// A range of frames.

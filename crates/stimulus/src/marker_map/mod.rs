@@ -10,6 +10,8 @@ mod resolve;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::Lid;
+
 pub use resolve::{MapError, REACH_M, TOLERANCE_M};
 
 /// A marker map as read; [`MarkerMap::resolve`] finds its vertices on a skin.
@@ -29,6 +31,8 @@ pub struct MarkerMap {
     pub scale: ScaleRule,
     /// Where the third coordinate comes from.
     pub depth: Depth,
+    /// Lid markers and the shapes that they drive; they take no part in the solve.
+    pub lids: Vec<Lid>,
 }
 
 /// How a marker's position is tied to the skin (Kouadio 4.3.1).

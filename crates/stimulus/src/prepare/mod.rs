@@ -132,15 +132,16 @@ fn prepare_clip(
     })?;
     let method_pointer = pointer(&["stimuli", "methods", &clip.method]);
     let own_pack = || cache.pack(&["avatar", &avatar.key], || Ok(avatar.pack()));
-    let (spec, avatar_pack, operators, take, segment_pointer) =
+    let (spec, avatar_pack, operators, take, segment_pointer, repair) =
         if entry.spec.method == Method::Recorded {
             let recording = sources.recording(&clip.segment)?;
             let take = cache.store(recorded(&recording, &avatar.avatar.shape_names, warnings)?)?;
             // Nothing is solved: the page needs no operators, and loads the one pack once.
-            (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer)
+            (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer, None)
         } else {
             let performance = sources.performance(&clip.segment, &avatar)?;
             let spec = with_lowpass(&entry.spec, &performance);
+            let spec = performance.joined()?.with_lids_locked(&spec);
             spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
             let learns = spec.method == Method::Regression;
             let training = learns.then(|| sources.training(&clip.method)).transpose()?;
@@ -153,7 +154,8 @@ fn prepare_clip(
             };
             let (moved, operators, take) = to_solve(&wanted, cache, warnings)?;
             let avatar_pack = moved.map_or_else(own_pack, Ok)?;
-            (spec, avatar_pack, operators, take, performance.pointer)
+            let repair = performance.repair();
+            (spec, avatar_pack, operators, take, performance.pointer, repair)
         };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(&method_pointer, e))?;
@@ -163,8 +165,12 @@ fn prepare_clip(
         .text("operators", &operators.hash)
         .text("take", &take.hash)
         .method(&spec)
-        .text("weights", &solved.weights_hash)
-        .hash();
+        .text("weights", &solved.weights_hash);
+    let provenance = match &repair {
+        Some(repair) => provenance.text("repair", repair),
+        None => provenance,
+    }
+    .hash();
     let packs = BTreeMap::from([&avatar_pack, &operators, &take].map(|p| (&p.hash, p.bytes.len())));
     Ok(ClipSource {
         bytes: packs.values().map(|&bytes| bytes as u64).sum(),

@@ -17,8 +17,8 @@ use mimique_study::{
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
 use crate::{
-    AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, Training, WeightsTable,
-    split_shapes,
+    AvatarSkin, JoinedTake, MarkerMap, RepairSidecar, SolveError, TakeOptions, Training,
+    WeightsTable, split_shapes,
 };
 
 /// Everything that a study file names.
@@ -45,6 +45,8 @@ struct CaptureFile {
     key: String,
     capture: Capture,
     head: Vec<String>,
+    /// What its repair is known by.
+    repair: Option<String>,
     /// Neutral and played frames of a built-in performance.
     known: Option<(Range<usize>, Range<usize>)>,
 }
@@ -177,6 +179,7 @@ impl<'a> Sources<'a> {
         let options = TakeOptions {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
+            repair: file.repair.clone(),
             ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
@@ -297,6 +300,7 @@ impl<'a> Sources<'a> {
                     key: builtin::take_key(&take.capture),
                     capture: take.capture,
                     head: take.head,
+                    repair: None,
                     known: Some((take.neutral, take.played)),
                 };
                 (name, file)
@@ -307,8 +311,8 @@ impl<'a> Sources<'a> {
                 }
                 let unit = entry.and_then(|c| c.unit.as_deref());
                 let at = pointer(&["stimuli", "captures", id]);
-                let (key, capture) = self.read_capture(path, unit, &at)?;
-                (id.clone(), CaptureFile { key, capture, head: vec![], known: None })
+                let (key, capture, repair) = self.read_capture(path, unit, &at)?;
+                (id.clone(), CaptureFile { key, capture, head: vec![], repair, known: None })
             }
             (None, _) => {
                 let message = "give exactly one of builtin and file";
@@ -330,13 +334,16 @@ impl<'a> Sources<'a> {
         file: &str,
         unit: Option<&str>,
         at: &str,
-    ) -> Result<(String, Capture), PrepareError> {
+    ) -> Result<(String, Capture, Option<String>), PrepareError> {
         let at_file = format!("{at}/file");
         let (path, bytes) = self.read(file, &at_file)?;
         let options = ReadOptions { unit: unit_of(unit, &format!("{at}/unit"))?, rate_hz: None };
         let recording = mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
-            .map_err(|e| PrepareError::new(at_file, format!("{}: {e}", path.display())))?;
-        Ok((format!("{} {unit:?}", sha256_hex(&bytes)), recording.capture))
+            .map_err(|e| PrepareError::new(&at_file, format!("{}: {e}", path.display())))?;
+        let repair = RepairSidecar::beside(&path, &bytes)
+            .map_err(|e| PrepareError::new(&at_file, e))?
+            .map(|sidecar| sidecar.hash());
+        Ok((format!("{} {unit:?}", sha256_hex(&bytes)), recording.capture, repair))
     }
 
     /// The file that a path of the study names.
@@ -379,6 +386,11 @@ impl AvatarFile {
 }
 
 impl Performance {
+    /// What the capture's repair is known by; `None` for one as it was recorded.
+    pub fn repair(&self) -> Option<String> {
+        self.capture.repair.clone()
+    }
+
     /// Frames a second of the capture.
     pub fn rate_hz(&self) -> f64 {
         self.capture.capture.rate_hz

@@ -1,0 +1,201 @@
+//! `mimique repair`: a capture in; the mended capture and a sidecar that says what was changed out.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{anyhow, bail};
+use mimique_mocap::{
+    C3dOptions, Capture, GapFill, LowPass, ReadOptions, RepairPlan, Repaired, stillest,
+};
+use mimique_stimulus::{FileHash, MarkerMap, RepairSidecar, sidecar_path};
+use serde_json::json;
+
+use crate::output;
+use crate::solve::length_unit;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Capture: C3D, TRC, CSV...
+    capture: PathBuf,
+    /// Where the mended capture goes: .c3d, .trc or .csv; FILE.repair.json beside it says what was
+    /// changed, frame by frame
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Longest gap filled by a spline, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.1)]
+    max_gap: f64,
+    /// Longest gap filled by the rigid motion of the marker's neighbours, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    max_rigid_gap: f64,
+    /// Leave swapped labels as they are
+    #[arg(long)]
+    keep_swaps: bool,
+    /// Leave spikes as they are
+    #[arg(long)]
+    keep_spikes: bool,
+    /// Low-pass without phase shift, Hz
+    #[arg(long, value_name = "HZ")]
+    cutoff: Option<f64>,
+    /// butterworth, or raised-cosine (Kouadio 1997, eq. 7.1)
+    #[arg(long, value_name = "KIND", default_value = "butterworth", requires = "cutoff")]
+    filter: String,
+    /// Width of the raised cosine's flank, Hz (by default half of the cut-off)
+    #[arg(long, value_name = "HZ", requires = "cutoff")]
+    flank: Option<f64>,
+    /// Frames a second of what comes out
+    #[arg(long, value_name = "HZ")]
+    resample: Option<f64>,
+    /// Hold the head still by these markers
+    #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
+    head: Vec<String>,
+    /// Hold the head still by the head markers of this marker map
+    #[arg(long, value_name = "MAP", conflicts_with = "head")]
+    markers: Option<PathBuf>,
+    /// Unit of the capture where its file does not say: m, cm or mm
+    #[arg(long, value_name = "UNIT")]
+    mocap_unit: Option<String>,
+    /// Frames a second of the capture where its file does not say
+    #[arg(long, value_name = "HZ")]
+    mocap_rate: Option<f64>,
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let blame = |path: &Path, error: String| anyhow!("{}: {error}", path.display());
+    let plan = plan(&args)?;
+    let bytes = std::fs::read(&args.capture).map_err(|e| {
+        blame(&args.capture, format!("open: {e}; check the path and its permissions"))
+    })?;
+    let options = ReadOptions {
+        unit: args.mocap_unit.as_deref().map(length_unit).transpose()?,
+        rate_hz: args.mocap_rate,
+    };
+    let name = args.capture.to_string_lossy();
+    let capture = mimique_mocap::read_recording(&name, &bytes, &options)
+        .map_err(|e| blame(&args.capture, e.to_string()))?
+        .capture;
+    let source = FileHash::of(&args.capture, &bytes);
+    drop(bytes);
+    let Repaired { capture, record } =
+        mimique_mocap::repair(capture, &plan).map_err(|e| blame(&args.capture, e.to_string()))?;
+    let out = written(&capture, &args.out)?;
+    let sidecar = RepairSidecar {
+        program: concat!("mimique ", env!("CARGO_PKG_VERSION")).to_owned(),
+        source,
+        result: FileHash::of(&args.out, &out),
+        repair: record,
+    };
+    let beside = sidecar_path(&args.out);
+    // The capture last: a sidecar without its capture is refused, a capture without its sidecar
+    // would pass for one as it was recorded.
+    output::write(&beside, sidecar.to_json().as_bytes())?;
+    output::write(&args.out, &out)?;
+    print(&args, &capture, &sidecar, json)
+}
+
+fn print(
+    args: &Args,
+    capture: &Capture,
+    sidecar: &RepairSidecar,
+    json: bool,
+) -> anyhow::Result<()> {
+    let record = &sidecar.repair;
+    let neutral = stillest(capture, 1.0);
+    let mut out = std::io::stdout().lock();
+    if json {
+        let value = json!({
+            "out": args.out, "sidecar": sidecar_path(&args.out), "record": sidecar,
+            "stillest": neutral, "notes": capture.notes,
+        });
+        writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "{}: {} frames at {} Hz, {} markers",
+        args.out.display(),
+        record.frames_out,
+        record.rate_hz_out,
+        record.markers
+    )?;
+    writeln!(out, "{}", record.summary())?;
+    for swap in &record.swaps {
+        let verb = if swap.mended { "put back" } else { "look swapped, left as they are" };
+        let last = swap.end - 1;
+        writeln!(out, "swap: {} {verb}, frames {} to {last}", swap.labels.join(", "), swap.first)?;
+    }
+    for spike in &record.spikes {
+        let (last, mm) = (spike.end - 1, 1e3 * spike.distance_m);
+        writeln!(out, "spike: {} {mm:.1} mm off, frames {} to {last}", spike.label, spike.first)?;
+    }
+    for gap in &record.gaps {
+        let how = match gap.repair {
+            mimique_mocap::GapRepair::Spline => "filled by a spline",
+            mimique_mocap::GapRepair::RigidNeighbourhood => "filled by its neighbours' motion",
+            mimique_mocap::GapRepair::LeftMissing => "left missing",
+        };
+        writeln!(out, "gap: {} {how}, frames {} to {}", gap.label, gap.first, gap.end - 1)?;
+    }
+    if let Some(found) = neutral {
+        writeln!(
+            out,
+            "stillest second: frames {}:{}, {:.2} mm rms",
+            found.frames.start,
+            found.frames.end,
+            found.deviation * capture.unit.metres() * 1e3
+        )?;
+    }
+    writeln!(out, "changes: {}", sidecar_path(&args.out).display())?;
+    Ok(())
+}
+
+fn plan(args: &Args) -> anyhow::Result<RepairPlan> {
+    for (option, seconds) in [("--max-gap", args.max_gap), ("--max-rigid-gap", args.max_rigid_gap)]
+    {
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            bail!("{option}: {seconds}; give seconds, 0 for none");
+        }
+    }
+    let low_pass = args.cutoff.map(|cutoff_hz| match args.filter.as_str() {
+        "butterworth" if args.flank.is_none() => Ok(LowPass::Butterworth { cutoff_hz }),
+        "butterworth" => bail!("--flank: a Butterworth has none; use --filter raised-cosine"),
+        "raised-cosine" => {
+            Ok(LowPass::RaisedCosine { cutoff_hz, width_hz: args.flank.unwrap_or(0.5 * cutoff_hz) })
+        }
+        other => bail!("--filter: {other:?}; use butterworth or raised-cosine"),
+    });
+    Ok(RepairPlan {
+        mend_swaps: !args.keep_swaps,
+        mend_spikes: !args.keep_spikes,
+        gaps: GapFill { spline_s: args.max_gap, rigid_s: args.max_rigid_gap },
+        low_pass: low_pass.transpose()?,
+        resample_hz: args.resample,
+        head: head(&args.head, args.markers.as_deref())?,
+    })
+}
+
+/// The head's markers: named, or those of a marker map.
+pub(crate) fn head(named: &[String], map: Option<&Path>) -> anyhow::Result<Vec<String>> {
+    let Some(path) = map else { return Ok(named.to_vec()) };
+    let blame = |e: String| anyhow!("{}: {e}", path.display());
+    let text =
+        std::fs::read_to_string(path).map_err(|e| blame(format!("open: {e}; check the path")))?;
+    let map = MarkerMap::from_text(&text).map_err(|e| blame(e.to_string()))?;
+    if map.head.is_empty() {
+        return Err(blame("head: no head markers; name them there, or with --head".to_owned()));
+    }
+    Ok(map.head)
+}
+
+/// The capture in the format that the file's name asks for.
+fn written(capture: &Capture, out: &Path) -> anyhow::Result<Vec<u8>> {
+    let blame = |e: mimique_mocap::WriteError| anyhow!("{}: {e}", out.display());
+    let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match out.extension().map(|e| e.to_ascii_lowercase()).as_deref().and_then(|e| e.to_str()) {
+        Some("c3d") => mimique_mocap::write_c3d(capture, &C3dOptions::default()).map_err(blame),
+        Some("trc") => Ok(mimique_mocap::write_trc(capture, &name).map_err(blame)?.into_bytes()),
+        Some("csv") => Ok(mimique_mocap::write_csv(capture).map_err(blame)?.into_bytes()),
+        _ => bail!("--out: {name:?}; end the name in .c3d, .trc or .csv"),
+    }
+}

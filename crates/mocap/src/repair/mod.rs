@@ -1,0 +1,124 @@
+//! A capture mended: swaps, spikes, gaps; then filtered, resampled, its head held still. What was
+//! changed is recorded frame by frame.
+
+mod record;
+mod spikes;
+mod swaps;
+
+use crate::{
+    Capture, FilterError, GapFill, LowPass, ResampleError, StabiliseError, fill_gaps, resample,
+    stabilise,
+};
+
+pub use record::{ChangedFrame, RepairRecord, RepairedGap};
+pub use spikes::Spike;
+pub(crate) use swaps::swaps_and_others;
+pub use swaps::{MendedSwap, Swap};
+
+/// What is done to a capture, in this order.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct RepairPlan {
+    /// Put labels that changed places back.
+    pub mend_swaps: bool,
+    /// Take spikes out; what they leave is filled as a gap.
+    pub mend_spikes: bool,
+    /// How far gaps are filled.
+    pub gaps: GapFill,
+    /// Low-pass of every coordinate.
+    pub low_pass: Option<LowPass>,
+    /// Frames a second of what comes out.
+    pub resample_hz: Option<f64>,
+    /// Labels of the markers that hold the head still; none = the head is left alone.
+    pub head: Vec<String>,
+}
+
+impl Default for RepairPlan {
+    /// Swaps, spikes and gaps; no filter, no resampling, the head left alone.
+    fn default() -> Self {
+        Self {
+            mend_swaps: true,
+            mend_spikes: true,
+            gaps: GapFill::default(),
+            low_pass: None,
+            resample_hz: None,
+            head: Vec::new(),
+        }
+    }
+}
+
+/// Why a capture cannot be repaired as planned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RepairError {
+    /// The low-pass does not fit the rate.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The rate is none.
+    #[error(transparent)]
+    Resample(#[from] ResampleError),
+    /// The head's markers cannot be used.
+    #[error(transparent)]
+    Stabilise(#[from] StabiliseError),
+}
+
+/// A repaired capture and what was done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repaired {
+    /// The capture.
+    pub capture: Capture,
+    /// What was done to it.
+    pub record: RepairRecord,
+}
+
+/// Repair a capture.
+///
+/// # Errors
+/// [`RepairError`] when filter, rate or head markers of the plan cannot be used.
+pub fn repair(mut capture: Capture, plan: &RepairPlan) -> Result<Repaired, RepairError> {
+    if let Some(low_pass) = plan.low_pass {
+        low_pass.check(capture.rate_hz)?;
+    }
+    let (frames, rate_hz) = (capture.frames(), capture.rate_hz);
+    let swaps = if plan.mend_swaps { swaps::mend_swaps(&mut capture) } else { Vec::new() };
+    let spikes = if plan.mend_spikes { spikes::find_spikes(&capture) } else { Vec::new() };
+    let markers = capture.labels.len();
+    for (marker, spike) in &spikes {
+        for frame in spike.first..spike.end {
+            capture.positions[frame * markers + marker] = [f64::NAN; 3];
+        }
+    }
+    let gaps: Vec<RepairedGap> = fill_gaps(&mut capture, &plan.gaps)
+        .into_iter()
+        .map(|filled| RepairedGap {
+            label: capture.labels[filled.gap.marker].clone(),
+            first: filled.gap.first,
+            end: filled.gap.end,
+            repair: filled.repair,
+        })
+        .collect();
+    let spikes: Vec<Spike> = spikes.into_iter().map(|(_, spike)| spike).collect();
+    if let Some(low_pass) = plan.low_pass {
+        low_pass.filter_capture(&mut capture)?;
+    }
+    if let Some(rate_hz) = plan.resample_hz.filter(|hz| *hz != capture.rate_hz) {
+        capture = resample(&capture, rate_hz)?;
+    }
+    let head = match plan.head.as_slice() {
+        [] => None,
+        head => Some(stabilise(&mut capture, head)?),
+    };
+    let record = RepairRecord {
+        plan: plan.clone(),
+        markers,
+        frames,
+        rate_hz,
+        frames_out: capture.frames(),
+        rate_hz_out: capture.rate_hz,
+        changed: record::changed_frames(&swaps, &spikes, &gaps),
+        swaps,
+        spikes,
+        gaps,
+        head,
+    };
+    capture.notes.push(format!("repaired: {}", record.summary()));
+    Ok(Repaired { capture, record })
+}

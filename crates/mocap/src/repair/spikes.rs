@@ -1,0 +1,102 @@
+//! Spikes: a marker that is elsewhere for an instant and comes back.
+
+use crate::Capture;
+use crate::sudden::{MEMORY_S, SUDDEN_M, distance, step_around, usual_step};
+
+/// A marker that leaves its place for an instant.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Spike {
+    /// Label of the marker.
+    pub label: String,
+    /// First frame elsewhere, 0 = the first of the capture.
+    pub first: usize,
+    /// First frame after it.
+    pub end: usize,
+    /// How far it was off the line between the frames before and after, metres.
+    pub distance_m: f64,
+}
+
+/// Longest spike, seconds: a twitch of the face takes longer.
+const LONGEST_S: f64 = 0.05;
+/// How many times larger than usual both edges are.
+const TIMES: f64 = 5.0;
+
+/// All spikes, marker by marker, in order of time.
+pub(crate) fn find_spikes(capture: &Capture) -> Vec<(usize, Spike)> {
+    let (frames, markers) = (capture.frames(), capture.labels.len());
+    let metres = capture.unit.metres();
+    let least = SUDDEN_M / metres;
+    let longest = ((LONGEST_S * capture.rate_hz).round() as usize).max(1);
+    let memory = ((MEMORY_S * capture.rate_hz) as usize).max(1);
+    let mut steps = Vec::with_capacity(markers);
+    let mut found = Vec::new();
+    for marker in 0..markers {
+        let at = |frame: usize| capture.frame(frame)[marker];
+        // The frame before `first` in which the marker is seen.
+        let mut before: Option<usize> = None;
+        let mut first = 0;
+        while first < frames {
+            let here = at(first);
+            if here[0].is_nan() {
+                first += 1;
+                continue;
+            }
+            let from = before.filter(|b| first - b <= memory);
+            before = Some(first);
+            let Some(from) = from else {
+                first += 1;
+                continue;
+            };
+            let entry = distance(at(from), here);
+            // Cheap first: nearly every frame ends here.
+            if entry < least {
+                first += 1;
+                continue;
+            }
+            let usual = usual_step(capture, first, &mut steps);
+            let calm = step_into(capture, marker, from).max(usual);
+            if entry <= TIMES * calm * (first - from) as f64 {
+                first += 1;
+                continue;
+            }
+            let end = (1..=longest).map(|n| first + n).find_map(|end| {
+                let after = (end..frames.min(end + memory)).find(|&f| !at(f)[0].is_nan())?;
+                let last = (first..end).rev().find(|&f| !at(f)[0].is_nan())?;
+                let exit = distance(at(last), at(after));
+                let usual_out = usual_step(capture, after, &mut steps);
+                let calm_out = step_out(capture, marker, after).max(usual_out);
+                let back = distance(at(from), at(after));
+                let elapsed = (after - from) as f64;
+                let returns = back <= 0.3 * entry.min(exit) + elapsed * calm.max(calm_out);
+                (exit >= least && exit > TIMES * calm_out && returns).then_some((end, after))
+            });
+            let Some((end, after)) = end else {
+                first += 1;
+                continue;
+            };
+            let (p, q) = (at(from), at(after));
+            let off = (first..end)
+                .map(|frame| {
+                    let t = (frame - from) as f64 / (after - from) as f64;
+                    distance(at(frame), [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k])))
+                })
+                .fold(0.0, f64::max);
+            let label = capture.labels[marker].clone();
+            found.push((marker, Spike { label, first, end, distance_m: off * metres }));
+            // The place before the spike is the one to compare with after it.
+            before = Some(from);
+            first = end;
+        }
+    }
+    found
+}
+
+/// The marker's step into a frame; 0 where it is not known.
+fn step_into(capture: &Capture, marker: usize, frame: usize) -> f64 {
+    step_around(capture, marker, frame, capture.frames())
+}
+
+/// The marker's step out of a frame; 0 where it is not known.
+fn step_out(capture: &Capture, marker: usize, frame: usize) -> f64 {
+    step_around(capture, marker, 0, frame)
+}

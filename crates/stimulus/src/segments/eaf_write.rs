@@ -1,0 +1,234 @@
+//! ELAN documents made anew, and tiers put into documents that are there.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use quick_xml::escape::escape;
+
+use super::TakeSegment;
+use super::eaf::{EafAnnotation, EafDocument, EafError};
+
+/// Linguistic type of the tiers made here, where a document has none that fits.
+const TYPE: &str = "mimique-expression";
+
+impl EafDocument {
+    /// A document without tiers; `date` as ISO 8601, `media` a path or address of the video.
+    ///
+    /// # Errors
+    /// [`EafError`]: `date` or `media` hold what XML cannot.
+    pub fn new(date: &str, media: Option<&str>) -> Result<Self, EafError> {
+        let media = media.map_or(String::new(), |url| {
+            let kind = match url.rsplit('.').next().map(str::to_ascii_lowercase).as_deref() {
+                Some("wav") => "audio/x-wav",
+                Some("mp4") => "video/mp4",
+                Some("mpg" | "mpeg") => "video/mpeg",
+                Some("mov") => "video/quicktime",
+                _ => "video/*",
+            };
+            format!(
+                "        <MEDIA_DESCRIPTOR MEDIA_URL=\"{}\" MIME_TYPE=\"{kind}\"/>\n",
+                escape(url)
+            )
+        });
+        Self::parse(&format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+             <ANNOTATION_DOCUMENT AUTHOR=\"\" DATE=\"{}\" FORMAT=\"3.0\" VERSION=\"3.0\" \
+             xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" \
+             xsi:noNamespaceSchemaLocation=\"http://www.mpi.nl/tools/elan/EAFv3.0.xsd\">\n    \
+             <HEADER MEDIA_FILE=\"\" TIME_UNITS=\"milliseconds\">\n{media}        \
+             <PROPERTY NAME=\"lastUsedAnnotationId\">0</PROPERTY>\n    </HEADER>\n    \
+             <TIME_ORDER>\n    </TIME_ORDER>\n    \
+             <LINGUISTIC_TYPE GRAPHIC_REFERENCES=\"false\" LINGUISTIC_TYPE_ID=\"{TYPE}\" \
+             TIME_ALIGNABLE=\"true\"/>\n\
+             </ANNOTATION_DOCUMENT>\n",
+            escape(date)
+        ))
+    }
+
+    /// The document with a tier of that name, which takes the place of one that was there.
+    /// Everything else stays, character by character.
+    ///
+    /// # Errors
+    /// [`EafError`]: annotations that overlap or are empty, which a tier of ELAN cannot hold, or a
+    /// tier on which others depend.
+    pub fn with_tier(&self, id: &str, annotations: &[EafAnnotation]) -> Result<Self, EafError> {
+        let refuse =
+            |what: String, remedy| EafError { place: format!("tier {id:?}"), what, remedy };
+        let mut sorted = annotations.to_vec();
+        sorted.sort_by_key(|a| (a.start_ms, a.end_ms));
+        for a in &sorted {
+            if a.start_ms >= a.end_ms {
+                let what = format!("{:?} lasts from {} to {} ms", a.value, a.start_ms, a.end_ms);
+                return Err(refuse(what, "give annotations of a millisecond or more"));
+            }
+        }
+        if let Some(pair) = sorted.windows(2).find(|p| p[1].start_ms < p[0].end_ms) {
+            let what = format!("{:?} and {:?} overlap", pair[0].value, pair[1].value);
+            return Err(refuse(what, "shorten one, or write them into two tiers"));
+        }
+        if id.trim().is_empty() {
+            return Err(refuse("no name".to_owned(), "name the tier"));
+        }
+        let old = self.places.tiers.iter().find(|tier| tier.id == id);
+        if let Some(old) = old {
+            if let Some(child) = self.places.tiers.iter().find(|t| t.parent.as_deref() == Some(id))
+            {
+                let what = format!("the tier {:?} depends on it", child.id);
+                return Err(refuse(what, "write to another tier"));
+            }
+            if old.parent.is_some() || old.refers {
+                let what = "its annotations belong to another tier's".to_owned();
+                return Err(refuse(what, "write to another tier"));
+            }
+        }
+        self.spliced(id, &sorted, old.map(|tier| (tier.element.clone(), tier.open_tag.clone())))
+    }
+
+    /// The text with time slots, tier and linguistic type put in.
+    fn spliced(
+        &self,
+        id: &str,
+        annotations: &[EafAnnotation],
+        old: Option<(Range<usize>, Range<usize>)>,
+    ) -> Result<Self, EafError> {
+        let places = &self.places;
+        let (mut slot, mut annotation) = (places.slot_number, places.annotation_number);
+        // Slots that only the old tier used go with it.
+        let unused = |slot: &str| {
+            let mut users = places.uses.iter().filter(|(s, _)| s == slot).peekable();
+            users.peek().is_some() && users.all(|(_, tier)| tier == id)
+        };
+        let mut edits: Vec<(Range<usize>, String)> = places
+            .slots
+            .iter()
+            .filter(|(slot, _)| unused(slot))
+            .map(|(_, element)| (self.with_blank_before(element), String::new()))
+            .collect();
+        // ELAN wants time slots in order of time; those without one stay where they are, so the
+        // new ones go after all that are not later.
+        let mut slots = String::new();
+        let mut tier = String::new();
+        for a in annotations {
+            let [start, end] = [slot + 1, slot + 2];
+            slot += 2;
+            annotation += 1;
+            // Writing to a String does not fail.
+            let _ = write!(
+                slots,
+                "    <TIME_SLOT TIME_SLOT_ID=\"ts{start}\" TIME_VALUE=\"{}\"/>\n        \
+                 <TIME_SLOT TIME_SLOT_ID=\"ts{end}\" TIME_VALUE=\"{}\"/>\n    ",
+                a.start_ms, a.end_ms
+            );
+            let _ = write!(
+                tier,
+                "\n        <ANNOTATION>\n            \
+                 <ALIGNABLE_ANNOTATION ANNOTATION_ID=\"a{annotation}\" \
+                 TIME_SLOT_REF1=\"ts{start}\" TIME_SLOT_REF2=\"ts{end}\">\n                \
+                 <ANNOTATION_VALUE>{}</ANNOTATION_VALUE>\n            \
+                 </ALIGNABLE_ANNOTATION>\n        </ANNOTATION>",
+                escape(&a.value)
+            );
+        }
+        tier.push_str("\n    </TIER>");
+        let after_tiers = places.after_tiers.unwrap_or(self.text.len());
+        let fits = places.alignable_types.first();
+        match old {
+            Some((element, open_tag)) => {
+                let open = self.text[open_tag].trim_end_matches('>').trim_end_matches('/');
+                edits.push((element, format!("{}>{tier}", open.trim_end())));
+            }
+            None => {
+                let kind = fits.map_or(TYPE, String::as_str);
+                let open = format!(
+                    "<TIER LINGUISTIC_TYPE_REF=\"{}\" TIER_ID=\"{}\">",
+                    escape(kind),
+                    escape(id)
+                );
+                let types = match fits {
+                    Some(_) => String::new(),
+                    None => format!(
+                        "<LINGUISTIC_TYPE GRAPHIC_REFERENCES=\"false\" \
+                         LINGUISTIC_TYPE_ID=\"{TYPE}\" TIME_ALIGNABLE=\"true\"/>\n    "
+                    ),
+                };
+                edits.push((after_tiers..after_tiers, format!("{open}{tier}\n    {types}")));
+            }
+        }
+        match &places.time_order {
+            Some((_, Some(end))) => edits.push((*end..*end, slots)),
+            Some((element, None)) => {
+                let whole = format!("<TIME_ORDER>\n    {slots}</TIME_ORDER>");
+                edits.push((element.clone(), whole));
+            }
+            None => {
+                let first = places.tiers.first().map_or(after_tiers, |t| t.element.start);
+                edits.push((first..first, format!("<TIME_ORDER>\n    {slots}</TIME_ORDER>\n    ")));
+            }
+        }
+        if let Some(property) = &places.last_annotation {
+            let said = self.text[property.clone()].trim().parse::<u64>().unwrap_or(0);
+            edits.push((property.clone(), said.max(annotation).to_string()));
+        }
+        // Of two edits at one place the one made first comes first: slots stand before tiers.
+        edits.sort_by_key(|(range, text)| (range.start, !text.starts_with("<TIME_ORDER")));
+        let mut text = String::with_capacity(self.text.len() + slots_len(&edits));
+        let mut at = 0;
+        for (range, new) in edits {
+            text.push_str(&self.text[at..range.start]);
+            text.push_str(&new);
+            at = range.end;
+        }
+        text.push_str(&self.text[at..]);
+        Self::parse(&text)
+    }
+
+    /// An element and the blanks before it, so that no empty line stays.
+    fn with_blank_before(&self, element: &Range<usize>) -> Range<usize> {
+        let before = self.text[..element.start].trim_end().len();
+        before..element.end
+    }
+
+    /// The segments of a tier at a rate; each annotation is a clip that is all expression.
+    /// Annotations without a word, or called `N` or `neutral`, are left out.
+    ///
+    /// # Errors
+    /// [`EafError`]: no such tier.
+    pub fn segments(&self, tier: &str, rate_hz: f64) -> Result<Vec<TakeSegment>, EafError> {
+        let found = self.tier(tier).ok_or_else(|| {
+            let names: Vec<&str> = self.tiers().iter().map(|t| t.id.as_str()).collect();
+            EafError {
+                place: format!("tier {tier:?}"),
+                what: format!("not in the document, which has {}", names.join(", ")),
+                remedy: "name one of its tiers",
+            }
+        })?;
+        let frame = |ms: u64| (ms as f64 * rate_hz / 1000.0).round() as usize;
+        let named = found.annotations.iter().filter(|a| {
+            let value = a.value.trim();
+            !value.is_empty()
+                && !value.eq_ignore_ascii_case("n")
+                && !value.eq_ignore_ascii_case("neutral")
+        });
+        Ok(named
+            .map(|a| TakeSegment::new(a.value.trim(), frame(a.start_ms)..frame(a.end_ms)))
+            .filter(|s| !s.clip.is_empty())
+            .collect())
+    }
+}
+
+/// The expressions of segments as annotations.
+impl EafAnnotation {
+    /// The expression of a segment, without lead-in and lead-out.
+    pub fn of(segment: &TakeSegment, rate_hz: f64) -> Self {
+        let ms = |frame: usize| (frame as f64 * 1000.0 / rate_hz).round() as u64;
+        Self {
+            start_ms: ms(segment.expression.start),
+            end_ms: ms(segment.expression.end),
+            value: segment.label.clone(),
+        }
+    }
+}
+
+fn slots_len(edits: &[(Range<usize>, String)]) -> usize {
+    edits.iter().map(|(_, text)| text.len()).sum()
+}

@@ -1,0 +1,165 @@
+//! ELAN documents: what ELAN 6 writes is read, tiers are written, everything else stays.
+
+use mimique_stimulus::{EafAnnotation, EafDocument, TakeSegment};
+
+/// As ELAN 6.7 lays a document out: two tiers, one of them symbolic, a slot without a time, a
+/// controlled vocabulary, a comment, entities.
+const DOCUMENT: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<ANNOTATION_DOCUMENT AUTHOR="" DATE="2024-05-06T10:11:12+01:00"
+    FORMAT="3.0" VERSION="3.0"
+    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://www.mpi.nl/tools/elan/EAFv3.0.xsd">
+    <HEADER MEDIA_FILE="" TIME_UNITS="milliseconds">
+        <MEDIA_DESCRIPTOR MEDIA_URL="file:///films/take%201.mp4"
+            MIME_TYPE="video/mp4" RELATIVE_MEDIA_URL="./take%201.mp4"/>
+        <PROPERTY NAME="URN">urn:nl-mpi-tools-elan-eaf:1f2e</PROPERTY>
+        <PROPERTY NAME="lastUsedAnnotationId">7</PROPERTY>
+    </HEADER>
+    <TIME_ORDER>
+        <TIME_SLOT TIME_SLOT_ID="ts1" TIME_VALUE="400"/>
+        <TIME_SLOT TIME_SLOT_ID="ts2"/>
+        <TIME_SLOT TIME_SLOT_ID="ts3" TIME_VALUE="1550"/>
+        <TIME_SLOT TIME_SLOT_ID="ts4" TIME_VALUE="2000"/>
+        <TIME_SLOT TIME_SLOT_ID="ts5" TIME_VALUE="3100"/>
+    </TIME_ORDER>
+    <TIER LINGUISTIC_TYPE_REF="default-lt" PARTICIPANT="S1" TIER_ID="Affect &amp; mouth">
+        <ANNOTATION>
+            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a1" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts2">
+                <ANNOTATION_VALUE>NA</ANNOTATION_VALUE>
+            </ALIGNABLE_ANNOTATION>
+        </ANNOTATION>
+        <ANNOTATION>
+            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a2" TIME_SLOT_REF1="ts2" TIME_SLOT_REF2="ts3">
+                <ANNOTATION_VALUE>col&#232;re &lt;3 &amp; more</ANNOTATION_VALUE>
+            </ALIGNABLE_ANNOTATION>
+        </ANNOTATION>
+        <ANNOTATION>
+            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a6" TIME_SLOT_REF1="ts4" TIME_SLOT_REF2="ts5">
+                <ANNOTATION_VALUE></ANNOTATION_VALUE>
+            </ALIGNABLE_ANNOTATION>
+        </ANNOTATION>
+    </TIER>
+    <TIER LINGUISTIC_TYPE_REF="comment" PARENT_REF="Affect &amp; mouth" TIER_ID="Comment">
+        <ANNOTATION>
+            <REF_ANNOTATION ANNOTATION_ID="a7" ANNOTATION_REF="a2">
+                <ANNOTATION_VALUE>seen twice</ANNOTATION_VALUE>
+            </REF_ANNOTATION>
+        </ANNOTATION>
+    </TIER>
+    <TIER LINGUISTIC_TYPE_REF="default-lt" TIER_ID="empty"/>
+    <LINGUISTIC_TYPE CONSTRAINTS="Symbolic_Association"
+        GRAPHIC_REFERENCES="false" LINGUISTIC_TYPE_ID="comment" TIME_ALIGNABLE="false"/>
+    <LINGUISTIC_TYPE GRAPHIC_REFERENCES="false"
+        LINGUISTIC_TYPE_ID="default-lt" TIME_ALIGNABLE="true"/>
+    <!-- by hand -->
+    <CONSTRAINT DESCRIPTION="1-1 association with a parent annotation" STEREOTYPE="Symbolic_Association"/>
+    <CONTROLLED_VOCABULARY CV_ID="emotions"/>
+</ANNOTATION_DOCUMENT>
+"#;
+
+fn annotation(start_ms: u64, end_ms: u64, value: &str) -> EafAnnotation {
+    EafAnnotation { start_ms, end_ms, value: value.to_owned() }
+}
+
+#[test]
+fn what_elan_writes_is_read() {
+    let document = EafDocument::parse(DOCUMENT).unwrap();
+    let names: Vec<&str> = document.tiers().iter().map(|t| t.id.as_str()).collect();
+    assert_eq!(names, ["Affect & mouth", "Comment", "empty"]);
+    assert_eq!(
+        document.tiers()[0].annotations,
+        [
+            // The slot without a time lies half way.
+            annotation(400, 975, "NA"),
+            annotation(975, 1550, "colère <3 & more"),
+            annotation(2000, 3100, ""),
+        ]
+    );
+    assert!(document.tiers()[1].annotations.is_empty());
+    let segments = document.segments("Affect & mouth", 200.0).unwrap();
+    assert_eq!(segments[1], TakeSegment::new("colère <3 & more", 195..310));
+    assert_eq!(segments.len(), 2, "one annotation has no word");
+    assert_eq!(
+        document.segments("affect", 200.0).unwrap_err().to_string(),
+        "tier \"affect\": not in the document, which has Affect & mouth, Comment, empty; \
+         name one of its tiers"
+    );
+}
+
+#[test]
+fn a_tier_is_added_and_everything_else_stays() {
+    let document = EafDocument::parse(DOCUMENT).unwrap();
+    let clips = [annotation(500, 1700, "joy <2>"), annotation(1700, 2900, "\"fear\" & 'co'")];
+    let with = document.with_tier("clips", &clips).unwrap();
+    assert_eq!(with.tier("clips").unwrap().annotations, clips);
+    assert_eq!(&with.tiers()[..3], document.tiers());
+    // Every line that was there is there, in its order, but for the count of annotations.
+    let mut lines = with.text().lines();
+    for line in DOCUMENT.lines().filter(|l| !l.contains("lastUsedAnnotationId")) {
+        assert!(lines.any(|l| l == line), "{line}");
+    }
+    assert!(with.text().contains(">9</PROPERTY>"));
+    assert!(with.text().contains("<TIER LINGUISTIC_TYPE_REF=\"default-lt\" TIER_ID=\"clips\">"));
+    assert_eq!(EafDocument::parse(with.text()).unwrap(), with);
+    // Written again, mended: the tier is replaced and its old time slots are gone.
+    let mended = [annotation(510, 1700, "joy2")];
+    let again = with.with_tier("clips", &mended).unwrap();
+    assert_eq!(again.tier("clips").unwrap().annotations, mended);
+    assert_eq!(&again.tiers()[..3], document.tiers());
+    assert_eq!(again.text().matches("<TIME_SLOT ").count(), 7);
+    let removed = again.with_tier("clips", &[]).unwrap();
+    assert_eq!(removed.text().matches("<TIME_SLOT ").count(), 5);
+    // A tier that was closed in one tag.
+    let filled = document.with_tier("empty", &mended).unwrap();
+    assert_eq!(filled.tier("empty").unwrap().annotations, mended);
+    assert_eq!(filled.tiers().len(), 3);
+}
+
+#[test]
+fn a_document_is_made_and_holds_segments() {
+    let segments = [
+        TakeSegment { label: "anger1".into(), clip: 60..350, expression: 80..310 },
+        TakeSegment::new("anger2", 390..620),
+    ];
+    for rate_hz in [60.0, 119.88, 200.0, 240.0] {
+        let annotations: Vec<_> = segments.iter().map(|s| EafAnnotation::of(s, rate_hz)).collect();
+        let document = EafDocument::new("2026-01-02T03:04:05Z", Some("film & take.mp4"))
+            .unwrap()
+            .with_tier("expressions", &annotations)
+            .unwrap();
+        let back = EafDocument::parse(document.text()).unwrap();
+        let read = back.segments("expressions", rate_hz).unwrap();
+        let want: Vec<_> =
+            segments.iter().map(|s| TakeSegment::new(&*s.label, s.expression.clone())).collect();
+        assert_eq!(read, want);
+        assert!(document.text().contains("MEDIA_URL=\"film &amp; take.mp4\""));
+    }
+}
+
+#[test]
+fn what_a_tier_cannot_hold_and_what_is_no_document_is_refused() {
+    let document = EafDocument::parse(DOCUMENT).unwrap();
+    let refused =
+        |id: &str, a: &[EafAnnotation]| document.with_tier(id, a).unwrap_err().to_string();
+    assert_eq!(
+        refused("x", &[annotation(0, 10, "a"), annotation(9, 20, "b")]),
+        "tier \"x\": \"a\" and \"b\" overlap; shorten one, or write them into two tiers"
+    );
+    assert!(refused("x", &[annotation(5, 5, "a")]).contains("lasts from 5 to 5 ms"));
+    assert!(refused("Affect & mouth", &[]).contains("the tier \"Comment\" depends on it"));
+    assert!(refused("Comment", &[]).contains("belong to another tier's"));
+    for (text, message) in [
+        ("", "byte 0: no ANNOTATION_DOCUMENT; open the file in ELAN and save it again"),
+        ("<html></html>", "byte 0: the document is a \"html\", not ELAN's"),
+        (&DOCUMENT[..900], "byte 892: syntax error"),
+        ("<ANNOTATION_DOCUMENT><TIER/></ANNOTATION_DOCUMENT>", "byte 21: TIER without TIER_ID"),
+    ] {
+        let error = EafDocument::parse(text).unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
+    let late = DOCUMENT.replace("\"1550\"", "\"100\"");
+    assert!(EafDocument::parse(&late).unwrap_err().to_string().contains("before it begins"));
+    // Cut at any byte: an error, never a panic.
+    for end in 0..DOCUMENT.len() - 30 {
+        assert!(DOCUMENT.get(..end).is_none_or(|text| EafDocument::parse(text).is_err()));
+    }
+}
