@@ -10,6 +10,7 @@ mod participant;
 mod postgres;
 mod researcher;
 mod sessions;
+mod simulated;
 mod storage;
 mod study;
 
@@ -77,6 +78,7 @@ topics! {
     exports::identifiers_are_exported_only_when_asked_for,
     exports::each_session_is_read_by_its_own_version,
     exports::a_study_must_be_named_where_there_are_several,
+    simulated::a_simulated_export_is_the_servers,
     researcher::the_page_needs_the_printed_address,
     researcher::the_page_shows_what_was_stored,
     researcher::exports_need_the_cookie,
