@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Avatar, capture, weight file, marker map, study or pack
+    /// Avatar (a file, or a folder of OBJ poses), capture, weight file, marker map, study or pack
     file: PathBuf,
     /// Hold the avatar's bank of shapes against Kouadio's five rules
     #[arg(long)]
@@ -34,8 +34,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if args.bank {
         return bank(&args, json);
     }
-    let bytes = std::fs::read(&args.file)
-        .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
+    let bytes = match args.file.is_dir() {
+        true => Vec::new(),
+        false => std::fs::read(&args.file)
+            .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?,
+    };
     let mut facts = facts(&args.file, &bytes).map_err(|e| blame(e.to_string()))?;
     facts["file"] = json!(args.file);
     facts["bytes"] = json!(bytes.len());
@@ -85,7 +88,10 @@ fn facts(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
         Some(_) => return take_facts(bytes),
         None => {}
     }
-    if bytes.starts_with(b"glTF") {
+    let archives: [&[u8]; 3] = [b"PK\x03\x04", b"\x1f\x8b", b"\xfd7zXZ\0"];
+    let is_tar = bytes.get(257..262) == Some(b"ustar");
+    let is_archive = is_tar || archives.iter().any(|opening| bytes.starts_with(opening));
+    if file.is_dir() || is_archive || bytes.starts_with(b"glTF") {
         return avatar_file(file, bytes);
     }
     match mimique_mocap::recognise(bytes) {
@@ -135,10 +141,13 @@ fn facts(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
 }
 
 fn avatar_file(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
-    let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    let read = mimique_face::read_gltf(bytes, &name, file.parent())?;
+    let read = mimique_face::read_avatar(file)?;
     let mut facts = avatar_facts("avatar", &read.avatar, bytes);
+    facts["unit m"] = json!(read.unit_metres);
     facts["notes"] = json!(read.notes);
+    if !read.locked.is_empty() {
+        facts["locked"] = json!(read.locked);
+    }
     Ok(facts)
 }
 

@@ -177,7 +177,7 @@ struct Named<T>(String, T);
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
-    let spec = method_spec(&args)?;
+    let mut spec = method_spec(&args)?;
     if spec.method == Method::Recorded {
         return recorded::run(&args, json);
     }
@@ -202,6 +202,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 
     progress.set_message("reading");
     let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
+    mimique_stimulus::lock_shapes(&mut spec, &avatar.locked);
     let split = split_shapes(&avatar.avatar, &args.split)
         .map_err(|e| blame(&args.avatar, format!("--{e}")))?;
     let skin = AvatarSkin::of(&split).map_err(|e| blame(&args.avatar, e))?;

@@ -3,6 +3,8 @@
 //! Everything is in metres, +Y up, +Z out of the face, +X to the *left* side of the person (the
 //! glTF convention); readers convert on the way in and say from which unit.
 
+use std::ops::Range;
+
 /// A head: its meshes, and the blendshapes that deform all of them together.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Avatar {
@@ -14,6 +16,8 @@ pub struct Avatar {
     pub meshes: Vec<Mesh>,
     /// Eyeballs that turn about their centre with the eye-look shapes.
     pub eyeballs: Vec<Eyeball>,
+    /// Pictures on the meshes' surfaces.
+    pub textures: Vec<Texture>,
 }
 
 /// One mesh of an avatar.
@@ -33,6 +37,31 @@ pub struct Mesh {
     pub base_colour: [f32; 3],
     /// Blendshape deltas, one entry a blendshape of the avatar (empty where it moves nothing here).
     pub shapes: Vec<SparseShape>,
+    /// Where each vertex lies in its picture, (0, 0) at the upper left, (1, 1) at the lower right,
+    /// repeated beyond; empty where nothing is textured.
+    pub uvs: Vec<[f32; 2]>,
+    /// Runs of `triangles` with a picture, ascending, without overlap. The picture's colours are
+    /// multiplied with the vertices' colours.
+    pub textured: Vec<Textured>,
+}
+
+/// Triangles that carry a picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Textured {
+    /// Indices into [`Mesh::triangles`].
+    pub triangles: Range<usize>,
+    /// Index into [`Avatar::textures`].
+    pub texture: usize,
+}
+
+/// A picture, compressed as it travels: sRGB base colour, and what is open in it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Texture {
+    /// A JPEG file, sRGB.
+    pub jpeg: Vec<u8>,
+    /// A grey JPEG file of the same size: 0 where nothing is, 255 where the surface is whole;
+    /// empty = whole everywhere.
+    pub mask_jpeg: Vec<u8>,
 }
 
 /// The displacement of one blendshape at weight 1, on the vertices that it moves.

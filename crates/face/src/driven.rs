@@ -164,6 +164,7 @@ mod tests {
                 centre: [0.0; 3],
                 looks: vec![Look { shape: 3, axis: [1.0, 0.0, 0.0], radians: 0.1 }],
             }],
+            ..Avatar::default()
         }
     }
 

@@ -3,26 +3,42 @@
 mod avatar;
 mod driven;
 #[cfg(feature = "readers")]
+mod files;
+#[cfg(feature = "readers")]
 mod glb;
+#[cfg(feature = "readers")]
+mod obj;
 pub mod pack;
-#[cfg_attr(not(feature = "readers"), allow(dead_code))]
+#[cfg(feature = "readers")]
 mod parts;
 #[cfg(feature = "readers")]
 mod read;
 #[cfg(feature = "readers")]
 mod read_error;
+#[cfg(feature = "readers")]
+mod settings;
 mod shape_names;
+#[cfg(feature = "textures")]
+mod texture;
+#[cfg(feature = "readers")]
+mod texture_in;
 
-pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
+pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape, Texture, Textured};
 pub use driven::{Driven, DrivenError};
 #[cfg(feature = "readers")]
 pub use glb::read_gltf;
+#[cfg(feature = "readers")]
 pub use parts::find_eyeballs;
 #[cfg(feature = "readers")]
-pub use read::{ReadAvatar, read_avatar};
+pub use read::{ReadAvatar, read_avatar, read_avatar_bytes};
 #[cfg(feature = "readers")]
 pub use read_error::ReadError;
+#[cfg(feature = "readers")]
+pub use settings::AvatarSettings;
 pub use shape_names::{ARKIT_SHAPES, ShapeMap, arkit_shapes, map_shapes};
+
+#[cfg(feature = "textures")]
+pub use texture::{Image, MOST_TEXTURE_SIDE, TextureError};
 
 #[cfg(feature = "parametric")]
 mod parametric_head;

@@ -1,6 +1,7 @@
 //! What each mesh is of a face, told from its names; and how eyeballs turn.
 
-use crate::{Avatar, Eyeball, Look, Part, arkit_shapes};
+use crate::settings::{AvatarSettings, fits};
+use crate::{Avatar, Eyeball, Look, Part, ReadError, arkit_shapes};
 
 /// What is known of a mesh before its part is.
 pub(crate) struct PartName<'a> {
@@ -12,19 +13,45 @@ pub(crate) struct PartName<'a> {
     pub moved: usize,
 }
 
-/// The part of each mesh. Where no name says skin, the mesh that its shapes move most is the skin.
-pub(crate) fn assign_parts(meshes: &[PartName<'_>]) -> Vec<Part> {
-    let found: Vec<Option<Part>> = meshes
+/// The part of each mesh, nothing for one that `settings` leave out. Where no name says skin, the
+/// mesh that its shapes move most is the skin.
+pub(crate) fn assign_parts(
+    meshes: &[PartName<'_>],
+    settings: &AvatarSettings,
+) -> Result<Vec<Option<Part>>, ReadError> {
+    let fitting = |pattern: &str, m: &PartName<'_>| m.names.iter().any(|n| fits(pattern, n));
+    for (pattern, _) in &settings.parts {
+        if !meshes.iter().any(|m| fitting(pattern, m)) {
+            let mut names: Vec<&str> = meshes.iter().flat_map(|m| m.names).collect();
+            names.retain(|name| !name.is_empty());
+            names.sort_unstable();
+            names.dedup();
+            return Err(ReadError::broken(
+                format!("avatar.json: /parts/{pattern}"),
+                "no mesh, node, group or material of that name",
+                format!("the file has {}", names.join(", ")),
+            ));
+        }
+    }
+    // What the user says wins over what names say; of patterns, the one with the most letters.
+    let letters = |pattern: &str| pattern.len() - pattern.matches('*').count();
+    let said = |m: &PartName<'_>| {
+        let fit = settings.parts.iter().filter(|(pattern, _)| fitting(pattern, m));
+        fit.max_by_key(|(pattern, _)| letters(pattern)).map(|(_, part)| *part)
+    };
+    let found: Vec<Option<Option<Part>>> = meshes
         .iter()
-        .map(|m| m.names.iter().find_map(|name| part_of_name(name, m.positions)))
+        .map(|m| {
+            let named = || m.names.iter().find_map(|name| part_of_name(name, m.positions));
+            said(m).or_else(|| named().map(Some))
+        })
         .collect();
-    let has_skin = found.contains(&Some(Part::Skin));
+    let has_skin = found.contains(&Some(Some(Part::Skin)));
     let skin = (0..meshes.len())
         .filter(|&i| !has_skin && found[i].is_none())
         .max_by_key(|&i| (meshes[i].moved, std::cmp::Reverse(i)));
-    (0..meshes.len())
-        .map(|i| found[i].unwrap_or(if skin == Some(i) { Part::Skin } else { Part::Other }))
-        .collect()
+    let rest = |i| if skin == Some(i) { Part::Skin } else { Part::Other };
+    Ok((0..meshes.len()).map(|i| found[i].unwrap_or(Some(rest(i)))).collect())
 }
 
 /// What a name says, by the words that rigs use; the order matters (an eyelash is no eye).
@@ -33,8 +60,16 @@ fn part_of_name(name: &str, positions: &[[f32; 3]]) -> Option<Part> {
     let any = |words: &[&str]| words.iter().any(|w| name.contains(w));
     if any(&["lash"]) {
         Some(Part::Lashes)
-    } else if any(&["lacrimal", "occlusion", "tearline", "eyewet", "eye_wet", "cornea", "caruncle"])
-    {
+    } else if any(&[
+        "lacrimal",
+        "occlusion",
+        "tearline",
+        "eyewet",
+        "eye_wet",
+        "eyeblend",
+        "cornea",
+        "caruncle",
+    ]) {
         Some(Part::EyeOverlay)
     } else if any(&["brow", "hair", "beard", "moustache", "mustache"]) {
         Some(Part::Hair)
@@ -205,8 +240,17 @@ mod tests {
     fn without_a_name_the_most_moved_mesh_is_the_skin() {
         let named =
             |name: &'static str, moved| PartName { names: [name, "", ""], positions: &[], moved };
-        let parts = assign_parts(&[named("a", 3), named("b", 90), named("Teeth", 200)]);
-        assert_eq!(parts, [Part::Other, Part::Skin, Part::Teeth]);
+        let meshes = [named("a", 3), named("b", 90), named("Teeth", 200)];
+        let parts = assign_parts(&meshes, &AvatarSettings::default()).unwrap();
+        assert_eq!(parts, [Part::Other, Part::Skin, Part::Teeth].map(Some));
+        let parts = vec![("a".to_owned(), Some(Part::Skin)), ("T*h".to_owned(), None)];
+        let settings = AvatarSettings { parts, ..AvatarSettings::default() };
+        let parts = assign_parts(&meshes, &settings).unwrap();
+        assert_eq!(parts, [Some(Part::Skin), Some(Part::Other), None]);
+        let parts = vec![("Nose".to_owned(), None)];
+        let settings = AvatarSettings { parts, ..AvatarSettings::default() };
+        let error = assign_parts(&meshes, &settings).unwrap_err().to_string();
+        assert!(error.contains("/parts/Nose: no mesh") && error.contains("a, b"), "{error}");
     }
 
     #[test]

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use crate::files::Files;
 use crate::parts::find_eyeballs;
-use crate::{Avatar, Part, ReadError};
+use crate::settings::{AvatarSettings, fits};
+use crate::{Avatar, Part, ReadError, arkit_shapes};
 
 /// An avatar as read, in metres, and what the reader found worth saying.
 #[derive(Debug, Clone)]
@@ -12,29 +14,78 @@ pub struct ReadAvatar {
     pub avatar: Avatar,
     /// The unit that the file's numbers are taken to be in, in metres (1, 0.01 or 0.001).
     pub unit_metres: f64,
+    /// Shapes that stay at 0 when weights are solved, as the JSON beside the avatar asks.
+    pub locked: Vec<String>,
     /// What was assumed or left out, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads an avatar file: `.glb` or `.gltf`.
+/// Reads an avatar: a `.glb` or `.gltf` file, or a folder or archive (zip, tar, tar.gz, tar.xz) of
+/// OBJ poses; with the settings beside it ([`AvatarSettings`]), if there are any.
 ///
 /// # Errors
 /// [`ReadError`]: the file is absent, of another format, damaged, or holds no face.
 pub fn read_avatar(path: &Path) -> Result<ReadAvatar, ReadError> {
+    let file_name = path.file_name().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    // `bank.tar.xz` is called bank.
+    let name = file_name.strip_suffix(".tar.xz").or(file_name.strip_suffix(".tar.gz"));
+    let stem = || path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let name = name.map_or_else(stem, str::to_owned);
+    let settings = settings_beside(path, &name)?;
+    if path.is_dir() {
+        let files = Files::Folder(path.to_owned());
+        return crate::obj::read_obj_poses(&files, &file_name, settings);
+    }
     let bytes = std::fs::read(path)
         .map_err(|source| ReadError::Io { place: "the avatar file".to_owned(), source })?;
-    let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    crate::read_gltf(&bytes, &name, path.parent())
+    read_avatar_bytes(bytes, &name, path.parent(), settings)
+}
+
+/// Reads an avatar from the bytes of a file: GLB, glTF, or an archive of OBJ poses.
+///
+/// `name` becomes [`Avatar::name`]; `folder` is where a `.gltf` file's buffers and pictures are
+/// looked for.
+///
+/// # Errors
+/// As [`read_avatar`].
+pub fn read_avatar_bytes(
+    bytes: Vec<u8>,
+    name: &str,
+    folder: Option<&Path>,
+    settings: Option<AvatarSettings>,
+) -> Result<ReadAvatar, ReadError> {
+    match Files::of_archive(&bytes) {
+        Some(archive) => crate::obj::read_obj_poses(&archive(bytes), name, settings),
+        None => crate::glb::read_with(&bytes, name, folder, &settings.unwrap_or_default()),
+    }
+}
+
+/// `head.avatar.json` beside `head.glb`.
+fn settings_beside(path: &Path, name: &str) -> Result<Option<AvatarSettings>, ReadError> {
+    let file = format!("{name}.avatar.json");
+    let beside = path.with_file_name(&file);
+    if !beside.is_file() {
+        return Ok(None);
+    }
+    let bytes =
+        std::fs::read(&beside).map_err(|source| ReadError::Io { place: file.clone(), source })?;
+    AvatarSettings::from_json(&file, &bytes).map(Some)
 }
 
 impl ReadAvatar {
-    /// Checks, converts to metres and finds the eyeballs of an avatar in its file's own unit.
-    pub(crate) fn finish(mut avatar: Avatar, mut notes: Vec<String>) -> Result<Self, ReadError> {
+    /// Checks, converts to metres, names the shapes and finds the eyeballs of an avatar in its
+    /// file's own unit.
+    pub(crate) fn finish(
+        mut avatar: Avatar,
+        mut notes: Vec<String>,
+        settings: &AvatarSettings,
+    ) -> Result<Self, ReadError> {
+        name_shapes(&mut avatar, settings)?;
         if avatar.shape_names.is_empty() {
             return Err(ReadError::broken(
                 "meshes",
                 "no blendshapes",
-                "export the head with its morph targets (shape keys)",
+                "export the head with its morph targets (shape keys), or one OBJ file a pose",
             ));
         }
         let extent = skin_extent(&avatar).filter(|extent| *extent > 0.0).ok_or_else(|| {
@@ -44,16 +95,74 @@ impl ReadAvatar {
                 "name the face's mesh with the word skin, head or face",
             )
         })?;
-        let unit_metres = unit_of(extent);
-        if unit_metres == 1.0 {
-            notes.push("unit: metres, as glTF says".to_owned());
-        } else {
-            let unit = if unit_metres == 0.01 { "centimetres" } else { "millimetres" };
-            notes.push(format!("unit: {unit}, since the skin measures {extent:.1} units"));
+        let unit_metres = settings.unit_metres.unwrap_or_else(|| unit_of(extent));
+        notes.push(unit_note(extent, unit_metres, settings.unit_metres.is_some()));
+        if unit_metres != 1.0 {
             scale(&mut avatar, unit_metres);
         }
+        let known = avatar.shape_names.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
+        if known < avatar.shape_names.len() {
+            let all = avatar.shape_names.len();
+            notes.push(format!("{known} of {all} shapes are ARKit's by name, the rest are kept"));
+        }
         avatar.eyeballs = find_eyeballs(&avatar);
-        Ok(Self { avatar, unit_metres, notes })
+        let locked = locked(&avatar.shape_names, settings)?;
+        Ok(Self { avatar, unit_metres, locked, notes })
+    }
+}
+
+/// Leaves shapes out and renames shapes as the settings ask.
+fn name_shapes(avatar: &mut Avatar, settings: &AvatarSettings) -> Result<(), ReadError> {
+    for (name, _) in &settings.shapes {
+        if !avatar.shape_names.contains(name) {
+            return Err(no_shape("shapes", name, &avatar.shape_names));
+        }
+    }
+    let stays = |name: &String| !settings.leave_out.iter().any(|p| fits(p, name));
+    let stay: Vec<bool> = avatar.shape_names.iter().map(stays).collect();
+    for mesh in &mut avatar.meshes {
+        let shapes = std::mem::take(&mut mesh.shapes).into_iter().zip(&stay);
+        mesh.shapes = shapes.filter(|(_, stay)| **stay).map(|(shape, _)| shape).collect();
+    }
+    avatar.shape_names.retain(stays);
+    for name in &mut avatar.shape_names {
+        if let Some((_, new)) = settings.shapes.iter().find(|(old, _)| old == name) {
+            name.clone_from(new);
+        }
+    }
+    let names = &avatar.shape_names;
+    match (0..names.len()).find(|&k| names[..k].contains(&names[k])) {
+        Some(k) => Err(ReadError::broken(
+            "avatar.json: /shapes",
+            format!("{:?} is the name of two shapes", names[k]),
+            "give each its own name",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The shapes that the patterns of `locked` fit.
+fn locked(names: &[String], settings: &AvatarSettings) -> Result<Vec<String>, ReadError> {
+    for pattern in &settings.locked {
+        if !names.iter().any(|name| fits(pattern, name)) {
+            return Err(no_shape("locked", pattern, names));
+        }
+    }
+    let fitting = |name: &&String| settings.locked.iter().any(|p| fits(p, name));
+    Ok(names.iter().filter(fitting).cloned().collect())
+}
+
+fn no_shape(key: &str, pattern: &str, names: &[String]) -> ReadError {
+    let remedy = format!("the file has {}", names.join(", "));
+    ReadError::broken(format!("avatar.json: /{key}"), format!("no shape {pattern:?}"), remedy)
+}
+
+fn unit_note(extent: f64, unit_metres: f64, said: bool) -> String {
+    match (said, unit_metres) {
+        (true, _) => format!("unit: {unit_metres} m, as the JSON beside the avatar says"),
+        (false, 1.0) => format!("unit: metres, since the skin measures {extent:.3} units"),
+        (false, 0.01) => format!("unit: centimetres, since the skin measures {extent:.1} units"),
+        (false, _) => format!("unit: millimetres, since the skin measures {extent:.0} units"),
     }
 }
 

@@ -88,7 +88,8 @@ fn dense_and_sparse_shapes_colours_and_names_are_read() {
     assert_eq!(mesh.shapes[0].deltas, [[0.0, -0.01, 0.0]]);
     assert_eq!(mesh.shapes[1].vertices, [2]);
     assert_eq!(mesh.shapes[1].deltas, [[1.0, -1.0, 0.0]]);
-    assert_eq!(read.notes, ["unit: metres, as glTF says"]);
+    assert_eq!(read.notes.len(), 2, "{:?}", read.notes);
+    assert!(read.notes[0].starts_with("unit: metres"), "{:?}", read.notes);
 }
 
 #[test]
@@ -149,7 +150,7 @@ fn units_are_recognised_by_the_size_of_the_face() {
         assert_eq!(read.unit_metres, metres);
         let p = read.avatar.meshes[0].positions[2];
         assert!((p[1] - 0.2).abs() < 1e-6, "{p:?}");
-        assert_eq!(read.notes.len(), 1);
+        assert!(read.notes.iter().any(|n| n.starts_with("unit: ")), "{:?}", read.notes);
     }
 }
 
@@ -174,7 +175,9 @@ fn materials_of_one_mesh_become_one_skin_with_colours() {
 fn what_is_wrong_is_named_with_its_place() {
     type Damage = fn(&mut Value, &mut Vec<u8>);
     let cases: [(&str, Damage); 16] = [
-        ("extensionsRequired", |d, _| d["extensionsRequired"] = json!(["EXT_meshopt_compression"])),
+        ("extensionsRequired", |d, _| {
+            d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])
+        }),
         ("meshes[0].primitives[0].attributes.POSITION", |d, _| {
             d["accessors"][0]["count"] = json!(4)
         }),
@@ -182,7 +185,7 @@ fn what_is_wrong_is_named_with_its_place() {
             d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9);
         }),
         ("targets[0]", |d, _| d["accessors"][1]["count"] = json!(2)),
-        ("4294967295 elements", |d, _| d["accessors"][3]["count"] = json!(4294967295u32)),
+        ("4294967295", |d, _| d["accessors"][3]["count"] = json!(4294967295u32)),
         ("sparse index 200", |_, b| b[76] = 200),
         ("not a finite number", |_, b| b[0..4].copy_from_slice(&f32::NAN.to_le_bytes())),
         ("vertex 7 of 3", |_, b| b[74] = 7),

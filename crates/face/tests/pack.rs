@@ -1,7 +1,7 @@
 //! The avatar pack: what goes in comes out, within the bound; damage is refused, never a panic.
 
 use mimique_face::pack::{decode_pack, encode_pack};
-use mimique_face::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
+use mimique_face::{Avatar, Eyeball, Look, Mesh, Part, SparseShape, Texture, Textured};
 use proptest::prelude::*;
 
 /// A curved sheet with `n` shapes, and a ball that turns.
@@ -39,6 +39,11 @@ fn avatar(width: u32, height: u32, n: usize, size: f32) -> Avatar {
         vertex_colours,
         base_colour: [0.8, 0.6, 0.5],
         shapes,
+        uvs: positions.iter().map(|p| [p[0] * 30.0, -p[1] * 20.0]).collect(),
+        textured: vec![
+            Textured { triangles: 2..5, texture: 1 },
+            Textured { triangles: 9..11, texture: 0 },
+        ],
     };
     let eye = Mesh {
         name: "eye".into(),
@@ -54,6 +59,10 @@ fn avatar(width: u32, height: u32, n: usize, size: f32) -> Avatar {
         shape_names: (0..n).map(|k| format!("shape{k}")).collect(),
         meshes: vec![skin, eye],
         eyeballs: vec![Eyeball { mesh: 1, centre: [0.03, 0.02, 0.01], looks }],
+        textures: vec![
+            Texture { jpeg: vec![1, 2, 3], mask_jpeg: vec![] },
+            Texture { jpeg: vec![4; 300], mask_jpeg: vec![5] },
+        ],
     }
 }
 
@@ -78,6 +87,11 @@ fn everything_but_rounding_comes_back() {
     assert_eq!(back.name, avatar.name);
     assert_eq!(back.shape_names, avatar.shape_names);
     assert_eq!(back.eyeballs, avatar.eyeballs);
+    assert_eq!(back.textures, avatar.textures);
+    assert_eq!(back.meshes[0].textured, avatar.meshes[0].textured);
+    for (p, q) in back.meshes[0].uvs.iter().zip(&avatar.meshes[0].uvs) {
+        assert!((0..2).all(|a| (p[a] - q[a]).abs() < 4e-5), "{p:?} {q:?}");
+    }
     for (a, b) in avatar.meshes.iter().zip(&back.meshes) {
         assert_eq!((&a.name, a.part, &a.triangles), (&b.name, b.part, &b.triangles));
         assert_eq!(a.base_colour, b.base_colour);
@@ -125,7 +139,7 @@ fn another_kind_or_version_is_refused() {
 
 /// A pack around a body, so that damage goes past the inflater.
 fn sealed(body: &[u8]) -> Vec<u8> {
-    mimique_face::pack::seal_pack("MMAV", 1, body)
+    mimique_face::pack::seal_pack("MMAV", 2, body)
 }
 
 proptest! {
@@ -134,7 +148,7 @@ proptest! {
     #[test]
     fn damage_is_refused_or_harmless(at in 0usize..4000, value: u8, cut: bool) {
         let bytes = encode_pack(&avatar(8, 7, 3, 0.02)).bytes;
-        let body = mimique_face::pack::open_pack("MMAV", 1, &bytes).unwrap();
+        let body = mimique_face::pack::open_pack("MMAV", 2, &bytes).unwrap();
         for whole in [bytes, body] {
             let mut damaged = whole.clone();
             let at = at % damaged.len();

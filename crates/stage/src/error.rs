@@ -16,6 +16,14 @@ pub enum StageError {
         /// What the stage can hold.
         most: usize,
     },
+    /// A texture that is damaged.
+    #[error("avatar, texture {index}: {what}")]
+    Texture {
+        /// Index in the avatar.
+        index: usize,
+        /// Why it cannot be decoded, and what to do.
+        what: String,
+    },
     /// More eyeballs than the pose's uniform array holds.
     #[error(
         "avatar, eyeballs: {found} of them, at most {most} can be drawn; join the others to the skin"

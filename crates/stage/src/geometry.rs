@@ -28,6 +28,8 @@ pub(crate) struct Geometry {
     pub rings: Vec<[u32; 2]>,
     /// Square root of the base colour, 8 bits a channel; the material in the fourth.
     pub colours: Vec<[u8; 4]>,
+    /// Place of each vertex in its picture.
+    pub uvs: Vec<[f32; 2]>,
     pub indices: Vec<u32>,
     /// Ranges of `indices`, one a mesh, in the order to draw.
     pub draws: Vec<Draw>,
@@ -40,6 +42,8 @@ pub(crate) struct Geometry {
 pub(crate) struct Draw {
     pub indices: std::ops::Range<u32>,
     pub layer: Layer,
+    /// Index of the avatar's texture that colours it.
+    pub texture: Option<usize>,
     /// Hair-thin and transparent meshes cast none.
     pub casts_shadow: bool,
 }
@@ -170,12 +174,14 @@ impl Geometry {
             }
         }
 
-        let first = self.indices.len() as u32;
-        self.indices.extend(mesh.triangles.iter().flatten().map(|&i| base + i));
-        let indices = first..self.indices.len() as u32;
-        if !indices.is_empty() {
-            let casts_shadow = !matches!(mesh.part, Part::Lashes | Part::EyeLeft | Part::EyeRight);
-            self.draws.push(Draw { indices, layer: layer(mesh.part), casts_shadow });
+        let uv = |v: usize| mesh.uvs.get(v).copied().unwrap_or_default();
+        self.uvs.extend((0..count).map(uv));
+        let casts_shadow = !matches!(mesh.part, Part::Lashes | Part::EyeLeft | Part::EyeRight);
+        for (triangles, texture) in runs(mesh) {
+            let first = self.indices.len() as u32;
+            self.indices.extend(mesh.triangles[triangles].iter().flatten().map(|&i| base + i));
+            let indices = first..self.indices.len() as u32;
+            self.draws.push(Draw { indices, layer: layer(mesh.part), texture, casts_shadow });
         }
         Ok(())
     }
@@ -204,6 +210,20 @@ impl Geometry {
     }
 }
 
+/// The triangles of a mesh in runs of one picture or none.
+fn runs(mesh: &Mesh) -> Vec<(std::ops::Range<usize>, Option<usize>)> {
+    let mut out = Vec::new();
+    let mut next = 0;
+    for run in &mesh.textured {
+        out.push((next..run.triangles.start, None));
+        out.push((run.triangles.clone(), Some(run.texture)));
+        next = run.triangles.end;
+    }
+    out.push((next..mesh.triangles.len(), None));
+    out.retain(|(triangles, _)| !triangles.is_empty());
+    out
+}
+
 fn layer(part: Part) -> Layer {
     match part {
         Part::Skin | Part::EyeLeft | Part::EyeRight => Layer::Closed,
@@ -217,7 +237,9 @@ fn material_code(mesh: &Mesh, eye: Option<usize>) -> u8 {
         return Material::Eye as u8 + eye as u8;
     }
     (match mesh.part {
-        Part::Skin if mesh.vertex_colours.is_empty() => Material::PaintedSkin,
+        Part::Skin if mesh.vertex_colours.is_empty() && mesh.textured.is_empty() => {
+            Material::PaintedSkin
+        }
         Part::Skin => Material::Skin,
         Part::Teeth => Material::Teeth,
         Part::Tongue => Material::Tongue,
@@ -243,6 +265,22 @@ fn check_mesh(avatar: &Avatar, mesh: &Mesh) -> Result<(), StageError> {
     }
     if let Some(i) = mesh.triangles.iter().flatten().find(|&&i| i as usize >= count) {
         return malformed(format!("a triangle uses vertex {i}, the mesh has {count}"));
+    }
+    if !mesh.uvs.is_empty() && mesh.uvs.len() != count {
+        return malformed(format!("{} places in pictures for {count} vertices", mesh.uvs.len()));
+    }
+    let mut free = 0;
+    for run in &mesh.textured {
+        let (start, end) = (run.triangles.start, run.triangles.end);
+        if start < free || end < start || end > mesh.triangles.len() {
+            let most = mesh.triangles.len();
+            return malformed(format!("a picture on triangles {start} to {end} of {most}"));
+        }
+        if run.texture >= avatar.textures.len() {
+            let textures = avatar.textures.len();
+            return malformed(format!("texture {}, the avatar has {textures}", run.texture));
+        }
+        free = end;
     }
     for (k, shape) in mesh.shapes.iter().enumerate() {
         if shape.vertices.len() != shape.deltas.len() {

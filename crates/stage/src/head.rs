@@ -15,6 +15,7 @@ use crate::layouts::{
 };
 use crate::pipelines::{OCCLUSION_FORMAT, Pipelines};
 use crate::tables;
+use crate::textures::Textures;
 
 /// An avatar ready to be drawn by the renderer that loaded it.
 pub struct Head {
@@ -24,6 +25,9 @@ pub struct Head {
     pub(crate) draws: Vec<Draw>,
     pub(crate) indices: Buffer,
     pub(crate) colours: Buffer,
+    pub(crate) uvs: Buffer,
+    /// One picture a draw.
+    pub(crate) picture_groups: Vec<BindGroup>,
     pub(crate) pose_buffer: Buffer,
     pub(crate) scene_buffer: Buffer,
     pub(crate) positions: TextureView,
@@ -127,8 +131,18 @@ impl Head {
             &pipelines.shade_layout,
             &[scene, view(&positions), view(&surfaces), view(&neutral), view(&occlusions)],
         );
+        let textures = Textures::new(device, queue, avatar)?;
+        let picture = |draw: &Draw| {
+            let texture = view(textures.view(draw.texture));
+            group(
+                &pipelines.picture_layout,
+                &[texture, BindingResource::Sampler(textures.sampler())],
+            )
+        };
+        let picture_groups = geometry.draws.iter().map(picture).collect();
         Ok(Self {
             landmarks,
+            picture_groups,
             shape_count: geometry.shape_count,
             eyes: geometry.eyes,
             draws: geometry.draws,
@@ -140,6 +154,11 @@ impl Head {
             colours: buffer(
                 "colours",
                 bytemuck::cast_slice(&geometry.colours),
+                wgpu::BufferUsages::VERTEX,
+            ),
+            uvs: buffer(
+                "places in pictures",
+                bytemuck::cast_slice(&geometry.uvs),
                 wgpu::BufferUsages::VERTEX,
             ),
             pose_buffer,
@@ -261,6 +280,7 @@ mod tests {
                 centre: [0.03, 0.02, 0.07],
                 looks: vec![EyeLook { shape: 2, axis: [0.0, 1.0, 0.0], radians: 0.6 }],
             }],
+            ..Avatar::default()
         }
     }
 

@@ -27,6 +27,7 @@ mod pipelines;
 mod renderer;
 mod tables;
 mod targets;
+mod textures;
 
 pub use error::StageError;
 pub use framing::{Landmarks, View};

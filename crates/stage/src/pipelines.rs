@@ -32,6 +32,8 @@ pub(crate) struct Pipelines {
     pub occlusion_layout: BindGroupLayout,
     pub shade_layout: BindGroupLayout,
     pub light_layout: BindGroupLayout,
+    /// A surface's picture, as `shade.wgsl` reads it.
+    pub picture_layout: BindGroupLayout,
     pub deform: RenderPipeline,
     pub light: RenderPipeline,
     pub surface: RenderPipeline,
@@ -108,7 +110,17 @@ impl Pipelines {
         let light_layout =
             layout(device, "light", &[uniform(0, both), table(1, ShaderStages::VERTEX, float)]);
 
+        let picture_layout = layout(
+            device,
+            "picture",
+            &[
+                table(0, fragment, TextureSampleType::Float { filterable: true }),
+                entry(1, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            ],
+        );
+
         let float32 = TextureFormat::Rgba32Float.into();
+        let groups = [&shade_layout, &picture_layout];
         let summed = wgpu::ColorTargetState {
             format: OCCLUSION_FORMAT,
             blend: Some(ADD),
@@ -132,9 +144,10 @@ impl Pipelines {
                 &summed,
             ),
             light: light_pass(device, &shade_module, &light_layout),
-            closed: picture_pass(device, &shade_module, &shade_layout, format, Layer::Closed),
-            sheet: picture_pass(device, &shade_module, &shade_layout, format, Layer::Sheet),
-            blended: picture_pass(device, &shade_module, &shade_layout, format, Layer::Blended),
+            closed: picture_pass(device, &shade_module, groups, format, Layer::Closed),
+            sheet: picture_pass(device, &shade_module, groups, format, Layer::Sheet),
+            blended: picture_pass(device, &shade_module, groups, format, Layer::Blended),
+            picture_layout,
             deform_layout,
             surface_layout,
             soften_layout,
@@ -155,7 +168,7 @@ impl Pipelines {
 }
 
 /// What [`encode_pass`] reads.
-pub(crate) fn picture_layout(device: &Device) -> BindGroupLayout {
+pub(crate) fn encode_layout(device: &Device) -> BindGroupLayout {
     let float = TextureSampleType::Float { filterable: false };
     layout(device, "encode", &[table(0, ShaderStages::FRAGMENT, float)])
 }
@@ -189,7 +202,7 @@ fn table_pass(
 ) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entries[1]),
-        layout: Some(&pipeline_layout(device, group)),
+        layout: Some(&pipeline_layout(device, &[group])),
         vertex: wgpu::VertexState {
             module,
             entry_point: Some(entries[0]),
@@ -213,7 +226,7 @@ fn table_pass(
 fn light_pass(device: &Device, module: &ShaderModule, group: &BindGroupLayout) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("light"),
-        layout: Some(&pipeline_layout(device, group)),
+        layout: Some(&pipeline_layout(device, &[group])),
         vertex: wgpu::VertexState {
             module,
             entry_point: Some("depth_from_light"),
@@ -239,23 +252,30 @@ fn light_pass(device: &Device, module: &ShaderModule, group: &BindGroupLayout) -
 fn picture_pass(
     device: &Device,
     module: &ShaderModule,
-    group: &BindGroupLayout,
+    groups: [&BindGroupLayout; 2],
     format: TextureFormat,
     layer: Layer,
 ) -> RenderPipeline {
     let blended = layer == Layer::Blended;
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("picture"),
-        layout: Some(&pipeline_layout(device, group)),
+        layout: Some(&pipeline_layout(device, &groups)),
         vertex: wgpu::VertexState {
             module,
             entry_point: Some("project"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: 4,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Unorm8x4],
-            })],
+            buffers: &[
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: 4,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &wgpu::vertex_attr_array![0 => Unorm8x4],
+                }),
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: 8,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &wgpu::vertex_attr_array![1 => Float32x2],
+                }),
+            ],
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: (layer == Layer::Closed).then_some(Face::Back),
@@ -284,10 +304,11 @@ fn picture_pass(
     })
 }
 
-fn pipeline_layout(device: &Device, group: &BindGroupLayout) -> wgpu::PipelineLayout {
+fn pipeline_layout(device: &Device, groups: &[&BindGroupLayout]) -> wgpu::PipelineLayout {
+    let groups: Vec<Option<&BindGroupLayout>> = groups.iter().copied().map(Some).collect();
     device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
-        bind_group_layouts: &[Some(group)],
+        bind_group_layouts: &groups,
         immediate_size: 0,
     })
 }

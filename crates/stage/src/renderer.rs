@@ -224,8 +224,10 @@ impl Renderer {
         });
         pass.set_bind_group(0, &head.shade_group, &[]);
         pass.set_vertex_buffer(0, head.colours.slice(..));
+        pass.set_vertex_buffer(1, head.uvs.slice(..));
         pass.set_index_buffer(head.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for draw in &head.draws {
+        for (draw, picture) in head.draws.iter().zip(&head.picture_groups) {
+            pass.set_bind_group(1, picture, &[]);
             pass.set_pipeline(self.pipelines.picture(draw.layer));
             pass.draw_indexed(draw.indices.clone(), 0, 0..1);
         }

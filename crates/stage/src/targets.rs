@@ -34,7 +34,7 @@ impl Encoder {
         if format.is_srgb() {
             return None;
         }
-        let layout = pipelines::picture_layout(device);
+        let layout = pipelines::encode_layout(device);
         let pipeline = pipelines::encode_pass(device, &layout, format);
         Some(Self { pipeline, layout })
     }

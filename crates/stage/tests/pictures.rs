@@ -146,6 +146,13 @@ fn malformed_avatars_are_refused_by_name() {
     assert!(few.to_string().contains("2 blendshapes, the avatar has 3"), "{few}");
     let looks = refuse(&|a| a.eyeballs[0].looks[0].shape = 7);
     assert!(looks.to_string().contains("eyeball look of blendshape 7"), "{looks}");
+    let run = |triangles, texture| vec![mimique_face::Textured { triangles, texture }];
+    let beyond = refuse(&|a| a.meshes[0].textured = run(0..1_000_000, 0));
+    assert!(beyond.to_string().contains("a picture on triangles 0 to 1000000"), "{beyond}");
+    let absent = refuse(&|a| a.meshes[0].textured = run(0..1, 3));
+    assert!(absent.to_string().contains("texture 3, the avatar has 0"), "{absent}");
+    let damaged = refuse(&|a| a.textures = vec![mimique_face::Texture::default()]);
+    assert!(damaged.to_string().contains("avatar, texture 0: a JPEG picture"), "{damaged}");
     let many = refuse(&|a| {
         a.shape_names = (0..300).map(|k| format!("s{k}")).collect();
         a.meshes.iter_mut().for_each(|m| m.shapes.resize(300, Default::default()));

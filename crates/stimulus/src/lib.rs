@@ -64,7 +64,7 @@ pub use segments::{
     SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment, Timeline,
     TimelineSegment, cut, read_segments, suggest, write_segments,
 };
-pub use skin::AvatarSkin;
+pub use skin::{AvatarSkin, lock_shapes};
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]
 pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};

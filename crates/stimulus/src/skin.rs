@@ -1,7 +1,7 @@
 //! The skin of an avatar as the solver wants it: one welded surface in f64.
 
 use mimique_face::{Avatar, Mesh, Part};
-use mimique_solver::{MeshError, SkinMesh, SparseDeltas};
+use mimique_solver::{MeshError, MethodSpec, SkinMesh, SparseDeltas};
 
 /// An avatar's skin, its seams closed, and the way back to the file's vertices.
 #[derive(Debug, Clone)]
@@ -56,6 +56,15 @@ impl AvatarSkin {
             .filter(|(v, _)| may(*v))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(v, square)| (v, square.sqrt()))
+    }
+}
+
+/// Adds shapes to those that a method holds at 0, where the method solves for shapes at all.
+pub fn lock_shapes(spec: &mut MethodSpec, shapes: &[String]) {
+    if spec.method.parameters().contains(&"locked") {
+        let new: Vec<String> =
+            shapes.iter().filter(|s| !spec.locked.contains(s)).cloned().collect();
+        spec.locked.extend(new);
     }
 }
 

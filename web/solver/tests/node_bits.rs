@@ -68,7 +68,7 @@ fn avatar() -> Avatar {
         name: "sheet".into(),
         shape_names: (0..n).map(|k| format!("bump{k}")).collect(),
         meshes: vec![Mesh { part: Part::Skin, positions, triangles, shapes, ..Mesh::default() }],
-        eyeballs: vec![],
+        ..Avatar::default()
     }
 }
 

@@ -28,16 +28,28 @@ impl Container {
         let accessor = self.accessor(index, N, place)?;
         let component = component(accessor, place)?;
         let normalised = accessor.normalized;
-        let mut out = vec![[0f32; N]; accessor.count.0 as usize];
+        // Zeros that lie nowhere: no more of them than the file could give other vertices numbers.
+        let all: usize = self.buffers.iter().map(Vec::len).sum();
+        if accessor.buffer_view.is_none() && accessor.count.0 > all as u64 {
+            let what = format!("{} elements declared, the file has {all} bytes", accessor.count.0);
+            return Err(ReadError::damaged(place, what));
+        }
+        let count = accessor.count.0 as usize;
+        let dense = match accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.map_or(0, |o| o.0);
+                Some(self.window(view.value(), offset, count, N * component.size(), place)?)
+            }
+            None => None,
+        };
+        // Room is made only for what the file is known to hold.
+        let mut out = vec![[0f32; N]; count];
         let element = |bytes: &[u8]| -> [f32; N] {
             std::array::from_fn(|a| {
                 number(&bytes[a * component.size()..], component, normalised) as f32
             })
         };
-        if let Some(view) = accessor.buffer_view {
-            let offset = accessor.byte_offset.map_or(0, |o| o.0);
-            let window =
-                self.window(view.value(), offset, out.len(), N * component.size(), place)?;
+        if let Some(window) = dense {
             for (i, value) in out.iter_mut().enumerate() {
                 *value = element(&window.bytes[i * window.stride..]);
             }
@@ -98,6 +110,33 @@ impl Container {
             .collect())
     }
 
+    /// The bytes of a plain buffer view.
+    pub fn view_bytes(&self, index: usize, place: &str) -> Result<&[u8], ReadError> {
+        let outside = |what: String| ReadError::damaged(place, what);
+        let view = self.root.buffer_views.get(index);
+        let view = view.ok_or_else(|| outside(format!("bufferViews[{index}] does not exist")))?;
+        let (buffer, start) = (view.buffer.value(), view.byte_offset.map_or(0, |o| o.0));
+        self.buffer_bytes(buffer, start, view.byte_length.0, &format!("bufferViews[{index}]"))
+            .map_err(outside)
+    }
+
+    /// `length` bytes of a buffer at `start`, or why they are not there.
+    pub fn buffer_bytes(
+        &self,
+        buffer: usize,
+        start: u64,
+        length: u64,
+        who: &str,
+    ) -> Result<&[u8], String> {
+        let bytes =
+            self.buffers.get(buffer).ok_or_else(|| format!("buffer {buffer} does not exist"))?;
+        let at = |x: u64| usize::try_from(x).unwrap_or(usize::MAX);
+        let end = at(start).checked_add(at(length));
+        end.and_then(|end| bytes.get(at(start)..end)).ok_or_else(|| {
+            format!("{who} asks for {length} bytes at {start} of a buffer of {}", bytes.len())
+        })
+    }
+
     fn accessor(
         &self,
         index: Index<Accessor>,
@@ -144,13 +183,17 @@ impl Container {
         place: &str,
     ) -> Result<Window<'_>, ReadError> {
         let outside = |what: String| ReadError::damaged(place, what);
-        let view_place = format!("bufferViews[{view}]");
+        let index = view;
+        let view_place = format!("bufferViews[{index}]");
         let view = self
             .root
             .buffer_views
-            .get(view)
+            .get(index)
             .ok_or_else(|| outside(format!("{view_place} does not exist")))?;
-        let stride = view.byte_stride.map_or(size, |s| s.0);
+        let unpacked = self.unpacked.get(&index);
+        // Unpacked views say themselves how far apart their elements are.
+        let own = unpacked.map(|u| u.stride).or(view.byte_stride.map(|s| s.0));
+        let stride = own.unwrap_or(size);
         let needed = match count {
             0 => 0,
             n => (n - 1)
@@ -159,19 +202,10 @@ impl Container {
                 .ok_or_else(|| outside(format!("{count} elements of {stride} bytes")))?,
         };
         let offset = usize::try_from(offset).unwrap_or(usize::MAX);
-        let buffer = self
-            .buffers
-            .get(view.buffer.value())
-            .ok_or_else(|| outside(format!("buffer {} does not exist", view.buffer.value())))?;
-        let start = usize::try_from(view.byte_offset.map_or(0, |o| o.0)).unwrap_or(usize::MAX);
-        let length = usize::try_from(view.byte_length.0).unwrap_or(usize::MAX);
-        let bytes =
-            start.checked_add(length).and_then(|end| buffer.get(start..end)).ok_or_else(|| {
-                outside(format!(
-                    "{view_place} asks for {length} bytes at {start} of a buffer of {}",
-                    buffer.len()
-                ))
-            })?;
+        let bytes = match unpacked {
+            Some(unpacked) => &unpacked.bytes[..],
+            None => self.view_bytes(index, place)?,
+        };
         let bytes = offset
             .checked_add(needed)
             .and_then(|end| bytes.get(offset..end))

@@ -1,10 +1,12 @@
 //! The outer layer of a glTF file: GLB chunks or plain JSON in, document and buffers out.
 
+use std::collections::HashMap;
 use std::path::{Component, Path};
 
 use base64::Engine as _;
 use gltf::json::Root;
 
+use super::meshopt;
 use crate::ReadError;
 
 /// The document, and the bytes of each of its buffers.
@@ -13,7 +15,24 @@ pub(super) struct Container {
     pub root: Root,
     /// Bytes of buffer 0, 1...; each at least as long as it declares.
     pub buffers: Vec<Vec<u8>>,
+    /// Buffer views that were compressed, by their index.
+    pub unpacked: HashMap<usize, Unpacked>,
 }
+
+/// What a compressed buffer view holds.
+pub(super) struct Unpacked {
+    pub bytes: Vec<u8>,
+    /// Bytes an element.
+    pub stride: usize,
+}
+
+/// Extensions that a file may require: read, or of no concern to a face's shape.
+const KNOWN_EXTENSIONS: [&str; 4] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+];
 
 /// Splits a file into document and buffers.
 ///
@@ -39,6 +58,8 @@ pub(super) fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Container, Rea
             let place = format!("buffers[{i}]");
             let data = match (&buffer.uri, binary) {
                 (Some(uri), _) => load_uri(uri, folder, &place)?,
+                // A place that compressed views would fill: nothing is there to be read.
+                (None, _) if meshopt::is_fallback(buffer) => return Ok(Vec::new()),
                 (None, Some(chunk)) if i == 0 => chunk.to_vec(),
                 (None, _) => {
                     return Err(ReadError::damaged(place, "no uri and no binary chunk to take"));
@@ -54,7 +75,9 @@ pub(super) fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Container, Rea
             Ok(data)
         })
         .collect::<Result<_, _>>()?;
-    Ok(Container { root, buffers })
+    let mut container = Container { root, buffers, unpacked: HashMap::new() };
+    container.unpacked = meshopt::unpack(&container)?;
+    Ok(container)
 }
 
 /// GLB: a 12-byte header, the JSON chunk, then perhaps the binary chunk.
@@ -109,17 +132,22 @@ fn split_chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
 fn parse(json: &[u8]) -> Result<Root, ReadError> {
     let root: Root = gltf::json::deserialize::from_slice(json)
         .map_err(|e| ReadError::damaged("JSON chunk", e.to_string()))?;
-    if let Some(extension) = root.extensions_required.first() {
+    let known = |e: &str| KNOWN_EXTENSIONS.contains(&e) || e.starts_with("KHR_materials_");
+    if let Some(extension) = root.extensions_required.iter().find(|e| !known(e)) {
         return Err(ReadError::broken(
             "extensionsRequired",
             format!("the file needs the extension {extension}, which is not read"),
-            "export without compression and extensions",
+            "export without that compression or extension",
         ));
     }
     Ok(root)
 }
 
-fn load_uri(uri: &str, folder: Option<&Path>, place: &str) -> Result<Vec<u8>, ReadError> {
+pub(super) fn load_uri(
+    uri: &str,
+    folder: Option<&Path>,
+    place: &str,
+) -> Result<Vec<u8>, ReadError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
         let encoded =
@@ -135,7 +163,7 @@ fn load_uri(uri: &str, folder: Option<&Path>, place: &str) -> Result<Vec<u8>, Re
     let folder = folder.filter(|_| inside).ok_or_else(|| {
         ReadError::broken(
             place,
-            format!("buffer file {name:?} is not in the folder of the avatar"),
+            format!("file {name:?} is not in the folder of the avatar"),
             "export as one .glb file",
         )
     })?;

@@ -1,24 +1,33 @@
 //! glTF 2.0 in (`.glb`, `.gltf`), an [`Avatar`] out.
 //!
 //! Read: every mesh of the scene with its morph targets (sparse accessors, normalised integers),
-//! node transforms, base colours, `extras.targetNames`. Not read: textures, animations, joints (a
-//! skinned mesh is taken as it stands in the file), compressed geometry (refused by name).
+//! node transforms, skeletons at the pose that the file has them in, base colours and their
+//! textures, `extras.targetNames`; KHR_mesh_quantization, KHR_texture_transform and, in native
+//! builds, EXT_meshopt_compression. Not read: animations, other textures; other compressions are
+//! refused by name.
 
 mod accessor;
 mod container;
+mod material;
+mod meshopt;
 mod primitive;
+mod skeleton;
 mod transform;
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 
 use gltf::json::Node;
 
 use self::container::Container;
+use self::material::Pictures;
 use self::primitive::Surface;
+use self::skeleton::Placement;
 use self::transform::Transform;
 use crate::parts::{PartName, assign_parts};
-use crate::{Avatar, Mesh, ReadAvatar, ReadError, SparseShape};
+use crate::settings::AvatarSettings;
+use crate::{Avatar, Mesh, Part, ReadAvatar, ReadError, SparseShape, Textured};
 
 /// Reads a GLB file, or a glTF file whose buffers are inside it.
 ///
@@ -28,15 +37,31 @@ use crate::{Avatar, Mesh, ReadAvatar, ReadError, SparseShape};
 /// [`ReadError`] with the place in the file: truncated, an index out of range, a number that is
 /// not finite, a required extension, no mesh, morph targets that contradict one another.
 pub fn read_gltf(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<ReadAvatar, ReadError> {
+    read_with(bytes, name, folder, &AvatarSettings::default())
+}
+
+/// The same, with what the user says of the avatar.
+pub(crate) fn read_with(
+    bytes: &[u8],
+    name: &str,
+    folder: Option<&Path>,
+    settings: &AvatarSettings,
+) -> Result<ReadAvatar, ReadError> {
     let container = container::open(bytes, folder)?;
     let mut notes = Vec::new();
     let mut surfaces = Vec::new();
-    for (node, world_from_node) in placed_nodes(&container)? {
-        let Some(mesh) = container.root.nodes[node].mesh else { continue };
-        surfaces.extend(primitive::surfaces(&container, node, mesh.value(), &world_from_node)?);
-        if container.root.nodes[node].skin.is_some() {
-            notes.push(format!("nodes[{node}] has a skeleton: taken as it stands in the file"));
-        }
+    let mut budget = primitive::Budget::default();
+    let placed = placed_nodes(&container)?;
+    for (node, world_from_node) in &placed {
+        let Some(mesh) = container.root.nodes[*node].mesh else { continue };
+        let pose = match container.root.nodes[*node].skin {
+            Some(skin) => {
+                notes.push(format!("nodes[{node}] has a skeleton: taken in the pose of the file"));
+                Placement::Skeleton(skeleton::joints(&container, skin.value(), &placed)?)
+            }
+            None => Placement::Rigid(*world_from_node),
+        };
+        surfaces.extend(primitive::surfaces(&container, *node, mesh.value(), &pose, &mut budget)?);
     }
     if surfaces.is_empty() {
         return Err(ReadError::broken(
@@ -45,15 +70,12 @@ pub fn read_gltf(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Read
             "export the head's meshes into the scene",
         ));
     }
-    if !container.root.images.is_empty() {
-        notes.push(format!(
-            "{} textures are not read: materials keep their base colour",
-            container.root.images.len()
-        ));
-    }
-    let (shape_names, meshes) = joined(surfaces)?;
-    let name = name.to_owned();
-    ReadAvatar::finish(Avatar { name, shape_names, meshes, eyeballs: vec![] }, notes)
+    let mut pictures = Pictures::new(&container, folder);
+    let (shape_names, meshes) = joined(surfaces, &mut pictures, settings)?;
+    notes.append(&mut pictures.notes);
+    let (name, textures) = (name.to_owned(), pictures.textures);
+    let avatar = Avatar { name, shape_names, meshes, eyeballs: vec![], textures };
+    ReadAvatar::finish(avatar, notes, settings)
 }
 
 /// Every node of the scene with its world-from-node transform, parents first.
@@ -106,7 +128,11 @@ fn placed_nodes(container: &Container) -> Result<Vec<(usize, Transform)>, ReadEr
 
 /// Surfaces to meshes: parts named, surfaces of one node and part made one mesh, shapes of all
 /// meshes brought to one list of names (in the order in which they first appear).
-fn joined(surfaces: Vec<Surface>) -> Result<(Vec<String>, Vec<Mesh>), ReadError> {
+fn joined(
+    surfaces: Vec<Surface>,
+    pictures: &mut Pictures<'_>,
+    settings: &AvatarSettings,
+) -> Result<(Vec<String>, Vec<Mesh>), ReadError> {
     let mut shape_names: Vec<String> = Vec::new();
     let mut index_of: HashMap<String, usize> = HashMap::new();
     for surface in &surfaces {
@@ -125,22 +151,26 @@ fn joined(surfaces: Vec<Surface>) -> Result<(Vec<String>, Vec<Mesh>), ReadError>
             moved: s.shapes.iter().map(|shape| shape.vertices.len()).sum(),
         })
         .collect();
-    let parts = assign_parts(&named);
+    let parts = assign_parts(&named, settings)?;
     let mut meshes: Vec<(usize, Mesh)> = Vec::new();
     for (surface, part) in surfaces.into_iter().zip(parts) {
+        let Some(part) = part else { continue };
         let mut shapes = vec![SparseShape::default(); shape_names.len()];
         for (name, shape) in surface.shape_names.iter().zip(surface.shapes) {
             shapes[index_of[name]] = shape;
         }
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             name: surface.mesh_name,
             part,
             positions: surface.positions,
             triangles: surface.triangles,
-            vertex_colours: vec![],
             base_colour: surface.base_colour,
             shapes,
+            ..Mesh::default()
         };
+        if let (Some(paint), false) = (surface.paint, part == Part::EyeOverlay) {
+            pictures.lay_on(&mut mesh, paint)?;
+        }
         match meshes.last_mut() {
             Some((node, last)) if *node == surface.node && last.part == part => append(last, mesh),
             _ => meshes.push((surface.node, mesh)),
@@ -159,6 +189,17 @@ fn append(mesh: &mut Mesh, other: Mesh) {
         mesh.vertex_colours = [colours(mesh), colours(&other)].concat();
     }
     let first = mesh.positions.len() as u32;
+    if !(mesh.uvs.is_empty() && other.uvs.is_empty()) {
+        mesh.uvs.resize(mesh.positions.len(), [0.0; 2]);
+        mesh.uvs.extend(&other.uvs);
+        mesh.uvs.resize(mesh.positions.len() + other.positions.len(), [0.0; 2]);
+        let moved = |range: &Range<usize>| {
+            let by = mesh.triangles.len();
+            range.start + by..range.end + by
+        };
+        let runs = other.textured.iter();
+        mesh.textured.extend(runs.map(|t| Textured { triangles: moved(&t.triangles), ..*t }));
+    }
     mesh.positions.extend(other.positions);
     mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
     for (shape, more) in mesh.shapes.iter_mut().zip(other.shapes) {

@@ -7,6 +7,8 @@ use gltf::json::validation::Checked;
 use serde::Deserialize;
 
 use super::container::Container;
+use super::material::Paint;
+use super::skeleton::{Placement, VertexTransforms};
 use super::transform::Transform;
 use crate::{ReadError, SparseShape};
 
@@ -20,9 +22,40 @@ pub(super) struct Surface {
     pub positions: Vec<[f32; 3]>,
     pub triangles: Vec<[u32; 3]>,
     pub base_colour: [f32; 3],
+    /// Whether it is placed inside out, so that its triangles are turned.
+    pub mirrored: bool,
     /// As many as `shapes`.
     pub shape_names: Vec<String>,
     pub shapes: Vec<SparseShape>,
+    /// Its base-colour texture, where it has one.
+    pub paint: Option<Paint>,
+}
+
+/// Numbers that a file may still bring: many nodes or primitives can name one large accessor.
+pub(super) struct Budget {
+    left: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { left: 1 << 27 }
+    }
+}
+
+impl Budget {
+    fn take(&mut self, numbers: usize, place: &str) -> Result<(), ReadError> {
+        match self.left.checked_sub(numbers) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => Err(ReadError::broken(
+                place,
+                format!("{numbers} more numbers, {} fit", self.left),
+                "export a head that a browser can draw",
+            )),
+        }
+    }
 }
 
 /// Colour of a surface without material, as the glTF specification has it: white would glare.
@@ -34,7 +67,8 @@ pub(super) fn surfaces(
     container: &Container,
     node: usize,
     index: usize,
-    world_from_node: &Transform,
+    placement: &Placement,
+    budget: &mut Budget,
 ) -> Result<Vec<Surface>, ReadError> {
     let root = &container.root;
     let place = format!("meshes[{index}]");
@@ -53,6 +87,14 @@ pub(super) fn surfaces(
     let mut by_vertices: HashMap<(usize, Option<usize>), usize> = HashMap::new();
     for (k, primitive) in mesh.primitives.iter().enumerate() {
         let place = format!("{place}.primitives[{k}]");
+        let extensions = primitive.extensions.as_ref();
+        if extensions.is_some_and(|e| e.others.contains_key("KHR_draco_mesh_compression")) {
+            return Err(ReadError::broken(
+                place,
+                "compressed with KHR_draco_mesh_compression, which is not read",
+                "export without Draco compression",
+            ));
+        }
         let attributes = &primitive.attributes;
         let Some(vertices) = attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return Err(ReadError::damaged(place, "no POSITION"));
@@ -61,20 +103,29 @@ pub(super) fn surfaces(
         let key = (vertices.value(), primitive.material.map(|m| m.value()));
         if let Some(&earlier) = by_vertices.get(&key) {
             let count = out[earlier].positions.len();
-            let more = triangles(container, primitive, count, world_from_node, &place)?;
+            let more = triangles(container, primitive, count, out[earlier].mirrored, &place)?;
+            budget.take(3 * more.len(), &place)?;
             out[earlier].triangles.extend(more);
             continue;
         }
         let local = container.floats::<3>(*vertices, &format!("{place}.attributes.POSITION"))?;
-        let shapes = shapes(container, primitive, local.len(), world_from_node, &place)?;
-        let triangles = triangles(container, primitive, local.len(), world_from_node, &place)?;
+        let targets = primitive.targets.as_ref().map_or(0, Vec::len);
+        budget.take(3 * local.len() * (1 + targets), &place)?;
+        let at = placement.of_vertices(container, primitive, local.len(), &place)?;
+        let mirrored = at.mirrors();
+        let shapes = shapes(container, primitive, local.len(), &at, &place)?;
+        let triangles = triangles(container, primitive, local.len(), mirrored, &place)?;
+        budget.take(3 * triangles.len(), &place)?;
+        let paint = Paint::of(container, primitive, material, local.len(), &place)?;
         by_vertices.insert(key, out.len());
         out.push(Surface {
             node,
             node_name: node_name.clone(),
             mesh_name: mesh_name.clone(),
             material_name: material.and_then(|m| m.name.clone()).unwrap_or_default(),
-            positions: moved(local, world_from_node, Transform::point, &place)?,
+            positions: moved(local, &at, Transform::point, &place)?,
+            mirrored,
+            paint,
             triangles,
             base_colour: material.map_or(NO_MATERIAL, |m| {
                 let [r, g, b, _] = m.pbr_metallic_roughness.base_color_factor.0;
@@ -126,7 +177,7 @@ fn shapes(
     container: &Container,
     primitive: &Primitive,
     vertices: usize,
-    world_from_node: &Transform,
+    at: &VertexTransforms,
     place: &str,
 ) -> Result<Vec<SparseShape>, ReadError> {
     let mut out = Vec::new();
@@ -143,7 +194,7 @@ fn shapes(
                 format!("{} displacements for {vertices} vertices", deltas.len()),
             ));
         }
-        let deltas = moved(deltas, world_from_node, Transform::direction, &place)?;
+        let deltas = moved(deltas, at, Transform::direction, &place)?;
         out.push(SparseShape::from_dense(&deltas));
     }
     Ok(out)
@@ -151,15 +202,15 @@ fn shapes(
 
 fn moved(
     mut values: Vec<[f32; 3]>,
-    transform: &Transform,
+    at: &VertexTransforms,
     apply: fn(&Transform, [f64; 3]) -> [f64; 3],
     place: &str,
 ) -> Result<Vec<[f32; 3]>, ReadError> {
-    if *transform == Transform::IDENTITY {
+    if at.is_identity() {
         return Ok(values);
     }
-    for value in &mut values {
-        *value = apply(transform, value.map(f64::from)).map(|x| x as f32);
+    for (v, value) in values.iter_mut().enumerate() {
+        *value = apply(at.of(v), value.map(f64::from)).map(|x| x as f32);
         if value.iter().any(|x| !x.is_finite()) {
             return Err(ReadError::damaged(place, "leaves the number range when placed"));
         }
@@ -171,7 +222,7 @@ fn triangles(
     container: &Container,
     primitive: &Primitive,
     vertices: usize,
-    world_from_node: &Transform,
+    mirrored: bool,
     place: &str,
 ) -> Result<Vec<[u32; 3]>, ReadError> {
     let corners = match primitive.indices {
@@ -212,7 +263,7 @@ fn triangles(
         }
     };
     out.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
-    if world_from_node.mirrors() {
+    if mirrored {
         out.iter_mut().for_each(|t| t.swap(1, 2));
     }
     Ok(out)

@@ -13,6 +13,23 @@ impl Transform {
     pub const IDENTITY: Self =
         Self { columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]] };
 
+    /// The map of a 4 x 4 matrix whose last row is 0 0 0 1.
+    pub fn of_matrix(m: &[f32; 16]) -> Self {
+        let columns = std::array::from_fn(|c| std::array::from_fn(|r| f64::from(m[4 * c + r])));
+        Self { columns }
+    }
+
+    /// The weighted sum of maps, as linear blend skinning takes it.
+    pub fn blend<'a>(parts: impl Iterator<Item = (f64, &'a Self)>) -> Self {
+        let mut columns = [[0.0; 3]; 4];
+        for (weight, part) in parts {
+            for (sum, column) in columns.iter_mut().flatten().zip(part.columns.iter().flatten()) {
+                *sum += weight * column;
+            }
+        }
+        Self { columns }
+    }
+
     /// Parent-from-node; `None` when an entry is not finite.
     pub fn of_node(node: &Node) -> Option<Self> {
         let columns = match &node.matrix {

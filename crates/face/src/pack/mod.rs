@@ -6,12 +6,13 @@
 //!
 //! | field | form |
 //! |---|---|
-//! | `MMAV`, version 1, length of the body | 4 bytes, u32, u32 |
+//! | `MMAV`, version 2, length of the body | 4 bytes, u32, u32 |
 //! | body | raw deflate |
 //! | avatar's name, shape names | texts |
 //! | error bound in metres | f32 |
 //! | meshes: name, part, base colour, V, T, colours?, triangles, positions, shapes | see `mesh_to` |
 //! | eyeballs: mesh, centre, looks (shape, axis, radians) | |
+//! | textures: JPEG file and JPEG mask | length and bytes each |
 
 mod bytes;
 mod envelope;
@@ -21,10 +22,10 @@ mod surface;
 pub use bytes::{PackError, PackReader, PackWriter};
 pub use envelope::{open_pack, pack_kind, seal_pack};
 
-use crate::{Avatar, Eyeball, Look};
+use crate::{Avatar, Eyeball, Look, Mesh, Texture};
 
 const KIND: &str = "MMAV";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Least bytes of a mesh, an eyeball and a look, for [`PackReader::count`].
 const LEAST: [usize; 3] = [20, 14, 17];
 
@@ -62,6 +63,11 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
             body.f32(look.radians);
         }
     }
+    body.varint(avatar.textures.len() as u32);
+    for file in avatar.textures.iter().flat_map(|t| [&t.jpeg, &t.mask_jpeg]) {
+        body.varint(file.len() as u32);
+        body.raw(file);
+    }
     EncodedPack { bytes: seal_pack(KIND, VERSION, &body.into_bytes()), error_bound }
 }
 
@@ -97,6 +103,19 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
         }
         eyeballs.push(Eyeball { mesh, centre, looks });
     }
+    let file = |r: &mut PackReader<'_>| -> Result<Vec<u8>, PackError> {
+        let length = r.count(1)?;
+        Ok(r.raw(length)?.to_vec())
+    };
+    let mut textures = Vec::new();
+    for _ in 0..r.count(2)? {
+        textures.push(Texture { jpeg: file(&mut r)?, mask_jpeg: file(&mut r)? });
+    }
+    if let Some(used) = meshes.iter().flat_map(|m: &Mesh| &m.textured).map(|t| t.texture).max() {
+        if used >= textures.len() {
+            return r.refuse(format!("texture {used} of {}", textures.len()));
+        }
+    }
     r.finish()?;
-    Ok(Avatar { name, shape_names, meshes, eyeballs })
+    Ok(Avatar { name, shape_names, meshes, eyeballs, textures })
 }

@@ -2,12 +2,14 @@
 
 use super::bytes::{PackError, PackReader, PackWriter};
 use super::predict::Prediction;
-use crate::{Mesh, Part, SparseShape};
+use crate::{Mesh, Part, SparseShape, Textured};
 
 /// Most that any vertex may be off in any pose, metres.
 const TOLERANCE: f64 = 1e-5;
 /// Step of the neutral positions, metres: half a micrometre of error on each axis.
 const POSITION_STEP: f32 = 1e-6;
+/// Step of places in a picture: an eighth of a texel of the largest texture.
+const UV_STEP: f32 = 1.0 / 16384.0;
 /// Coarsest step of displacements that is tried, metres; each try is a tenth finer.
 const COARSEST_STEP: f64 = 2e-5;
 
@@ -53,6 +55,7 @@ pub(super) fn mesh_to(out: &mut PackWriter, mesh: &Mesh) -> f64 {
         let visits = 0..prediction.order.len();
         residuals_to(out, visits.map(|i| (i, &values)), &prediction);
     }
+    textured_to(out, mesh, &prediction);
     let (step, error) = displacement_step(mesh, &neutral);
     out.f32(step);
     let mut dense = vec![[0i32; 3]; mesh.positions.len()];
@@ -64,6 +67,55 @@ pub(super) fn mesh_to(out: &mut PackWriter, mesh: &Mesh) -> f64 {
         shape.vertices.iter().for_each(|&v| dense[v as usize] = [0; 3]);
     }
     error
+}
+
+/// The runs of triangles with a picture, and where the vertices lie in it.
+fn textured_to(out: &mut PackWriter, mesh: &Mesh, prediction: &Prediction) {
+    out.varint(mesh.textured.len() as u32);
+    for run in &mesh.textured {
+        out.varint(run.triangles.start as u32);
+        out.varint(run.triangles.len() as u32);
+        out.varint(run.texture as u32);
+    }
+    if !mesh.textured.is_empty() {
+        for axis in 0..2 {
+            let at = |v| mesh.uvs.get(v).map_or(0, |uv: &[f32; 2]| quantised(uv[axis], UV_STEP));
+            let values: Vec<i32> = (0..mesh.positions.len()).map(at).collect();
+            let visits = 0..prediction.order.len();
+            residuals_to(out, visits.map(|i| (i, &values)), prediction);
+        }
+    }
+}
+
+/// Reads what [`textured_to`] wrote.
+fn textured_from(
+    r: &mut PackReader<'_>,
+    triangles: usize,
+    prediction: &Prediction,
+    plane: &mut [i32],
+) -> Result<(Vec<Textured>, Vec<[f32; 2]>), PackError> {
+    let mut runs = Vec::new();
+    let mut free = 0;
+    for _ in 0..r.count(3)? {
+        let start = r.varint()? as usize;
+        let end = start.saturating_add(r.varint()? as usize);
+        if start < free || end > triangles {
+            return r.refuse(format!("a picture on triangles {start} to {end} of {triangles}"));
+        }
+        free = end;
+        runs.push(Textured { triangles: start..end, texture: r.varint()? as usize });
+    }
+    if runs.is_empty() {
+        return Ok((runs, vec![]));
+    }
+    let mut uvs = vec![[0f32; 2]; plane.len()];
+    let everywhere: Vec<u32> = (0..plane.len() as u32).collect();
+    for axis in 0..2 {
+        plane.fill(0);
+        residuals_from(r, &everywhere, prediction, plane)?;
+        uvs.iter_mut().zip(&*plane).for_each(|(uv, q)| uv[axis] = *q as f32 * UV_STEP);
+    }
+    Ok((runs, uvs))
 }
 
 /// Runs of resting and moving vertices in visiting order, then what moves.
@@ -180,11 +232,22 @@ pub(super) fn mesh_from(r: &mut PackReader<'_>, shapes: usize) -> Result<Mesh, P
             p[axis] = *q as f32 * POSITION_STEP;
         }
     }
+    let (textured, uvs) = textured_from(r, count, &prediction, &mut plane)?;
     let step = r.f32()?;
     let shapes = (0..shapes)
         .map(|_| shape_from(r, &prediction, step, &mut plane))
         .collect::<Result<_, _>>()?;
-    Ok(Mesh { name, part, positions, triangles, vertex_colours, base_colour, shapes })
+    Ok(Mesh {
+        name,
+        part,
+        positions,
+        triangles,
+        vertex_colours,
+        base_colour,
+        shapes,
+        uvs,
+        textured,
+    })
 }
 
 fn shape_from(

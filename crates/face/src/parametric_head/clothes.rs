@@ -52,5 +52,6 @@ pub(crate) fn add(avatar: &mut Avatar, chin_y: f64, neck: f64) {
         vertex_colours: Vec::new(),
         base_colour: [0.055, 0.075, 0.105],
         shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        ..Mesh::default()
     });
 }

@@ -113,6 +113,7 @@ fn ball(name: &str, part: Part, centre: Vec3, radius: f64, who: &Identity) -> Me
         vertex_colours,
         base_colour: [0.8, 0.78, 0.75],
         shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        ..Mesh::default()
     }
 }
 

@@ -152,6 +152,7 @@ pub(crate) fn add_cap(
             .collect(),
         base_colour: colour,
         shapes: skin.shapes.iter().map(|d| sparse(from.iter().map(|&v| d[v]))).collect(),
+        ..Mesh::default()
     });
 }
 
@@ -222,6 +223,7 @@ pub(crate) fn add_brows(avatar: &mut Avatar, skin: &SkinLayer, who: &Identity, a
         vertex_colours: colours.iter().map(|c| c.linear_rgb()).collect(),
         base_colour: who.hair_colour.map(|c| c * 0.62),
         shapes: deltas.into_iter().map(|d| sparse(d.into_iter())).collect(),
+        ..Mesh::default()
     });
 }
 
@@ -333,5 +335,6 @@ pub(crate) fn add_knot(avatar: &mut Avatar, who: &Identity) {
         vertex_colours,
         base_colour: who.hair_colour,
         shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        ..Mesh::default()
     });
 }

@@ -119,6 +119,7 @@ impl Blades {
             vertex_colours: Vec::new(),
             base_colour: [0.012, 0.009, 0.008],
             shapes: self.deltas.into_iter().map(|d| sparse(d.into_iter())).collect(),
+            ..Mesh::default()
         }
     }
 }

@@ -218,6 +218,7 @@ pub fn build_head(spec: &HeadSpec) -> Avatar {
         shape_names: SHAPE_NAMES.iter().map(|s| s.to_string()).collect(),
         meshes: vec![skin, lining],
         eyeballs: Vec::new(),
+        ..Avatar::default()
     };
     mouth_parts::add(&mut avatar, &cage);
     let layer = SkinLayer::new(&neutral, &fine.quads, &shapes);

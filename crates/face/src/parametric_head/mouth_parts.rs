@@ -38,6 +38,7 @@ fn mesh(
         base_colour: vertex_colours[0],
         vertex_colours,
         shapes,
+        ..Mesh::default()
     }
 }
 

@@ -4,6 +4,9 @@
 @group(0) @binding(2) var surfaces: texture_2d<f32>;
 @group(0) @binding(3) var neutral: texture_2d<f32>;
 @group(0) @binding(4) var occlusions: texture_2d<f32>;
+// The surface's picture; white where it has none.
+@group(1) @binding(0) var picture: texture_2d<f32>;
+@group(1) @binding(1) var picture_sampler: sampler;
 
 // Layout: `layouts.rs`, `Material`.
 const MATERIAL_SKIN: u32 = 0u;
@@ -44,10 +47,12 @@ struct Point {
     // Base colour; part of the sky that the neutral head leaves open here.
     @location(3) colour: vec4f,
     @location(4) @interpolate(flat) material: u32,
+    // Place in the picture.
+    @location(5) uv: vec2f,
 }
 
 @vertex
-fn project(@builtin(vertex_index) index: u32, @location(0) colour: vec4f) -> Point {
+fn project(@builtin(vertex_index) index: u32, @location(0) colour: vec4f, @location(1) uv: vec2f) -> Point {
     let texel = vertex_texel(index);
     let position = textureLoad(positions, texel, 0);
     var out: Point;
@@ -58,6 +63,7 @@ fn project(@builtin(vertex_index) index: u32, @location(0) colour: vec4f) -> Poi
     let sky = textureLoad(occlusions, texel, 0).xy;
     out.colour = vec4f(colour.rgb * colour.rgb, sky.x / max(sky.y, 1e-3));
     out.material = u32(colour.a * 255.0 + 0.5);
+    out.uv = uv;
     return out;
 }
 
@@ -278,10 +284,15 @@ const CLAY: vec3f = vec3f(0.34);
 
 @fragment
 fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let painting = textureSample(picture, picture_sampler, p.uv);
+    if painting.a < 0.5 && p.material != MATERIAL_LASHES {
+        discard;
+    }
     let v = normalize(scene.camera.xyz - p.position);
     var n = normalize(p.surface.xyz);
     var f: Finish;
-    f.albedo = p.colour.rgb;
+    let base = p.colour.rgb * painting.rgb;
+    f.albedo = base;
     f.roughness = 0.55;
     f.specular = 0.030;
     f.wrap = vec3f(0.10);
@@ -295,7 +306,7 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         return vec4f(developed(eye(p, v, p.material - MATERIAL_EYE)), 1.0);
     }
     if p.material <= MATERIAL_PAINTED_SKIN {
-        var albedo = p.colour.rgb;
+        var albedo = base;
         if p.material == MATERIAL_PAINTED_SKIN {
             albedo = painted(albedo, p.neutral);
         }

@@ -3,7 +3,7 @@
 
 use std::f32::consts::PI;
 
-use mimique_face::{Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape};
+use mimique_face::{Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape, Texture, Textured};
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_test_support::skip;
 
@@ -39,7 +39,7 @@ pub fn egg() -> Avatar {
         name: "egg".to_owned(),
         shape_names: ["puff", "jawOpen", "eyeLookLeft"].map(str::to_owned).to_vec(),
         meshes: vec![skin],
-        eyeballs: Vec::new(),
+        ..Avatar::default()
     };
     for (x, part) in [(-0.031, Part::EyeRight), (0.031, Part::EyeLeft)] {
         let centre = [x, 0.024, 0.063];
@@ -51,6 +51,45 @@ pub fn egg() -> Avatar {
         avatar.eyeballs.push(Eyeball { mesh: avatar.meshes.len(), centre, looks });
         avatar.meshes.push(eye);
     }
+    avatar
+}
+
+/// The egg with a picture on its front: four fields of a colour each under a fine pattern, so that
+/// a picture upside down, mirrored, without mipmaps or in the wrong light shows. Its lower right
+/// field (the person's left cheek) has holes in it.
+pub fn pictured_egg() -> Avatar {
+    const SIDE: u16 = 256;
+    let texel = |i: u32| {
+        let (x, y) = (i % u32::from(SIDE), i / u32::from(SIDE));
+        let field = usize::from(x >= 128) + 2 * usize::from(y >= 128);
+        let dark = ((x / 4) + (y / 4)) % 2 == 1;
+        let colour = [[215u8, 150, 130], [130, 190, 120], [110, 140, 205], [225, 205, 110]][field];
+        let hole = field == 3 && (x / 32 + y / 32) % 2 == 1;
+        (colour.map(|c| if dark { c / 3 } else { c }), if hole { 0 } else { 255 })
+    };
+    let texels: Vec<([u8; 3], u8)> = (0..u32::from(SIDE).pow(2)).map(texel).collect();
+    let jpeg = |samples: &[u8], kind| {
+        let mut out = Vec::new();
+        let encoder = jpeg_encoder::Encoder::new(&mut out, 95);
+        encoder.encode(samples, SIDE, SIDE, kind).expect("a small picture");
+        out
+    };
+    let rgb: Vec<u8> = texels.iter().flat_map(|t| t.0).collect();
+    let mask: Vec<u8> = texels.iter().map(|t| t.1).collect();
+    let mut avatar = egg();
+    avatar.textures = vec![Texture {
+        jpeg: jpeg(&rgb, jpeg_encoder::ColorType::Rgb),
+        mask_jpeg: jpeg(&mask, jpeg_encoder::ColorType::Luma),
+    }];
+    let skin = &mut avatar.meshes[0];
+    skin.base_colour = [1.0; 3];
+    skin.uvs = skin.positions.iter().map(|p| [0.5 + p[0] / 0.15, 0.5 - p[1] / 0.215]).collect();
+    // The back of the head stays plain.
+    let behind = |t: &[u32; 3]| t.iter().all(|v| skin.positions[*v as usize][2] < 0.0);
+    let (back, front): (Vec<[u32; 3]>, Vec<[u32; 3]>) =
+        skin.triangles.iter().partition(|t| behind(t));
+    skin.textured = vec![Textured { triangles: back.len()..back.len() + front.len(), texture: 0 }];
+    skin.triangles = [back, front].concat();
     avatar
 }
 

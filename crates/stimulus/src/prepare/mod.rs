@@ -141,7 +141,8 @@ fn prepare_clip(
         } else {
             let performance = sources.performance(&clip.segment, &avatar)?;
             let spec = with_lowpass(&entry.spec, &performance);
-            let spec = performance.joined()?.with_lids_locked(&spec);
+            let mut spec = performance.joined()?.with_lids_locked(&spec);
+            crate::lock_shapes(&mut spec, &avatar.locked);
             spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
             let learns = spec.method == Method::Regression;
             let training = learns.then(|| sources.training(&clip.method)).transpose()?;

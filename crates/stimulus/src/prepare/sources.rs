@@ -34,6 +34,8 @@ pub(super) struct Sources<'a> {
 pub(super) struct AvatarFile {
     pub key: String,
     pub avatar: Avatar,
+    /// Shapes that stay at 0, as the JSON beside the file asks.
+    pub locked: Vec<String>,
     /// The marker map of the built-in head.
     sites: Option<MarkerMap>,
     skin: OnceCell<AvatarSkin>,
@@ -98,18 +100,21 @@ impl<'a> Sources<'a> {
         }
         let at = |field: &str| pointer(&["stimuli", "avatars", id, field]);
         let source = self.study.stimuli.avatars.get(id).and_then(|a| a.source());
+        let mut locked = Vec::new();
         let (key, avatar, sites, pointer) = match source {
             Some(AvatarSource::Builtin(who)) => {
                 let (avatar, sites) = builtin::avatar(who);
                 (builtin::avatar_key(&avatar), avatar, Some(sites), at("builtin"))
             }
             Some(AvatarSource::File(file)) => {
-                let (path, bytes) = self.read(file, &at("file"))?;
-                let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                let read = mimique_face::read_gltf(&bytes, &name, path.parent()).map_err(|e| {
+                let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
+                    .map_err(|e| PrepareError::new(at("file"), e))?;
+                let read = mimique_face::read_avatar(&path).map_err(|e| {
                     PrepareError::new(at("file"), format!("{}: {e}", path.display()))
                 })?;
-                (sha256_hex(&bytes), read.avatar, None, at("file"))
+                locked = read.locked;
+                // By content: pictures, buffers and settings may lie in files of their own.
+                (builtin::avatar_key(&read.avatar), read.avatar, None, at("file"))
             }
             Some(AvatarSource::Videos(_)) | None => {
                 let message = "give exactly one of builtin, file and videos";
@@ -124,7 +129,8 @@ impl<'a> Sources<'a> {
                 split_shapes(&avatar, split).map_err(|e| PrepareError::new(at("split"), e))?;
             (format!("{key} split {}", split.join(" ")), avatar)
         };
-        let file = Rc::new(AvatarFile { key, avatar, sites, skin: OnceCell::new(), pointer });
+        let file =
+            Rc::new(AvatarFile { key, avatar, locked, sites, skin: OnceCell::new(), pointer });
         self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
         Ok(file)
     }
