@@ -160,7 +160,7 @@ fn poses_that_do_not_fit_are_refused_by_name() {
 /// The settings of the real bank, as users would put them beside it.
 fn real_settings() -> AvatarSettings {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../study-config/ict-facekit-obj.avatar.json");
+        .join("../../study-config/avatars/ict-facekit-obj.avatar.json");
     AvatarSettings::from_json("settings", &std::fs::read(file).unwrap()).unwrap()
 }
 
