@@ -81,6 +81,9 @@ impl ReadAvatar {
         settings: &AvatarSettings,
     ) -> Result<Self, ReadError> {
         name_shapes(&mut avatar, settings)?;
+        settings.driven.apply(&mut avatar).map_err(|e| {
+            ReadError::broken(format!("avatar.json: {}", e.pointer), e.what, e.remedy)
+        })?;
         if avatar.shape_names.is_empty() {
             return Err(ReadError::broken(
                 "meshes",

@@ -11,18 +11,21 @@
 //!   "vertexParts": [{ "first": 11248, "end": 14062, "part": "socket" }],
 //!   "shapes": { "lidsClosed_L": "eyeBlinkLeft" },
 //!   "leaveOut": ["identity*"],
-//!   "locked": ["eyeLook*"]
+//!   "locked": ["eyeLook*"],
+//!   "driven": { "teeth": { "teethDown": ["jawOpen"] } }
 //! }
 //! ```
 //!
 //! Names of meshes, nodes, materials and groups (`parts`) and of shapes may hold `*` for any
-//! letters; of several that fit, the one with the most letters counts. A part that is `null` is left out. `vertexParts` counts an OBJ file's vertices from 0.
+//! letters; of several that fit, the one with the most letters counts. A part that is `null` is left out. `vertexParts` counts an OBJ file's vertices
+//! from 0. `driven` is [`Driven`]'s: mesh -> posture -> the face's shapes that drive it.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use serde_json::{Map, Value};
 
-use crate::{Part, ReadError};
+use crate::{Driven, Part, ReadError};
 
 /// What the user says of an avatar; everything empty when there is no such file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -41,6 +44,8 @@ pub struct AvatarSettings {
     pub leave_out: Vec<String>,
     /// Patterns of shapes that stay at 0 when weights are solved.
     pub locked: Vec<String>,
+    /// Postures of teeth, tongue and accessories, and the shapes that drive them.
+    pub driven: Driven,
 }
 
 /// Names of parts in the JSON.
@@ -57,7 +62,8 @@ pub(crate) const PART_NAMES: [(&str, Part); 10] = [
     ("other", Part::Other),
 ];
 
-const KEYS: [&str; 7] = ["unit", "neutral", "parts", "vertexParts", "shapes", "leaveOut", "locked"];
+const KEYS: [&str; 8] =
+    ["unit", "neutral", "parts", "vertexParts", "shapes", "leaveOut", "locked", "driven"];
 
 impl AvatarSettings {
     /// Reads the JSON; `file` names it in errors.
@@ -102,6 +108,16 @@ impl AvatarSettings {
                 }
                 "leaveOut" => out.leave_out = at.texts(value)?,
                 "locked" => out.locked = at.texts(value)?,
+                "driven" => {
+                    for (mesh, value) in at.object(value)? {
+                        let at = at.below(mesh);
+                        let mut postures = BTreeMap::new();
+                        for (posture, shapes) in at.object(value)? {
+                            postures.insert(posture.clone(), at.below(posture).texts(shapes)?);
+                        }
+                        out.driven.parts.insert(mesh.clone(), postures);
+                    }
+                }
                 _ => {
                     let remedy = format!("the keys are {}", KEYS.join(", "));
                     return Err(at.refuse("unknown key".to_owned(), remedy));
@@ -240,6 +256,10 @@ mod tests {
             (r#"{"locked": ["a", 3]}"#, "/locked/1: 3 is no text"),
             (r#"{"shapes": {"a": "x", "b": "x"}}"#, "/shapes/b: \"x\" is the name of two"),
             (r#"{"vertexParts": [{"first": 3, "end": 3, "part": "skin"}]}"#, "3 to 3 are none"),
+            (
+                r#"{"driven": {"teeth": {"down": "jawOpen"}}}"#,
+                "/driven/teeth/down: \"jawOpen\" is no list",
+            ),
             (r#"{"vertexParts": [{"first": -1}]}"#, "/vertexParts/0/first: -1 is no vertex"),
         ] {
             let error = AvatarSettings::from_json("a.json", text.as_bytes()).unwrap_err();

@@ -223,3 +223,33 @@ fn the_real_bank_of_poses_is_the_real_glb() {
     eprintln!("packs: GLB {} bytes, poses {} bytes", a.bytes.len(), b.bytes.len());
     assert!(b.bytes.len() <= 2_500_000 && b.error_bound <= 1e-5, "{}", b.bytes.len());
 }
+
+#[test]
+fn a_posture_follows_the_shapes_that_drive_it() {
+    let plain = read(&files()).unwrap().avatar;
+    let (au26, smile) = (plain.shape_index("AU26").unwrap(), plain.shape_index("smile").unwrap());
+    // The smile becomes a posture of every mesh that it moves.
+    let moved: Vec<usize> = (0..plain.meshes.len())
+        .filter(|&m| !plain.meshes[m].shapes[smile].vertices.is_empty())
+        .collect();
+    assert!(!moved.is_empty());
+    let mesh = |m: usize| format!("{:?}: {{\"smile\": [\"AU26\"]}}", plain.meshes[m].name);
+    let map: Vec<String> = moved.iter().map(|&m| mesh(m)).collect();
+    let with = |driven: String| {
+        let mut files = files();
+        files.push(("avatar.json", format!("{{\"driven\": {{{driven}}}}}")));
+        read(&files)
+    };
+    let driven = with(map.join(", ")).unwrap().avatar;
+    assert_eq!(driven.shape_names, ["AU26"]);
+    let mut weights = [0.0; 2];
+    (weights[au26], weights[smile]) = (0.5, 0.5);
+    for (before, after) in plain.meshes.iter().zip(&driven.meshes) {
+        // The sum is rounded once more than the two.
+        for (p, q) in before.posed(&weights).iter().zip(after.posed(&[0.5])) {
+            assert!((0..3).all(|a| (p[a] - q[a]).abs() < 1e-7), "{}: {p:?} {q:?}", before.name);
+        }
+    }
+    let error = with(r#""hat": {"smile": ["AU26"]}"#.to_owned()).unwrap_err().to_string();
+    assert!(error.starts_with("avatar.json: /driven/hat: no mesh \"hat\""), "{error}");
+}
