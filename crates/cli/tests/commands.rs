@@ -1,38 +1,13 @@
 //! The commands as a researcher types them: results, exit codes, errors, and nothing half written.
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use common::{mimique, ok, refused, text};
 use mimique_test_support::{real_file, repository};
 use serde_json::Value;
-
-fn mimique<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mimique"));
-    command.args(args).env_remove("MIMIQUE_DATA").output().expect("the binary starts")
-}
-
-/// Standard output of a command that must succeed.
-fn ok<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> String {
-    let out = mimique(args);
-    let err = String::from_utf8_lossy(&out.stderr);
-    assert_eq!(out.status.code(), Some(0), "{err}");
-    String::from_utf8(out.stdout).expect("UTF-8")
-}
-
-/// Standard error of a command that must refuse with exit code 2.
-fn refused<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> String {
-    let out = mimique(args);
-    let err = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{err}");
-    assert!(err.contains("error: "), "{err}");
-    assert!(!err.contains("panicked"), "{err}");
-    err
-}
-
-fn text(path: &Path) -> String {
-    path.to_str().expect("a path in UTF-8").to_owned()
-}
 
 /// Frame and weights by shape, of a CSV with a column `frame`.
 fn weights(csv: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {

@@ -1,0 +1,222 @@
+//! Captures as a researcher mends, cuts and solves them: repair, segment, the bank's diagnosis, and
+//! the two methods that need more than a bank.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{ok, refused, text};
+use mimique_test_support::real_file;
+use serde_json::Value;
+
+/// The planted take of the real data.
+fn planted(test: &str) -> Option<PathBuf> {
+    real_file(test, "lsts")
+}
+
+/// Rows of a CSV, its header first.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    let csv = std::fs::read_to_string(path).expect("a CSV");
+    csv.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+fn write(path: &Path, rows: &[Vec<String>]) {
+    let lines: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+    std::fs::write(path, lines.join("\n") + "\n").expect("a CSV");
+}
+
+/// The first 800 frames, with labels swapped, a spike and a gap.
+fn damaged(data: &Path, to: &Path) {
+    let mut rows = rows(&data.join("take_n01.csv"));
+    rows.truncate(801);
+    let column = |rows: &[Vec<String>], name: &str| {
+        rows[0].iter().position(|cell| cell == name).expect("a column")
+    };
+    for axis in ["x", "y", "z"] {
+        let (a, b) = (column(&rows, &format!("M10_{axis}")), column(&rows, &format!("M20_{axis}")));
+        for row in &mut rows[401..441] {
+            row.swap(a, b);
+        }
+        let lost = column(&rows, &format!("M05_{axis}"));
+        for row in &mut rows[201..206] {
+            row[lost].clear();
+        }
+    }
+    let spike = column(&rows, "M30_y");
+    let value: f64 = rows[301][spike].parse().expect("a number");
+    rows[301][spike] = (value + 40.0).to_string();
+    write(to, &rows);
+}
+
+#[test]
+fn repair_lists_what_it_mends_and_solve_knows_of_it() {
+    let Some(data) = planted("repair_lists_what_it_mends_and_solve_knows_of_it") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    damaged(&data, &folder.path().join("raw.csv"));
+    let said = ok(&["repair", &at("raw.csv"), "--out", &at("mended.csv"), "--json"]);
+    let said: Value = serde_json::from_str(&said).expect("JSON");
+    let list = said["record"].to_string();
+    for label in ["M10", "M20", "M05", "M30"] {
+        assert!(list.contains(label), "{label}: {list}");
+    }
+    // The gap is filled, the others are where they were before the damage, to a tenth of a millimetre.
+    let (before, after) =
+        (rows(&data.join("take_n01.csv")), rows(&folder.path().join("mended.csv")));
+    let place = |rows: &[Vec<String>], frame: usize, name: &str| -> f64 {
+        let column = rows[0].iter().position(|cell| cell == name).expect("a column");
+        rows[frame + 1][column].parse().expect("a number")
+    };
+    for (frame, name, most) in
+        [(420, "M10_x", 0.1), (420, "M20_z", 0.1), (300, "M30_y", 1.0), (202, "M05_x", 1.0)]
+    {
+        let off = place(&before, frame, name) - place(&after, frame, name);
+        assert!(off.abs() < most, "{name} in frame {frame}: off by {off} mm");
+    }
+
+    let solve = |take: &str| {
+        let args = ["solve", "--avatar", &text(&data.join("avatar_skin.glb")), "--mocap", take];
+        let map = text(&data.join("mapping.csv"));
+        let out = at("weights.csv");
+        let more = ["--markers", &map, "--method", "box", "--neutral", "0:60", "--out", &out];
+        let all: Vec<&str> = args.into_iter().chain(more).chain(["--json"]).collect();
+        serde_json::from_str::<Value>(&ok(&all)).expect("JSON")
+    };
+    let with = solve(&at("mended.csv"));
+    let sidecar = folder.path().join("mended.csv.repair.json");
+    let record = std::fs::read(&sidecar).expect("the sidecar");
+    std::fs::remove_file(&sidecar).expect("removed");
+    let without = solve(&at("mended.csv"));
+    let field = |said: &Value, key: &str| {
+        let found = said.pointer(&format!("/{key}")).or(said.pointer(&format!("/report/{key}")));
+        found.and_then(Value::as_str).expect("a hash").to_owned()
+    };
+    assert_eq!(field(&with, "weights_hash"), field(&without, "weights_hash"));
+    assert_ne!(field(&with, "provenance"), field(&without, "provenance"), "the repair is in it");
+
+    // A sidecar of another capture is refused.
+    std::fs::write(&sidecar, record).expect("written");
+    let mut changed = std::fs::read(folder.path().join("mended.csv")).expect("the capture");
+    changed.truncate(changed.len() / 2);
+    let cut = changed.iter().rposition(|b| *b == b'\n').expect("a line");
+    std::fs::write(folder.path().join("mended.csv"), &changed[..=cut]).expect("written");
+    let error = refused(&[
+        "solve",
+        "--avatar",
+        &text(&data.join("avatar_skin.glb")),
+        "--mocap",
+        &at("mended.csv"),
+        "--markers",
+        &text(&data.join("mapping.csv")),
+        "--method",
+        "box",
+        "--out",
+        &at("none.csv"),
+    ]);
+    assert!(error.contains("mended.csv"), "{error}");
+    assert!(!folder.path().join("none.csv").exists());
+}
+
+#[test]
+fn segments_go_to_csv_and_elan_and_back() {
+    let Some(data) = planted("segments_go_to_csv_and_elan_and_back") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    // The truth has no times: 200 Hz.
+    let truth = text(&data.join("truth.csv"));
+    let rate = ["--mocap-rate", "200"];
+    let run = |more: &[&str]| ok(&[&["segment", &truth], more, &rate].concat());
+    run(&["--out", &at("a.csv")]);
+    let found = rows(&folder.path().join("a.csv"));
+    let planted = rows(&data.join("segments.csv"));
+    let expressions = planted[1..].iter().filter(|row| row[0] != "N").count();
+    assert_eq!(found.len() - 1, expressions, "{found:?}");
+    run(&["--from", &at("a.csv"), "--lead-in", "0", "--lead-out", "0", "--out", &at("b.eaf")]);
+    assert!(std::fs::read_to_string(at("b.eaf")).expect("ELAN").contains("<ANNOTATION_DOCUMENT"));
+    run(&["--from", &at("b.eaf"), "--lead-in", "0", "--lead-out", "0", "--out", &at("c.csv")]);
+    run(&["--from", &at("a.csv"), "--lead-in", "0", "--lead-out", "0", "--out", &at("d.csv")]);
+    assert_eq!(rows(&folder.path().join("c.csv")), rows(&folder.path().join("d.csv")));
+    std::fs::write(at("bad.eaf"), "<ANNOTATION_DOCUMENT>").expect("written");
+    let args = ["segment", &truth, "--from", &at("bad.eaf"), "--out", &at("e.csv")];
+    assert!(refused(&args).contains("bad.eaf"));
+    assert!(!folder.path().join("e.csv").exists());
+}
+
+#[test]
+fn the_bank_is_held_against_the_five_rules() {
+    let Some(data) = planted("the_bank_is_held_against_the_five_rules") else { return };
+    let avatar = text(&data.join("avatar_skin.glb"));
+    let map = text(&data.join("mapping.csv"));
+    let said = ok(&["inspect", &avatar, "--bank", "--markers", &map]);
+    assert!(said.contains("53") && said.contains("40"), "{said}");
+    let json: Value =
+        serde_json::from_str(&ok(&["inspect", &avatar, "--bank", "--markers", &map, "--json"]))
+            .expect("JSON");
+    let flat = json.to_string();
+    for key in ["rank", "dependent", "dead"] {
+        assert!(flat.contains(key), "{key}: {flat}");
+    }
+}
+
+#[test]
+fn a_surface_is_moved_and_a_regression_learns() {
+    let Some(data) = planted("a_surface_is_moved_and_a_regression_learns") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    let mut take = rows(&data.join("take_n01.csv"));
+    take.truncate(401);
+    write(&folder.path().join("take.csv"), &take);
+    let mut weights = rows(&data.join("truth.csv"));
+    weights.truncate(401);
+    write(&folder.path().join("weights.csv"), &weights);
+    let avatar = text(&data.join("avatar_skin.glb"));
+    let map = text(&data.join("mapping.csv"));
+    let common = |out: &str, method: &str| -> Vec<String> {
+        let list = [
+            "solve",
+            "--avatar",
+            &avatar,
+            "--mocap",
+            &at("take.csv"),
+            "--markers",
+            &map,
+            "--neutral",
+            "0:60",
+            "--method",
+            method,
+            "--out",
+            out,
+        ];
+        list.map(str::to_owned).to_vec()
+    };
+    let mut surface = common(&at("surface.csv"), "thin-shell-surface");
+    surface.extend(["--vertices".to_owned(), at("vertices.npy")]);
+    ok(&surface);
+    let found = rows(&folder.path().join("surface.csv"));
+    assert_eq!((found.len(), found[0].len()), (401, 2 + 3 * 40));
+    let npy = std::fs::read(at("vertices.npy")).expect("vertices");
+    assert!(npy.starts_with(b"\x93NUMPY"));
+
+    let mut learnt = common(&at("learnt.csv"), "regression");
+    let known = ["--training", &at("take.csv"), "--training-weights", &at("weights.csv")];
+    learnt.extend(known.map(str::to_owned));
+    learnt.extend(["--training-neutral", "0:60"].map(str::to_owned));
+    ok(&learnt);
+    let found = rows(&folder.path().join("learnt.csv"));
+    assert_eq!(found.len(), 401);
+    // What it was taught it says again.
+    let number = |cell: &String| -> f64 { cell.parse().expect("a number") };
+    let mut square = 0.0;
+    let mut count = 0;
+    for (row, truth) in found[1..].iter().zip(&weights[1..]) {
+        for (name, cell) in found[0].iter().zip(row).skip(2) {
+            let Some(column) = weights[0].iter().position(|other| other == name) else { continue };
+            square += (number(cell) - number(&truth[column])).powi(2);
+            count += 1;
+        }
+    }
+    let rms = (square / f64::from(count)).sqrt();
+    assert!(count > 400 * 40 && rms < 0.02, "rms {rms} of {count} weights");
+    let error = refused(&common(&at("none.csv"), "regression"));
+    assert!(error.contains("--training"), "{error}");
+}
