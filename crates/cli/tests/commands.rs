@@ -3,7 +3,6 @@
 mod common;
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use common::{mimique, ok, refused, text};
 use mimique_test_support::{real_file, repository};

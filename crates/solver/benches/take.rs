@@ -15,7 +15,7 @@ use mimique_solver::{
 };
 
 fn take(c: &mut Criterion) {
-    let Some(data) = common::data("benches") else { return };
+    let Some(data) = mimique_test_support::real_data("benches") else { return };
     let operators = common::operators(&data, &OperatorOptions::default());
     let avatar = &operators.parts().marker_positions;
     let (frames, cells) = common::table(&data.join("lsts/take_n01.csv"), 2);

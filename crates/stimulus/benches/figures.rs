@@ -99,7 +99,9 @@ impl Planted {
         let (capture, map) = capture_and_map(&lsts);
         let joined = JoinedTake::new(&skin, &capture, &map, &TakeOptions::default());
         let operators = joined.expect("a take").operators(&spec("lsts")).expect("operators");
-        let markers = map.resolve(&skin).expect("the map fits");
+        let sites = map.resolve(&skin).expect("the map fits");
+        let markers: Vec<(String, usize)> =
+            sites.iter().map(|site| (site.label.clone(), site.vertex())).collect();
         let labels: Vec<String> =
             markers.iter().map(|m| m.0.clone()).chain(map.head.iter().cloned()).collect();
         let columns: Vec<usize> =

@@ -9,8 +9,11 @@
 //!                                              solve_packs (server, browser) --> weights
 //! ```
 
+#[cfg(feature = "prepare")]
 mod bank_diagnosis;
+#[cfg(feature = "prepare")]
 mod head_check;
+#[cfg(feature = "prepare")]
 mod label_check;
 mod lids;
 mod marker_map;
@@ -29,10 +32,13 @@ mod skin;
 mod solve_packs;
 #[cfg(feature = "prepare")]
 mod solve_take;
+#[cfg(feature = "prepare")]
 mod split_shapes;
 #[cfg(feature = "prepare")]
 mod surface_avatar;
+#[cfg(feature = "prepare")]
 mod take_adjustments;
+#[cfg(feature = "prepare")]
 mod take_checks;
 mod take_pack;
 #[cfg(feature = "prepare")]
@@ -41,8 +47,11 @@ mod training;
 mod vertex_frames;
 mod weights_file;
 
+#[cfg(feature = "prepare")]
 pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
+#[cfg(feature = "prepare")]
 pub use head_check::{HeadMarker, STILL_MM};
+#[cfg(feature = "prepare")]
 pub use label_check::{LabelFault, LabelProblem};
 pub use lids::{Lid, LidEdge};
 pub use marker_map::{
@@ -57,7 +66,9 @@ pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
 pub use recorded::{Driven, RecordedNames, RecordedWeights};
 #[cfg(feature = "prepare")]
 pub use repair_sidecar::{FileHash, RepairSidecar, SidecarError, sidecar_path};
-pub use report::{FrameRow, FrameStatistics, RegressionSummary, SolveReport, StageSeconds};
+#[cfg(feature = "prepare")]
+pub use report::SolveReport;
+pub use report::{FrameRow, FrameStatistics, RegressionSummary, StageSeconds};
 #[cfg(feature = "prepare")]
 pub use segments::{
     Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
@@ -68,6 +79,7 @@ pub use skin::{AvatarSkin, lock_shapes};
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]
 pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
+#[cfg(feature = "prepare")]
 pub use split_shapes::{SplitError, split_shapes};
 #[cfg(feature = "prepare")]
 pub use surface_avatar::surface_avatar;

@@ -36,13 +36,16 @@ pub struct Lid {
     pub wide: Option<String>,
 }
 
+#[cfg(feature = "prepare")]
 /// Vertical displacements of a lid from its neutral, metres: `[lowest, highest]`.
 pub(crate) type LidRange = [f64; 2];
 
+#[cfg(feature = "prepare")]
 /// Actor's range below which the lid is taken not to have been closed in the take, metres: an upper
 /// lid travels 8 to 12 mm, sensors are exact to a tenth.
 const CLOSED_IN_TAKE_M: f64 = 0.004;
 
+#[cfg(feature = "prepare")]
 /// Opening factor of a displacement within a range, 0 closed to 1 wide open: eq. 7.2 for upper,
 /// 7.3 for lower lids. Displacements beyond the range count as its ends.
 pub(crate) fn opening_factor(y: f64, [lowest, highest]: LidRange, edge: LidEdge) -> f64 {
@@ -53,12 +56,14 @@ pub(crate) fn opening_factor(y: f64, [lowest, highest]: LidRange, edge: LidEdge)
     share.clamp(0.0, 1.0)
 }
 
+#[cfg(feature = "prepare")]
 /// The actor's displacement as the avatar's: lowest, neutral and highest lie on each other.
 fn on_avatar(y: f64, actor: LidRange, avatar: LidRange) -> f64 {
     let (side, other) = if y < 0.0 { (actor[0], avatar[0]) } else { (actor[1], avatar[1]) };
     if side == 0.0 { 0.0 } else { y / side * other }
 }
 
+#[cfg(feature = "prepare")]
 /// The range of an actor's lid over a take: its 1st and 99th of a hundred, the neutral within. A
 /// side on which the lid hardly moved is as long as the avatar's.
 pub(crate) fn actor_range(track: &[f64], avatar: LidRange, edge: LidEdge) -> LidRange {
@@ -77,6 +82,7 @@ pub(crate) fn actor_range(track: &[f64], avatar: LidRange, edge: LidEdge) -> Lid
     }
 }
 
+#[cfg(feature = "prepare")]
 /// Weights of the closing and the widening shape for a displacement of the actor's lid marker.
 pub(crate) fn lid_weights(y: f64, actor: LidRange, avatar: LidRange, edge: LidEdge) -> (f64, f64) {
     if !y.is_finite() || avatar[1] <= avatar[0] {

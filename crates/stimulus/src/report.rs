@@ -1,10 +1,11 @@
 //! What a solve says of itself: per frame, over all frames, in words.
 
-use mimique_solver::{FrameReport, FrameWarning, Kernel, MethodSpec};
+use mimique_solver::{FrameReport, FrameWarning, Kernel};
 #[cfg(feature = "prepare")]
-use mimique_solver::{Method, Operators, Regression};
+use mimique_solver::{Method, MethodSpec, Operators, Regression};
 use serde::Serialize;
 
+#[cfg(feature = "prepare")]
 use crate::{HeadMarker, LabelProblem};
 
 /// Residual, iterations and convergence over the frames of a take.
@@ -170,6 +171,7 @@ impl RegressionSummary {
     }
 }
 
+#[cfg(feature = "prepare")]
 /// What a solve says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SolveReport {

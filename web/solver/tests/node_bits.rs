@@ -8,7 +8,7 @@ use std::process::Command;
 
 use mimique_face::{Avatar, Mesh, Part, SparseShape};
 use mimique_mocap::{Capture, LengthUnit};
-use mimique_solver::{Method, MethodSpec};
+use mimique_solver::{MarkerSite, Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, Training,
     WeightsTable, encode_operators, encode_take, solve_packs,

@@ -52,7 +52,8 @@ impl Paint {
             uvs.iter_mut().for_each(|uv| *uv = transformed(*uv, transform));
         }
         // Far outside the picture, single precision no longer finds a texel.
-        if let Some(v) = uvs.iter().position(|uv| uv.iter().any(|x| !(x.abs() <= 1e4))) {
+        let near = |x: &f32| x.abs() <= 1e4;
+        if let Some(v) = uvs.iter().position(|uv| !uv.iter().all(near)) {
             let what = format!("vertex {v} lies at {:?} of a picture of 1 x 1", uvs[v]);
             return Err(ReadError::damaged(place, what));
         }

@@ -108,12 +108,14 @@ mod decode {
     ) -> Result<Vec<u8>, Failure> {
         let damaged = |what: String| Err(Failure::Damaged(what));
         let out = match (mode, stride) {
-            ("ATTRIBUTES", 4..=256) if stride % 4 == 0 => attributes(bytes, filter, count, stride),
+            ("ATTRIBUTES", 4..=256) if stride.is_multiple_of(4) => {
+                attributes(bytes, filter, count, stride)
+            }
             // Whole triangles only: the decoder asserts it.
-            ("TRIANGLES", 2) if count % 3 == 0 => {
+            ("TRIANGLES", 2) if count.is_multiple_of(3) => {
                 meshopt::decode_index_buffer::<u16>(bytes, count).ok().map(|v| little(&v))
             }
-            ("TRIANGLES", 4) if count % 3 == 0 => {
+            ("TRIANGLES", 4) if count.is_multiple_of(3) => {
                 meshopt::decode_index_buffer::<u32>(bytes, count).ok().map(|v| little(&v))
             }
             ("INDICES", 2) => {

@@ -111,10 +111,10 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
     for _ in 0..r.count(2)? {
         textures.push(Texture { jpeg: file(&mut r)?, mask_jpeg: file(&mut r)? });
     }
-    if let Some(used) = meshes.iter().flat_map(|m: &Mesh| &m.textured).map(|t| t.texture).max() {
-        if used >= textures.len() {
-            return r.refuse(format!("texture {used} of {}", textures.len()));
-        }
+    if let Some(used) = meshes.iter().flat_map(|m: &Mesh| &m.textured).map(|t| t.texture).max()
+        && used >= textures.len()
+    {
+        return r.refuse(format!("texture {used} of {}", textures.len()));
     }
     r.finish()?;
     Ok(Avatar { name, shape_names, meshes, eyeballs, textures })

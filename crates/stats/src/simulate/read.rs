@@ -40,8 +40,7 @@ impl Parameters {
         }
         merge(&mut value, given, 0);
         let parameters: Self = serde_path_to_error::deserialize(value).map_err(|error| {
-            let path =
-                error.path().to_string().replace('.', "/").replace('[', "/").replace(']', "");
+            let path = error.path().to_string().replace(['.', '['], "/").replace(']', "");
             let pointer = if path == "/" { path } else { format!("/{path}") };
             problem_at(&pointer, error.inner().to_string(), "look up the key's name and kind")
         })?;

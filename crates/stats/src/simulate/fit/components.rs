@@ -167,7 +167,7 @@ pub(super) fn components(items: &[Item], factors: usize) -> Components {
         .collect();
     let exactly = |wanted: usize| {
         (0..1_usize << all).filter(|set| set & wanted == wanted).fold(Pairs::NONE, |sum, set| {
-            let sign = if (set ^ wanted).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if (set ^ wanted).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
             sum.plus(sign, &at_least[set])
         })
     };
