@@ -33,7 +33,7 @@ pub struct TakePack {
 
 /// The two kinds of takes.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is one of it for each take")]
+#[allow(clippy::large_enum_variant, reason = "there is one of it for each take")]
 pub enum TakeContent {
     /// Trajectories to solve.
     Markers(SegmentMarkers),
