@@ -72,6 +72,11 @@ fn avatar() -> Avatar {
     }
 }
 
+/// Weight of a shape in a frame.
+fn weight(frame: usize, k: usize) -> f64 {
+    if frame < 60 { 0.0 } else { (0.9 * (frame as f64 / 100.0 + k as f64).sin()).abs() }
+}
+
 /// 24 face markers and 4 head markers on a wider sheet that turns, moves and is now and then hidden.
 fn capture(skin: &AvatarSkin, map: &MarkerMap) -> Capture {
     let mut labels: Vec<String> = map.face_labels().map(str::to_owned).collect();
@@ -81,9 +86,9 @@ fn capture(skin: &AvatarSkin, map: &MarkerMap) -> Capture {
     let mut positions = Vec::new();
     let mut noise = 12345u64;
     for frame in 0..300 {
-        let t = f64::from(frame) / 100.0;
+        let t = frame as f64 / 100.0;
         let turn = 0.1 * (1.3 * t).sin();
-        let weight = |k: usize| if frame < 60 { 0.0 } else { (0.9 * (t + k as f64).sin()).abs() };
+        let weight = |k: usize| weight(frame, k);
         let face = vertices.iter().map(|&v| {
             let mut p = skin.mesh.positions[v];
             for (k, shape) in skin.mesh.shapes.iter().enumerate() {
@@ -127,15 +132,15 @@ fn write_cases(folder: &Path) {
     };
     let capture = capture(&skin, &map);
     let joined = JoinedTake::new(&skin, &capture, &map, &TakeOptions::default()).unwrap();
-    // What the regression learns is any smooth map: the bits are what counts here.
+    // What the regression learns is what moved the sheet.
     let frames = capture.frames();
-    let course = |f: usize, k: usize| (0.05 * f as f64 * (1.0 + 0.1 * k as f64)).sin().abs();
+    let course = weight;
     let n = skin.shape_names.len();
     let weights = (0..frames * n).map(|at| course(at / n, at % n)).collect();
     let training = Training {
         weights: WeightsTable::at_rate(skin.shape_names.clone(), weights, 0, capture.rate_hz),
         capture: capture.clone(),
-        neutral: None,
+        neutral: Some(0..60),
         head: None,
     };
     let mut cases = Vec::new();
