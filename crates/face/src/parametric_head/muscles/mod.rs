@@ -38,25 +38,14 @@ pub(crate) use jaw::JawMotion;
 
 use super::Cage;
 use super::vec3::Vec3;
+use crate::shape_names::ARKIT_SHAPES;
 use field::Flesh;
 
-/// The 51 names, ARKit's without `tongueOut`, in alphabetical order.
-#[rustfmt::skip]
-pub const SHAPE_NAMES: [&str; 51] = [
-    "browDownLeft", "browDownRight", "browInnerUp", "browOuterUpLeft", "browOuterUpRight",
-    "cheekPuff", "cheekSquintLeft", "cheekSquintRight",
-    "eyeBlinkLeft", "eyeBlinkRight", "eyeLookDownLeft", "eyeLookDownRight",
-    "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft", "eyeLookOutRight",
-    "eyeLookUpLeft", "eyeLookUpRight", "eyeSquintLeft", "eyeSquintRight",
-    "eyeWideLeft", "eyeWideRight",
-    "jawForward", "jawLeft", "jawOpen", "jawRight",
-    "mouthClose", "mouthDimpleLeft", "mouthDimpleRight", "mouthFrownLeft", "mouthFrownRight",
-    "mouthFunnel", "mouthLeft", "mouthLowerDownLeft", "mouthLowerDownRight",
-    "mouthPressLeft", "mouthPressRight", "mouthPucker", "mouthRight",
-    "mouthRollLower", "mouthRollUpper", "mouthShrugLower", "mouthShrugUpper",
-    "mouthSmileLeft", "mouthSmileRight", "mouthStretchLeft", "mouthStretchRight",
-    "mouthUpperUpLeft", "mouthUpperUpRight", "noseSneerLeft", "noseSneerRight",
-];
+/// The 51 names, ARKit's without `tongueOut`, its last, in alphabetical order.
+pub const SHAPE_NAMES: [&str; 51] = match ARKIT_SHAPES.first_chunk() {
+    Some(names) => *names,
+    None => unreachable!(),
+};
 
 /// Displacements of the cage's vertices, millimetres, one list a shape in [`SHAPE_NAMES`]' order.
 pub(crate) fn all(cage: &Cage) -> Vec<Vec<Vec3>> {
