@@ -1,14 +1,15 @@
 //! What every request can reach: studies, packs, pages, storage and the server's keys.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::assets::Assets;
+use crate::catalogue::Catalogue;
 use crate::error::Error;
 use crate::hosted::HostedStudy;
 use crate::packs::PackStore;
 use crate::researcher::SessionViews;
-use crate::storage::{Access, Storage, StorageError, StudyVersion};
+use crate::storage::{Access, Storage, StorageError};
 use crate::{clock, secret};
 
 /// How long the printed researcher's address works.
@@ -17,10 +18,7 @@ const LINK_LIFETIME_MS: i64 = 7 * 24 * 3600 * 1000;
 /// What every request can reach; cheap to clone.
 #[derive(Clone)]
 pub struct App {
-    pub(crate) studies: Arc<BTreeMap<String, HostedStudy>>,
-    /// The bundle of every version ever served of these studies, JSON text, by study and hash.
-    pub(crate) bundles: Arc<BTreeMap<(String, String), String>>,
-    pub(crate) packs: Arc<PackStore>,
+    pub(crate) catalogue: Arc<Catalogue>,
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
     pub(crate) session_views: Arc<SessionViews>,
@@ -53,39 +51,19 @@ impl App {
         assets: Assets,
         storage: Storage,
     ) -> Result<Self, AppError> {
-        let mut by_id = BTreeMap::new();
-        for study in studies {
-            let version = StudyVersion {
-                study_id: study.id().to_owned(),
-                config_hash: study.config_hash().to_owned(),
-                file: study.file().to_string(),
-                clips: serde_json::to_string(&study.bundle().clips).unwrap_or_default(),
-            };
-            if let Some(before) = storage.register_study(&version, clock::now_ms()).await? {
-                tracing::warn!(
-                    "study {}: the file has changed (was {}, is {}): a new version starts",
-                    version.study_id,
-                    &before[..before.len().min(12)],
-                    &version.config_hash[..12],
-                );
-            }
-            let id = study.id().to_owned();
-            if by_id.insert(id.clone(), study).is_some() {
-                return Err(AppError::StudyTwice { id });
+        let mut known = BTreeSet::new();
+        for study in &studies {
+            if !known.insert(study.id()) {
+                return Err(AppError::StudyTwice { id: study.id().to_owned() });
             }
         }
-        let mut bundles = BTreeMap::new();
-        for version in storage.study_versions().await? {
-            if let Some(current) = by_id.get(&version.study_id) {
-                let bundle = HostedStudy::from_version(&version, current.stage())?;
-                let text = serde_json::to_string(bundle.bundle()).map_err(damaged)?;
-                bundles.insert((version.study_id, version.config_hash), text);
-            }
+        for study in &studies {
+            register(&storage, study).await?;
         }
+        let versions = storage.study_versions().await?;
+        let catalogue = Catalogue::new(studies, &versions, packs)?;
         Ok(Self {
-            studies: Arc::new(by_id),
-            bundles: Arc::new(bundles),
-            packs: Arc::new(packs),
+            catalogue: Arc::new(catalogue),
             assets: Arc::new(assets),
             session_views: Arc::default(),
             token_key: key(&storage, "tokens").await?,
@@ -104,23 +82,26 @@ impl App {
         Ok(format!("/researcher?key={key}"))
     }
 
-    /// What the page needs of a version of a study; of the current one if none is named.
-    pub(crate) fn bundle(&self, id: &str, config_hash: Option<&str>) -> Result<&str, Error> {
-        let hash = config_hash.unwrap_or(self.study(id)?.config_hash());
-        let key = (id.to_owned(), hash.to_owned());
-        self.bundles.get(&key).map(String::as_str).ok_or(Error::UnknownStudy)
+    pub(crate) fn study(&self, id: &str) -> Result<Arc<HostedStudy>, Error> {
+        self.catalogue.study(id)
     }
+}
 
-    pub(crate) fn study(&self, id: &str) -> Result<&HostedStudy, Error> {
-        self.studies.get(id).ok_or(Error::UnknownStudy)
+/// Makes this version of a study the current one, and says so where it replaces another.
+async fn register(storage: &Storage, study: &HostedStudy) -> Result<(), StorageError> {
+    let version = study.version();
+    if let Some(before) = storage.register_study(&version, clock::now_ms()).await? {
+        tracing::warn!(
+            "study {}: the file has changed (was {}, is {}): a new version starts",
+            version.study_id,
+            &before[..before.len().min(12)],
+            &version.config_hash[..12],
+        );
     }
+    Ok(())
 }
 
 async fn key(storage: &Storage, name: &str) -> Result<Arc<[u8]>, AppError> {
     let fresh = secret::random::<32>()?;
     Ok(storage.server_key(name, || fresh).await?.into_bytes().into())
-}
-
-fn damaged(error: serde_json::Error) -> StorageError {
-    StorageError::Damaged { table: "study_versions", problem: error.to_string() }
 }

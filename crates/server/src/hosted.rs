@@ -100,6 +100,16 @@ impl HostedStudy {
         &self.bundle
     }
 
+    /// The version as the database keeps it.
+    pub(crate) fn version(&self) -> StudyVersion {
+        StudyVersion {
+            study_id: self.study.id.clone(),
+            config_hash: self.bundle.config_hash.clone(),
+            file: self.file.to_string(),
+            clips: serde_json::to_string(&self.bundle.clips).unwrap_or_default(),
+        }
+    }
+
     pub(crate) fn summary(&self) -> StudySummary {
         StudySummary {
             id: self.study.id.clone(),

@@ -11,6 +11,7 @@
 mod app;
 mod assets;
 mod atomic_file;
+mod catalogue;
 mod clock;
 mod compression;
 mod error;

@@ -1,5 +1,7 @@
 //! The researcher's page as HTML: nothing inline, complete without its script.
 
+use std::sync::Arc;
+
 use maud::{DOCTYPE, Markup, html};
 use mimique_study::responses::iso_time;
 
@@ -11,7 +13,7 @@ use crate::hosted::HostedStudy;
 use crate::storage::SessionRecord;
 
 /// The page for those who may see it; the script in it brings the part with `data-live` up to date.
-pub(crate) fn dashboard(assets: &str, studies: &[(&HostedStudy, Overview)]) -> String {
+pub(crate) fn dashboard(assets: &str, studies: &[(Arc<HostedStudy>, Overview)]) -> String {
     let body = html! {
         header.site-header.wide {
             span.title { "Mimique" }

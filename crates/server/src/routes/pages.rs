@@ -25,7 +25,7 @@ pub(super) async fn index(State(app): State<App>) -> Html<String> {
             body {
                 main.page {
                     h1 { "Studies" }
-                    @for study in app.studies.values() {
+                    @for study in app.catalogue.studies() {
                         @let language = study.study().default_language();
                         section.card lang=(language) {
                             h2 { (study.title(language)) }

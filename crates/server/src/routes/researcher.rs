@@ -45,9 +45,10 @@ pub(super) async fn page(
         Err(Error::AccessDenied) => return Ok(denied(&app)),
         Err(error) => return Err(error),
     }
-    let mut studies = Vec::with_capacity(app.studies.len());
-    for study in app.studies.values() {
-        studies.push((study, Overview::load(&app.storage, study, &app.session_views).await?));
+    let mut studies = Vec::new();
+    for study in app.catalogue.studies() {
+        let overview = Overview::load(&app.storage, &study, &app.session_views).await?;
+        studies.push((study, overview));
     }
     Ok(Html(researcher::dashboard(&app.assets.prefix(), &studies)).into_response())
 }

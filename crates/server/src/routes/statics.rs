@@ -20,5 +20,5 @@ pub(super) async fn pack(
     Path(hash): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    Ok(app.packs.get(&hash).ok_or(Error::UnknownPack)?.respond(&headers))
+    Ok(app.catalogue.pack(&hash).ok_or(Error::UnknownPack)?.respond(&headers))
 }

@@ -11,7 +11,7 @@ use crate::app::App;
 use crate::error::Error;
 
 pub(super) async fn list(State(app): State<App>) -> Json<Vec<StudySummary>> {
-    Json(app.studies.values().map(|study| study.summary()).collect())
+    Json(app.catalogue.studies().iter().map(|study| study.summary()).collect())
 }
 
 #[derive(Deserialize)]
@@ -25,6 +25,6 @@ pub(super) async fn bundle(
     Path(study): Path<String>,
     Query(version): Query<Version>,
 ) -> Result<Response, Error> {
-    let text = app.bundle(&study, version.config_hash.as_deref())?.to_owned();
+    let text = app.catalogue.bundle(&study, version.config_hash.as_deref())?.to_string();
     Ok(([(header::CONTENT_TYPE, "application/json")], text).into_response())
 }
