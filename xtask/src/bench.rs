@@ -12,6 +12,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use anyhow::{Context, Result, bail};
 
 use crate::bench_plot;
+use crate::bench_stats;
 use crate::install;
 use crate::process::{cargo, output, root, say, show, target};
 use crate::web;
@@ -19,6 +20,9 @@ use crate::web;
 /// Options of `cargo xtask bench`.
 #[derive(clap::Args)]
 pub struct Args {
+    /// The statistics beside SciPy and polars instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot"])]
+    stats: bool,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -28,17 +32,18 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/solver-benchmarks.md
+    /// Write the figures into docs/solver-benchmarks.md, or docs/statistics-benchmarks.md
     #[arg(long)]
     record: bool,
 }
 
 /// A process that answers lines with lines of JSON.
-struct Partner {
+pub struct Partner {
     child: Child,
     to: Option<ChildStdin>,
     from: BufReader<ChildStdout>,
-    greeting: String,
+    /// Its first line.
+    pub greeting: String,
 }
 
 /// Seconds of one measurement, and what they were spent on.
@@ -46,6 +51,9 @@ type Seconds = Vec<f64>;
 
 /// Measures, prints, and records where asked.
 pub fn run(args: &Args) -> Result<()> {
+    if args.stats {
+        return bench_stats::run(args.rounds.max(1), args.record);
+    }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {
         bail!("no real data in {}; set MIMIQUE_DATA to their folder", data.display());
@@ -184,9 +192,12 @@ pub fn run(args: &Args) -> Result<()> {
             text(&peers.greeting, "numpy")?,
             rounds.len()
         );
-        record(&format!(
-            "{table}\n{versions} Largest difference between SciPy's weights and ours: bvls {bvls:.1e}, L-BFGS-B {tight:.1e} with tolerances 0 and 1e-10, {default:.1e} as it comes.\n"
-        ))?;
+        record(
+            "docs/solver-benchmarks.md",
+            &format!(
+                "{table}\n{versions} Largest difference between SciPy's weights and ours: bvls {bvls:.1e}, L-BFGS-B {tight:.1e} with tolerances 0 and 1e-10, {default:.1e} as it comes.\n"
+            ),
+        )?;
     }
     Ok(())
 }
@@ -200,7 +211,8 @@ fn figures(data: &Path) -> Command {
 }
 
 impl Partner {
-    fn start(command: &mut Command) -> Result<Partner> {
+    /// Starts it and waits for its greeting.
+    pub fn start(command: &mut Command) -> Result<Partner> {
         let shown = show(command);
         say(&shown);
         let mut child = command
@@ -227,7 +239,8 @@ impl Partner {
         }
     }
 
-    fn ask(&mut self, what: &str) -> Result<String> {
+    /// The answer to a line.
+    pub fn ask(&mut self, what: &str) -> Result<String> {
         let to = self.to.as_mut().context("it takes no more questions")?;
         writeln!(to, "{what}")?;
         to.flush()?;
@@ -256,12 +269,14 @@ pub fn number(line: &str, key: &str) -> Result<f64> {
     rest[..end].trim().parse().with_context(|| format!("{key} in {line}"))
 }
 
-fn text<'l>(line: &'l str, key: &str) -> Result<&'l str> {
+/// The text after a key of one line of JSON that we write ourselves.
+pub fn text<'l>(line: &'l str, key: &str) -> Result<&'l str> {
     let rest = line.split_once(&format!("\"{key}\": \"")).with_context(|| format!("no {key}"))?.1;
     Ok(rest.split('"').next().unwrap_or_default())
 }
 
-fn median(mut values: Seconds) -> f64 {
+/// Median.
+pub fn median(mut values: Seconds) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
@@ -275,19 +290,20 @@ fn table(rows: &[[String; 4]]) -> String {
     out
 }
 
+/// Prints a table.
 #[expect(clippy::print_stdout, reason = "xtask talks to the person at the terminal")]
-fn print(table: &str) {
+pub fn print(table: &str) {
     println!("{table}");
 }
 
-/// The figures between the marks of the document.
-fn record(figures: &str) -> Result<()> {
-    let file = root().join("docs/solver-benchmarks.md");
+/// Writes the figures between the marks of a document.
+pub fn record(document: &str, figures: &str) -> Result<()> {
+    let file = root().join(document);
     let (start, end) = ("<!-- figures -->\n", "<!-- end of figures -->");
     let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
     let parts =
         text.split_once(start).and_then(|(head, rest)| Some((head, rest.split_once(end)?.1)));
-    let (head, tail) = parts.context("docs/solver-benchmarks.md has lost its marks")?;
+    let (head, tail) = parts.with_context(|| format!("{document} has lost its marks"))?;
     std::fs::write(&file, format!("{head}{start}{figures}{end}{tail}"))?;
     say(&format!("recorded: {}", file.display()));
     Ok(())

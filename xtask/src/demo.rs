@@ -42,7 +42,7 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Builds the release binary.
-fn binary() -> Result<()> {
+pub fn binary() -> Result<()> {
     say("building mimique");
     run_program(cargo().arg("build").args(locked()).args(["--release", "--package", "mimique"]))
 }

@@ -39,7 +39,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let study = Study::from_text(&text).with_context(|| place(&args.study))?;
     let report = std::fs::read(&args.export)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
-        .and_then(|bytes| Ok(Table::parse(&bytes)?))
+        .and_then(|bytes| Ok(Table::parse(bytes)?))
         .and_then(|table| Ok(analyze(&table, &study, args.language)?))
         .with_context(|| place(&args.export))?;
     write_report(&report, &args.out).with_context(|| place(&args.out))?;

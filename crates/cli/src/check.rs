@@ -46,7 +46,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 /// Reads and checks a study file; files that it names are looked for on this machine.
 pub fn check_file(file: &Path) -> anyhow::Result<Report> {
     let bytes = std::fs::read(file)
-        .with_context(|| format!("{}: the study file cannot be read", file.display()))?;
+        .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
+        .with_context(|| file.display().to_string())?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         anyhow::anyhow!("{}: byte {place}: not UTF-8; save the file as UTF-8", file.display())

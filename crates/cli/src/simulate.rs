@@ -65,7 +65,7 @@ impl Assumptions {
             None => Parameters::for_study(study),
             Some(path) => std::fs::read(path)
                 .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
-                .and_then(|bytes| Ok(Table::parse(&bytes)?))
+                .and_then(|bytes| Ok(Table::parse(bytes)?))
                 .and_then(|table| Ok(Parameters::fit(&table, study)?))
                 .with_context(|| path.display().to_string())?,
         };

@@ -228,7 +228,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 fn read(path: &Path) -> anyhow::Result<Table> {
     let bytes = std::fs::read(path)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))?;
-    Ok(Table::parse(&bytes)?)
+    Ok(Table::parse(bytes)?)
 }
 
 /// A result in both forms.

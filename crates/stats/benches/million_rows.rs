@@ -1,11 +1,12 @@
-//! A million rows: tests against SciPy and NumPy, reading against polars, in one run on one machine.
+//! A million rows: the tests, and reading the file.
 //!
-//! `cargo bench -p mimique-stats`; the peers run in the Python of `MIMIQUE_PYTHON` (numpy, scipy,
-//! polars), and are left out where it is not given. Each figure is the best of several runs.
+//! `cargo bench -p mimique-stats --bench million_rows` prints our own times. With `--serve FILE` it
+//! writes the rows to FILE, then answers each line of standard input, the name of a measurement, with
+//! one line of JSON: so `cargo xtask bench --stats` lets it and its peers (`peers.py`) take turns.
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::hint::black_box;
-use std::io::Write;
+use std::io::{BufRead, Write};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -16,74 +17,106 @@ use mimique_stats::{
 };
 
 const ROWS: usize = 1_000_000;
-const RUNS: usize = 7;
+/// Runs of a measurement; the quickest counts.
+const RUNS: usize = 3;
+const TESTS: [&str; 4] = ["Kruskal-Wallis", "Wilcoxon", "Spearman", "Scheirer-Ray-Hare"];
+const KINDS: [&str; 2] = ["ratings", "doubles"];
 
 fn main() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let path = folder.join("million.csv");
-    if let Some(place) = std::env::args().position(|argument| argument == "--memory") {
+    let arguments: Vec<String> = std::env::args().collect();
+    let after = |name: &str| {
+        let place = arguments.iter().position(|argument| argument == name)?;
+        arguments.get(place + 1).map(|path| Path::new(path).to_path_buf())
+    };
+    if let Some(path) = after("--memory") {
         // A process of its own: the peak is that of reading alone.
-        read(Path::new(&std::env::args().nth(place + 1).unwrap_or_default()));
+        read(&path);
         println!("{}", peak_bytes());
         return;
     }
+    let served = after("--serve");
+    let path = served
+        .clone()
+        .unwrap_or_else(|| Path::new(env!("CARGO_TARGET_TMPDIR")).join("million.csv"));
     write_rows(&path);
-    let bytes = std::fs::metadata(&path).map_or(0, |data| data.len());
-    let columns = read(&path);
-    let mut own: Vec<(&str, f64)> = vec![("read CSV", best(|| read(&path)))];
-    let [method, expression] = &columns.factors;
-    let [rating, other, seconds, more] = &columns.numbers;
-    for (kind, x, y) in [("ratings", rating, other), ("doubles", seconds, more)] {
-        let differences = Numbers {
-            name: "difference".to_owned(),
-            values: x.values.iter().zip(&y.values).map(|(x, y)| x - y).collect(),
-        };
-        let names = if kind == "ratings" { RATINGS } else { DOUBLES };
-        own.push((names[0], best(|| kruskal_wallis(x, method).unwrap())));
-        own.push((names[1], best(|| wilcoxon(&differences, WilcoxonOptions::default()).unwrap())));
-        own.push((names[2], best(|| spearman(x, y).unwrap())));
-        let both = [method, expression];
-        own.push((names[3], best(|| scheirer_ray_hare(x, both, SumsOfSquares::Two).unwrap())));
+    let bench = Bench::of(&path);
+    if served.is_some() {
+        println!("{{\"ready\": true}}");
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            println!("{}", bench.answer(&line));
+            let _ = std::io::stdout().flush();
+        }
+        return;
     }
-    let peers = peers(&path);
-    println!("{:<36}{:>12}{:>12}{:>10}", "", "Mimique ms", "peer ms", "times");
-    for (name, seconds) in &own {
-        let peer = peers.iter().find(|(other, _)| other == name).map(|(_, seconds)| *seconds);
-        let ms = seconds * 1e3;
-        match peer {
-            Some(peer) => {
-                println!("{name:<36}{ms:>12.1}{:>12.1}{:>10.1}", peer * 1e3, peer / seconds)
-            }
-            None => println!("{name:<36}{ms:>12.1}{:>12}{:>10}", "-", "-"),
+    println!("reading the CSV: {:.1} ms", 1e3 * bench.seconds("read"));
+    for kind in KINDS {
+        for test in TESTS {
+            println!("{test}, {kind}: {:.1} ms", 1e3 * bench.seconds(&format!("{test}, {kind}")));
         }
     }
-    let this = std::env::current_exe().expect("the path of this program");
-    let output = Command::new(this).arg("--memory").arg(&path).output().expect("a second run");
-    let peak: f64 = String::from_utf8_lossy(&output.stdout).trim().parse().unwrap_or(f64::NAN);
-    println!("memory of reading: {:.1} times the file of {bytes} bytes", peak / bytes as f64);
+    println!("memory of reading: {:.1} times the file", bench.memory());
 }
 
-const RATINGS: [&str; 4] = [
-    "Kruskal-Wallis, ratings",
-    "Wilcoxon, ratings",
-    "Spearman, ratings",
-    "Scheirer-Ray-Hare, ratings",
-];
-const DOUBLES: [&str; 4] = [
-    "Kruskal-Wallis, doubles",
-    "Wilcoxon, doubles",
-    "Spearman, doubles",
-    "Scheirer-Ray-Hare, doubles",
-];
+struct Bench<'a> {
+    path: &'a Path,
+    columns: Columns,
+    /// Differences of ratings and of doubles.
+    differences: [Numbers; 2],
+}
 
 struct Columns {
     factors: [Factor; 2],
     numbers: [Numbers; 4],
 }
 
+impl<'a> Bench<'a> {
+    fn of(path: &'a Path) -> Self {
+        let columns = read(path);
+        let difference = |x: &Numbers, y: &Numbers| Numbers {
+            name: "difference".to_owned(),
+            values: x.values.iter().zip(&y.values).map(|(x, y)| x - y).collect(),
+        };
+        let [rating, other, seconds, more] = &columns.numbers;
+        let differences = [difference(rating, other), difference(seconds, more)];
+        Self { path, columns, differences }
+    }
+
+    fn answer(&self, name: &str) -> String {
+        if name == "memory" {
+            return format!("{{\"times\": {}}}", self.memory());
+        }
+        format!("{{\"units\": 1, \"seconds\": {}}}", self.seconds(name))
+    }
+
+    fn seconds(&self, name: &str) -> f64 {
+        let kind = usize::from(name.ends_with(KINDS[1]));
+        let [method, expression] = &self.columns.factors;
+        let (x, y) = (&self.columns.numbers[2 * kind], &self.columns.numbers[2 * kind + 1]);
+        match name.split(',').next() {
+            Some("Kruskal-Wallis") => best(|| kruskal_wallis(x, method).unwrap()),
+            Some("Wilcoxon") => {
+                best(|| wilcoxon(&self.differences[kind], WilcoxonOptions::default()).unwrap())
+            }
+            Some("Spearman") => best(|| spearman(x, y).unwrap()),
+            Some("Scheirer-Ray-Hare") => {
+                best(|| scheirer_ray_hare(x, [method, expression], SumsOfSquares::Two).unwrap())
+            }
+            _ => best(|| read(self.path)),
+        }
+    }
+
+    /// Peak memory of reading, in times of the file.
+    fn memory(&self) -> f64 {
+        let this = std::env::current_exe().expect("the path of this program");
+        let output = Command::new(this).arg("--memory").arg(self.path).output().expect("a run");
+        let peak: f64 = String::from_utf8_lossy(&output.stdout).trim().parse().unwrap_or(f64::NAN);
+        peak / std::fs::metadata(self.path).map_or(f64::NAN, |data| data.len() as f64)
+    }
+}
+
 /// File to typed columns.
 fn read(path: &Path) -> Columns {
-    let table = Table::parse(&std::fs::read(path).unwrap()).unwrap();
+    let table = Table::parse(std::fs::read(path).unwrap()).unwrap();
     Columns {
         factors: ["method", "expression"].map(|name| table.factor(name).unwrap()),
         numbers: ["rating", "other", "seconds", "more"].map(|name| table.numbers(name).unwrap()),
@@ -123,20 +156,7 @@ fn write_rows(path: &Path) {
             methods[method], expressions[expression]
         ));
     }
-    std::fs::File::create(path).and_then(|mut file| file.write_all(text.as_bytes())).unwrap();
-}
-
-/// Seconds of the peers by name.
-fn peers(path: &Path) -> Vec<(String, f64)> {
-    let Some(python) = std::env::var_os("MIMIQUE_PYTHON") else { return Vec::new() };
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers.py");
-    let output = Command::new(python).args([script.as_ref(), path.as_os_str()]).output().unwrap();
-    eprint!("{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8_lossy(&output.stdout)
-        .lines()
-        .filter_map(|line| line.rsplit_once('\t'))
-        .filter_map(|(name, seconds)| Some((name.to_owned(), seconds.parse().ok()?)))
-        .collect()
+    std::fs::write(path, text).unwrap();
 }
 
 /// Peak resident memory of this process.

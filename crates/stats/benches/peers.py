@@ -1,36 +1,37 @@
-"""The peers of million_rows.rs: SciPy and NumPy on arrays in memory, polars on the file."""
+"""The peers of million_rows.rs: SciPy and NumPy on arrays in memory, polars on the file.
 
+Reads the file that million_rows.rs wrote, then answers each line of standard input, the name of a
+measurement, with one line of JSON. With `--once` it does what `mimique test kruskal-wallis` does, from
+the file to the printed result, and ends.
+"""
+
+import json
 import sys
 import time
 
 import numpy as np
+import polars
+import scipy
 from scipy import stats
 
-RUNS = 7
+RUNS = 3
+TYPES = {"method": polars.Categorical, "expression": polars.Categorical}
 
 
-def best(name, run):
-    seconds = []
-    for _ in range(RUNS):
-        start = time.perf_counter()
-        run()
-        seconds.append(time.perf_counter() - start)
-    print(f"{name}\t{min(seconds)}", flush=True)
+def read(path):
+    return polars.read_csv(path, schema_overrides=TYPES)
 
 
 path = sys.argv[1]
-try:
-    import polars
-
-    types = {"method": polars.Categorical, "expression": polars.Categorical}
-    best("read CSV", lambda: polars.read_csv(path, schema_overrides=types))
-except ImportError:
-    print("polars is not installed", file=sys.stderr)
-
-words = np.genfromtxt(path, delimiter=",", skip_header=1, usecols=(0, 1), dtype="U8")
-data = np.loadtxt(path, delimiter=",", skiprows=1, usecols=(2, 3, 4, 5))
-methods, method = np.unique(words[:, 0], return_inverse=True)
-expressions, expression = np.unique(words[:, 1], return_inverse=True)
+table = read(path)
+methods, method = np.unique(table["method"].cast(polars.String).to_numpy(), return_inverse=True)
+if "--once" in sys.argv:
+    x = table["seconds"].to_numpy()
+    print(stats.kruskal(*[x[method == code] for code in range(len(methods))]))
+    sys.exit()
+expressions, expression = np.unique(
+    table["expression"].cast(polars.String).to_numpy(), return_inverse=True
+)
 cell = method * len(expressions) + expression
 
 
@@ -50,11 +51,22 @@ def scheirer_ray_hare(y):
     return h, stats.chi2.sf(h, df)
 
 
-for kind, x, y in [("ratings", data[:, 0], data[:, 1]), ("doubles", data[:, 2], data[:, 3])]:
-    x, y = x.copy(), y.copy()
+runs = {"read": lambda: read(path)}
+for kind, x, y in [("ratings", "rating", "other"), ("doubles", "seconds", "more")]:
+    x, y = (table[name].to_numpy().astype(float) for name in (x, y))
     groups = [x[method == code] for code in range(len(methods))]
     differences = x - y
-    best(f"Kruskal-Wallis, {kind}", lambda: stats.kruskal(*groups))
-    best(f"Wilcoxon, {kind}", lambda: stats.wilcoxon(differences))
-    best(f"Spearman, {kind}", lambda: stats.spearmanr(x, y))
-    best(f"Scheirer-Ray-Hare, {kind}", lambda: scheirer_ray_hare(x))
+    runs[f"Kruskal-Wallis, {kind}"] = lambda groups=groups: stats.kruskal(*groups)
+    runs[f"Wilcoxon, {kind}"] = lambda d=differences: stats.wilcoxon(d)
+    runs[f"Spearman, {kind}"] = lambda x=x, y=y: stats.spearmanr(x, y)
+    runs[f"Scheirer-Ray-Hare, {kind}"] = lambda x=x: scheirer_ray_hare(x)
+
+versions = {"numpy": np.__version__, "scipy": scipy.__version__, "polars": polars.__version__}
+print(json.dumps(versions), flush=True)
+for line in sys.stdin:
+    seconds = []
+    for _ in range(RUNS):
+        start = time.perf_counter()
+        runs[line.strip()]()
+        seconds.append(time.perf_counter() - start)
+    print(json.dumps({"units": 1, "seconds": min(seconds)}), flush=True)

@@ -1,8 +1,8 @@
 //! A column as a factor: its levels in a stated order and a code a row.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
 
+use crate::coded::Coded;
 use crate::outcome::Refusal;
 use crate::table::list_of_names;
 
@@ -27,40 +27,38 @@ impl Factor {
         cells: impl Iterator<Item = Option<&'a str>>,
         number: impl Fn(&str) -> Option<f64>,
     ) -> Self {
-        let mut seen: HashMap<&str, u32> = HashMap::new();
-        let mut labels: Vec<&str> = Vec::new();
-        let mut codes: Vec<u32> = Vec::new();
-        for cell in cells {
-            codes.push(match cell {
-                None => Self::MISSING,
-                Some(cell) => *seen.entry(cell).or_insert_with(|| {
-                    labels.push(cell);
-                    labels.len() as u32 - 1
-                }),
-            });
-        }
+        let coded = Coded::of(cells.map(|cell| cell.map(str::as_bytes)));
+        let labels = coded.labels(|bytes| std::str::from_utf8(bytes).unwrap_or_default());
+        Self::of_coded(name, &labels, coded.codes, number)
+    }
+
+    /// From labels in the order of their first row, and the label of each row.
+    pub(crate) fn of_coded(
+        name: &str,
+        labels: &[&str],
+        mut codes: Vec<u32>,
+        number: impl Fn(&str) -> Option<f64>,
+    ) -> Self {
         // -0 and 0 are one level.
         let numbers: Option<Vec<f64>> =
             labels.iter().map(|label| number(label).map(|value| value + 0.0)).collect();
         let mut order: Vec<usize> = (0..labels.len()).collect();
-        let compare = |&a: &usize, &b: &usize| match &numbers {
-            Some(numbers) => numbers[a].total_cmp(&numbers[b]),
-            None => alphabetical(labels[a], labels[b]),
-        };
-        order.sort_by(compare);
+        match &numbers {
+            Some(numbers) => order.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b])),
+            None => order.sort_by_cached_key(|&label| (lower(labels[label]), labels[label])),
+        }
         let mut levels: Vec<String> = Vec::new();
         let mut new_code = vec![0; labels.len()];
         for (position, &old) in order.iter().enumerate() {
-            let repeats = position > 0
-                && numbers.is_some()
-                && compare(&order[position - 1], &old) == Ordering::Equal;
+            let repeats =
+                position > 0 && numbers.as_ref().is_some_and(|n| n[order[position - 1]] == n[old]);
             if !repeats {
                 levels.push(labels[old].to_owned());
             }
             new_code[old] = levels.len() as u32 - 1;
         }
-        for code in codes.iter_mut().filter(|code| **code != Self::MISSING) {
-            *code = new_code[*code as usize];
+        for code in &mut codes {
+            *code = new_code.get(*code as usize).copied().unwrap_or(Self::MISSING);
         }
         Self { name: name.to_owned(), levels, codes }
     }
@@ -124,6 +122,15 @@ impl Factor {
         Self { name: self.name.clone(), levels, codes }
     }
 
+    /// Without the levels that no row has.
+    pub(crate) fn used(self) -> Self {
+        if self.uses_all_levels() {
+            return self;
+        }
+        let all: Vec<usize> = (0..self.codes.len()).collect();
+        self.rows(&all)
+    }
+
     /// Whether each level occurs.
     pub(crate) fn uses_all_levels(&self) -> bool {
         let mut used = vec![false; self.levels.len()];
@@ -168,6 +175,9 @@ impl Factor {
 
 /// Alphabetical order: without regard to case first, then with.
 pub(crate) fn alphabetical(a: &str, b: &str) -> Ordering {
-    let lower = |text: &str| text.chars().flat_map(char::to_lowercase).collect::<String>();
     lower(a).cmp(&lower(b)).then_with(|| a.cmp(b))
+}
+
+fn lower(text: &str) -> String {
+    text.chars().flat_map(char::to_lowercase).collect()
 }

@@ -6,7 +6,9 @@
 
 mod adjust;
 mod aligned_rank_transform;
+mod cells;
 mod chi_square;
+mod coded;
 mod confusion;
 mod csv;
 mod describe;
@@ -16,6 +18,7 @@ mod grouped;
 mod kendall;
 mod kruskal_wallis;
 mod mann_whitney;
+mod number;
 mod order_statistic;
 mod outcome;
 mod power;

@@ -2,12 +2,12 @@
 //!
 //! The number of pairs at most some limit is counted in one pass along both samples. That count is
 //! nearly linear between two limits, so a false-position search (Dowell and Jarratt 1971, "Illinois")
-//! closes in on k in a few passes; once few pairs are left between the limits they are listed and the
-//! k-th is selected. Halving the bits of the limits is the fallback, so the search always ends, and
+//! closes in on k in a few passes, from limits that few values standing for many have found; once few
+//! pairs are left between the limits they are listed and the k-th is selected. Halving the bits of the limits is the fallback, so the search always ends, and
 //! its answer is one of the pairs' own values, to the last bit.
 
 /// Pair values in rows: within a row they ascend.
-pub(crate) trait Pairs {
+pub(crate) trait Pairs: Sync {
     /// Pairs whose value is at most a limit, and how many distinct pairs of distinct values they are.
     fn at_most(&self, limit: f64) -> Count;
 
@@ -16,6 +16,10 @@ pub(crate) trait Pairs {
 
     /// Smallest and largest value.
     fn range(&self) -> (f64, f64);
+
+    /// Limits that should lie closely on both sides of the value with this share of all pairs below
+    /// it, where they cost less than a few passes.
+    fn guess(&self, share: f64) -> Option<(f64, f64)>;
 }
 
 /// How many pairs.
@@ -29,6 +33,8 @@ pub(crate) struct Count {
 
 /// Distinct pairs that are listed at once.
 const LISTED: u64 = 1 << 16;
+/// Pairs that a limit is put beside the one sought.
+const ASIDE: u64 = LISTED / 4;
 
 /// The `k`-th and the next (`k` from 1) smallest; of the last one itself twice.
 pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
@@ -36,12 +42,26 @@ pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
     // Invariant: fewer than k at `low`, k or more at `high`.
     let (mut low, mut high) = (Limit::below(smallest), Limit::at(largest, pairs));
     let all = high.count.pairs;
-    let target = k as f64 - 0.5;
+    if let Some((below, above)) = pairs.guess(k as f64 / all as f64) {
+        for limit in [below, above].map(|value| Limit::at(value, pairs)) {
+            if limit.count.pairs < k {
+                if limit.value > low.value {
+                    low = limit;
+                }
+            } else if limit.value < high.value {
+                high = limit;
+            }
+        }
+    }
     let (mut low_weight, mut high_weight) = (1.0f64, 1.0f64);
     let mut last_side = None;
     let mut step = 0;
     while high.count.distinct - low.count.distinct > LISTED {
         step += 1;
+        // A little to the side of k where more pairs are left, so that k comes to lie between.
+        let (under, over) = (k - low.count.pairs, high.count.pairs - k);
+        let aside = (under.max(over) / 4).min(ASIDE) as f64;
+        let target = k as f64 - 0.5 + if under > over { -aside } else { aside };
         let below = (low.count.pairs as f64 - target) * low_weight;
         let above = (high.count.pairs as f64 - target) * high_weight;
         let by_line = low.value + (high.value - low.value) * (-below / (above - below));

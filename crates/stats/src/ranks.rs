@@ -21,11 +21,7 @@ pub struct Ranks {
 impl Ranks {
     /// Ranks finite values; -0 and 0 are one value.
     pub fn of(sample: &[f64]) -> Self {
-        let (values, codes) = by_counting(sample).unwrap_or_else(|| by_sorting(sample));
-        let mut counts = vec![0; values.len()];
-        for &code in &codes {
-            counts[code as usize] += 1;
-        }
+        let (values, counts, codes) = by_counting(sample).unwrap_or_else(|| by_sorting(sample));
         let mut below = 0;
         let doubled = counts
             .iter()
@@ -80,7 +76,10 @@ impl Ranks {
     }
 }
 
-fn by_counting(sample: &[f64]) -> Option<(Vec<f64>, Vec<u32>)> {
+/// Distinct values, how often each occurs, which of them each observation is.
+type Counted = (Vec<f64>, Vec<u64>, Vec<u32>);
+
+fn by_counting(sample: &[f64]) -> Option<Counted> {
     let mut found = Found::new();
     let mut codes = Vec::with_capacity(sample.len());
     for &value in sample {
@@ -91,22 +90,30 @@ fn by_counting(sample: &[f64]) -> Option<(Vec<f64>, Vec<u32>)> {
     for (new, &old) in order.iter().enumerate() {
         new_code[old as usize] = new as u32;
     }
+    let mut counts = vec![0; order.len()];
     for code in &mut codes {
         *code = new_code[*code as usize];
+        counts[*code as usize] += 1;
     }
-    Some((order.iter().map(|&old| found.values[old as usize]).collect(), codes))
+    Some((order.iter().map(|&old| found.values[old as usize]).collect(), counts, codes))
 }
 
-fn by_sorting(sample: &[f64]) -> (Vec<f64>, Vec<u32>) {
-    let mut values: Vec<f64> = Vec::new();
+fn by_sorting(sample: &[f64]) -> Counted {
+    let mut values: Vec<f64> = Vec::with_capacity(sample.len());
+    let mut counts: Vec<u64> = Vec::with_capacity(sample.len());
     let mut codes = vec![0; sample.len()];
-    for (value, observation) in radix::sorted_with_places(sample) {
-        if values.last() != Some(&value) {
-            values.push(value);
+    for place in radix::places(sample) {
+        let value = sample[place as usize] + 0.0; // -0 becomes 0
+        match counts.last_mut() {
+            Some(count) if values.last() == Some(&value) => *count += 1,
+            _ => {
+                values.push(value);
+                counts.push(1);
+            }
         }
-        codes[observation as usize] = values.len() as u32 - 1;
+        codes[place as usize] = values.len() as u32 - 1;
     }
-    (values, codes)
+    (values, counts, codes)
 }
 
 #[cfg(test)]

@@ -14,18 +14,6 @@ pub(crate) enum Zeros {
     Split,
 }
 
-/// Midranks of absolute differences with their signs, doubled so that they are integers; a group of
-/// equal absolute differences at a time.
-#[derive(Debug, Clone)]
-pub(crate) struct SignedRanks {
-    /// Doubled midranks that a coin toss gives to one side or the other, and how often each occurs.
-    tossed: Vec<(u64, u64)>,
-    doubled_plus: u64,
-    doubled_minus: u64,
-    mean: f64,
-    variance: f64,
-}
-
 /// Differences of one absolute value.
 #[derive(Debug, Clone, Copy)]
 struct Magnitude {
@@ -33,48 +21,76 @@ struct Magnitude {
     minus: u64,
 }
 
-/// Distinct absolute values in ascending order, zero left out.
-fn magnitudes(differences: &Tally) -> Vec<Magnitude> {
-    let Tally { values, counts } = differences;
-    let mut below = values.partition_point(|&value| value < 0.0);
-    let mut above = values.partition_point(|&value| value <= 0.0);
-    let mut found = Vec::with_capacity(values.len());
-    while below > 0 || above < values.len() {
-        let minus = if below > 0 { -values[below - 1] } else { f64::INFINITY };
-        let plus = values.get(above).copied().unwrap_or(f64::INFINITY);
-        let mut magnitude = Magnitude { plus: 0, minus: 0 };
-        if minus <= plus {
-            below -= 1;
-            magnitude.minus = counts[below];
-        }
-        if plus <= minus {
-            magnitude.plus = counts[above];
-            above += 1;
-        }
-        found.push(magnitude);
-    }
-    found
+/// Distinct absolute differences in ascending order, and how many differences are zero.
+#[derive(Debug, Clone)]
+pub(crate) struct Magnitudes {
+    groups: Vec<Magnitude>,
+    zeros: u64,
 }
 
-impl SignedRanks {
-    /// At least one difference must be other than zero.
-    pub(crate) fn of(differences: &Tally, zeros: Zeros) -> Self {
-        let groups = magnitudes(differences);
-        let zero_count =
-            differences.total() - groups.iter().map(|group| group.plus + group.minus).sum::<u64>();
-        let ranked_zeros = if zeros == Zeros::Drop { 0 } else { zero_count };
-        let tie = |count: u64| (count as f64) * ((count * count) as f64 - 1.0);
-        let (mut plus, mut minus) = (0u64, 0u64);
-        let (mut below, mut tie_term) = (ranked_zeros, tie(ranked_zeros));
-        let mut tossed = Vec::with_capacity(groups.len());
-        for group in groups {
+impl Magnitudes {
+    pub(crate) fn of(differences: &Tally) -> Self {
+        let Tally { values, counts } = differences;
+        let mut below = values.partition_point(|&value| value < 0.0);
+        let mut above = values.partition_point(|&value| value <= 0.0);
+        let zeros = counts[below..above].iter().sum();
+        let mut groups = Vec::with_capacity(values.len());
+        while below > 0 || above < values.len() {
+            let minus = if below > 0 { -values[below - 1] } else { f64::INFINITY };
+            let plus = values.get(above).copied().unwrap_or(f64::INFINITY);
+            let mut magnitude = Magnitude { plus: 0, minus: 0 };
+            if minus <= plus {
+                below -= 1;
+                magnitude.minus = counts[below];
+            }
+            if plus <= minus {
+                magnitude.plus = counts[above];
+                above += 1;
+            }
+            groups.push(magnitude);
+        }
+        Self { groups, zeros }
+    }
+
+    /// Twice the midrank of each magnitude, with what has it; zeros have the lowest ranks.
+    fn doubled_ranks(&self, ranked_zeros: u64) -> impl Iterator<Item = (u64, Magnitude)> {
+        let mut below = ranked_zeros;
+        self.groups.iter().map(move |&group| {
             let count = group.plus + group.minus;
             let rank = 2 * below + count + 1;
             below += count;
+            (rank, group)
+        })
+    }
+}
+
+/// Midranks of absolute differences with their signs, doubled so that they are integers.
+#[derive(Debug, Clone)]
+pub(crate) struct SignedRanks<'a> {
+    magnitudes: &'a Magnitudes,
+    ranked_zeros: u64,
+    ties: bool,
+    doubled_plus: u64,
+    doubled_minus: u64,
+    mean: f64,
+    variance: f64,
+}
+
+impl<'a> SignedRanks<'a> {
+    /// At least one difference must be other than zero.
+    pub(crate) fn of(magnitudes: &'a Magnitudes, zeros: Zeros) -> Self {
+        let ranked_zeros = if zeros == Zeros::Drop { 0 } else { magnitudes.zeros };
+        let tie = |count: u64| (count as f64) * ((count * count) as f64 - 1.0);
+        let (mut plus, mut minus, mut n) = (0u64, 0u64, ranked_zeros);
+        let (mut ties, mut tie_term, mut squares) = (false, tie(ranked_zeros), 0.0);
+        for (rank, group) in magnitudes.doubled_ranks(ranked_zeros) {
+            let count = group.plus + group.minus;
+            n += count;
+            ties |= count > 1;
             tie_term += tie(count);
             plus += group.plus * rank;
             minus += group.minus * rank;
-            tossed.push((rank, count));
+            squares += (rank as f64 / 2.0).powi(2) * count as f64;
         }
         // Zeros that are split add the same to both sides; as other tools do, the variance then counts
         // their ranks as if they had a sign, and corrects for their tie.
@@ -82,29 +98,36 @@ impl SignedRanks {
             let of_zeros = ranked_zeros * (ranked_zeros + 1);
             plus += of_zeros / 2;
             minus += of_zeros / 2;
-            let n = below as f64;
+            let n = n as f64;
             let full = n * (n + 1.0) * (2.0 * n + 1.0);
             (n * (n + 1.0) / 4.0, (full - tie_term / 2.0) / 24.0)
         } else {
-            let sum: u64 = tossed.iter().map(|(rank, count)| rank * count).sum();
-            let squares: f64 = tossed
-                .iter()
-                .map(|&(rank, count)| (rank as f64 / 2.0).powi(2) * count as f64)
-                .sum();
-            (sum as f64 / 4.0, squares / 4.0)
+            ((plus + minus) as f64 / 4.0, squares / 4.0)
         };
-        Self { tossed, doubled_plus: plus, doubled_minus: minus, mean, variance }
+        Self {
+            magnitudes,
+            ranked_zeros,
+            ties,
+            doubled_plus: plus,
+            doubled_minus: minus,
+            mean,
+            variance,
+        }
     }
 
-    /// Doubled midranks one by one.
+    /// Doubled midranks one by one: those that a coin toss gives to one side or the other.
     fn each(&self) -> Vec<u64> {
-        let each = |&(rank, count): &(u64, u64)| std::iter::repeat_n(rank, count as usize);
-        self.tossed.iter().flat_map(each).collect()
+        let ranks = self.magnitudes.doubled_ranks(self.ranked_zeros);
+        ranks
+            .flat_map(|(rank, group)| {
+                std::iter::repeat_n(rank, (group.plus + group.minus) as usize)
+            })
+            .collect()
     }
 
     /// Whether any two differences other than zero have one absolute value.
     pub(crate) fn has_ties(&self) -> bool {
-        self.tossed.iter().any(|(_, count)| *count > 1)
+        self.ties
     }
 
     /// W+.
@@ -168,7 +191,8 @@ mod tests {
 
     /// Tails by trying every combination of signs.
     fn enumerated(differences: &[f64], zeros: Zeros) -> (f64, f64) {
-        let ranks = SignedRanks::of(&Tally::of(differences), zeros);
+        let magnitudes = Magnitudes::of(&Tally::of(differences));
+        let ranks = SignedRanks::of(&magnitudes, zeros);
         let tossed = ranks.each();
         let n = tossed.len();
         let (mut at_most, mut at_least) = (0u64, 0u64);
@@ -192,7 +216,8 @@ mod tests {
         ];
         for sample in samples {
             for zeros in [Zeros::Drop, Zeros::Pratt] {
-                let ranks = SignedRanks::of(&Tally::of(sample), zeros);
+                let magnitudes = Magnitudes::of(&Tally::of(sample));
+                let ranks = SignedRanks::of(&magnitudes, zeros);
                 let (at_most, at_least) = enumerated(sample, zeros);
                 assert_eq!(ranks.exact(Alternative::Less).p, at_most);
                 assert_eq!(ranks.exact(Alternative::Greater).p, at_least);

@@ -56,7 +56,8 @@ pub struct Spearman {
 pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> {
     let rows = complete_rows(&[x, y], &[])?;
     let (n, dropped) = (rows.len(), rows.dropped());
-    let (rank_x, rank_y) = (Ranks::of(&rows.numbers(x)), Ranks::of(&rows.numbers(y)));
+    let (rank_x, rank_y) =
+        rayon::join(|| Ranks::of(&rows.numbers(x)), || Ranks::of(&rows.numbers(y)));
     for (ranks, column) in [(&rank_x, x), (&rank_y, y)] {
         if ranks.values.len() == 1 {
             return Ok(Outcome::undefined(format!(

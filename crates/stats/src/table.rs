@@ -6,8 +6,13 @@
 
 use std::collections::HashMap;
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+use crate::cells::{self, Cells, Mistake, Records};
+use crate::coded::Coded;
 use crate::csv;
 use crate::factor::Factor;
+use crate::number::{parse_number, plain_decimal};
 use crate::outcome::Refusal;
 
 /// What keeps a file from being a table.
@@ -54,13 +59,14 @@ pub enum TableError {
 /// A table of text cells.
 #[derive(Debug, Clone)]
 pub struct Table {
-    text: String,
+    /// UTF-8.
+    bytes: Vec<u8>,
     names: Vec<String>,
     by_name: HashMap<String, usize>,
-    /// Start and end of each cell in `text`, row after row.
-    cells: Vec<(u32, u32)>,
-    /// Line of the file where each row starts.
-    lines: Vec<u32>,
+    /// The rows below the header, piece after piece.
+    pieces: Vec<Records>,
+    /// The first row of each piece, and the number of rows.
+    firsts: Vec<usize>,
     separator: char,
 }
 
@@ -74,41 +80,55 @@ pub struct Numbers {
 }
 
 impl Table {
-    /// Reads a table from the bytes of a file.
-    pub fn parse(bytes: &[u8]) -> Result<Self, TableError> {
-        let text = csv::decode(bytes);
-        if text.len() > u32::MAX as usize {
-            return Err(TableError::TooLarge { bytes: text.len() });
+    /// Reads a table from the bytes of a file, which it keeps.
+    pub fn parse(bytes: impl Into<Vec<u8>>) -> Result<Self, TableError> {
+        let (mut bytes, start) = csv::decode(bytes.into());
+        if bytes.len() >= u32::MAX as usize {
+            return Err(TableError::TooLarge { bytes: bytes.len() });
         }
-        if text.trim().is_empty() {
+        let separator = csv::find_separator(&bytes[start..]);
+        let Cells { width, header, pieces } =
+            cells::cut(&mut bytes, start, separator as u8, cells::PIECE).map_err(
+                |(mistake, width)| {
+                    let line = |at: usize| line_of(&bytes, at);
+                    match mistake {
+                        Mistake::OpenQuote { at } => TableError::OpenQuote { line: line(at) },
+                        Mistake::Ragged { at, found } => {
+                            TableError::Ragged { line: line(at), found, expected: width }
+                        }
+                    }
+                },
+            )?;
+        if width == 0 {
             return Err(TableError::Empty);
         }
-        let separator = csv::find_separator(&text);
-        let raw = csv::split(text, separator)?;
-        let mut names = Vec::with_capacity(raw.width);
+        let mut names = Vec::with_capacity(width);
         let mut by_name = HashMap::new();
-        for (position, &(start, end)) in raw.cells[..raw.width].iter().enumerate() {
-            let mut name = raw.text[start as usize..end as usize].trim().to_owned();
+        for column in 0..width {
+            let (start, end) = header.place(0, column, width);
+            let mut name = text(cells::unquoted(&bytes[start..end])).trim().to_owned();
             if name.is_empty() {
                 // Row names of `write.csv`, or separators at the end of each line.
-                name = format!("column {}", position + 1);
+                name = format!("column {}", column + 1);
             }
-            if by_name.insert(name.clone(), position).is_some() {
+            if by_name.insert(name.clone(), column).is_some() {
                 return Err(TableError::RepeatedColumn { name });
             }
             names.push(name);
         }
-        if raw.lines.len() < 2 {
+        let mut firsts = vec![0];
+        for piece in &pieces {
+            firsts.push(firsts[firsts.len() - 1] + piece.len(width));
+        }
+        if firsts[firsts.len() - 1] == 0 {
             return Err(TableError::NoRows);
         }
-        let cells = raw.cells[raw.width..].to_vec();
-        let lines = raw.lines[1..].to_vec();
-        Ok(Self { text: raw.text, names, by_name, cells, lines, separator })
+        Ok(Self { bytes, names, by_name, pieces, firsts, separator })
     }
 
     /// Number of rows below the header.
     pub fn rows(&self) -> usize {
-        self.lines.len()
+        self.firsts[self.firsts.len() - 1]
     }
 
     /// Names of the columns, in the file's order.
@@ -126,16 +146,38 @@ impl Table {
         self.separator
     }
 
-    /// Line of the file where a row starts, from 1.
+    /// Line of the file where a row starts, from 1. Counts the lines before it: for messages.
     pub fn line(&self, row: usize) -> usize {
-        self.lines[row] as usize
+        let piece = self.piece(row);
+        let at = self.pieces[piece].start(row - self.firsts[piece], self.names.len());
+        line_of(&self.bytes, at)
+    }
+
+    /// The piece that a row is in.
+    fn piece(&self, row: usize) -> usize {
+        self.firsts.partition_point(|&first| first <= row) - 1
     }
 
     /// A cell without surrounding blanks; `None` where missing (blank, `NA`, `NaN`).
     pub fn cell(&self, row: usize, column: usize) -> Option<&str> {
-        let (start, end) = self.cells[row * self.names.len() + column];
-        let cell = self.text[start as usize..end as usize].trim();
-        (!matches!(cell, "" | "NA" | "NaN" | "nan")).then_some(cell)
+        let piece = self.piece(row);
+        self.written(piece, row - self.firsts[piece], column).map(text)
+    }
+
+    /// What is written in a cell of a piece.
+    #[inline]
+    fn written(&self, piece: usize, record: usize, column: usize) -> Option<&[u8]> {
+        let (start, end) = self.pieces[piece].place(record, column, self.names.len());
+        let cell = &self.bytes[start..end];
+        // Neither quote nor blank nor anything that could be another blank than that of ASCII.
+        let plain = |byte: u8| byte.is_ascii_graphic() && byte != b'"';
+        let cell = match cell {
+            [] => return None,
+            [first, .., last] if plain(*first) && plain(*last) => cell,
+            [only] if plain(*only) => return Some(cell),
+            _ => text(cells::unquoted(cell)).trim().as_bytes(),
+        };
+        (!matches!(cell, b"" | b"NA" | b"NaN" | b"nan")).then_some(cell)
     }
 
     /// Position of a column by name.
@@ -158,17 +200,35 @@ impl Table {
     /// A column as numbers. A decimal comma is understood where the separator is not a comma.
     pub fn numbers(&self, name: &str) -> Result<Numbers, Refusal> {
         let position = self.position(name)?;
-        let mut values = Vec::with_capacity(self.rows());
-        for row in 0..self.rows() {
-            let value = match self.cell(row, position) {
-                None => f64::NAN,
-                Some(cell) => self.number(cell).ok_or_else(|| {
-                    let problem = format!("line {}: \"{cell}\" is not a number", self.line(row));
-                    let remedy = "give a number, or leave the cell blank or NA if it is missing";
-                    Refusal::column(name, problem, remedy)
-                })?,
-            };
-            values.push(value);
+        let mut values = vec![0.0; self.rows()];
+        let mut rest = values.as_mut_slice();
+        let mut stretches = Vec::with_capacity(self.pieces.len());
+        for (piece, ends) in self.firsts.windows(2).enumerate() {
+            let (own, after) = rest.split_at_mut(ends[1] - ends[0]);
+            stretches.push((piece, own));
+            rest = after;
+        }
+        let mistakes: Vec<Option<usize>> = stretches
+            .into_par_iter()
+            .map(|(piece, values)| {
+                values.iter_mut().enumerate().find_map(|(record, value)| {
+                    match self.written(piece, record, position) {
+                        None => *value = f64::NAN,
+                        Some(cell) => match plain_decimal(cell).or_else(|| self.number(text(cell)))
+                        {
+                            Some(number) => *value = number,
+                            None => return Some(self.firsts[piece] + record),
+                        },
+                    }
+                    None
+                })
+            })
+            .collect();
+        if let Some(row) = mistakes.into_iter().flatten().next() {
+            let cell = self.cell(row, position).unwrap_or_default();
+            let problem = format!("line {}: \"{cell}\" is not a number", self.line(row));
+            let remedy = "give a number, or leave the cell blank or NA if it is missing";
+            return Err(Refusal::column(name, problem, remedy));
         }
         Ok(Numbers { name: name.trim().to_owned(), values })
     }
@@ -176,8 +236,17 @@ impl Table {
     /// A column as a factor: levels in numeric order if all are numbers, else alphabetical.
     pub fn factor(&self, name: &str) -> Result<Factor, Refusal> {
         let position = self.position(name)?;
-        let cells = (0..self.rows()).map(|row| self.cell(row, position));
-        Ok(Factor::from_cells(name.trim(), cells, |cell| self.number(cell)))
+        let pieces: Vec<Coded> = (0..self.pieces.len())
+            .into_par_iter()
+            .map(|piece| {
+                let rows = self.firsts[piece + 1] - self.firsts[piece];
+                Coded::of((0..rows).map(|record| self.written(piece, record, position)))
+            })
+            .collect();
+        let coded = Coded::joined(pieces);
+        Ok(Factor::of_coded(name.trim(), &coded.labels(text), coded.codes, |cell| {
+            self.number(cell)
+        }))
     }
 
     /// One column as a factor, or the combination of several named with commas between them
@@ -200,8 +269,18 @@ impl Table {
 
     /// A cell as a finite number.
     fn number(&self, cell: &str) -> Option<f64> {
-        csv::parse_number(cell, self.separator != ',')
+        parse_number(cell, self.separator != ',')
     }
+}
+
+/// Bytes that are UTF-8.
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap_or_default()
+}
+
+/// Line of a file, from 1, that a place is in.
+fn line_of(bytes: &[u8], at: usize) -> usize {
+    1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count()
 }
 
 /// At most twelve names, quoted.
@@ -218,7 +297,7 @@ pub(crate) fn list_of_names(names: &[String]) -> String {
 mod tests {
     use super::*;
 
-    fn numbers(bytes: &[u8], name: &str) -> Vec<f64> {
+    fn numbers<const N: usize>(bytes: &[u8; N], name: &str) -> Vec<f64> {
         Table::parse(bytes).unwrap().numbers(name).unwrap().values
     }
 
@@ -242,7 +321,7 @@ mod tests {
             .chain("g\ty\ré\t1\r".replace('\r', "\r\n").encode_utf16())
             .flat_map(u16::to_le_bytes)
             .collect();
-        assert_eq!(Table::parse(&utf16).unwrap().cell(0, 0), Some("é"));
+        assert_eq!(Table::parse(utf16).unwrap().cell(0, 0), Some("é"));
         let lines = Table::parse(b"a,b\n\"x\ny\",1\n\n2,3\n").unwrap();
         assert_eq!(lines.cell(0, 0), Some("x\ny"));
         assert_eq!(lines.line(1), 5);

@@ -46,6 +46,11 @@ impl Tally {
         self.counts.iter().sum()
     }
 
+    /// Whether a value occurs.
+    pub(crate) fn has(&self, value: f64) -> bool {
+        self.values.binary_search_by(|other| other.total_cmp(&(value + 0.0))).is_ok()
+    }
+
     /// Without one value.
     pub(crate) fn without(&self, value: f64) -> Self {
         let kept = || self.values.iter().zip(&self.counts).filter(move |(v, _)| **v != value);

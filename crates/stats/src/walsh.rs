@@ -1,6 +1,9 @@
 //! Hodges-Lehmann estimates and intervals: order statistics of Walsh averages (one sample) and of
 //! pairwise differences (two samples), found without listing them.
 
+use std::ops::Range;
+
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 use crate::order_statistic::{Count, Pairs, two_from};
@@ -25,48 +28,52 @@ pub struct HodgesLehmann {
 
 pub(crate) const LEVEL: f64 = 0.95;
 
-/// Median of the Walsh averages (d_i + d_j)/2, i <= j.
-pub(crate) fn one_sample_location(differences: &Tally) -> f64 {
-    middle_of(&WalshAverages::of(differences), pairs_of(differences.total()))
+/// Intervals of the location: from all differences, and as R of 2019 from those other than zero
+/// (`nonzero` where there are any), whose p was exact or not.
+pub(crate) fn intervals(
+    all: &Tally,
+    nonzero: Option<&Tally>,
+    exact: bool,
+) -> (HodgesLehmann, HodgesLehmann) {
+    let cut = one_sample_cut(all.total());
+    let of_all = interval_of_walsh(all, cut);
+    let thesis_cut = thesis_cut(nonzero.unwrap_or(all), exact);
+    if nonzero.is_none() && thesis_cut == Some(cut) {
+        return (of_all, of_all);
+    }
+    let mut thesis = interval_of_walsh(nonzero.unwrap_or(all), thesis_cut.unwrap_or(0));
+    thesis.level_reached &= thesis_cut.is_some();
+    (of_all, thesis)
 }
 
-/// Interval of the location from the Walsh averages of all differences: the signed rank distribution
-/// without ties decides how many to cut off (exactly up to 200 differences, normal beyond), which is
-/// conservative with ties.
-pub(crate) fn one_sample_interval(differences: &Tally) -> HodgesLehmann {
-    let n = differences.total();
-    let cut = if n <= 200 {
-        exact_cut(n)
-    } else {
-        let size = n as f64;
-        let variance = size * (size + 1.0) * (2.0 * size + 1.0) / 24.0;
-        let half = pairs_of(n) as f64 / 2.0;
-        (half - normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance.sqrt() - 0.5).floor().max(0.0)
-            as u64
-    };
-    interval_of_walsh(differences, cut)
+/// Walsh averages to leave out at each end: the signed rank distribution without ties decides (exactly
+/// up to 200 differences, normal beyond), which is conservative with ties.
+fn one_sample_cut(n: u64) -> u64 {
+    if n <= 200 {
+        return exact_cut(n);
+    }
+    let size = n as f64;
+    let variance = size * (size + 1.0) * (2.0 * size + 1.0) / 24.0;
+    let half = pairs_of(n) as f64 / 2.0;
+    let reach = normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance.sqrt() + 0.5;
+    (half - reach).floor().max(0.0) as u64
 }
 
-/// Interval as R of 2019: exact, or by inverting the normal test with continuity correction, whose
-/// variance knows only ties that remain at every shift.
-pub(crate) fn thesis_interval(nonzero: &Tally, exact: bool) -> HodgesLehmann {
+/// The same as R of 2019: exact, or by inverting the normal test with continuity correction, whose
+/// variance knows only ties that remain at every shift. None where so few cannot give the level.
+fn thesis_cut(nonzero: &Tally, exact: bool) -> Option<u64> {
     let n = nonzero.total();
     if exact {
-        return interval_of_walsh(nonzero, exact_cut(n));
+        return Some(exact_cut(n));
     }
     let size = n as f64;
     let variance = size * (size + 1.0) * (2.0 * size + 1.0) / 24.0 - nonzero.tie_term() / 48.0;
     let half = pairs_of(n) as f64 / 2.0;
-    let reach = 0.5 + normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance.max(0.0).sqrt();
+    let reach = normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance.max(0.0).sqrt() + 0.5;
     // W+ at a shift is the number of Walsh averages above it; the border is where it falls below
     // half + reach.
     let cut = (half - reach).floor();
-    if cut < 0.0 {
-        let mut widest = interval_of_walsh(nonzero, 0);
-        widest.level_reached = false;
-        return widest;
-    }
-    interval_of_walsh(nonzero, cut as u64)
+    (cut >= 0.0).then_some(cut as u64)
 }
 
 fn pairs_of(n: u64) -> u64 {
@@ -126,23 +133,39 @@ pub(crate) fn two_sample_interval(x: &Tally, y: &Tally, cut: Option<u64>) -> Hod
 
 /// Median, and the values that leave `cut` outside on each side. With many pairs the three are sought
 /// at the same time.
-fn three(values: &(impl Pairs + Sync), pairs: u64, cut: u64) -> (f64, f64, f64) {
+fn three(values: &impl Pairs, pairs: u64, cut: u64) -> (f64, f64, f64) {
     let low = || two_from(values, cut + 1).0;
     let high = || two_from(values, pairs - cut).0;
-    if pairs < 1 << 32 {
+    if pairs < 1 << 24 {
         return (middle_of(values, pairs), low(), high());
     }
-    std::thread::scope(|scope| {
-        let beside = scope.spawn(|| (low(), high()));
-        let estimate = middle_of(values, pairs);
-        let (low, high) = beside.join().unwrap_or_else(|_| (low(), high()));
-        (estimate, low, high)
-    })
+    let (estimate, (low, high)) =
+        rayon::join(|| middle_of(values, pairs), || rayon::join(low, high));
+    (estimate, low, high)
 }
 
 fn middle_of(values: &impl Pairs, pairs: u64) -> f64 {
     let (low, high) = two_from(values, pairs.div_ceil(2));
     if pairs % 2 == 1 { low } else { 0.5 * (low + high) }
+}
+
+/// Values of a sample of which few stand for all of them.
+const STAND_INS: usize = 1 << 13;
+/// Distinct values from which on a search begins with stand-ins.
+const MANY: usize = 1 << 16;
+/// Distinct values a thread counts at a time.
+const STRETCH: usize = 1 << 17;
+
+/// Values at evenly spaced ranks.
+fn stand_ins(tally: &Tally, before: &[u64]) -> Tally {
+    let step = tally.total() as f64 / STAND_INS as f64;
+    let at = |i: usize| {
+        let rank = ((i as f64 + 0.5) * step) as u64;
+        tally.values[before.partition_point(|&b| b <= rank) - 1]
+    };
+    let values: Vec<f64> = (0..STAND_INS).map(at).collect();
+    let counts = vec![1; values.len()];
+    Tally { values, counts }
 }
 
 /// Averages of a sample's values with each other and with themselves.
@@ -151,11 +174,35 @@ struct WalshAverages<'a> {
     counts: &'a [u64],
     /// Values with repetition before each place.
     before: Vec<u64>,
+    stand_ins: Option<Tally>,
 }
 
 impl<'a> WalshAverages<'a> {
     fn of(tally: &'a Tally) -> Self {
-        Self { values: &tally.values, counts: &tally.counts, before: before(&tally.counts) }
+        let before = before(&tally.counts);
+        let stand_ins = (tally.values.len() >= MANY).then(|| stand_ins(tally, &before));
+        Self { values: &tally.values, counts: &tally.counts, before, stand_ins }
+    }
+
+    /// Pairs at most a limit whose first value stands in a range of places.
+    fn at_most_from(&self, places: Range<usize>, limit: f64) -> Count {
+        let Some(&start) = self.values.get(places.start) else { return Count::default() };
+        // As i grows, fewer j satisfy the limit.
+        let mut end = self.values.partition_point(|&other| 0.5 * (start + other) <= limit);
+        let mut count = Count::default();
+        for i in places {
+            let first = self.values[i];
+            while end > i && 0.5 * (first + self.values[end - 1]) > limit {
+                end -= 1;
+            }
+            if end <= i {
+                break;
+            }
+            let own = self.counts[i];
+            count.distinct += (end - i) as u64;
+            count.pairs += own * (own + 1) / 2 + own * (self.before[end] - self.before[i + 1]);
+        }
+        count
     }
 }
 
@@ -170,23 +217,21 @@ fn before(counts: &[u64]) -> Vec<u64> {
     before
 }
 
+/// The sum over stretches of the places below `n`, several at the same time.
+fn over_stretches(n: usize, count: impl Fn(Range<usize>) -> Count + Sync) -> Count {
+    if n <= STRETCH {
+        return count(0..n);
+    }
+    let stretches = (0..n.div_ceil(STRETCH)).into_par_iter();
+    stretches.map(|s| count(s * STRETCH..n.min((s + 1) * STRETCH))).reduce(
+        Count::default,
+        |a, b| Count { pairs: a.pairs + b.pairs, distinct: a.distinct + b.distinct },
+    )
+}
+
 impl Pairs for WalshAverages<'_> {
     fn at_most(&self, limit: f64) -> Count {
-        // As i grows, fewer j satisfy the limit.
-        let mut count = Count::default();
-        let mut end = self.values.len();
-        for (i, &first) in self.values.iter().enumerate() {
-            while end > i && 0.5 * (first + self.values[end - 1]) > limit {
-                end -= 1;
-            }
-            if end <= i {
-                break;
-            }
-            let own = self.counts[i];
-            count.distinct += (end - i) as u64;
-            count.pairs += own * (own + 1) / 2 + own * (self.before[end] - self.before[i + 1]);
-        }
-        count
+        over_stretches(self.values.len(), |places| self.at_most_from(places, limit))
     }
 
     fn between(&self, low: f64, high: f64, mut found: impl FnMut(f64, u64)) {
@@ -213,6 +258,11 @@ impl Pairs for WalshAverages<'_> {
     fn range(&self) -> (f64, f64) {
         (self.values[0], self.values[self.values.len() - 1])
     }
+
+    fn guess(&self, share: f64) -> Option<(f64, f64)> {
+        let few = self.stand_ins.as_ref()?;
+        Some(around(&WalshAverages::of(few), pairs_of(few.total()), share))
+    }
 }
 
 /// Differences x - y of two samples.
@@ -220,20 +270,25 @@ struct Differences<'a> {
     x: &'a Tally,
     y: &'a Tally,
     y_before: Vec<u64>,
+    stand_ins: Option<[Tally; 2]>,
 }
 
 impl<'a> Differences<'a> {
     fn of(x: &'a Tally, y: &'a Tally) -> Self {
-        Self { x, y, y_before: before(&y.counts) }
+        let y_before = before(&y.counts);
+        let many = x.values.len() >= MANY && y.values.len() >= MANY;
+        let stand_ins = many.then(|| [stand_ins(x, &before(&x.counts)), stand_ins(y, &y_before)]);
+        Self { x, y, y_before, stand_ins }
     }
-}
 
-impl Pairs for Differences<'_> {
-    fn at_most(&self, limit: f64) -> Count {
-        // As x grows, y must be larger.
-        let (mut count, mut start) = (Count::default(), 0);
+    /// Pairs at most a limit whose first value stands in a range of places.
+    fn at_most_from(&self, places: Range<usize>, limit: f64) -> Count {
+        let Some(&least) = self.x.values.get(places.start) else { return Count::default() };
         let (ys, all) = (&self.y.values, self.y_before[self.y.values.len()]);
-        for (&first, &own) in self.x.values.iter().zip(&self.x.counts) {
+        // As x grows, y must be larger.
+        let mut start = ys.partition_point(|&y| least - y > limit);
+        let mut count = Count::default();
+        for (&first, &own) in self.x.values[places.clone()].iter().zip(&self.x.counts[places]) {
             while start < ys.len() && first - ys[start] > limit {
                 start += 1;
             }
@@ -241,6 +296,21 @@ impl Pairs for Differences<'_> {
             count.pairs += own * (all - self.y_before[start]);
         }
         count
+    }
+}
+
+/// Limits that should lie on both sides of what has this share of the pairs below it, from pairs of
+/// stand-ins. Each stands at a rank that is wrong by up to half a step; over all of them such errors
+/// leave about the root of their number.
+fn around(few: &impl Pairs, pairs: u64, share: f64) -> (f64, f64) {
+    let reach = 8.0 * (STAND_INS as f64).sqrt();
+    let at = |k: f64| two_from(few, (k.round().max(1.0) as u64).min(pairs)).0;
+    (at(share * pairs as f64 - reach), at(share * pairs as f64 + reach))
+}
+
+impl Pairs for Differences<'_> {
+    fn at_most(&self, limit: f64) -> Count {
+        over_stretches(self.x.values.len(), |places| self.at_most_from(places, limit))
     }
 
     fn between(&self, low: f64, high: f64, mut found: impl FnMut(f64, u64)) {
@@ -262,6 +332,11 @@ impl Pairs for Differences<'_> {
     fn range(&self) -> (f64, f64) {
         let (x, y) = (&self.x.values, &self.y.values);
         (x[0] - y[y.len() - 1], x[x.len() - 1] - y[0])
+    }
+
+    fn guess(&self, share: f64) -> Option<(f64, f64)> {
+        let [x, y] = self.stand_ins.as_ref()?;
+        Some(around(&Differences::of(x, y), x.total() * y.total(), share))
     }
 }
 
@@ -315,9 +390,44 @@ mod tests {
         }
     }
 
+    /// Too many pairs to list: the k-th has k at or below it and fewer below it, the next one k + 1.
+    fn is_kth(pairs: &impl Pairs, k: u64) {
+        let (value, next) = two_from(pairs, k);
+        let at_most = |limit: f64| pairs.at_most(limit).pairs;
+        assert!(at_most(value) >= k && at_most(value.next_down()) < k, "{k}: {value}");
+        assert!(at_most(next) > k && at_most(next.next_down()) <= k, "{k}: {next}");
+    }
+
+    /// Stand-ins only say where to begin: many values, with ties and with some far away.
+    #[test]
+    fn order_statistics_of_many_values_have_as_many_below() {
+        let many = 3 * MANY / 2;
+        let even = pseudo_random(many, 1 << 30);
+        let tied: Vec<f64> = pseudo_random(2 * many, 1 << 17).iter().map(|x| x.round()).collect();
+        let tied: Vec<f64> = tied.iter().chain(&even).copied().collect();
+        let skewed: Vec<f64> = even.iter().map(|x| (x / 3e6).exp() * x.signum()).collect();
+        for sample in [even, tied, skewed] {
+            let tally = Tally::of(&sample);
+            assert!(tally.values.len() >= MANY);
+            let averages = WalshAverages::of(&tally);
+            assert!(averages.stand_ins.is_some());
+            let pairs = pairs_of(tally.total());
+            for k in [1, 2, pairs / 1000, pairs / 2, pairs / 2 + 1, pairs - pairs / 50, pairs - 1] {
+                is_kth(&averages, k);
+            }
+            let other = Tally::of(&sample.iter().rev().map(|x| x * 1.5 + 1.0).collect::<Vec<_>>());
+            let shifts = Differences::of(&tally, &other);
+            assert!(shifts.stand_ins.is_some());
+            let pairs = tally.total() * other.total();
+            for k in [1, pairs / 40, pairs / 2, pairs - 1] {
+                is_kth(&shifts, k);
+            }
+        }
+    }
+
     #[test]
     fn few_differences_say_that_the_level_is_not_reached() {
-        let interval = |values: &[f64]| one_sample_interval(&Tally::of(values));
+        let interval = |values: &[f64]| intervals(&Tally::of(values), None, true).0;
         assert!(!interval(&[1.0, 2.0, 3.0, 4.0, 5.0]).level_reached);
         assert!(interval(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).level_reached);
     }

@@ -6,11 +6,11 @@
 use serde::Serialize;
 
 use crate::outcome::{Labelled, Outcome, Refusal};
-use crate::signed_rank::{SignedRanks, Zeros};
+use crate::signed_rank::{Magnitudes, SignedRanks, Zeros};
 use crate::table::Numbers;
 use crate::tail::{Alternative, Tail};
 use crate::tally::Tally;
-use crate::walsh::{HodgesLehmann, one_sample_interval, one_sample_location, thesis_interval};
+use crate::walsh::{HodgesLehmann, intervals};
 
 /// Up to this many non-zero differences the conditional distribution is computed exactly.
 const EXACT_UP_TO: usize = 200;
@@ -118,7 +118,8 @@ pub fn wilcoxon(
         return Err(Refusal::NoRows { column: differences.name.clone(), dropped });
     }
     let all = Tally::of(&all);
-    let nonzero = all.without(0.0);
+    let without_zeros = all.has(0.0).then(|| all.without(0.0));
+    let nonzero = without_zeros.as_ref().unwrap_or(&all);
     let (n, n_used) = (all.total() as usize, nonzero.total() as usize);
     if n_used == 0 {
         return Ok(Outcome::undefined(format!(
@@ -127,9 +128,10 @@ pub fn wilcoxon(
         )));
     }
     let alternative = options.alternative;
-    let dropping = SignedRanks::of(&all, Zeros::Drop);
-    let pratt = SignedRanks::of(&all, Zeros::Pratt);
-    let split = SignedRanks::of(&all, Zeros::Split);
+    let magnitudes = Magnitudes::of(&all);
+    let dropping = SignedRanks::of(&magnitudes, Zeros::Drop);
+    let pratt = SignedRanks::of(&magnitudes, Zeros::Pratt);
+    let split = SignedRanks::of(&magnitudes, Zeros::Split);
     let ties = dropping.has_ties();
     let zeros = n > n_used;
 
@@ -211,7 +213,7 @@ pub fn wilcoxon(
     .collect();
 
     let (plus, minus) = (dropping.plus(), dropping.minus());
-    let interval = one_sample_interval(&all);
+    let (interval, thesis_interval) = intervals(&all, without_zeros.as_ref(), thesis_is_exact);
     Ok(Outcome::Ok(Wilcoxon {
         test: "wilcoxon",
         variant: words,
@@ -230,13 +232,9 @@ pub fn wilcoxon(
         ln_p: tail.ln_p,
         rank_biserial: (plus - minus) / (plus + minus),
         hodges_lehmann_walsh_median: interval.estimate,
-        hodges_lehmann_zeros_dropped: if zeros {
-            one_sample_location(&nonzero)
-        } else {
-            interval.estimate
-        },
+        hodges_lehmann_zeros_dropped: thesis_interval.estimate,
         hodges_lehmann_ci: interval,
-        R_ci: thesis_interval(&nonzero, thesis_is_exact),
+        R_ci: thesis_interval,
         p_by_semantics: Labelled(p_by_semantics),
         warnings,
     }))
@@ -249,7 +247,8 @@ pub(crate) fn thesis_p_without_rounding(differences: &[f64]) -> Option<f64> {
     if nonzero.values.is_empty() {
         return None;
     }
-    let ranks = SignedRanks::of(&nonzero, Zeros::Drop);
+    let magnitudes = Magnitudes::of(&nonzero);
+    let ranks = SignedRanks::of(&magnitudes, Zeros::Drop);
     let plain = nonzero.total() == all.total() && !ranks.has_ties();
     let tail = if plain && nonzero.total() < 50 {
         ranks.exact(Alternative::TwoSided)

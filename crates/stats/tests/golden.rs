@@ -26,7 +26,7 @@ fn all_cases_of_the_expected_file() {
     for case in cases {
         let id = case["id"].as_str().unwrap();
         let table =
-            Table::parse(&std::fs::read(folder.join(case["file"].as_str().unwrap())).unwrap())
+            Table::parse(std::fs::read(folder.join(case["file"].as_str().unwrap())).unwrap())
                 .unwrap();
         let actual = match run(case, &table) {
             Ok(value) => value,

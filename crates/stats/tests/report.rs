@@ -220,10 +220,14 @@ fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
         results(&analyze(&table, &study, Language::English).unwrap())
     };
     let (both, one) = (results_of(&with_box), results_of(&without_box));
+    let mut of_parameter = 0;
     for (with, without) in
         both["hypotheses"].as_array().unwrap().iter().zip(one["hypotheses"].as_array().unwrap())
     {
-        assert_eq!(with["factors"][0], "alpha");
+        if with["factors"][0] != "alpha" {
+            continue;
+        }
+        of_parameter += 1;
         assert_eq!(with["as_in_the_thesis"], without["as_in_the_thesis"]);
         assert_eq!(with["recommended"], without["recommended"]);
         assert_eq!(with["trials_without_level"], 12 * 18, "{with}");
@@ -232,6 +236,7 @@ fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
             with["reading"].as_str().unwrap().contains("216 trials have no value of the factor")
         );
     }
+    assert_eq!(of_parameter, 5);
     let alpha = |results: &serde_json::Value| {
         let all = results["comparisons"].as_array().unwrap().clone();
         all.into_iter().find(|c| c["factor"] == "alpha" && c["measure"] == "difficulty").unwrap()
@@ -239,4 +244,49 @@ fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
     assert_eq!(alpha(&both)["levels"], serde_json::json!(["0.3", "0.5", "0.7"]));
     assert_eq!(alpha(&both)["recommended"], alpha(&one)["recommended"]);
     assert_eq!(alpha(&both)["trials_without_level"], 216);
+}
+
+/// A factor about people beside one of the clips: everyone counts once, and the reading says how.
+#[test]
+fn a_factor_about_people_is_tested_on_people() {
+    let study = support::parameter_study();
+    let raters = Raters { people: 16, effect: 0.5, seed: 5 };
+    let table = Table::parse(export(&study, &raters).as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::English).unwrap();
+    let results = results(&report);
+    let hypothesis = |id: &str| {
+        let all = results["hypotheses"].as_array().unwrap();
+        all.iter().find(|hypothesis| hypothesis["id"] == id).unwrap().clone()
+    };
+    let reading = |id: &str| &report.readings.iter().find(|(own, _)| own == id).unwrap().1;
+    let terms = |tested: &serde_json::Value| -> Vec<String> {
+        let lines = tested["recommended"]["overall"].as_array().unwrap();
+        lines.iter().map(|line| line["term"].as_str().unwrap().to_owned()).collect()
+    };
+    // One of the clips, one about people: means, Friedman, differences.
+    let mixed = hypothesis("H05");
+    let overall = &mixed["recommended"]["overall"];
+    assert_eq!(terms(&mixed), ["alpha", "gender", "alpha:gender"]);
+    assert!(overall[0]["test"].as_str().unwrap().starts_with("Friedman on person means"));
+    assert_eq!(overall[1]["test"], "Mann-Whitney of person means");
+    assert!(overall[2]["test"].as_str().unwrap().starts_with("Mann-Whitney of person differences"));
+    for line in overall.as_array().unwrap() {
+        assert!(line["n"].as_u64().unwrap() <= 16, "{line}");
+    }
+    // It stands or falls by the smallest p of three pairs after Holm's correction.
+    assert_eq!(mixed["p"], overall[2]["p_holm"]);
+    let (p, p_holm) =
+        (overall[2]["p_value"].as_f64().unwrap(), overall[2]["p_holm"].as_f64().unwrap());
+    assert!((p_holm - (3.0 * p).min(1.0)).abs() < 1e-12, "{p} {p_holm}");
+    assert!(reading("H05").contains("of each person’s difference"), "{}", reading("H05"));
+    assert!(reading("H05").contains("after Holm’s correction"));
+    // The order is the hypothesis's own; seven steps of habit are groups of Kruskal-Wallis.
+    let habit = hypothesis("H06");
+    assert_eq!(terms(&habit), ["familiarity", "intensity", "familiarity:intensity"]);
+    assert_eq!(habit["recommended"]["overall"][0]["test"], "Kruskal-Wallis of person means");
+    // Both about people: one mean a person.
+    let both = hypothesis("H07");
+    assert_eq!(terms(&both), ["gender", "vision", "gender:vision"]);
+    assert_eq!(both["recommended"]["overall"][2]["n"], results["flow"]["people_used"]);
+    assert!(reading("H07").contains("on one mean a person"), "{}", reading("H07"));
 }

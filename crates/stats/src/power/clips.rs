@@ -72,3 +72,38 @@ pub(crate) fn scaled(study: &Study, wanted: usize) -> ScaledClips {
     }
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn more_and_fewer_clips_keep_methods_and_balance_emotions() {
+        let path =
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/power/independence.json");
+        let study = Study::from_text(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let levels = |clips: &[Clip], factor: &str| {
+            let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+            for clip in clips {
+                *counts.entry(clip.factor_text(factor).unwrap()).or_insert(0) += 1;
+            }
+            counts
+        };
+        for (wanted, expected) in [(18, 18), (19, 21), (54, 54), (108, 108)] {
+            let clips = scaled(&study, wanted).clips;
+            assert_eq!(clips.len(), expected);
+            let methods = levels(&clips, "method");
+            assert!(methods.values().all(|count| *count == expected / 3), "{methods:?}");
+            let emotions = levels(&clips, "expression");
+            assert_eq!(emotions.len(), 6);
+            let (least, most) =
+                (emotions.values().min().unwrap(), emotions.values().max().unwrap());
+            assert!(most - least <= 3, "{emotions:?}");
+            let ids: std::collections::BTreeSet<&str> =
+                clips.iter().map(|clip| clip.id.as_str()).collect();
+            assert_eq!(ids.len(), clips.len());
+        }
+    }
+}

@@ -3,89 +3,14 @@
 //! The same people answer the same questions as in [`crate::Simulation`]: a test holds both against each
 //! other. Only what the study's hypotheses and exclusions need is drawn.
 
-use mimique_study::{Answers, Component, Draw, Measure, OrderError, OrderedItem, Study, order};
+use mimique_study::{Answers, Component, Study};
 use serde_json::Value;
 
-use super::clips::{ScaledClips, scaled};
+use super::design::{Design, Step, has_conditions};
 use crate::report::{Answer, Export, Person as Who, Trial, exclude_people, why_left_out};
-use crate::simulate::{
-    BEFORE_REPLAY_MS, ClipEffects, Draws, Model, Parameters, Person, Raw, Way, as_json, eighths,
-};
+use crate::simulate::{BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths};
 
-/// What participants go through, the same in every run.
-pub(crate) struct Design<'s> {
-    study: &'s Study,
-    pub clips: ScaledClips,
-    /// A participant each, from number 1.
-    walks: Vec<Vec<Step>>,
-    needs: Needs,
-}
-
-/// A step with answers.
-enum Step {
-    /// A trial: its clip, its block's name.
-    Trial { clip: usize, block: String },
-    /// A page of questions.
-    Page(String),
-}
-
-/// What must be drawn beside the answers.
-struct Needs {
-    times: bool,
-    display: bool,
-    pages: bool,
-    /// Questions that hypotheses are about.
-    responses: Vec<String>,
-}
-
-impl<'s> Design<'s> {
-    /// The walks of so many participants; `clips` of them instead of the study's own, if given.
-    pub(crate) fn new(
-        study: &'s Study,
-        config_hash: &str,
-        participants: usize,
-        clips: Option<usize>,
-    ) -> Result<Self, OrderError> {
-        let own = study.clips().len();
-        let clips = scaled(study, clips.unwrap_or(own));
-        let mut walks = Vec::with_capacity(participants);
-        for number in 1..=participants as u64 {
-            let draw = Draw { seed: study.seed, config_hash, participant: number };
-            let mut walk = Vec::new();
-            for item in order(study, draw)? {
-                match item {
-                    OrderedItem::Trial { component, clip, .. } => {
-                        let places = clips.stand_ins.get(&clip).into_iter().flatten();
-                        let trial = |&clip: &usize| Step::Trial { clip, block: component.clone() };
-                        walk.extend(places.map(trial));
-                    }
-                    OrderedItem::Component { component } => walk.push(Step::Page(component)),
-                }
-            }
-            if clips.clips.len() > own {
-                mix(&mut walk, number);
-            }
-            walks.push(walk);
-        }
-        let rules = study.exclusions.clone().unwrap_or_default();
-        let measures = |what: Measure| study.hypotheses.iter().any(|each| each.measure == what);
-        let needs = Needs {
-            times: measures(Measure::Rt) || rules.shortest_rt_ms.is_some(),
-            display: measures(Measure::Rt)
-                || rules.shortest_rt_ms.is_some()
-                || rules.late_frame_share.is_some()
-                || rules.longest_frame_ms.is_some(),
-            pages: rules.failed_attention_checks.is_some() || has_conditions(study),
-            responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
-        };
-        Ok(Self { study, clips, walks, needs })
-    }
-
-    /// The model of these parameters on the design's clips.
-    pub(crate) fn model(&self, parameters: &'s Parameters) -> Model<'s> {
-        Model::new(self.study, parameters, self.clips.clips.clone())
-    }
-
+impl Design<'_> {
     /// The answers of the first `participants` people of a seed.
     pub(crate) fn answers(&self, model: &Model<'_>, seed: u64, participants: usize) -> Export {
         let clips = model.clip_effects(seed);
@@ -95,21 +20,6 @@ impl<'s> Design<'s> {
         }
         data.finish()
     }
-}
-
-/// Mixes the trials of a study with more clips than its own: copies of a clip must not follow it.
-fn mix(walk: &mut [Step], number: u64) {
-    let mut draws = Draws::new(0, Some(number), "order of more clips");
-    let places: Vec<usize> =
-        (0..walk.len()).filter(|&place| matches!(walk[place], Step::Trial { .. })).collect();
-    for last in (1..places.len()).rev() {
-        let other = draws.below(last + 1);
-        walk.swap(places[last], places[other]);
-    }
-}
-
-fn has_conditions(study: &Study) -> bool {
-    study.questions.iter().any(|question| question.show_if.is_some())
 }
 
 /// Rows in the making.
@@ -141,14 +51,7 @@ impl<'d> Data<'d> {
         Self {
             design,
             model,
-            export: Export {
-                people: Vec::new(),
-                trials: Vec::new(),
-                answers: Vec::new(),
-                factors,
-                about,
-                flow: Default::default(),
-            },
+            export: Export::new(factors, about),
             stages: Vec::new(),
             levels,
             trials: Vec::new(),
@@ -388,6 +291,7 @@ mod tests {
     use mimique_study::responses::{self, SessionRecord};
 
     use super::*;
+    use crate::Parameters;
     use crate::simulate::Simulation;
     use crate::table::Table;
 
@@ -473,32 +377,6 @@ mod tests {
             // The rules bite, or this test says little.
             assert!(read.flow.people_left_out.len() >= 2, "{:?}", read.flow);
             assert!(read.flow.trials_left_out.len() >= 3, "{:?}", read.flow);
-        }
-    }
-
-    #[test]
-    fn more_and_fewer_clips_keep_methods_and_balance_emotions() {
-        let (_, study) = study("power/independence.json");
-        let levels = |clips: &[mimique_study::Clip], factor: &str| {
-            let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-            for clip in clips {
-                *counts.entry(clip.factor_text(factor).unwrap()).or_insert(0) += 1;
-            }
-            counts
-        };
-        for (wanted, expected) in [(18, 18), (19, 21), (54, 54), (108, 108)] {
-            let clips = scaled(&study, wanted).clips;
-            assert_eq!(clips.len(), expected);
-            let methods = levels(&clips, "method");
-            assert!(methods.values().all(|count| *count == expected / 3), "{methods:?}");
-            let emotions = levels(&clips, "expression");
-            assert_eq!(emotions.len(), 6);
-            let (least, most) =
-                (emotions.values().min().unwrap(), emotions.values().max().unwrap());
-            assert!(most - least <= 3, "{emotions:?}");
-            let ids: std::collections::BTreeSet<&str> =
-                clips.iter().map(|clip| clip.id.as_str()).collect();
-            assert_eq!(ids.len(), clips.len());
         }
     }
 }

@@ -8,6 +8,7 @@
 mod clips;
 mod curve;
 mod dataset;
+mod design;
 mod table;
 
 use mimique_study::{Hypothesis, OrderError, Study};
@@ -20,7 +21,7 @@ use crate::proportion::proportion;
 use crate::report::{Language, Naming, test_hypothesis};
 use crate::simulate::{Draws, Model, Parameters, ParametersError, is_two_way};
 pub use curve::power_curve;
-use dataset::Design;
+use design::Design;
 pub(crate) use table::enough;
 pub use table::{power_csv, power_markdown};
 
@@ -273,14 +274,10 @@ fn one_run(
 /// The p that the thesis would have decided by: the interaction of two factors, the one test, or the
 /// smallest of several pairs (it did not correct them).
 fn thesis_p(hypothesis: &Hypothesis, tests: &[Outcome<crate::report::TestLine>]) -> Option<f64> {
-    let p = |outcome: &Outcome<crate::report::TestLine>| match outcome {
-        Outcome::Ok(line) => Some(line.p_value),
-        Outcome::Undefined { .. } => None,
-    };
     if is_two_way(hypothesis.test) {
-        return tests.last().and_then(p);
+        return tests.last().and_then(Outcome::p);
     }
-    tests.iter().filter_map(p).reduce(f64::min)
+    tests.iter().filter_map(Outcome::p).reduce(f64::min)
 }
 
 fn columns(runs: &[Run], place: usize, alpha: f64) -> Columns {

@@ -98,14 +98,31 @@ fn tests(from: &Preregistration<'_>, hypothesis: &Hypothesis) -> (String, String
     let asked = study.all_questions().find(|question| question.id == hypothesis.response);
     let recognition = hypothesis.measure != Measure::Rt
         && matches!(asked.map(|q| &q.kind), Some(QuestionKind::SingleChoice(c)) if c.truth.is_some());
-    let is_trait = !of_clips
-        && (traits(study).contains_key(factor)
-            || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor));
+    let about_people = |factor: &str| {
+        !study.factor_names().iter().any(|name| name == factor)
+            && (traits(study).contains_key(factor)
+                || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor))
+    };
+    let is_trait = about_people(factor);
+    let traits_of_two = hypothesis.factors.iter().take(2).filter(|f| about_people(f)).count();
     let wilcoxon = language.pick(
         "Wilcoxon’s signed rank test on person means, exact and conditional on the observed ranks, zeros by Pratt",
         "test des rangs signés de Wilcoxon sur les moyennes par personne, exact et conditionnel aux rangs observés, zéros selon Pratt",
     );
-    let recommended = if is_two_way(hypothesis.test) {
+    let recommended = if is_two_way(hypothesis.test) && traits_of_two == 1 {
+        language.pick(
+            "interaction by people’s differences: for each pair of levels of the factor within people, whether each person’s difference of means depends on the factor about people (Mann-Whitney of two groups, Kruskal-Wallis of more), smallest p after Holm’s correction over the pairs",
+            "interaction par les différences des personnes : pour chaque paire de niveaux du facteur intra-personnes, la différence des moyennes de chaque personne dépend-elle du facteur propre aux personnes (Mann-Whitney pour deux groupes, Kruskal-Wallis au-delà), plus petit p après correction de Holm sur les paires",
+        )
+        .to_owned()
+    } else if is_two_way(hypothesis.test) && traits_of_two == 2 {
+        language
+            .pick(
+                "interaction of the Scheirer-Ray-Hare test on one mean a person",
+                "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
+            )
+            .to_owned()
+    } else if is_two_way(hypothesis.test) {
         language.pick(
             "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
             "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",

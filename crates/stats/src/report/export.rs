@@ -1,10 +1,13 @@
 //! The tidy export of a study as people, trials and answers, with the study's exclusions applied.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::OnceLock;
 
 use mimique_study::{Exclusions, Question, QuestionKind, Study};
 use serde::Serialize;
 
+use super::combinations::Combinations;
+use crate::number::parse_number;
 use crate::outcome::Refusal;
 use crate::table::Table;
 
@@ -99,12 +102,32 @@ pub(crate) struct Export {
     /// Answers about each person: column, then one cell a person.
     pub about: Vec<(String, Vec<Option<String>>)>,
     pub flow: Flow,
+    /// Of the trials; found when first asked for.
+    combinations: OnceLock<Combinations>,
 }
 
 /// Columns that must be there.
 const NEEDED: [&str; 5] = ["participant_id", "trial_id", "trial_type", "response_id", "answer"];
 
 impl Export {
+    /// Without people, trials and answers yet.
+    pub(crate) fn new(factors: Vec<String>, about: Vec<(String, Vec<Option<String>>)>) -> Self {
+        Self {
+            people: Vec::new(),
+            trials: Vec::new(),
+            answers: Vec::new(),
+            factors,
+            about,
+            flow: Flow::default(),
+            combinations: OnceLock::new(),
+        }
+    }
+
+    /// The combinations of levels that the trials have. The trials must be complete.
+    pub(crate) fn combinations(&self) -> &Combinations {
+        self.combinations.get_or_init(|| Combinations::of(&self.trials))
+    }
+
     /// Reads the tidy form and applies the study's exclusions.
     pub(crate) fn read(table: &Table, study: &Study) -> Result<Self, Refusal> {
         if let Some(missing) = NEEDED.iter().find(|name| !table.has(name)) {
@@ -114,54 +137,59 @@ impl Export {
                 "give the tidy form that `mimique export --format csv` writes",
             ));
         }
-        let rows = Rows::of(table)?;
+        let column = |name: &str| Column::of(table, name);
+        let [participant, status, stage, attention] =
+            ["participant_id", "status", "stage", "attention_passed"].map(column);
         let mut people: Vec<Person> = Vec::new();
         let mut place: HashMap<&str, usize> = HashMap::new();
         let mut person_of_row = Vec::with_capacity(table.rows());
         let mut stages: Vec<&str> = Vec::new();
         for row in 0..table.rows() {
-            let id = rows.needed("participant_id", row)?;
+            let id = participant.needed(row)?;
             let person = *place.entry(id).or_insert_with(|| {
                 people.push(Person {
                     id: id.to_owned(),
-                    status: rows.text("status", row).unwrap_or("unknown").to_owned(),
+                    status: status.text(row).unwrap_or("unknown").to_owned(),
                     trials: 0,
                     failed_checks: 0,
                     excluded: None,
                 });
-                stages.push(rows.text("stage", row).unwrap_or("live"));
+                stages.push(stage.text(row).unwrap_or("live"));
                 people.len() - 1
             });
-            if rows.text("attention_passed", row) == Some("false") {
+            if attention.text(row) == Some("false") {
                 people[person].failed_checks += 1;
             }
             person_of_row.push(person);
         }
         let flow = exclude_people(study, &mut people, &stages);
-        let mut export = Self {
-            about: about_people(table, study, &person_of_row, people.len()),
-            people,
-            trials: Vec::new(),
-            answers: Vec::new(),
-            factors: study.factor_names().into_iter().filter(|name| table.has(name)).collect(),
-            flow,
-        };
-        export.read_trials(&rows, study, &person_of_row)?;
+        let factors = study.factor_names().into_iter().filter(|name| table.has(name)).collect();
+        let about = about_people(table, study, &person_of_row, people.len());
+        let mut export = Self { people, flow, ..Self::new(factors, about) };
+        export.read_trials(table, study, &person_of_row)?;
         Ok(export)
     }
 
     fn read_trials(
         &mut self,
-        rows: &Rows<'_>,
+        table: &Table,
         study: &Study,
         person_of_row: &[usize],
     ) -> Result<(), Refusal> {
         let rules = study.exclusions.clone().unwrap_or_default();
+        let column = |name: &str| Column::of(table, name);
+        let [kind, trial_id, rt, stimulus, order] =
+            ["trial_type", "trial_id", "rt", "stimulus", "trial_order"].map(column);
+        let [frames, late, longest] = ["frames", "frames_late", "frame_longest_ms"].map(column);
+        let [response, answer, correct, truth] =
+            ["response_id", "answer", "correct", "truth"].map(column);
+        let levels: Vec<Column<'_>> = self.factors.iter().map(|factor| column(factor)).collect();
         // A trial is left out for its first reason; the quickest answer decides for all of it.
         let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
         for (row, &person) in person_of_row.iter().enumerate() {
             if let (Some("trial"), Some(trial), Some(rt)) =
-                (rows.text("trial_type", row), rows.text("trial_id", row), rows.number("rt", row)?)
+                (kind.text(row), trial_id.text(row), rt.number(row)?)
+                && rules.shortest_rt_ms.is_some()
             {
                 let least = quickest.entry((person, trial)).or_insert(rt);
                 *least = least.min(rt);
@@ -169,26 +197,22 @@ impl Export {
         }
         let mut seen: HashMap<(usize, &str), Option<usize>> = HashMap::new();
         for (row, &person) in person_of_row.iter().enumerate() {
-            if rows.text("trial_type", row) != Some("trial") {
+            if kind.text(row) != Some("trial") {
                 continue;
             }
-            let id = rows.needed("trial_id", row)?;
+            let id = trial_id.needed(row)?;
             let known = seen.get(&(person, id)).copied();
             let trial = match known {
                 Some(trial) => trial,
                 None => {
                     self.people[person].trials += 1;
                     let trial = Trial {
-                        stimulus: rows.text("stimulus", row).unwrap_or_default().to_owned(),
-                        order: rows.number("trial_order", row)?.map(|order| order as usize),
-                        levels: self
-                            .factors
-                            .iter()
-                            .map(|factor| rows.text(factor, row).map(str::to_owned))
-                            .collect(),
-                        frames: rows.number("frames", row)?,
-                        late: rows.number("frames_late", row)?,
-                        longest_ms: rows.number("frame_longest_ms", row)?,
+                        stimulus: stimulus.text(row).unwrap_or_default().to_owned(),
+                        order: order.number(row)?.map(|order| order as usize),
+                        levels: levels.iter().map(|own| own.text(row).map(str::to_owned)).collect(),
+                        frames: frames.number(row)?,
+                        late: late.number(row)?,
+                        longest_ms: longest.number(row)?,
                     };
                     let place = if self.people[person].excluded.is_some() {
                         None
@@ -211,19 +235,19 @@ impl Export {
                     place
                 }
             };
-            if let (Some(trial), Some(text)) = (trial, rows.text("answer", row)) {
+            if let (Some(trial), Some(text)) = (trial, answer.text(row)) {
                 self.answers.push(Answer {
                     person,
-                    question: rows.needed("response_id", row)?.to_owned(),
+                    question: response.needed(row)?.to_owned(),
                     text: text.to_owned(),
                     number: text.parse().ok().filter(|number: &f64| number.is_finite()),
-                    correct: match rows.text("correct", row) {
+                    correct: match correct.text(row) {
                         Some("true") => Some(true),
                         Some("false") => Some(false),
                         _ => None,
                     },
-                    truth: rows.text("truth", row).map(str::to_owned),
-                    rt_ms: rows.number("rt", row)?,
+                    truth: truth.text(row).map(str::to_owned),
+                    rt_ms: rt.number(row)?,
                     trial,
                 });
             }
@@ -298,36 +322,34 @@ impl AskedQuestion<'_> {
     }
 }
 
-/// Cells by column name.
-struct Rows<'t> {
+/// The cells of a column, if the table has it.
+struct Column<'t> {
     table: &'t Table,
-    places: HashMap<String, usize>,
+    name: String,
+    place: Option<usize>,
 }
 
-impl<'t> Rows<'t> {
-    fn of(table: &'t Table) -> Result<Self, Refusal> {
-        let places =
-            table.names().iter().enumerate().map(|(place, name)| (name.clone(), place)).collect();
-        Ok(Self { table, places })
+impl<'t> Column<'t> {
+    fn of(table: &'t Table, name: &str) -> Self {
+        Self { table, name: name.to_owned(), place: table.position(name).ok() }
     }
 
-    fn text(&self, column: &str, row: usize) -> Option<&'t str> {
-        self.table.cell(row, *self.places.get(column)?)
+    fn text(&self, row: usize) -> Option<&'t str> {
+        self.table.cell(row, self.place?)
     }
 
-    fn needed(&self, column: &str, row: usize) -> Result<&'t str, Refusal> {
-        self.text(column, row).ok_or_else(|| {
+    fn needed(&self, row: usize) -> Result<&'t str, Refusal> {
+        self.text(row).ok_or_else(|| {
             let problem = format!("line {}: the cell is blank", self.table.line(row));
-            Refusal::column(column, problem, "export the study again")
+            Refusal::column(&self.name, problem, "export the study again")
         })
     }
 
-    fn number(&self, column: &str, row: usize) -> Result<Option<f64>, Refusal> {
-        let Some(cell) = self.text(column, row) else { return Ok(None) };
-        let number: Option<f64> = cell.replace(',', ".").parse().ok();
-        number.filter(|number| number.is_finite()).map(Some).ok_or_else(|| {
+    fn number(&self, row: usize) -> Result<Option<f64>, Refusal> {
+        let Some(cell) = self.text(row) else { return Ok(None) };
+        parse_number(cell, true).map(Some).ok_or_else(|| {
             let problem = format!("line {}: \"{cell}\" is not a number", self.table.line(row));
-            Refusal::column(column, problem, "export the study again")
+            Refusal::column(&self.name, problem, "export the study again")
         })
     }
 }

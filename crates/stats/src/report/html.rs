@@ -76,7 +76,22 @@ fn typeset(text: &str) -> String {
         (" – ", "\u{a0}–\u{a0}"),
     ];
     let joined = JOINED.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to));
-    escape(&joined)
+    escape(&degrees_joined(&joined))
+}
+
+/// Without a line break inside the degrees of freedom of `F(2, 48)`.
+fn degrees_joined(text: &str) -> String {
+    let mut parts = text.split(", ");
+    let mut joined = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let after_digits = part.trim_start_matches(|c: char| c.is_ascii_digit());
+        let inside = joined.ends_with(|c: char| c.is_ascii_digit())
+            && after_digits.len() < part.len()
+            && after_digits.starts_with(')');
+        joined.push_str(if inside { ",\u{a0}" } else { ", " });
+        joined.push_str(part);
+    }
+    joined
 }
 
 fn table(body: &mut String, data: &DataTable) {
@@ -142,7 +157,7 @@ const STYLE: &str = "\
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
-header,main{max-width:64rem;margin:0 auto;padding:0 1.25rem}
+header,main{max-width:72rem;margin:0 auto;padding:0 1.25rem}
 header{padding-top:2.5rem}
 main{padding-bottom:4rem}
 h1{font-size:1.9rem;line-height:1.2;margin:0 0 .4rem}
@@ -164,7 +179,7 @@ thead th{border-bottom:2px solid var(--rule);font-weight:600;vertical-align:bott
 tbody th{font-weight:500}
 td.number,th.number{text-align:right}
 .tests{font-size:.86rem}
-.tests th,.tests td{padding:.3rem .55rem}
+.tests th,.tests td{padding:.3rem .5rem}
 td.number,.tests td,.tests tbody th{white-space:nowrap}
 .scroll tbody th{position:sticky;left:0;background:var(--paper)}
 .group{font-weight:600;background:var(--panel);border-left:2px solid var(--paper)}
@@ -174,5 +189,5 @@ figure svg{display:block;max-width:100%;height:auto}
 figcaption{color:var(--soft);font-size:.9rem;max-width:36rem;margin:.4rem 0}
 summary{cursor:pointer;color:var(--link);font-size:.9rem;padding:.2rem 0}
 @media (min-width:40rem){figure svg{width:34rem}}
-@media print{body{font-size:10.5pt}header,main{max-width:none;padding:0}nav,details{display:none}h2,h3{break-after:avoid}figure,tr,.reading,.caution{break-inside:avoid}.scroll{overflow:visible}}
+@media print{body{font-size:10.5pt}header,main{max-width:none;padding:0}nav,details{display:none}p{max-width:none}h2,h3,.caption{break-after:avoid}figure,tr,.scroll,.reading,.caution{break-inside:avoid}.scroll{overflow:visible}}
 ";

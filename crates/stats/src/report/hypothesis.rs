@@ -7,6 +7,7 @@ use super::comparison::without_level;
 use super::export::{AskedQuestion, Export};
 use super::language::Language;
 use super::measure::{Measure, MeasureKind, as_numbers};
+use super::mixed;
 use super::naming::Naming;
 use super::person_level::{self, PersonLevel};
 use super::reading;
@@ -156,13 +157,10 @@ fn tests(
         }
     }
     match factors.as_slice() {
-        [(first, _), (second, _), ..] if two_way(hypothesis.test) => {
-            let both = [first, second];
-            Ok((
-                TestLine::scheirer_ray_hare(&measure.numbers(), both, "trials"),
-                person_level::two_way(export, measure, both),
-            ))
-        }
+        [(first, first_within), (second, second_within), ..] if two_way(hypothesis.test) => Ok((
+            TestLine::scheirer_ray_hare(&measure.numbers(), [first, second], "trials"),
+            mixed::two_way(export, measure, [(first, !first_within), (second, !second_within)]),
+        )),
         [(factor, true), ..] => Ok(within_people(export, hypothesis, measure, factor)),
         [(factor, false), ..] => Ok(between_people(hypothesis, measure, factor)),
         [] => Err(language.pick("no factor is named", "aucun facteur n’est nommé").to_owned()),
@@ -220,13 +218,9 @@ fn between_people(
 /// The p that a hypothesis stands or falls by: the interaction if there is one, the overall test of
 /// several levels, or the one pair.
 fn deciding_p(people: &PersonLevel) -> Option<f64> {
-    let p = |outcome: &Outcome<TestLine>| match outcome {
-        Outcome::Ok(line) => Some(line.p_value),
-        Outcome::Undefined { .. } => None,
-    };
     match (people.overall.last(), people.pairs.as_slice()) {
-        (Some(last), _) => p(last),
-        (None, [one]) => p(&one.wilcoxon),
+        (Some(last), _) => last.p_that_counts(),
+        (None, [one]) => one.wilcoxon.p(),
         (None, _) => None,
     }
 }

@@ -6,12 +6,12 @@ use mimique_study::TableLayout;
 use super::document::DataTable;
 use super::layouts::{Column, LayoutCell, Row};
 use super::measure::{Measure, MeasureKind, as_numbers};
+use super::mixed;
 use super::person_level;
 use super::sections::Writer;
 use super::tables::{recommended_heading, thesis_heading};
 use super::test_line::TestLine;
 use super::trial_level;
-use crate::adjust::Adjustment;
 use crate::outcome::Outcome;
 
 impl Writer<'_> {
@@ -145,46 +145,26 @@ impl Writer<'_> {
     }
 
     /// Of two factors within people the aligned rank transform; of one within and one about people,
-    /// whether people's differences depend on it: the smallest p of all pairs after Holm's correction.
+    /// whether people's differences depend on it.
     fn recommended_interaction(
         &self,
         measure: &Measure,
         columns: [&Column; 2],
     ) -> Option<Outcome<TestLine>> {
         let [first, second] = columns;
-        let (within, about) = match (first.about_people, second.about_people) {
-            (true, true) => return None,
-            (false, false) => {
+        match columns.map(|column| column.about_people) {
+            [true, true] => None,
+            [false, false] => {
                 let both = [&first.factor, &second.factor];
-                return person_level::two_way(self.export, measure, both).overall.pop();
+                person_level::two_way(self.export, measure, both).overall.pop()
             }
-            (true, false) => (&second.factor, &first.factor),
-            (false, true) => (&first.factor, &second.factor),
-        };
-        let lines = person_level::differences_by_trait(self.export, measure, within, about);
-        let p: Vec<Option<f64>> = lines
-            .iter()
-            .map(|line| match line {
-                Outcome::Ok(line) => Some(line.p_value),
-                Outcome::Undefined { .. } => None,
-            })
-            .collect();
-        let corrected = Adjustment::Holm.apply(&p);
-        let mut best: Option<Outcome<TestLine>> = None;
-        for (line, p_holm) in lines.into_iter().zip(corrected) {
-            let Outcome::Ok(line) = line else {
-                best = best.or(Some(line));
-                continue;
-            };
-            let smaller = match &best {
-                Some(Outcome::Ok(other)) => line.p_value < other.p_value,
-                _ => true,
-            };
-            if smaller {
-                best = Some(Outcome::Ok(TestLine { p_holm, ..line }));
+            [true, false] => {
+                Some(mixed::interaction(self.export, measure, &second.factor, &first.factor))
+            }
+            [false, true] => {
+                Some(mixed::interaction(self.export, measure, &first.factor, &second.factor))
             }
         }
-        best
     }
 
     pub(crate) fn influences_layout(&mut self, layout: &TableLayout) -> DataTable {

@@ -126,8 +126,20 @@ impl Measure {
     /// A factor of the trials, a code a value; only `levels` if any are given.
     pub(crate) fn factor(&self, export: &Export, name: &str, levels: &[String]) -> Factor {
         let place = export.factors.iter().position(|factor| factor == name);
-        let cells = self.trial.iter().map(|&trial| export.trials[trial].levels[place?].as_deref());
-        let factor = Factor::from_cells(name, cells, |level| level.parse().ok());
+        let combinations = export.combinations();
+        let mut met = vec![Factor::MISSING; combinations.first.len()];
+        let mut first: Vec<usize> = Vec::new();
+        for &trial in &self.trial {
+            let met = &mut met[combinations.of_trial[trial] as usize];
+            if *met == Factor::MISSING {
+                *met = first.len() as u32;
+                first.push(trial);
+            }
+        }
+        let cells = first.iter().map(|&trial| export.trials[trial].levels[place?].as_deref());
+        let mut factor = Factor::from_cells(name, cells, |level| level.parse().ok());
+        let of_trial = |&trial: &usize| met[combinations.of_trial[trial] as usize] as usize;
+        factor.codes = self.trial.iter().map(|trial| factor.codes[of_trial(trial)]).collect();
         let known: Vec<String> =
             levels.iter().filter(|level| factor.levels.contains(level)).cloned().collect();
         if known.is_empty() { factor } else { factor.restricted(&known).unwrap_or(factor) }
@@ -149,26 +161,17 @@ impl Measure {
     /// The same, with the people's places in the export.
     pub(crate) fn person_means_by_place(&self, factor: &Factor) -> PersonMeans {
         let k = factor.levels.len();
-        let mut sums: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
+        let mut sums = Sums::new(self.people(), k);
         for (i, &value) in self.values.iter().enumerate() {
-            if let Some(cell) = sums
-                .entry(self.person[i])
-                .or_insert_with(|| vec![(0.0, 0.0); k])
-                .get_mut(factor.codes[i] as usize)
-            {
-                cell.0 += value;
-                cell.1 += 1.0;
-            }
+            sums.add(self.person[i], factor.codes[i], value);
         }
-        let all = sums.len();
-        let (mut people, mut means): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
-        for (person, cells) in sums {
-            if cells.iter().all(|(_, count)| *count > 0.0) {
-                people.push(person);
-                means.push(cells.iter().map(|(sum, count)| sum / count).collect());
-            }
-        }
-        PersonMeans { incomplete: all - people.len(), people, means }
+        let (people, means): (Vec<usize>, Vec<Vec<f64>>) = sums.complete().unzip();
+        PersonMeans { incomplete: sums.met() - people.len(), people, means }
+    }
+
+    /// One more than the last person's place.
+    fn people(&self) -> usize {
+        self.person.iter().max().map_or(0, |last| last + 1)
     }
 
     /// Mean of each person over all trials.
@@ -195,34 +198,31 @@ impl Measure {
     /// tests. What else must be equal is every other factor that occurs at each of its levels.
     pub(crate) fn matched_trials(&self, export: &Export, factor: &Factor) -> Blocks {
         let others = self.crossed_places(export, factor);
-        let k = factor.levels.len();
-        // Person and other levels -> sum and count at each level of the factor.
-        type Sums = Vec<(f64, f64)>;
-        let mut cells: BTreeMap<(usize, Vec<&str>), Sums> = BTreeMap::new();
+        let combinations = export.combinations();
+        // The other levels of each combination, and their place in order.
+        let key = |&trial: &usize| -> Vec<&str> {
+            let levels = &export.trials[trial].levels;
+            others.iter().map(|&place| levels[place].as_deref().unwrap_or_default()).collect()
+        };
+        let of_combination: Vec<Vec<&str>> = combinations.first.iter().map(key).collect();
+        let keys: BTreeSet<&Vec<&str>> = of_combination.iter().collect();
+        let keys: Vec<&Vec<&str>> = keys.into_iter().collect();
+        let places: Vec<usize> =
+            of_combination.iter().map(|key| keys.binary_search(&key).unwrap_or_default()).collect();
+        let mut sums = Sums::new(self.people() * keys.len(), factor.levels.len());
         for (i, &value) in self.values.iter().enumerate() {
-            let levels = &export.trials[self.trial[i]].levels;
-            let key: Vec<&str> =
-                others.iter().map(|&place| levels[place].as_deref().unwrap_or_default()).collect();
-            if let Some(cell) = cells
-                .entry((self.person[i], key))
-                .or_insert_with(|| vec![(0.0, 0.0); k])
-                .get_mut(factor.codes[i] as usize)
-            {
-                cell.0 += value;
-                cell.1 += 1.0;
-            }
+            let key = places[combinations.of_trial[self.trial[i]] as usize];
+            sums.add(self.person[i] * keys.len() + key, factor.codes[i], value);
         }
-        let all = cells.len();
         let (mut blocks, mut responses) = (Vec::new(), Vec::new());
-        for ((person, key), cells) in cells {
-            if cells.iter().all(|(_, count)| *count > 0.0) {
-                blocks.push(format!("{} {}", export.people[person].id, key.join(" ")));
-                responses.push(cells.iter().map(|(sum, count)| sum / count).collect());
-            }
+        for (row, means) in sums.complete() {
+            let (person, key) = (row / keys.len(), keys[row % keys.len()]);
+            blocks.push(format!("{} {}", export.people[person].id, key.join(" ")));
+            responses.push(means);
         }
         Blocks {
             groups: factor.levels.clone(),
-            incomplete: all - blocks.len(),
+            incomplete: sums.met() - blocks.len(),
             blocks,
             responses,
             dropped: 0,
@@ -236,29 +236,70 @@ impl Measure {
     }
 
     fn crossed_places(&self, export: &Export, factor: &Factor) -> Vec<usize> {
-        let other = |place: &usize| export.factors[*place] != factor.name;
-        (0..export.factors.len())
-            .filter(other)
-            .filter(|&place| self.is_crossed(export, factor, place))
-            .collect()
-    }
-
-    fn is_crossed(&self, export: &Export, factor: &Factor, place: usize) -> bool {
-        let mut found: BTreeSet<(u32, &str)> = BTreeSet::new();
-        let mut levels: BTreeSet<&str> = BTreeSet::new();
-        for (i, &code) in factor.codes.iter().enumerate() {
-            let Some(level) = export.trials[self.trial[i]].levels[place].as_deref() else {
-                if code != Factor::MISSING {
+        let combinations = export.combinations();
+        // Each combination of levels with each code that it comes with.
+        let k = factor.levels.len() + 1;
+        let mut met = vec![false; combinations.first.len() * k];
+        for (&trial, &code) in self.trial.iter().zip(&factor.codes) {
+            // A trial without a level of the factor comes last.
+            let code = (code as usize).min(k - 1);
+            met[combinations.of_trial[trial] as usize * k + code] = true;
+        }
+        let met: Vec<(usize, usize)> = met
+            .into_iter()
+            .enumerate()
+            .filter(|(_, met)| *met)
+            .map(|(place, _)| (combinations.first[place / k], place % k))
+            .collect();
+        let is_crossed = |place: &usize| {
+            let (mut found, mut levels) = (BTreeSet::new(), BTreeSet::new());
+            for &(trial, code) in met.iter().filter(|(_, code)| *code < k - 1) {
+                let Some(level) = export.trials[trial].levels[*place].as_deref() else {
                     return false;
-                }
-                continue;
-            };
-            if code != Factor::MISSING {
+                };
                 found.insert((code, level));
                 levels.insert(level);
             }
+            levels.len() * factor.levels.len() == found.len()
+        };
+        let other = |place: &usize| export.factors[*place] != factor.name;
+        (0..export.factors.len()).filter(other).filter(is_crossed).collect()
+    }
+}
+
+/// Sums and counts in rows of cells.
+struct Sums {
+    width: usize,
+    cells: Vec<(f64, f64)>,
+    met: Vec<bool>,
+}
+
+impl Sums {
+    fn new(rows: usize, width: usize) -> Self {
+        Self { width, cells: vec![(0.0, 0.0); rows * width], met: vec![false; rows] }
+    }
+
+    /// Adds a value; a code that is no cell only says that the row is there.
+    fn add(&mut self, row: usize, code: u32, value: f64) {
+        self.met[row] = true;
+        let own = &mut self.cells[row * self.width..(row + 1) * self.width];
+        if let Some(cell) = own.get_mut(code as usize) {
+            cell.0 += value;
+            cell.1 += 1.0;
         }
-        levels.len() * factor.levels.len() == found.len()
+    }
+
+    /// Rows that were there.
+    fn met(&self) -> usize {
+        self.met.iter().filter(|met| **met).count()
+    }
+
+    /// Rows with a value in each cell, and their means.
+    fn complete(&self) -> impl Iterator<Item = (usize, Vec<f64>)> {
+        let row = |row: usize| &self.cells[row * self.width..(row + 1) * self.width];
+        (0..self.met.len())
+            .filter(move |&place| self.met[place] && row(place).iter().all(|cell| cell.1 > 0.0))
+            .map(move |place| (place, row(place).iter().map(|(sum, n)| sum / n).collect()))
     }
 }
 

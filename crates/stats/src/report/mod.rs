@@ -5,6 +5,7 @@
 //! observations) and as recommended (one value a person).
 
 mod call;
+mod combinations;
 mod comparison;
 mod document;
 mod export;
@@ -19,12 +20,19 @@ mod layout_tests;
 mod layouts;
 mod markdown;
 mod measure;
+mod mixed;
 mod naming;
 mod person_level;
 mod reading;
 mod replay;
+mod results;
 mod section_course;
+mod section_hypotheses;
 mod section_measures;
+mod section_notes;
+mod section_people;
+mod section_recognition;
+mod section_timing;
 mod sections;
 mod svg;
 mod tables;

@@ -68,13 +68,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Per
         .into_iter()
         .map(|(a, b)| pair(blocks, a, b, call("wilcoxon_people").number(a + 1).number(b + 1)))
         .collect();
-    let p: Vec<Option<f64>> = pairs
-        .iter()
-        .map(|pair| match &pair.wilcoxon {
-            Outcome::Ok(line) => Some(line.p_value),
-            Outcome::Undefined { .. } => None,
-        })
-        .collect();
+    let p: Vec<Option<f64>> = pairs.iter().map(|pair| pair.wilcoxon.p()).collect();
     for (pair, p_holm) in pairs.iter_mut().zip(Adjustment::Holm.apply(&p)) {
         if let Outcome::Ok(line) = &mut pair.wilcoxon {
             line.p_holm = p_holm;
@@ -107,10 +101,22 @@ fn pair(blocks: &Blocks, a: usize, b: usize, call: Call) -> Pair {
 /// Aligned rank transform of the means of each person and combination.
 pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2]) -> PersonLevel {
     let [first, second] = factors;
-    let joined: Vec<Option<String>> = (0..measure.values.len())
-        .map(|i| Some(format!("{}\u{1f}{}", first.level(i)?, second.level(i)?)))
-        .collect();
-    let cells = Factor::from_cells("cell", joined.iter().map(Option::as_deref), |_| None);
+    let width = second.levels.len();
+    let joined = first
+        .levels
+        .iter()
+        .flat_map(|a| second.levels.iter().map(move |b| format!("{a}\u{1f}{b}")));
+    let code = |(&a, &b): (&u32, &u32)| match (a, b) {
+        (Factor::MISSING, _) | (_, Factor::MISSING) => Factor::MISSING,
+        (a, b) => a * width as u32 + b,
+    };
+    let cells = Factor {
+        name: "cell".to_owned(),
+        levels: joined.collect(),
+        codes: first.codes.iter().zip(&second.codes).map(code).collect(),
+    };
+    // Without the combinations that no trial has.
+    let cells = cells.used();
     let blocks = measure.person_means(export, &cells);
     let (mut values, mut people, mut level) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
     for (person, means) in blocks.blocks.iter().zip(&blocks.responses) {
@@ -157,10 +163,11 @@ pub(crate) fn differences_by_trait(
         .into_iter()
         .map(|(a, b)| {
             let differences = Numbers {
-                name: measure.id.clone(),
+                name: format!("{} - {}", blocks.groups[a], blocks.groups[b]),
                 values: blocks.differences(a, b).values.iter().map(|d| rounded(*d)).collect(),
             };
-            let line = TestLine::of_groups(&differences, &about, "person differences");
+            let of = format!("person differences {}", differences.name);
+            let line = TestLine::of_groups(&differences, &about, &of);
             let call = Call::new("differences_by_trait")
                 .text(&measure.id)
                 .text(&within.name)

@@ -39,15 +39,27 @@ pub(crate) fn person_level(
     }
     let tested = result.pairs.len();
     if tested <= 3 {
-        let words = result
-            .pairs
-            .iter()
-            .map(|pair| pair_sentence(naming, pair, kind, factor, label, tested));
-        sentences.extend(words);
+        let mut unshown = false;
+        for (place, pair) in result.pairs.iter().enumerate() {
+            // Named once; the sentences after it are about the same question.
+            let topic = (place == 0).then(|| topic(language, kind, label));
+            let (words, shown) = pair_sentence(naming, pair, kind, factor, topic, tested);
+            sentences.push(words);
+            unshown |= !shown;
+        }
+        if unshown {
+            sentences.push(language.pick(
+                "Where no difference was shown, that is no proof that there is none; the interval says how large it may be.",
+                "Là où aucune différence n’a été montrée, cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.",
+            ).to_owned());
+        }
         return sentences.join(" ");
     }
-    let different: Vec<&Pair> =
-        result.pairs.iter().filter(|pair| p_of(pair).is_some_and(|p| p < LEVEL)).collect();
+    let different: Vec<&Pair> = result
+        .pairs
+        .iter()
+        .filter(|pair| pair.wilcoxon.p_that_counts().is_some_and(|p| p < LEVEL))
+        .collect();
     sentences.push(if different.is_empty() {
         language.pick(
             format!("None of the {tested} pairs differs after Holm’s correction."),
@@ -79,13 +91,6 @@ pub(crate) fn person_level(
     sentences.join(" ")
 }
 
-fn p_of(pair: &Pair) -> Option<f64> {
-    match &pair.wilcoxon {
-        Outcome::Ok(line) => Some(line.p_holm.unwrap_or(line.p_value)),
-        Outcome::Undefined { .. } => None,
-    }
-}
-
 /// The higher level first, and by how much.
 fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
     let estimate = pair.difference.map(|difference| difference.estimate);
@@ -100,34 +105,43 @@ fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
     }
 }
 
+/// A sentence on a pair, and whether it leaves nothing open: no difference that may still be there.
 fn pair_sentence(
     naming: &Naming<'_>,
     pair: &Pair,
     kind: MeasureKind,
     factor: &str,
-    label: &str,
+    topic: Option<String>,
     tested: usize,
-) -> String {
+) -> (String, bool) {
     let language = naming.language;
-    let (a, b) = (naming.level(factor, &pair.a), naming.level(factor, &pair.b));
-    let topic = topic(language, kind, label);
+    let (a, b) = (level(naming, factor, &pair.a), level(naming, factor, &pair.b));
+    // A level's name keeps its letters at the start of a sentence; a word begins with a capital.
+    let sentence = |words: String, begins_with_level: bool| match &topic {
+        Some(topic) => format!("{topic}, {words}"),
+        None if begins_with_level => words,
+        None => {
+            let mut letters = words.chars();
+            letters
+                .next()
+                .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        }
+    };
     let line = match &pair.wilcoxon {
         Outcome::Ok(line) => line,
         Outcome::Undefined { .. } if pair.n == 0 => {
-            return language.pick(
-                format!(
-                    "{topic}, nobody has answers for both {a} and {b}: nothing can be compared."
-                ),
-                format!(
-                    "{topic}, personne n’a de réponses à la fois pour {a} et {b} : rien à comparer."
-                ),
+            let words = language.pick(
+                format!("nobody has answers for both {a} and {b}: nothing can be compared."),
+                format!("personne n’a de réponses à la fois pour {a} et {b} : rien à comparer."),
             );
+            return (sentence(words, false), true);
         }
         Outcome::Undefined { .. } => {
-            return language.pick(
-                format!("{topic}, each of the {} people has the same mean for {a} and {b}: no test is defined.", pair.n),
-                format!("{topic}, chacune des {} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini.", pair.n),
+            let words = language.pick(
+                format!("each of the {} people has the same mean for {a} and {b}: no test is defined.", pair.n),
+                format!("chacune des {} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini.", pair.n),
             );
+            return (sentence(words, false), true);
         }
     };
     let observed = pair.difference.map_or_else(String::new, |d| {
@@ -148,16 +162,12 @@ fn pair_sentence(
         )
     });
     if pair.least_p > LEVEL {
-        return language.pick(
-            format!(
-                "{topic}, {} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {}. Observed: {observed}.",
-                pair.n, language.fixed(pair.least_p.min(1.0), 3)
-            ),
-            format!(
-                "{topic}, {} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {}. Observé : {observed}.",
-                pair.n, language.fixed(pair.least_p.min(1.0), 3)
-            ),
+        let least = language.fixed(pair.least_p.min(1.0), 3);
+        let words = language.pick(
+            format!("{} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {least}. Observed: {observed}.", pair.n),
+            format!("{} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {least}. Observé : {observed}.", pair.n),
         );
+        return (sentence(words, false), true);
     }
     let p = language.p(line.p_holm.unwrap_or(line.p_value));
     let corrected = match (tested > 1, language) {
@@ -165,7 +175,7 @@ fn pair_sentence(
         (true, Language::English) => " after Holm’s correction",
         (true, Language::French) => " après correction de Holm",
     };
-    if p_of(pair).is_some_and(|p| p < LEVEL) {
+    if pair.wilcoxon.p_that_counts().is_some_and(|p| p < LEVEL) {
         let (high, low, _) = oriented(pair);
         let first_higher = high == pair.a;
         let (for_high, for_low) = if first_higher {
@@ -173,17 +183,29 @@ fn pair_sentence(
         } else {
             (pair.b_higher, pair.a_higher)
         };
-        let (high, low) = (naming.level(factor, high), naming.level(factor, low));
+        let (high, low) = (level(naming, factor, high), level(naming, factor, low));
         let higher = higher(language, kind);
-        return language.pick(
-            format!("{topic}, {high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {observed}, {p}{corrected}.", pair.n),
-            format!("{topic}, {high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", pair.n),
+        let words = language.pick(
+            format!("{high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {observed}, {p}{corrected}.", pair.n),
+            format!("{high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", pair.n),
         );
+        return (sentence(words, true), true);
     }
-    language.pick(
-        format!("{topic}, no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {} people. That is no proof that there is none; the interval says how large it may be.", pair.n),
-        format!("{topic}, aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes. Cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.", pair.n),
-    )
+    let words = language.pick(
+        format!("no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {} people.", pair.n),
+        format!("aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes.", pair.n),
+    );
+    (sentence(words, false), false)
+}
+
+/// A level by its name; a number says nothing without its factor.
+fn level(naming: &Naming<'_>, factor: &str, level: &str) -> String {
+    let name = naming.level(factor, level);
+    if level.parse::<f64>().is_ok() && name == level {
+        format!("{} {name}", naming.factor(factor))
+    } else {
+        name
+    }
 }
 
 fn topic(language: Language, kind: MeasureKind, label: &str) -> String {
@@ -249,11 +271,36 @@ fn overall_sentence(
         "{}{degrees} = {}, {}, {} = {}",
         line.statistic_name,
         language.number(line.statistic),
-        language.p(line.p_value),
+        language.p(line.p_holm.unwrap_or(line.p_value)),
         effect_symbol(line.effect_name),
         line.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
     );
-    if line.p_value < LEVEL {
+    let significant = line.p_holm.unwrap_or(line.p_value) < LEVEL;
+    if interaction.is_some() && line.call.function != "aligned_rank_transform" {
+        let test = line.test.split(" of ").next().unwrap_or(&line.test);
+        let how = match line.test.split_once("person differences ") {
+            Some((_, pair)) => language.pick(
+                format!("{test} of each person’s difference {pair}, the smallest p of all pairs of levels after Holm’s correction: {numbers}, {} people", line.n),
+                format!("{test} sur la différence {pair} de chaque personne, le plus petit p de toutes les paires de niveaux après correction de Holm : {numbers}, {} personnes", line.n),
+            ),
+            None => language.pick(
+                format!("{test} on one mean a person: {numbers}, {} people", line.n),
+                format!("{test} sur une moyenne par personne : {numbers}, {} personnes", line.n),
+            ),
+        };
+        return if significant {
+            language.pick(
+                format!("The two factors act together ({what}). {how}."),
+                format!("Les deux facteurs agissent ensemble ({what}). {how}."),
+            )
+        } else {
+            language.pick(
+                format!("That the two factors act together ({what}) was not shown. {how}; that is no proof that they do not."),
+                format!("Que les deux facteurs agissent ensemble ({what}) n’a pas été montré. {how} ; cela ne prouve pas qu’ils ne le font pas."),
+            )
+        };
+    }
+    if significant {
         if interaction.is_some() {
             return language.pick(
                 format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it."),

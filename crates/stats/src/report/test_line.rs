@@ -48,27 +48,37 @@ pub(crate) struct TestLine {
     pub call: Call,
 }
 
+impl Outcome<TestLine> {
+    /// p, where there is one.
+    pub(crate) fn p(&self) -> Option<f64> {
+        match self {
+            Self::Ok(line) => Some(line.p_value),
+            Self::Undefined { .. } => None,
+        }
+    }
+
+    /// p after a correction over several tests, where there was one.
+    pub(crate) fn p_that_counts(&self) -> Option<f64> {
+        match self {
+            Self::Ok(line) => Some(line.p_holm.unwrap_or(line.p_value)),
+            Self::Undefined { .. } => None,
+        }
+    }
+}
+
 impl TestLine {
     /// Kruskal-Wallis; `of` says of what.
     pub(crate) fn kruskal_wallis(values: &Numbers, factor: &Factor, of: &str) -> Outcome<Self> {
         from_refusal(kruskal_wallis(values, factor).map(|outcome| {
             outcome.map(|result| Self {
-                test: format!("Kruskal-Wallis of {of}"),
-                term: String::new(),
-                statistic_name: "H",
                 statistic: result.statistic,
                 df: result.df.to_string(),
                 p_value: result.p_value,
                 ln_p: result.ln_p,
-                p_holm: None,
                 effect_name: "epsilon squared",
                 effect: Some(result.epsilon_squared),
                 n: result.n,
-                call: Call::new("kruskal_wallis")
-                    .text(&values.name)
-                    .text(&factor.name)
-                    .list(&factor.levels)
-                    .text(of),
+                ..Self::groups(["Kruskal-Wallis", "kruskal_wallis", "H"], values, factor, of)
             })
         }))
     }
@@ -77,24 +87,41 @@ impl TestLine {
     pub(crate) fn mann_whitney(values: &Numbers, factor: &Factor, of: &str) -> Outcome<Self> {
         from_refusal(mann_whitney(values, factor).map(|outcome| {
             outcome.map(|result| Self {
-                test: format!("Mann-Whitney of {of}"),
                 term: result.pair.clone(),
-                statistic_name: "U",
                 statistic: result.statistic,
-                df: String::new(),
                 p_value: result.p_value,
                 ln_p: result.ln_p,
-                p_holm: None,
                 effect_name: "rank-biserial",
                 effect: Some(result.rank_biserial),
                 n: result.n,
-                call: Call::new("mann_whitney")
-                    .text(&values.name)
-                    .text(&factor.name)
-                    .list(&factor.levels)
-                    .text(of),
+                ..Self::groups(["Mann-Whitney", "mann_whitney", "U"], values, factor, of)
             })
         }))
+    }
+
+    /// What tests of independent groups have in common, without their numbers. A test has a name for
+    /// people, one for scripts, and that of its statistic.
+    fn groups(
+        [test, function, statistic_name]: [&'static str; 3],
+        values: &Numbers,
+        factor: &Factor,
+        of: &str,
+    ) -> Self {
+        let call = Call::new(function).text(&values.name).text(&factor.name);
+        Self {
+            test: format!("{test} of {of}"),
+            term: String::new(),
+            statistic_name,
+            statistic: f64::NAN,
+            df: String::new(),
+            p_value: f64::NAN,
+            ln_p: f64::NAN,
+            p_holm: None,
+            effect_name: "",
+            effect: None,
+            n: 0,
+            call: call.list(&factor.levels).text(of),
+        }
     }
 
     /// Mann-Whitney of two groups, Kruskal-Wallis of more.
@@ -240,7 +267,8 @@ impl TestLine {
                                 .list(&factors[0].levels)
                                 .text(&factors[1].name)
                                 .list(&factors[1].levels)
-                                .number(effect + 1),
+                                .number(effect + 1)
+                                .text(of),
                         }),
                         _ => Outcome::undefined(format!(
                             "{}: no degrees of freedom are left",

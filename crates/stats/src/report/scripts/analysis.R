@@ -173,11 +173,18 @@ friedman <- function(y, g, levels) {
 }
 
 # Scheirer, Ray and Hare: an analysis of variance of ranks (type I), read as chi-square.
-scheirer_ray_hare <- function(y, a, a_levels, b, b_levels, effect) {
+scheirer_ray_hare <- function(y, a, a_levels, b, b_levels, effect, unit) {
   v <- number(y)
-  keep <- !is.na(v) & trials[[a]] %in% a_levels & trials[[b]] %in% b_levels
-  r <- rank(v[keep])
-  table <- anova(lm(r ~ factor(trials[[a]][keep]) * factor(trials[[b]][keep])))
+  of_a <- trials[[a]]
+  of_b <- trials[[b]]
+  if (unit != "trials") {
+    v <- overall_means(y)
+    of_a <- about(a, names(v))
+    of_b <- about(b, names(v))
+  }
+  keep <- !is.na(v) & of_a %in% a_levels & of_b %in% b_levels
+  r <- rank(as.vector(v)[keep])
+  table <- anova(lm(r ~ factor(of_a[keep]) * factor(of_b[keep])))
   h <- table[["Sum Sq"]][effect] / var(r)
   c(statistic = h, p = pchisq(h, table[["Df"]][effect], lower.tail = FALSE),
     effect = h / (length(r) - 1), n = length(r))
@@ -244,7 +251,9 @@ check <- function(key, values) {
 }
 # Holm's correction of the p of several checks together.
 holm <- function(of, into) {
-  p <- p.adjust(found[match(paste(of, "p"), paste(keys, names_of))], "holm")
+  # A check that is itself the smallest of several counts with its corrected p.
+  own <- function(name) found[match(paste(of, name), paste(keys, names_of))]
+  p <- p.adjust(ifelse(is.na(own("p_holm")), own("p"), own("p_holm")), "holm")
   for (i in seq_along(of)) check(into[i], c(p_holm = p[i]))
 }
 

@@ -286,12 +286,15 @@ def crossed(a, b):
     return (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
 
 
-def scheirer_ray_hare(y, a, a_levels, b, b_levels, effect):
+def scheirer_ray_hare(y, a, a_levels, b, b_levels, effect, unit):
     """An analysis of variance of ranks (type I), read as chi-square."""
-    v = number(y)
-    keep = ~np.isnan(v) & is_in(a, a_levels) & is_in(b, b_levels)
+    v, of_a, of_b = number(y), columns[a], columns[b]
+    if unit != "trials":
+        people, v = overall_means(y)
+        of_a, of_b = about(a, people), about(b, people)
+    keep = ~np.isnan(v) & np.isin(of_a, a_levels) & np.isin(of_b, b_levels)
     r = stats.rankdata(v[keep])
-    of_a, of_b = dummies(columns[a][keep], a_levels), dummies(columns[b][keep], b_levels)
+    of_a, of_b = dummies(of_a[keep], a_levels), dummies(of_b[keep], b_levels)
     parts = [np.ones((len(r), 1)), of_a, of_b, crossed(of_a, of_b)]
     before = residual_squares(np.hstack(parts[:effect]), r)
     after = residual_squares(np.hstack(parts[: effect + 1]), r)
@@ -375,7 +378,9 @@ def check(key, values):
 
 def holm(keys, into):
     """Holm's correction of the p of several checks together."""
-    for key, p in zip(into, adjusted([found[key, "p"] for key in keys])):
+    # A check that is itself the smallest of several counts with its corrected p.
+    own = [found.get((key, "p_holm"), found[key, "p"]) for key in keys]
+    for key, p in zip(into, adjusted(own)):
         found[key, "p_holm"] = float(p)
 
 

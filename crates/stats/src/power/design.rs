@@ -1,0 +1,97 @@
+//! What participants of simulated studies go through: clips, orders, pages, and what must be drawn.
+
+use mimique_study::{Draw, Measure, OrderError, OrderedItem, Study, order};
+
+use super::clips::{ScaledClips, scaled};
+use crate::simulate::{Draws, Model, Parameters};
+
+/// What participants go through, the same in every run.
+pub(crate) struct Design<'s> {
+    pub study: &'s Study,
+    pub clips: ScaledClips,
+    /// A participant each, from number 1.
+    pub walks: Vec<Vec<Step>>,
+    pub needs: Needs,
+}
+
+/// A step with answers.
+pub(crate) enum Step {
+    /// A trial: its clip, its block's name.
+    Trial { clip: usize, block: String },
+    /// A page of questions.
+    Page(String),
+}
+
+/// What must be drawn beside the answers.
+pub(crate) struct Needs {
+    pub times: bool,
+    pub display: bool,
+    pub pages: bool,
+    /// Questions that hypotheses are about.
+    pub responses: Vec<String>,
+}
+
+impl<'s> Design<'s> {
+    /// The walks of so many participants; `clips` of them instead of the study's own, if given.
+    pub(crate) fn new(
+        study: &'s Study,
+        config_hash: &str,
+        participants: usize,
+        clips: Option<usize>,
+    ) -> Result<Self, OrderError> {
+        let own = study.clips().len();
+        let clips = scaled(study, clips.unwrap_or(own));
+        let mut walks = Vec::with_capacity(participants);
+        for number in 1..=participants as u64 {
+            let draw = Draw { seed: study.seed, config_hash, participant: number };
+            let mut walk = Vec::new();
+            for item in order(study, draw)? {
+                match item {
+                    OrderedItem::Trial { component, clip, .. } => {
+                        let places = clips.stand_ins.get(&clip).into_iter().flatten();
+                        let trial = |&clip: &usize| Step::Trial { clip, block: component.clone() };
+                        walk.extend(places.map(trial));
+                    }
+                    OrderedItem::Component { component } => walk.push(Step::Page(component)),
+                }
+            }
+            if clips.clips.len() > own {
+                mix(&mut walk, number);
+            }
+            walks.push(walk);
+        }
+        let rules = study.exclusions.clone().unwrap_or_default();
+        let measures = |what: Measure| study.hypotheses.iter().any(|each| each.measure == what);
+        let needs = Needs {
+            times: measures(Measure::Rt) || rules.shortest_rt_ms.is_some(),
+            display: measures(Measure::Rt)
+                || rules.shortest_rt_ms.is_some()
+                || rules.late_frame_share.is_some()
+                || rules.longest_frame_ms.is_some(),
+            pages: rules.failed_attention_checks.is_some() || has_conditions(study),
+            responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
+        };
+        Ok(Self { study, clips, walks, needs })
+    }
+
+    /// The model of these parameters on the design's clips.
+    pub(crate) fn model(&self, parameters: &'s Parameters) -> Model<'s> {
+        Model::new(self.study, parameters, self.clips.clips.clone())
+    }
+}
+
+/// Mixes the trials of a study with more clips than its own: copies of a clip must not follow it.
+fn mix(walk: &mut [Step], number: u64) {
+    let mut draws = Draws::new(0, Some(number), "order of more clips");
+    let places: Vec<usize> =
+        (0..walk.len()).filter(|&place| matches!(walk[place], Step::Trial { .. })).collect();
+    for last in (1..places.len()).rev() {
+        let other = draws.below(last + 1);
+        walk.swap(places[last], places[other]);
+    }
+}
+
+/// Whether some question is asked only after some answers.
+pub(crate) fn has_conditions(study: &Study) -> bool {
+    study.questions.iter().any(|question| question.show_if.is_some())
+}

@@ -1,0 +1,75 @@
+//! Everything that a report computed, as `results.json` has it.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::comparison::Comparison;
+use super::export::{Flow, Person};
+use super::hypothesis::HypothesisResult;
+use super::layouts::LayoutCell;
+use super::person_level::PersonLevel;
+use super::section_course::Course;
+use super::trial_level::TrialLevel;
+use crate::confusion::Confusion;
+use crate::describe::Description;
+use crate::outcome::{Labelled, Outcome};
+
+/// Everything that was computed, for `results.json`.
+#[derive(Serialize, Default)]
+pub(crate) struct Results<'a> {
+    pub study: String,
+    pub version: String,
+    pub language: &'static str,
+    pub flow: Option<&'a Flow>,
+    pub people: &'a [Person],
+    pub about_people: BTreeMap<String, AboutPeople>,
+    pub hypotheses: Vec<HypothesisResult>,
+    pub confusion: Vec<NamedConfusion>,
+    pub comparisons: Vec<Comparison>,
+    pub two_way: Vec<TwoWay>,
+    pub course: Vec<Course>,
+    pub layouts: Vec<LayoutCell>,
+    pub late_frames: Vec<LateFrames>,
+}
+
+/// Answers about people.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum AboutPeople {
+    /// Of a number.
+    Numbers(Outcome<Description>),
+    /// Of words: people an answer.
+    Counts(Labelled<usize>),
+}
+
+/// A confusion matrix of some of the trials.
+#[derive(Serialize)]
+pub(crate) struct NamedConfusion {
+    pub response: String,
+    /// The factor; none for all trials.
+    pub by: Option<String>,
+    /// `all`, or a factor's level.
+    pub of: String,
+    pub result: Confusion,
+}
+
+/// Two factors and their interaction.
+#[derive(Serialize)]
+pub(crate) struct TwoWay {
+    pub measure: String,
+    pub factors: [String; 2],
+    pub as_in_the_thesis: TrialLevel,
+    pub recommended: PersonLevel,
+}
+
+/// Late frames at a level of the first factor.
+#[derive(Serialize)]
+pub(crate) struct LateFrames {
+    pub level: String,
+    pub trials: usize,
+    pub frames: f64,
+    pub late: f64,
+    pub trials_with_late_frames: usize,
+    pub longest_ms: Option<f64>,
+}
