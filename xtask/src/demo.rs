@@ -37,6 +37,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut serve = Command::new(&binary);
     serve.current_dir(root()).arg("serve").args(&args.studies).args(["--listen", &args.listen]);
+    // Whoever tries it out sees the stimuli before there is an account.
+    serve.arg("--open-preview");
     serve.status().with_context(|| binary.display().to_string())?;
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use mimique_server::Storage;
-use mimique_server::export::{Format, export};
+use mimique_server::export::{Cells, Format, Options, export};
 
 /// Options.
 #[derive(clap::Args)]
@@ -26,6 +26,10 @@ pub struct Args {
     /// Add the identifiers of the recruitment platform
     #[arg(long)]
     with_identifiers: bool,
+    /// Put an apostrophe before texts that a spreadsheet would take for formulas (= + - @); scripts
+    /// want the texts as they are
+    #[arg(long)]
+    for_spreadsheet: bool,
 }
 
 /// Runs the command.
@@ -41,8 +45,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Runtime::new().context("the export's threads")?;
     let exported = runtime.block_on(async {
         let storage = Storage::open_existing(&args.database).await?;
-        let exported =
-            export(&storage, args.study.as_deref(), args.format, args.with_identifiers).await;
+        let cells = if args.for_spreadsheet { Cells::Neutralised } else { Cells::AsTheyAre };
+        let options = Options { with_identifiers: args.with_identifiers, cells };
+        let exported = export(&storage, args.study.as_deref(), args.format, options).await;
         storage.close().await;
         anyhow::Ok(exported?)
     });

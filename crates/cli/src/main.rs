@@ -3,6 +3,7 @@
 //! Errors go to stderr as `error: FILE: PLACE: what, value, remedy` with exit code 2; results go to
 //! stdout, as text or, with `--json`, as JSON.
 
+mod account;
 mod analyze;
 mod check;
 mod export;
@@ -49,6 +50,8 @@ enum Command {
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
     Segment(Box<segment::Args>),
+    /// Recover a researcher's account; list the accounts
+    Account(account::Args),
     /// Write the responses of a study to a file
     Export(export::Args),
     /// Write an export of simulated participants
@@ -78,6 +81,7 @@ fn main() -> ExitCode {
         Command::Solve(args) => solve::run(*args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
+        Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::Simulate(args) => simulate::run(args, json),
         Command::Power(args) => power::run(args, json),

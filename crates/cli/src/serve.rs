@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mimique_server::{App, Assets, HostedStudy, PackStore, Stage, Storage};
+use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Stage, Storage};
 use mimique_stimulus::{Places, prepare};
 use mimique_study::Severity;
 use serde_json::json;
@@ -36,6 +36,13 @@ pub struct Args {
     /// Folder of the pages, instead of those inside the binary
     #[arg(long)]
     web_dir: Option<PathBuf>,
+    /// Address as people type it, e.g. https://faces.example.org, where a proxy stands before the
+    /// server; with https the researchers' cookies are for encrypted connections alone
+    #[arg(long)]
+    public_url: Option<String>,
+    /// Let everybody see the previews and the list of studies, not only researchers
+    #[arg(long)]
+    open_preview: bool,
     /// Mark the answers as those of a pilot
     #[arg(long)]
     pilot: bool,
@@ -97,9 +104,19 @@ async fn host(
         })
         .collect();
     let kind = storage.kind();
-    let app = App::new(studies, packs, assets, storage).await?;
-    let base = format!("http://{}", reachable(listener.local_addr()?));
-    let researcher = format!("{base}{}", app.researcher_link().await?);
+    let access = Access { open_preview: args.open_preview, public_url: args.public_url.clone() };
+    let app = App::new(studies, packs, assets, storage)
+        .await?
+        .with_access(access)
+        .with_data_folder(args.data_dir.clone());
+    app.host_uploads().await?;
+    let base = match &args.public_url {
+        Some(url) => url.trim_end_matches('/').to_owned(),
+        None => format!("http://{}", reachable(listener.local_addr()?)),
+    };
+    // Without an account there is a link that makes the first.
+    let first_link = app.first_owner_link().await?;
+    let researcher = format!("{base}{}", first_link.as_deref().unwrap_or("/researcher"));
     {
         let mut out = std::io::stdout().lock();
         if json {
@@ -126,6 +143,12 @@ async fn host(
                 writeln!(out, "  preview       {base}/preview/{id}")?;
             }
             writeln!(out, "researcher      {researcher}")?;
+            if first_link.is_some() {
+                writeln!(
+                    out,
+                    "                (makes the first account; works once, for two days)"
+                )?;
+            }
             writeln!(out, "Answers are kept in {kind}. Stop with Ctrl-C.")?;
         }
         out.flush()?;

@@ -1,19 +1,19 @@
 //! What every request can reach: studies, packs, pages, storage and the server's keys.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::Arc;
 
+use crate::accounts::Access;
 use crate::assets::Assets;
 use crate::catalogue::Catalogue;
 use crate::error::Error;
 use crate::hosted::HostedStudy;
 use crate::packs::PackStore;
-use crate::researcher::SessionViews;
-use crate::storage::{Access, Storage, StorageError};
+use crate::researcher::{Pulse, Reports, SessionViews};
+use crate::storage::{Storage, StorageError};
+use crate::uploads::Preparations;
 use crate::{clock, secret};
-
-/// How long the printed researcher's address works.
-const LINK_LIFETIME_MS: i64 = 7 * 24 * 3600 * 1000;
 
 /// What every request can reach; cheap to clone.
 #[derive(Clone)]
@@ -22,6 +22,14 @@ pub struct App {
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
     pub(crate) session_views: Arc<SessionViews>,
+    pub(crate) access: Arc<Access>,
+    pub(crate) pulse: Pulse,
+    pub(crate) reports: Arc<Reports>,
+    /// Where uploaded studies and their packs lie.
+    pub(crate) data_folder: Option<Arc<Path>>,
+    pub(crate) preparations: Preparations,
+    /// Version and stage of each uploaded study as it is hosted.
+    pub(crate) uploaded: Arc<tokio::sync::Mutex<BTreeMap<String, (String, String)>>>,
     pub(crate) token_key: Arc<[u8]>,
     pub(crate) receipt_key: Arc<[u8]>,
 }
@@ -34,6 +42,14 @@ pub enum AppError {
     StudyTwice {
         /// The identifier.
         id: String,
+    },
+    /// Nobody has this account.
+    #[error("{email}: nobody has an account by this address; there are {known}")]
+    NoAccount {
+        /// The address asked for.
+        email: String,
+        /// Those there are.
+        known: String,
     },
     /// Storage failed.
     #[error(transparent)]
@@ -66,20 +82,27 @@ impl App {
             catalogue: Arc::new(catalogue),
             assets: Arc::new(assets),
             session_views: Arc::default(),
+            access: Arc::default(),
+            pulse: Pulse::new(storage.clone()),
+            reports: Arc::default(),
+            data_folder: None,
+            preparations: Arc::default(),
+            uploaded: Arc::default(),
             token_key: key(&storage, "tokens").await?,
             receipt_key: key(&storage, "receipts").await?,
             storage,
         })
     }
 
-    /// Makes a new address `/researcher?key=…`; only its hash is kept.
-    pub async fn researcher_link(&self) -> Result<String, AppError> {
-        let key = secret::random::<16>()?;
-        let now = clock::now_ms();
-        self.storage
-            .grant_access(Access::Link, &secret::hash(&key), now, now + LINK_LIFETIME_MS)
-            .await?;
-        Ok(format!("/researcher?key={key}"))
+    /// The same server, reached and open as said.
+    pub fn with_access(mut self, access: Access) -> Self {
+        self.access = Arc::new(access);
+        self
+    }
+
+    /// Makes this version of a study the current one.
+    pub(crate) async fn register(&self, study: &HostedStudy) -> Result<(), StorageError> {
+        register(&self.storage, study).await
     }
 
     pub(crate) fn study(&self, id: &str) -> Result<Arc<HostedStudy>, Error> {

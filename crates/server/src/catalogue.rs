@@ -38,7 +38,6 @@ impl Catalogue {
         Ok(Self { now: RwLock::new(Arc::new(hosted)) })
     }
 
-    #[allow(dead_code, reason = "uploads host studies while the server runs")]
     /// Hosts a study, or another version of one, with what of its packs is not there yet.
     pub fn put(
         &self,
@@ -54,7 +53,6 @@ impl Catalogue {
         Ok(())
     }
 
-    #[allow(dead_code, reason = "uploads host studies while the server runs")]
     /// Hosts a study no more. Its packs stay: sessions under way may still need them.
     pub fn take(&self, id: &str) {
         let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);

@@ -8,6 +8,7 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use mimique_study::wire::Refusal;
 
+use crate::app::AppError;
 use crate::export::ExportError;
 use crate::storage::StorageError;
 
@@ -32,8 +33,26 @@ pub(crate) enum Error {
     Timeout,
     #[error("{} events differ from what is stored under their sequence; reload the page", .0.len())]
     EventConflict(Vec<u64>),
-    #[error("this page is the researcher's; open the address that `mimique serve` printed")]
-    AccessDenied,
+    #[error("nobody is logged in; log in, or send a token")]
+    LogInFirst,
+    #[error("your role does not allow this; ask an owner of this server")]
+    NotAllowed,
+    #[error("the form is not from this page, or the page is too old; load the page again")]
+    ForeignForm,
+    #[error("address or password is wrong; type both again, or ask an owner for a new link")]
+    WrongPassword,
+    #[error("there were too many attempts; wait a quarter of an hour")]
+    TooManyAttempts,
+    #[error("the link was used, has expired or never was; ask for a new one")]
+    DeadLink,
+    #[error("{0}; choose another role or account first")]
+    LastOwner(&'static str),
+    #[error("{0}")]
+    BadUpload(String),
+    #[error("the upload is too large; 512 MiB are taken at most")]
+    UploadTooLarge,
+    #[error("there is no report: {0}")]
+    NoReport(String),
     #[error(transparent)]
     Storage(#[from] StorageError),
     #[error("the server failed: {0}")]
@@ -53,15 +72,21 @@ impl Error {
             | Self::Storage(StorageError::UnknownSession) => StatusCode::NOT_FOUND,
             Self::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
             Self::BadRequest { .. } => StatusCode::BAD_REQUEST,
-            Self::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            Self::BadUpload(_) => StatusCode::UNPROCESSABLE_ENTITY,
             Self::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             Self::Timeout => StatusCode::REQUEST_TIMEOUT,
             Self::EventConflict(_) | Self::Storage(StorageError::MissingEvents { .. }) => {
                 StatusCode::CONFLICT
             }
-            Self::AccessDenied | Self::Storage(StorageError::WrongWithdrawalCode) => {
-                StatusCode::FORBIDDEN
-            }
+            Self::LogInFirst => StatusCode::UNAUTHORIZED,
+            Self::NotAllowed
+            | Self::ForeignForm
+            | Self::WrongPassword
+            | Self::Storage(StorageError::WrongWithdrawalCode) => StatusCode::FORBIDDEN,
+            Self::TooManyAttempts => StatusCode::TOO_MANY_REQUESTS,
+            Self::DeadLink => StatusCode::GONE,
+            Self::LastOwner(_) | Self::NoReport(_) => StatusCode::CONFLICT,
             Self::Storage(StorageError::Withdrawn) => StatusCode::GONE,
             Self::Storage(StorageError::Unavailable | StorageError::Stopping) => {
                 StatusCode::SERVICE_UNAVAILABLE
@@ -78,10 +103,18 @@ impl Error {
             Self::UnknownStudy => "unknown-study",
             Self::UnknownPack => "unknown-pack",
             Self::BadRequest { .. } | Self::NotJson => "bad-request",
-            Self::TooLarge => "too-large",
+            Self::TooLarge | Self::UploadTooLarge => "too-large",
+            Self::BadUpload(_) => "bad-upload",
             Self::Timeout => "timeout",
             Self::EventConflict(_) => "event-conflict",
-            Self::AccessDenied => "access-denied",
+            Self::LogInFirst => "log-in-first",
+            Self::NotAllowed => "not-allowed",
+            Self::ForeignForm => "foreign-form",
+            Self::WrongPassword => "wrong-password",
+            Self::TooManyAttempts => "too-many-attempts",
+            Self::DeadLink => "dead-link",
+            Self::LastOwner(_) => "last-owner",
+            Self::NoReport(_) => "no-report",
             Self::Storage(StorageError::UnknownSession) => "unknown-session",
             Self::Storage(StorageError::Withdrawn) => "withdrawn",
             Self::Storage(StorageError::MissingEvents { .. }) => "missing-events",
@@ -89,6 +122,11 @@ impl Error {
             Self::Storage(StorageError::Unavailable | StorageError::Stopping) => "unavailable",
             Self::Storage(_) | Self::Internal(_) => "internal",
         }
+    }
+
+    /// Status and words, for a page that shows them.
+    pub fn into_refusal(self) -> (StatusCode, Refusal) {
+        (self.status(), self.refusal())
     }
 
     fn refusal(self) -> Refusal {
@@ -145,6 +183,15 @@ impl From<BytesRejection> for Error {
             Self::TooLarge
         } else {
             Self::bad_request("the body could not be read to its end", "send the request again")
+        }
+    }
+}
+
+impl From<AppError> for Error {
+    fn from(error: AppError) -> Self {
+        match error {
+            AppError::Storage(error) => Self::Storage(error),
+            other => Self::Internal(other.to_string()),
         }
     }
 }

@@ -168,7 +168,7 @@ fn without_secrets(mut file: Value) -> Value {
 }
 
 /// Every byte but the unreserved ones of RFC 3986 as `%XX`.
-fn percent_encoded(text: &str) -> String {
+pub(crate) fn percent_encoded(text: &str) -> String {
     text.bytes()
         .map(|byte| match byte {
             b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => {

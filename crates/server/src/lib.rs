@@ -8,6 +8,7 @@
 //! request again changes nothing; a participant number is never given twice; tokens, codes and keys
 //! are kept as hashes; no address of a participant is stored and no answer is logged.
 
+mod accounts;
 mod app;
 mod assets;
 mod atomic_file;
@@ -26,7 +27,9 @@ mod secret;
 mod serve;
 mod static_file;
 mod storage;
+mod uploads;
 
+pub use accounts::Access;
 pub use app::{App, AppError};
 pub use assets::{Assets, AssetsError};
 pub use hosted::{HostedStudy, Stage};
@@ -34,8 +37,9 @@ pub use packs::{PackError, PackStore};
 pub use routes::router;
 pub use serve::{ServeError, serve};
 pub use storage::{
-    Access, Appended, Completed, MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry,
-    SessionRecord, Status, Storage, StorageError, StudyVersion,
+    Account, AccountLink, ApiToken, Appended, AuditEntry, Completed, Exclusion, LinkPurpose,
+    MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry, Role, SessionRecord, Status, Storage,
+    StorageError, StudyVersion, UploadedStudy,
 };
 
 /// The public name of a participant: `p0007`.

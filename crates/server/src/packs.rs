@@ -93,7 +93,6 @@ impl PackStore {
         Ok(())
     }
 
-    #[allow(dead_code, reason = "uploads host studies while the server runs")]
     /// Takes over what another store holds.
     pub(crate) fn join(&mut self, other: Self) {
         self.packs.extend(other.packs);

@@ -12,6 +12,9 @@ use crate::routes::router;
 /// Requests in progress have this long to end after the signal.
 const LONGEST_FAREWELL: Duration = Duration::from_secs(10);
 
+/// Studies uploaded to another server on the same database are looked for this often.
+const UPLOADS_EVERY: Duration = Duration::from_secs(10);
+
 /// The server had to stop.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -28,8 +31,12 @@ pub async fn serve(
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), ServeError> {
     let (stopping, mut stopped) = tokio::sync::watch::channel(false);
+    let pulse = app.pulse.clone();
+    tokio::spawn(follow_uploads(app.clone()));
     let server = axum::serve(listener, router(app.clone())).with_graceful_shutdown(async move {
         stop.await;
+        // An open dashboard would never end by itself.
+        pulse.stop();
         stopping.send_replace(true);
     });
     let overdue = async {
@@ -46,4 +53,17 @@ pub async fn serve(
     };
     app.storage.close().await;
     outcome
+}
+
+/// Hosts what other servers on the same database were given, and no more what was removed there.
+async fn follow_uploads(app: App) {
+    loop {
+        if let Err(error) = app.host_uploads().await {
+            tracing::warn!("uploaded studies cannot be looked for: {error}");
+        }
+        tokio::select! {
+            () = tokio::time::sleep(UPLOADS_EVERY) => {}
+            () = app.pulse.stopped() => break,
+        }
+    }
 }

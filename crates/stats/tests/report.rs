@@ -290,3 +290,33 @@ fn a_factor_about_people_is_tested_on_people() {
     assert_eq!(both["recommended"]["overall"][2]["n"], results["flow"]["people_used"]);
     assert!(reading("H07").contains("on one mean a person"), "{}", reading("H07"));
 }
+
+#[test]
+fn whom_the_researcher_excluded_is_left_out_with_the_reason() {
+    let study = demo_study();
+    let csv = export(&study, &Raters { people: 9, effect: 0.5, seed: 4 });
+    let mut rows = csv.lines();
+    let mut marked = format!("{},excluded,exclusion_reason\n", rows.next().unwrap());
+    for row in rows {
+        let (excluded, reason) = match row.split(',').next().unwrap() {
+            "p0002" | "p0005" => ("true", "watched with a friend"),
+            "p0003" => ("true", "fell asleep"),
+            _ => ("false", ""),
+        };
+        marked.push_str(&format!("{row},{excluded},{reason}\n"));
+    }
+    let table = Table::parse(marked.as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::English).unwrap();
+    let before = analyze(&Table::parse(csv.as_bytes()).unwrap(), &study, Language::English);
+    let (used, all) = before.unwrap().people;
+    assert_eq!(report.people, (used - 3, all));
+    let page = &report.files[0].text;
+    for line in [
+        "excluded by the researcher (fell asleep): 1",
+        "excluded by the researcher (watched with a friend): 2",
+    ] {
+        assert!(page.contains(line), "{line}");
+    }
+    let reasons = results(&report)["flow"].to_string();
+    assert!(reasons.contains("\"watched with a friend\":2"), "{reasons}");
+}

@@ -15,11 +15,11 @@ export function mimique(args, options = {}) {
   return execFileSync(binary, args, { encoding: "utf8", cwd: root, maxBuffer: 1 << 28, ...options });
 }
 
-/** A running server: `{url, folder, database, researcher, stop()}`. */
+/** A running server: `{url, folder, database, researcher(), stop()}`. */
 export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port } = {}) {
   port ??= await freePort();
   const database = `sqlite:${join(folder, "answers.sqlite")}`;
-  const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--json"];
+  const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--open-preview", "--json"];
   // In development the pages may lie in a folder instead of the binary.
   if (process.env.MIMIQUE_WEB_DIR) args.push("--web-dir", process.env.MIMIQUE_WEB_DIR);
   const child = spawn(binary, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });
@@ -46,6 +46,8 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
     folder,
     database,
     said: () => out,
+    /** The address that makes the first account, or the page to log in where there is one. */
+    researcher: () => JSON.parse(out).researcher,
     kill: async () => {
       child.kill("SIGKILL");
       await ended;

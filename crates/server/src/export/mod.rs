@@ -19,6 +19,7 @@ mod unstored;
 use std::io;
 use std::path::{Path, PathBuf};
 
+pub use table::Cells;
 pub(crate) use table::{Sources, Version, as_started};
 pub use unstored::{Unstored, Written};
 
@@ -115,27 +116,39 @@ pub enum ExportError {
     Form(String),
 }
 
-/// Exports a study; the only one of the database if `study_id` is not given. Recruitment
-/// identifiers are left out unless asked for.
+/// What may be asked of an export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Recruitment identifiers too; they are left out unless asked for.
+    pub with_identifiers: bool,
+    /// How cells of CSV files are written.
+    pub cells: Cells,
+}
+
+/// Exports a study; the only one of the database if `study_id` is not given.
 pub async fn export(
     storage: &Storage,
     study_id: Option<&str>,
     format: Format,
-    with_identifiers: bool,
+    options: Options,
 ) -> Result<Exported, ExportError> {
     let study_id = choose(storage, study_id).await?;
-    let sources = Sources::load(storage, &study_id, with_identifiers).await?;
+    let sources = Sources::load(storage, &study_id, options.with_identifiers).await?;
     let stem = format!("{study_id}_responses");
     let (files, participants, rows) = match format {
         Format::Csv => {
             let tidy = sources.tidy(storage).await?;
             let counts = (tidy.participants, tidy.rows.len());
-            (vec![(format!("{stem}.csv"), table::csv(&tidy)?)], counts.0, counts.1)
+            (vec![(format!("{stem}.csv"), table::csv(&tidy, options.cells)?)], counts.0, counts.1)
         }
         Format::Wide => {
             let wide = sources.wide(storage).await?;
             let counts = (wide.participants, wide.rows.len());
-            (vec![(format!("{study_id}_wide.csv"), table::csv(&wide)?)], counts.0, counts.1)
+            (
+                vec![(format!("{study_id}_wide.csv"), table::csv(&wide, options.cells)?)],
+                counts.0,
+                counts.1,
+            )
         }
         Format::Json => {
             let tidy = sources.tidy(storage).await?;
@@ -150,7 +163,12 @@ pub async fn export(
             let tidy = sources.tidy(storage).await?;
             let counts = (tidy.participants, tidy.rows.len());
             (
-                psych_ds::files(&sources, &tidy.columns, table::csv(&tidy)?, counts)?,
+                psych_ds::files(
+                    &sources,
+                    &tidy.columns,
+                    table::csv(&tidy, options.cells)?,
+                    counts,
+                )?,
                 counts.0,
                 counts.1,
             )
@@ -190,6 +208,26 @@ impl Exported {
         }
         Ok(written)
     }
+}
+
+/// The data dictionary as CSV: every column of the tidy form with its kind, unit, levels, description.
+pub(crate) async fn dictionary(storage: &Storage, study_id: &str) -> Result<Vec<u8>, ExportError> {
+    let study_id = choose(storage, Some(study_id)).await?;
+    let sources = Sources::load(storage, &study_id, false).await?;
+    table::dictionary(&sources.columns())
+}
+
+/// The study file as it is served now.
+pub(crate) async fn study_file(storage: &Storage, study_id: &str) -> Result<Vec<u8>, ExportError> {
+    let study_id = choose(storage, Some(study_id)).await?;
+    let sources = Sources::load(storage, &study_id, false).await?;
+    serde_json::to_vec_pretty(&sources.latest()?.file)
+        .map_err(|error| ExportError::Form(error.to_string()))
+}
+
+/// Files in one ZIP archive below one folder.
+pub(crate) fn zip(folder: &str, files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ExportError> {
+    psych_ds::zip(folder, files)
 }
 
 async fn choose(storage: &Storage, wanted: Option<&str>) -> Result<String, ExportError> {

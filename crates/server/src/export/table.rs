@@ -16,6 +16,8 @@ pub(crate) struct Sources {
     pub versions: Vec<Version>,
     pub sessions: Vec<SessionRecord>,
     identifiers: Option<Identifiers>,
+    /// Reason of each exclusion that counts now, by session key.
+    excluded: BTreeMap<i64, String>,
 }
 
 /// A version of the study, read.
@@ -46,10 +48,13 @@ struct Identifiers {
 }
 
 /// Rows of all versions under the columns of all versions.
+#[derive(Default)]
 pub(crate) struct Merged {
     pub columns: Vec<Column>,
     pub rows: Vec<Vec<Value>>,
     pub participants: usize,
+    /// Place of the first of the two columns on exclusion.
+    exclusion: Option<usize>,
 }
 
 impl Sources {
@@ -69,12 +74,30 @@ impl Sources {
             false => None,
         };
         let sessions = storage.sessions(study_id).await?;
-        Ok(Self { study_id: study_id.to_owned(), versions, sessions, identifiers })
+        let mut excluded = BTreeMap::new();
+        for change in storage.exclusions(study_id).await? {
+            match change.reason {
+                Some(reason) => excluded.insert(change.session_key, reason),
+                None => excluded.remove(&change.session_key),
+            };
+        }
+        Ok(Self { study_id: study_id.to_owned(), versions, sessions, identifiers, excluded })
     }
 
     /// A study of one version whose sessions lie elsewhere.
     pub fn without_storage(study_id: String, version: Version) -> Self {
-        Self { study_id, versions: vec![version], sessions: Vec::new(), identifiers: None }
+        Self {
+            study_id,
+            versions: vec![version],
+            sessions: Vec::new(),
+            identifiers: None,
+            excluded: BTreeMap::new(),
+        }
+    }
+
+    /// Reason of each exclusion that counts now, by session key.
+    pub fn excluded(&self) -> &BTreeMap<i64, String> {
+        &self.excluded
     }
 
     /// The version that is served now, or was served last.
@@ -100,6 +123,7 @@ impl Sources {
         for version in &self.versions {
             merged.add_columns(&responses::tidy(&version.study, &version.clips, []).columns);
         }
+        merged.add_exclusion_columns();
         self.add_identifier_columns(&mut merged);
         for session in &self.sessions {
             let version = self.version(&session.config_hash)?;
@@ -129,6 +153,7 @@ impl Sources {
             merged.add_columns(&table.columns);
             tables.push(table);
         }
+        merged.add_exclusion_columns();
         self.add_identifier_columns(&mut merged);
         for table in &tables {
             self.add_rows(&mut merged, table);
@@ -140,8 +165,18 @@ impl Sources {
         Ok(merged)
     }
 
+    /// The columns of the tidy form.
+    pub fn columns(&self) -> Vec<Column> {
+        let mut merged = self.merged();
+        for version in &self.versions {
+            merged.add_columns(&responses::tidy(&version.study, &version.clips, []).columns);
+        }
+        merged.add_exclusion_columns();
+        merged.columns
+    }
+
     fn merged(&self) -> Merged {
-        Merged { columns: Vec::new(), rows: Vec::new(), participants: 0 }
+        Merged::default()
     }
 
     fn add_identifier_columns(&self, merged: &mut Merged) {
@@ -161,6 +196,12 @@ impl Sources {
     fn add_rows(&self, merged: &mut Merged, table: &Table) {
         let places: Vec<Option<usize>> =
             merged.columns.iter().map(|column| table.column(&column.name)).collect();
+        // The reason of each excluded participant of the table.
+        let excluded: BTreeMap<u64, &str> = self
+            .sessions
+            .iter()
+            .filter_map(|s| Some((s.participant, self.excluded.get(&s.key)?.as_str())))
+            .collect();
         let mut last_participant = None;
         for (index, row) in table.rows.iter().enumerate() {
             let participant = table.cell(index, "participant").as_u64();
@@ -176,12 +217,40 @@ impl Sources {
                 Some(place) => row[*place].clone(),
                 None => identifier(&column.name).unwrap_or(Value::Null),
             });
-            merged.rows.push(cells.collect());
+            let mut cells: Vec<Value> = cells.collect();
+            let reason = participant.and_then(|number| excluded.get(&number).copied());
+            merged.write_exclusion(&mut cells, reason);
+            merged.rows.push(cells);
         }
     }
 }
 
 impl Merged {
+    /// A table as it is, with the columns on exclusion and nobody excluded.
+    pub fn of_everybody(table: Table, participants: usize) -> Self {
+        let mut merged = Self { participants, ..Self::default() };
+        merged.columns = table.columns;
+        merged.add_exclusion_columns();
+        for mut row in table.rows {
+            row.resize(merged.columns.len(), Value::Null);
+            merged.write_exclusion(&mut row, None);
+            merged.rows.push(row);
+        }
+        merged
+    }
+
+    /// Adds the two columns that the researcher decides on, at the end.
+    fn add_exclusion_columns(&mut self) {
+        self.exclusion = Some(self.columns.len());
+        self.columns.extend(exclusion_columns());
+    }
+
+    fn write_exclusion(&self, row: &mut [Value], reason: Option<&str>) {
+        let Some(place) = self.exclusion else { return };
+        row[place] = reason.is_some().into();
+        row[place + 1] = reason.map_or(Value::Null, Value::from);
+    }
+
     /// Adds the columns that are not there yet, at the end.
     fn add_columns(&mut self, columns: &[Column]) {
         for column in columns {
@@ -190,6 +259,25 @@ impl Merged {
             }
         }
     }
+}
+
+/// Whether the researcher excluded the participant, and why.
+pub(super) fn exclusion_columns() -> [Column; 2] {
+    let column = |name: &str, kind, description: &str| Column {
+        name: name.to_owned(),
+        description: description.to_owned(),
+        kind,
+        unit: None,
+        levels: Vec::new(),
+    };
+    [
+        column(
+            "excluded",
+            ColumnKind::Boolean,
+            "Whether the researcher excluded the participant; every answer is kept",
+        ),
+        column("exclusion_reason", ColumnKind::Text, "Why the researcher excluded the participant"),
+    ]
 }
 
 impl Identifiers {
@@ -228,10 +316,39 @@ fn response_session<'a>(
 }
 
 /// A table as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.
-pub(super) fn csv(table: &Merged) -> Result<Vec<u8>, ExportError> {
+pub(super) fn csv(table: &Merged, cells: Cells) -> Result<Vec<u8>, ExportError> {
     let mut bytes = csv_header(&table.columns)?;
-    bytes.extend(csv_rows(&table.rows)?);
+    let rows = table.rows.iter();
+    bytes.extend(match cells {
+        Cells::AsTheyAre => csv_rows(&table.rows)?,
+        Cells::Neutralised => records(rows.map(|row| row.iter().map(neutral)))?,
+    });
     Ok(bytes)
+}
+
+/// Columns as rows: name, kind, unit, levels, description.
+pub(super) fn dictionary(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
+    let head = ["name", "kind", "unit", "levels", "description"].map(str::to_owned);
+    let rows = columns.iter().map(|column| {
+        let kind = match column.kind {
+            ColumnKind::Text => "text",
+            ColumnKind::Integer => "integer",
+            ColumnKind::Number => "number",
+            ColumnKind::Boolean => "boolean",
+            ColumnKind::Time => "time",
+            ColumnKind::Any => "any",
+        };
+        let levels =
+            column.levels.iter().map(|(value, meaning)| format!("{}={meaning}", cell(value)));
+        [
+            column.name.clone(),
+            kind.to_owned(),
+            column.unit.clone().unwrap_or_default(),
+            levels.collect::<Vec<_>>().join("|"),
+            column.description.clone(),
+        ]
+    });
+    records([head].into_iter().chain(rows).map(|row| row.into_iter()))
 }
 
 /// The first line of a CSV file.
@@ -255,10 +372,54 @@ fn records(
     writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
 }
 
+/// How cells of a CSV file are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Cells {
+    /// As they were answered: what scripts need.
+    #[default]
+    AsTheyAre,
+    /// Texts that a spreadsheet would take for a formula (they begin with `=`, `+`, `-`, `@`, a
+    /// tabulator or a line break) get an apostrophe before them; numbers stay as they are.
+    Neutralised,
+}
+
+fn neutral(value: &Value) -> String {
+    let text = cell(value);
+    let is_text = value.is_string() && text.parse::<f64>().is_err();
+    if is_text && text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
+        return format!("'{text}");
+    }
+    text
+}
+
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn formulas_are_neutralised_and_numbers_are_not() {
+        for (given, written) in [
+            (json!("=1+1"), "'=1+1"),
+            (json!("+cmd"), "'+cmd"),
+            (json!("-2+3"), "'-2+3"),
+            (json!("@sum"), "'@sum"),
+            (json!("\t=1"), "'\t=1"),
+            (json!("-2.5"), "-2.5"),
+            (json!(-2.5), "-2.5"),
+            (json!("a=1"), "a=1"),
+            (Value::Null, ""),
+        ] {
+            assert_eq!(neutral(&given), written, "{given}");
+        }
     }
 }

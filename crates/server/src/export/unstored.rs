@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::lines::{add_event, add_row};
 use super::psych_ds;
-use super::table::{self, Merged, Sources, Version};
+use super::table::{self, Cells, Merged, Sources, Version};
 use super::{ExportError, Exported, Format};
 
 /// Writes sessions one by one, in any number of threads, and joins them to an export.
@@ -38,7 +38,7 @@ impl Unstored {
         format: Format,
     ) -> Result<Self, StudyFileError> {
         let study = mimique_study::Study::from_value(&file)?;
-        let columns = responses::tidy(&study, &clips, []).columns;
+        let columns = Merged::of_everybody(responses::tidy(&study, &clips, []), 0).columns;
         let study_id = study.id.clone();
         let version = Version { config_hash: config_hash(&file), file, study, clips };
         Ok(Self { sources: Sources::without_storage(study_id, version), format, columns })
@@ -72,7 +72,8 @@ impl Unstored {
             }
             Format::Csv | Format::Json | Format::PsychDs => {
                 let record = SessionRecord { started, events, status: None };
-                let rows = responses::tidy(&version.study, &version.clips, [record]).rows;
+                let table = responses::tidy(&version.study, &version.clips, [record]);
+                let rows = Merged::of_everybody(table, 1).rows;
                 written.rows = rows.len();
                 match self.format {
                     Format::Json => {
@@ -121,8 +122,8 @@ impl Unstored {
                 });
                 let table = responses::wide(&version.study, &version.clips, records);
                 (participants, rows) = (table.rows.len(), table.rows.len());
-                let merged = Merged { columns: table.columns, rows: table.rows, participants };
-                vec![(format!("{study_id}_wide.csv"), table::csv(&merged)?)]
+                let merged = Merged::of_everybody(table, participants);
+                vec![(format!("{study_id}_wide.csv"), table::csv(&merged, Cells::AsTheyAre)?)]
             }
         };
         Ok(Exported { study_id, files, participants, rows })

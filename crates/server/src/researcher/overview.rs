@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::distribution::{Distribution, distributions};
+use super::figures::{self, Frames, Stop, Times, Viewed};
 use super::session_view::{SessionView, Standing};
+use crate::clock::now_ms;
 use crate::error::Error;
 use crate::export::Sources;
 use crate::hosted::HostedStudy;
@@ -18,13 +20,23 @@ pub(crate) struct SessionViews {
 
 /// What the page shows of a study.
 pub(crate) struct Overview {
-    pub sessions: Vec<(SessionRecord, Arc<SessionView>)>,
+    pub sessions: Vec<Viewed>,
+    /// Reason of each exclusion that counts now, by session.
+    pub excluded: BTreeMap<i64, String>,
     /// Sessions by standing, all four named.
     pub standings: Vec<(Standing, usize)>,
     /// Finished trials of participants who completed, by factor and level; factors of
     /// one level are left out.
     pub balance: BTreeMap<String, BTreeMap<String, u64>>,
     pub distributions: Vec<Distribution>,
+    /// Where people are and where they leave.
+    pub stops: Vec<Stop>,
+    /// How long trials took.
+    pub times: Vec<Times>,
+    /// Late frames by class of device.
+    pub frames: Vec<Frames>,
+    /// Each attention check: how often passed, how often failed.
+    pub checks: Vec<(String, u64, u64)>,
     /// Events that were sent with another body than is stored, by session.
     pub conflicts: HashMap<i64, u64>,
 }
@@ -34,6 +46,7 @@ impl Overview {
         storage: &Storage,
         study: &HostedStudy,
         views: &SessionViews,
+        language: &str,
     ) -> Result<Self, Error> {
         let sources = Sources::load(storage, study.id(), false).await?;
         let mut sessions = Vec::with_capacity(sources.sessions.len());
@@ -52,18 +65,41 @@ impl Overview {
             let count = sessions.iter().filter(|(_, view)| view.standing == standing).count();
             (standing, count)
         });
+        let excluded = sources.excluded().clone();
+        // Whoever is excluded counts in no figure but the number of participants.
+        let used = || {
+            let kept = sessions.iter().filter(|(session, _)| !excluded.contains_key(&session.key));
+            kept.map(|(_, view)| &**view)
+        };
         let mut balance: BTreeMap<String, BTreeMap<String, u64>> = BTreeMap::new();
-        let complete = sessions.iter().filter(|(_, view)| view.standing == Standing::Completed);
-        for (factor, level) in complete.flat_map(|(_, view)| &view.levels) {
+        let complete = used().filter(|view| view.standing == Standing::Completed);
+        for (factor, level) in complete.flat_map(|view| &view.levels) {
             *balance.entry(factor.clone()).or_default().entry(level.clone()).or_default() += 1;
         }
         // A factor that has one level everywhere can only be in balance.
         balance.retain(|_, levels| levels.len() > 1);
-        let language = study.study().default_language();
-        let answers = sessions.iter().flat_map(|(_, view)| &view.answers);
-        let distributions = distributions(study.study(), language, answers);
+        let distributions =
+            distributions(study.study(), language, used().flat_map(|view| &view.answers));
+        let stops = match sources.version(study.config_hash()) {
+            Ok(version) => figures::stops(version, &sessions, now_ms()),
+            Err(_) => Vec::new(),
+        };
+        let times = figures::trial_times(used());
+        let frames = figures::frames(used());
+        let checks = figures::checks(used());
         let conflicts = storage.conflict_counts(study.id()).await?.into_iter().collect();
-        Ok(Self { sessions, standings: standings.to_vec(), balance, distributions, conflicts })
+        Ok(Self {
+            sessions,
+            excluded,
+            standings: standings.to_vec(),
+            balance,
+            distributions,
+            stops,
+            times,
+            frames,
+            checks,
+            conflicts,
+        })
     }
 }
 

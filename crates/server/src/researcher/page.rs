@@ -1,146 +1,177 @@
-//! The researcher's page as HTML: nothing inline, complete without its script.
+//! A study's dashboard as HTML: nothing inline, complete without its script. What the script brings up
+//! to date is marked `data-live`.
 
-use std::sync::Arc;
-
-use maud::{DOCTYPE, Markup, html};
-use mimique_study::responses::iso_time;
+use axum::response::Response;
+use maud::{Markup, html};
 
 use super::distribution::{Distribution, Shape};
+use super::figures::{StopLabel, Times};
+use super::frame::{Frame, time};
 use super::overview::Overview;
 use super::session_view::{SessionView, Standing};
+use crate::accounts::Tongue;
 use crate::export::Format;
-use crate::hosted::HostedStudy;
-use crate::storage::SessionRecord;
+use crate::hosted::{HostedStudy, Stage};
+use crate::storage::{Role, SessionRecord};
 
-/// The page for those who may see it; the script in it brings the part with `data-live` up to date.
-pub(crate) fn dashboard(assets: &str, studies: &[(Arc<HostedStudy>, Overview)]) -> String {
-    let body = html! {
-        header.site-header.wide {
-            span.title { "Mimique" }
-            span.soft { "researcher’s page" }
-        }
-        main.page.wide data-live="" {
-            h1.visually-hidden { "Studies" }
-            @for (study, overview) in studies {
-                (study_section(study, overview))
-            }
-        }
-    };
-    document(assets, "Researcher’s page", true, &body)
-}
-
-/// The page for those who may not.
-pub(crate) fn denied(assets: &str) -> String {
-    let body = html! {
-        main.page {
-            div.card {
-                h1 { "This page is the researcher’s" }
-                p {
-                    "Open the address that " code { "mimique serve" }
-                    " printed when it started. It works for seven days; each start prints a new one."
-                }
-            }
-        }
-    };
-    document(assets, "Researcher’s page", false, &body)
-}
-
-fn document(assets: &str, title: &str, live: bool, body: &Markup) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="robots" content="noindex";
-                meta name="color-scheme" content="light dark";
-                title { (title) }
-                link rel="icon" href={ (assets) "/icon.svg" } type="image/svg+xml";
-                link rel="stylesheet" href={ (assets) "/style.css" };
-                link rel="stylesheet" href={ (assets) "/researcher.css" };
-                @if live {
-                    script type="module" src={ (assets) "/researcher.js" } {}
-                }
-            }
-            body { (body) }
-        }
-    };
-    page.into_string()
-}
-
-fn study_section(study: &HostedStudy, overview: &Overview) -> Markup {
-    let language = study.study().default_language();
+/// The dashboard of a study.
+pub(crate) fn study_page(
+    frame: &Frame,
+    study: &HostedStudy,
+    overview: &Overview,
+    is_uploaded: bool,
+) -> Response {
     let id = study.id();
-    html! {
-        section.study aria-labelledby={ "study-" (id) } {
-            div.card {
-                h2 id={ "study-" (id) } lang=(language) { (study.title(language)) }
-                p.soft {
-                    code { (id) } " · " (study.stage().word()) " · version "
-                    code { (&study.config_hash()[..12]) } " · "
-                    a href={ "/s/" (id) "/" } { "participant’s page" } " · "
-                    a href={ "/preview/" (id) } { "preview of the stimuli" }
-                }
-                dl.counts {
-                    @for (standing, count) in &overview.standings {
-                        div { dt { (standing.word()) } dd { (count) } }
-                    }
-                    @if let Some(wanted) = study.study().recruitment.participants {
-                        div { dt { "wanted" } dd { (wanted) } }
-                    }
-                }
-                (exports(id))
+    let tongue = frame.tongue;
+    let language = study.study().language_for(tongue.code());
+    let address = format!("/researcher/studies/{id}");
+    let body = html! {
+        p { a href="/researcher" { "← " (frame.say("Studies", "Études")) } }
+        div.card {
+            h1 lang=(language) { (study.title(language)) }
+            p.soft {
+                code { (id) } " · " (stage_word(tongue, study.stage().word())) " · version "
+                code { (&study.config_hash()[..12]) } " · "
+                a href={ "/s/" (id) "/" } { (frame.say("participant’s page", "page des participants")) }
+                " · "
+                a href={ "/preview/" (id) } { (frame.say("preview of the stimuli", "aperçu des stimuli")) }
             }
-            (participants(overview))
-            @if !overview.balance.is_empty() { (balance(overview)) }
-            @if !overview.distributions.is_empty() { (answers(&overview.distributions, language)) }
+            @if frame.may(Role::Analyst) { (exports(frame, id)) }
+            @if frame.may(Role::Owner) && is_uploaded { (hosting(frame, study)) }
+        }
+        p.live-state role="status" data-live-state=""
+            data-on=(frame.say("Live: the page follows what happens.", "En direct : la page suit ce qui se passe."))
+            data-off=(frame.say("Not connected: trying again.", "Non connecté : nouvel essai.")) {}
+        div data-live={ (address) "/live" } {
+            (counts(frame, study, overview))
+            (participants(frame, id, overview))
+            (stops(frame, overview))
+            @if !overview.balance.is_empty() { (balance(frame, overview)) }
+            (times(frame, &overview.times))
+            (frames(frame, overview))
+            (checks(frame, overview))
+            @if !overview.distributions.is_empty() {
+                (answers(frame, &overview.distributions, language))
+            }
+        }
+    };
+    frame.page(study.title(language), &address, &body)
+}
+
+/// The word for a stage.
+pub(super) fn stage_word(tongue: Tongue, word: &str) -> &str {
+    match word {
+        "pilot" => tongue.pick("pilot", "pilote"),
+        "live" => tongue.pick("live", "en cours"),
+        other => other,
+    }
+}
+
+/// What an owner does with a study that came through the page.
+fn hosting(frame: &Frame, study: &HostedStudy) -> Markup {
+    let base = format!("/researcher/studies/{}", study.id());
+    let (next, text) = match study.stage() {
+        Stage::Pilot => (
+            "live",
+            frame.say("End the pilot: answers count", "Fin du pilote : les réponses comptent"),
+        ),
+        Stage::Live => ("pilot", frame.say("Back to the pilot", "Revenir au pilote")),
+    };
+    html! {
+        h2 { (frame.say("Hosting", "Hébergement")) }
+        div.row {
+            form method="post" action={ (base) "/stage" } {
+                (frame.token())
+                input type="hidden" name="stage" value=(next);
+                button type="submit" { (text) }
+            }
+            form method="post" action={ (base) "/remove" } {
+                (frame.token())
+                button.danger type="submit" { (frame.say("Host it no more (answers stay)", "Ne plus l’héberger (les réponses restent)")) }
+            }
         }
     }
 }
 
-fn exports(id: &str) -> Markup {
+fn exports(frame: &Frame, id: &str) -> Markup {
     let label = |format| match format {
-        Format::Csv => "Tidy CSV",
-        Format::Wide => "Wide CSV",
-        Format::Json => "JSON lines",
-        Format::Events => "All events",
+        Format::Csv => frame.say("Tidy CSV", "CSV long"),
+        Format::Wide => frame.say("Wide CSV", "CSV large"),
+        Format::Json => frame.say("JSON lines", "Lignes JSON"),
+        Format::Events => frame.say("All events", "Tous les événements"),
         Format::PsychDs => "Psych-DS (ZIP)",
     };
+    let base = format!("/researcher/studies/{id}");
     html! {
-        h3 { "Export" }
+        h2 { (frame.say("Export", "Exporter")) }
         div.row {
             @for format in Format::ALL {
-                a.button href={ "/researcher/" (id) "/export/" (format.word()) } download {
-                    (label(format))
-                }
+                a.button href={ (base) "/export/" (format.word()) } download { (label(format)) }
+            }
+            a.button href={ (base) "/export/dictionary" } download {
+                (frame.say("Data dictionary", "Dictionnaire des données"))
+            }
+            a.button href={ (base) "/export/study" } download { (frame.say("Study file", "Fichier de l’étude")) }
+            a.button.primary href={ (base) "/report/" (frame.tongue.code()) "/report.html" } {
+                (frame.say("Statistical report", "Rapport statistique"))
+            }
+            a.button href={ (base) "/report/" (frame.tongue.code()) "/report.zip" } download {
+                (frame.say("Report (ZIP)", "Rapport (ZIP)"))
+            }
+        }
+        p.soft {
+            (frame.say("For a spreadsheet: ", "Pour un tableur : "))
+            a href={ (base) "/export/csv?neutralised=true" } download { (frame.say("tidy", "long")) }
+            " · "
+            a href={ (base) "/export/wide?neutralised=true" } download { (frame.say("wide", "large")) }
+            (frame.say(
+                ", with an apostrophe before texts that begin with = + - @, which a spreadsheet would take for formulas. Scripts want the files above.",
+                ", avec une apostrophe devant les textes qui commencent par = + - @, qu’un tableur prendrait pour des formules. Les scripts préfèrent les fichiers ci-dessus.",
+            ))
+        }
+    }
+}
+
+fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
+    html! {
+        dl.counts {
+            @for (standing, count) in &overview.standings {
+                div { dt { (standing.word(frame.tongue)) } dd { (count) } }
+            }
+            @if !overview.excluded.is_empty() {
+                div { dt { (frame.say("excluded", "exclus")) } dd { (overview.excluded.len()) } }
+            }
+            @if let Some(wanted) = study.study().recruitment.participants {
+                div { dt { (frame.say("wanted", "prévus")) } dd { (wanted) } }
             }
         }
     }
 }
 
-fn participants(overview: &Overview) -> Markup {
+fn participants(frame: &Frame, id: &str, overview: &Overview) -> Markup {
+    let title = frame.say("Participants", "Participants");
     html! {
         div.card {
-            h3 { "Participants" }
+            h2 { (title) }
             @if overview.sessions.is_empty() {
-                p.soft { "Nobody yet." }
+                p.soft { (frame.say("Nobody yet.", "Personne pour l’instant.")) }
             } @else {
-                div.table-scroll tabindex="0" role="region" aria-label="Participants" {
+                div.table-scroll tabindex="0" role="region" aria-label=(title) {
                     table {
                         thead { tr {
-                            th scope="col" { "Participant" }
-                            th scope="col" { "Status" }
-                            th scope="col" { "Progress" }
-                            th scope="col" { "At" }
-                            th scope="col" { "Started" }
-                            th scope="col" { "Last event" }
-                            th.number scope="col" { "Events" }
-                            th scope="col" { "Browser" }
+                            th scope="col" { (frame.say("Participant", "Participant")) }
+                            th scope="col" { (frame.say("Status", "État")) }
+                            th scope="col" { (frame.say("Progress", "Avancement")) }
+                            th scope="col" { (frame.say("At", "À la page")) }
+                            th scope="col" { (frame.say("Started", "Début")) }
+                            th scope="col" { (frame.say("Last event", "Dernier événement")) }
+                            th.number scope="col" { (frame.say("Events", "Événements")) }
+                            th scope="col" { (frame.say("Browser", "Navigateur")) }
                         } }
                         tbody {
                             // The newest first: they are the ones to be watched.
                             @for (session, view) in overview.sessions.iter().rev() {
-                                (participant(session, view, overview.conflicts.get(&session.key)))
+                                (participant(frame, id, session, view, overview))
                             }
                         }
                     }
@@ -150,27 +181,26 @@ fn participants(overview: &Overview) -> Markup {
     }
 }
 
-fn participant(session: &SessionRecord, view: &SessionView, conflicts: Option<&u64>) -> Markup {
-    let tag = match view.standing {
-        Standing::Completed => "tag good",
-        Standing::Active => "tag",
-        Standing::Declined | Standing::Withdrawn => "tag warn",
-    };
+fn participant(
+    frame: &Frame,
+    id: &str,
+    session: &SessionRecord,
+    view: &SessionView,
+    overview: &Overview,
+) -> Markup {
+    let number = session.participant;
     html! {
         tr {
-            th scope="row" { (crate::participant_id(session.participant)) }
-            td {
-                span class=(tag) { (view.standing.word()) }
-                @if session.event_count < session.next_sequence {
-                    " " span class="tag warn" { "events missing" }
-                }
-                @if let Some(conflicts) = conflicts {
-                    " " span class="tag bad" { (conflicts) " conflicting" }
+            th scope="row" {
+                a href={ "/researcher/studies/" (id) "/participants/" (number) } {
+                    (crate::participant_id(number))
                 }
             }
+            td { (status(frame, session, view, overview)) }
             td.progress {
                 @if let (Some((done, all)), true) = (view.progress, view.standing != Standing::Withdrawn) {
-                    progress max=(all) value=(done) aria-label={ (done) " of " (all) " steps" } {}
+                    progress max=(all) value=(done)
+                        aria-label={ (done) (frame.say(" of ", " sur ")) (all) (frame.say(" steps", " étapes")) } {}
                     span.number { (done) "/" (all) }
                 }
             }
@@ -183,11 +213,99 @@ fn participant(session: &SessionRecord, view: &SessionView, conflicts: Option<&u
     }
 }
 
-fn balance(overview: &Overview) -> Markup {
+/// How a session stands, and what is to be noticed of it.
+pub(super) fn status(
+    frame: &Frame,
+    session: &SessionRecord,
+    view: &SessionView,
+    overview: &Overview,
+) -> Markup {
+    let tag = match view.standing {
+        Standing::Completed => "tag good",
+        Standing::Active => "tag",
+        Standing::Declined | Standing::Withdrawn => "tag warn",
+    };
+    html! {
+        span class=(tag) { (view.standing.word(frame.tongue)) }
+        @if session.event_count < session.next_sequence {
+            " " span.tag.warn { (frame.say("events missing", "événements manquants")) }
+        }
+        @if let Some(conflicts) = overview.conflicts.get(&session.key) {
+            " " span.tag.bad { (conflicts) (frame.say(" conflicting", " contradictoires")) }
+        }
+        @if overview.excluded.contains_key(&session.key) {
+            " " span.tag.bad { (frame.say("excluded", "exclu")) }
+        }
+    }
+}
+
+fn stops(frame: &Frame, overview: &Overview) -> Markup {
+    let title = frame
+        .say("Where people are and where they leave", "Où en sont les personnes, où elles partent");
+    let all = overview.stops.first().map_or(0, |stop| stop.reached).max(1);
+    html! {
+        @if !overview.stops.is_empty() {
+            div.card {
+                h2 { (title) }
+                p.soft {
+                    (frame.say(
+                        "Of this version’s participants. Whoever has declined, or given no sign for half an hour, has left.",
+                        "Participants de cette version. Est parti qui a refusé, ou n’a donné aucun signe depuis une demi-heure.",
+                    ))
+                }
+                div.table-scroll.tall tabindex="0" role="region" aria-label=(title) {
+                    table {
+                        thead { tr {
+                            th scope="col" { (frame.say("Page", "Page")) }
+                            th scope="col" aria-hidden="true" {}
+                            th.number scope="col" { (frame.say("Reached", "Atteinte")) }
+                            th.number scope="col" { (frame.say("Here now", "Ici maintenant")) }
+                            th.number scope="col" { (frame.say("Left here", "Partis ici")) }
+                        } }
+                        tbody {
+                            @for stop in &overview.stops {
+                                tr {
+                                    th scope="row" { (stop_label(frame, &stop.label)) }
+                                    td.bar { progress aria-hidden="true" max=(all) value=(stop.reached) {} }
+                                    td.number { (stop.reached) }
+                                    td.number { (some(stop.here)) }
+                                    td.number { (some(stop.left)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn stop_label(frame: &Frame, label: &StopLabel) -> String {
+    match label {
+        StopLabel::Page(id) => id.clone(),
+        StopLabel::Practice(number) => {
+            format!("{} {number}", frame.say("practice", "entraînement"))
+        }
+        StopLabel::Trial(number) => format!("{} {number}", frame.say("trial", "essai")),
+        StopLabel::End => frame.say("end", "fin").to_owned(),
+    }
+}
+
+/// A count, empty where it is none: what is there stands out.
+fn some(count: u64) -> Markup {
+    html! { @if count > 0 { (count) } @else { span.visually-hidden { "0" } } }
+}
+
+fn balance(frame: &Frame, overview: &Overview) -> Markup {
     html! {
         div.card {
-            h3 { "Condition balance" }
-            p.soft { "Finished trials of participants who completed the study." }
+            h2 { (frame.say("Condition balance", "Équilibre des conditions")) }
+            p.soft {
+                (frame.say(
+                    "Finished trials of participants who completed the study.",
+                    "Essais finis des participants qui ont terminé l’étude.",
+                ))
+            }
             div.distributions {
                 @for (factor, levels) in &overview.balance {
                     (bars(factor, levels.iter().map(|(level, count)| (level.as_str(), *count))))
@@ -197,24 +315,127 @@ fn balance(overview: &Overview) -> Markup {
     }
 }
 
-fn answers(distributions: &[Distribution], language: &str) -> Markup {
+fn times(frame: &Frame, times: &[Times]) -> Markup {
+    let title = frame.say("Time per trial", "Temps par essai");
+    let most = times.iter().map(|row| row.high_s).fold(0.0, f64::max).max(0.001);
     html! {
-        div.card {
-            h3 { "Answers" }
-            p.soft { "Every participant’s, practice left out." }
-            div.distributions lang=(language) {
-                @for distribution in distributions {
-                    (answer(distribution))
+        @if !times.is_empty() {
+            div.card {
+                h2 { (title) }
+                div.table-scroll.tall tabindex="0" role="region" aria-label=(title) {
+                    table {
+                        thead { tr {
+                            th scope="col" { (frame.say("Trial", "Essai")) }
+                            th scope="col" aria-hidden="true" {}
+                            th.number scope="col" { (frame.say("Median", "Médiane")) }
+                            th.number scope="col" { "10–90 %" }
+                            th.number scope="col" { (frame.say("Trials", "Essais")) }
+                        } }
+                        tbody {
+                            @for row in times {
+                                tr {
+                                    th scope="row" {
+                                        @if row.number == 0 { (frame.say("all", "tous")) } @else { (row.number) }
+                                    }
+                                    td.bar { progress aria-hidden="true" max=(round(most)) value=(round(row.median_s)) {} }
+                                    td.number { (round(row.median_s)) " s" }
+                                    td.number { (round(row.low_s)) "–" (round(row.high_s)) " s" }
+                                    td.number { (row.count) }
+                                }
+                            }
+                        }
+                    }
                 }
             }
         }
     }
 }
 
-fn answer(distribution: &Distribution) -> Markup {
+fn frames(frame: &Frame, overview: &Overview) -> Markup {
+    html! {
+        @if !overview.frames.is_empty() {
+            div.card {
+                h2 { (frame.say("Late frames by device", "Images en retard par appareil")) }
+                div.table-scroll tabindex="0" role="region"
+                    aria-label=(frame.say("Late frames by device", "Images en retard par appareil")) {
+                    table {
+                        thead { tr {
+                            th scope="col" { (frame.say("Device", "Appareil")) }
+                            th.number scope="col" { (frame.say("People", "Personnes")) }
+                            th.number scope="col" { (frame.say("Frames", "Images")) }
+                            th.number scope="col" { (frame.say("Late", "En retard")) }
+                            th.number scope="col" { (frame.say("Share", "Part")) }
+                        } }
+                        tbody {
+                            @for row in &overview.frames {
+                                tr {
+                                    th scope="row" {
+                                        @if row.device.is_empty() { (frame.say("unknown", "inconnu")) } @else { (row.device) }
+                                    }
+                                    td.number { (row.people) }
+                                    td.number { (row.frames) }
+                                    td.number { (row.late) }
+                                    td.number { (round(100.0 * row.late as f64 / row.frames.max(1) as f64)) " %" }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn checks(frame: &Frame, overview: &Overview) -> Markup {
+    html! {
+        @if !overview.checks.is_empty() {
+            div.card {
+                h2 { (frame.say("Attention checks", "Contrôles d’attention")) }
+                table {
+                    thead { tr {
+                        th scope="col" { (frame.say("Check", "Contrôle")) }
+                        th.number scope="col" { (frame.say("Passed", "Réussis")) }
+                        th.number scope="col" { (frame.say("Failed", "Ratés")) }
+                    } }
+                    tbody {
+                        @for (question, passed, failed) in &overview.checks {
+                            tr {
+                                th scope="row" { code { (question) } }
+                                td.number { (passed) }
+                                td.number { (failed) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn answers(frame: &Frame, distributions: &[Distribution], language: &str) -> Markup {
+    html! {
+        div.card {
+            h2 { (frame.say("Answers", "Réponses")) }
+            p.soft {
+                (frame.say(
+                    "Practice and excluded participants left out. Texts are only counted here.",
+                    "Sans l’entraînement ni les participants exclus. Les textes sont seulement comptés ici.",
+                ))
+            }
+            div.distributions lang=(language) {
+                @for distribution in distributions {
+                    (answer(frame, distribution))
+                }
+            }
+        }
+    }
+}
+
+fn answer(frame: &Frame, distribution: &Distribution) -> Markup {
     let caption = html! {
         (distribution.prompt) " " code { (distribution.question) }
     };
+    let count_line = |count: u64| html! { (count) " " (frame.say("answers", "réponses")) };
     match &distribution.shape {
         Shape::Counts(counts) => {
             bars_with(&caption, counts.iter().map(|(label, count)| (label.as_str(), *count)))
@@ -222,14 +443,14 @@ fn answer(distribution: &Distribution) -> Markup {
         Shape::Numbers { count, least, mean, greatest } => html! {
             div {
                 p.caption { (caption) }
-                p lang="en" {
-                    (count) " answers, from " (round(*least)) " to " (round(*greatest))
-                    ", mean " (round(*mean))
+                p lang=(frame.tongue.code()) {
+                    (count_line(*count)) ", " (round(*least)) " – " (round(*greatest)) ", "
+                    (frame.say("mean", "moyenne")) " " (round(*mean))
                 }
             }
         },
         Shape::Texts(count) => html! {
-            div { p.caption { (caption) } p lang="en" { (count) " answers" } }
+            div { p.caption { (caption) } p lang=(frame.tongue.code()) { (count_line(*count)) } }
         },
     }
 }
@@ -262,16 +483,8 @@ fn round(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// `2026-11-21 08:30` in a `time` element that scripts turn into the reader's own time.
-fn time(at_ms: Option<i64>) -> Markup {
-    let Some(at_ms) = at_ms else { return html! {} };
-    let text = iso_time(at_ms as f64);
-    let short = text.get(..16).map(|text| text.replace('T', " ")).unwrap_or_default();
-    html! { time datetime=(text) { (short) " UTC" } }
-}
-
 /// What the page said of its browser, name and version first: `Firefox 140, Linux`.
-fn browser(client: &str) -> String {
+pub(super) fn browser(client: &str) -> String {
     let mut about: std::collections::BTreeMap<String, String> =
         serde_json::from_str(client).unwrap_or_default();
     let name = [about.remove("browser"), about.remove("version")];
@@ -296,12 +509,5 @@ mod tests {
         assert_eq!(round(2.0), "2");
         assert_eq!(round(2.126), "2.13");
         assert_eq!(round(0.5), "0.5");
-    }
-
-    #[test]
-    fn times_are_in_the_page_for_people_and_for_scripts() {
-        let markup = time(Some(1_795_251_845_678)).into_string();
-        let expected = "<time datetime=\"2026-11-21T09:04:05.678Z\">2026-11-21 09:04 UTC</time>";
-        assert_eq!(markup, expected);
     }
 }

@@ -7,6 +7,7 @@ use mimique_study::responses;
 use mimique_study::wire::Event;
 use serde_json::Value;
 
+use crate::accounts::Tongue;
 use crate::export::{Version, as_started};
 use crate::storage::{SessionRecord, Status};
 
@@ -22,6 +23,25 @@ pub(crate) struct SessionView {
     pub answers: Vec<(String, Value)>,
     /// Factor and level of every finished trial.
     pub levels: Vec<(String, String)>,
+    /// Every finished trial, practice left out.
+    pub trials: Vec<TrialView>,
+    /// Question and whether it was passed, of every attention check.
+    pub checks: Vec<(String, bool)>,
+    /// Class of the device: the platform as the page names it.
+    pub device: String,
+}
+
+/// What was measured of one trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TrialView {
+    /// 1-based place among the trials.
+    pub number: u64,
+    /// From its start to its end.
+    pub duration_ms: Option<f64>,
+    /// Frames shown.
+    pub frames: u64,
+    /// Frames that came late.
+    pub late: u64,
 }
 
 /// How a session stands.
@@ -36,12 +56,12 @@ pub(crate) enum Standing {
 impl Standing {
     pub const ALL: [Self; 4] = [Self::Active, Self::Completed, Self::Declined, Self::Withdrawn];
 
-    pub fn word(self) -> &'static str {
+    pub fn word(self, tongue: Tongue) -> &'static str {
         match self {
-            Self::Active => "under way",
-            Self::Completed => "completed",
-            Self::Declined => "declined",
-            Self::Withdrawn => "withdrawn",
+            Self::Active => tongue.pick("under way", "en cours"),
+            Self::Completed => tongue.pick("completed", "terminé"),
+            Self::Declined => tongue.pick("declined", "refusé"),
+            Self::Withdrawn => tongue.pick("withdrawn", "retiré"),
         }
     }
 }
@@ -73,45 +93,63 @@ impl SessionView {
             }
             _ => (None, String::new()),
         };
-        let (answers, levels) = answers_and_levels(version, session, events);
-        Self { standing, progress, step, answers, levels }
+        let mut view = Self {
+            standing,
+            progress,
+            step,
+            answers: Vec::new(),
+            levels: Vec::new(),
+            trials: Vec::new(),
+            checks: Vec::new(),
+            device: device(&session.client),
+        };
+        view.read_rows(version, session, events);
+        view
     }
-}
 
-type Pairs<T> = Vec<(String, T)>;
-
-fn answers_and_levels(
-    version: &Version,
-    session: &SessionRecord,
-    events: &[Event],
-) -> (Pairs<Value>, Pairs<String>) {
-    let started = as_started(session);
-    let record = responses::SessionRecord { started: &started, events, status: None };
-    let table = responses::tidy(&version.study, &version.clips, [record]);
-    let factors = version.study.factor_names();
-    let mut answers = Vec::new();
-    let mut levels = Vec::new();
-    let mut counted = BTreeSet::new();
-    for row in 0..table.rows.len() {
-        let text = |name: &str| table.cell(row, name).as_str().unwrap_or_default().to_owned();
-        let answer = table.cell(row, "answer");
-        if text("trial_type") == "training" {
-            continue;
-        }
-        if !answer.is_null() {
-            answers.push((text("response_id"), answer.clone()));
-        }
-        // A trial has a row for each answer; it is one trial all the same.
-        if text("trial_type") == "trial" && counted.insert(text("trial_id")) {
-            for factor in &factors {
-                let level = match table.cell(row, factor) {
-                    Value::Null => continue,
-                    Value::String(level) => level.clone(),
-                    other => other.to_string(),
-                };
-                levels.push((factor.clone(), level));
+    fn read_rows(&mut self, version: &Version, session: &SessionRecord, events: &[Event]) {
+        let started = as_started(session);
+        let record = responses::SessionRecord { started: &started, events, status: None };
+        let table = responses::tidy(&version.study, &version.clips, [record]);
+        let factors = version.study.factor_names();
+        let mut counted = BTreeSet::new();
+        for row in 0..table.rows.len() {
+            let text = |name: &str| table.cell(row, name).as_str().unwrap_or_default().to_owned();
+            let count = |name: &str| table.cell(row, name).as_u64().unwrap_or_default();
+            let answer = table.cell(row, "answer");
+            if let Some(passed) = table.cell(row, "attention_passed").as_bool() {
+                self.checks.push((text("response_id"), passed));
+            }
+            if text("trial_type") == "training" {
+                continue;
+            }
+            if !answer.is_null() {
+                self.answers.push((text("response_id"), answer.clone()));
+            }
+            // A trial has a row for each answer; it is one trial all the same.
+            if text("trial_type") == "trial" && counted.insert(text("trial_id")) {
+                self.trials.push(TrialView {
+                    number: count("trial_order"),
+                    duration_ms: table.cell(row, "duration").as_f64(),
+                    frames: count("frames"),
+                    late: count("frames_late"),
+                });
+                for factor in &factors {
+                    let level = match table.cell(row, factor) {
+                        Value::Null => continue,
+                        Value::String(level) => level.clone(),
+                        other => other.to_string(),
+                    };
+                    self.levels.push((factor.clone(), level));
+                }
             }
         }
     }
-    (answers, levels)
+}
+
+/// What the page said of its platform: `Windows`, `Android`…
+fn device(client: &str) -> String {
+    let about: std::collections::BTreeMap<String, String> =
+        serde_json::from_str(client).unwrap_or_default();
+    about.get("platform").cloned().unwrap_or_default()
 }

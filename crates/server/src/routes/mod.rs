@@ -1,10 +1,14 @@
 //! The HTTP interface: a file a group of addresses.
 
+mod accounts;
+mod for_people;
+mod inline_styles;
 mod pages;
 mod researcher;
 mod sessions;
 mod statics;
 mod studies;
+mod uploads;
 
 use std::any::Any;
 use std::time::Duration;
@@ -25,6 +29,10 @@ const LARGEST_BODY: usize = 2 * 1024 * 1024;
 /// A request and its answer must have passed within this time.
 const LONGEST_REQUEST: Duration = Duration::from_secs(60);
 
+/// Where studies are uploaded, over slow lines too.
+const UPLOAD: &str = "/researcher/upload";
+const LONGEST_UPLOAD: Duration = Duration::from_secs(3600);
+
 /// Scripts and styles only from here; nothing inline, nothing from elsewhere.
 const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; \
      style-src 'self'; img-src 'self' data:; connect-src 'self'; worker-src 'self'; \
@@ -36,7 +44,6 @@ pub fn router(app: App) -> Router {
         .route("/", get(pages::index))
         .route("/s/{study}", get(pages::participant_without_slash))
         .route("/s/{study}/", get(pages::participant))
-        .route("/preview/{study}", get(pages::preview))
         .route("/assets/{hash}/{*name}", get(statics::asset))
         .route("/packs/{hash}", get(statics::pack))
         .route("/api/studies", get(studies::list))
@@ -46,8 +53,7 @@ pub fn router(app: App) -> Router {
         .route("/api/sessions/{session}/events", post(sessions::append))
         .route("/api/sessions/{session}/complete", post(sessions::complete))
         .route("/api/sessions/{session}/withdraw", post(sessions::withdraw))
-        .route("/researcher", get(researcher::page))
-        .route("/researcher/{study}/export/{format}", get(researcher::export))
+        .merge(researchers(&app))
         .route("/healthz", get(|| async { "ok\n" }))
         .route("/readyz", get(pages::ready))
         .fallback(|| async { Error::NotFound })
@@ -57,6 +63,42 @@ pub fn router(app: App) -> Router {
         .layer(CatchPanicLayer::custom(panicked))
         .layer(middleware::from_fn(security_headers))
         .with_state(app)
+}
+
+/// What stands behind an account.
+fn researchers(app: &App) -> Router<App> {
+    const STUDY: &str = "/researcher/studies/{study}";
+    const PERSON: &str = "/researcher/studies/{study}/participants/{number}";
+    // The upload counts its own bytes while it writes them.
+    let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
+    Router::new()
+        .route("/preview/{study}", get(pages::preview))
+        .route("/researcher", get(researcher::home))
+        .route(STUDY, get(researcher::study))
+        .route(&format!("{STUDY}/live"), get(researcher::live))
+        .route(&format!("{STUDY}/export/{{format}}"), get(researcher::export))
+        .route(&format!("{STUDY}/report/{{language}}/{{*name}}"), get(researcher::report))
+        .route(PERSON, get(researcher::participant))
+        .route(&format!("{PERSON}/exclude"), post(researcher::exclude))
+        .route(&format!("{PERSON}/include"), post(researcher::include))
+        .route("/researcher/login", get(accounts::login_page).post(accounts::login))
+        .route("/researcher/logout", post(accounts::logout))
+        .route("/researcher/logout-everywhere", post(accounts::logout_everywhere))
+        .route("/researcher/link/{secret}", get(accounts::link_page).post(accounts::use_link))
+        .route("/researcher/account", get(accounts::account))
+        .route("/researcher/account/password", post(accounts::password))
+        .route("/researcher/tokens", post(accounts::new_token))
+        .route("/researcher/tokens/{key}/revoke", post(accounts::revoke_token))
+        .route("/researcher/people", get(accounts::people))
+        .route("/researcher/people/invite", post(accounts::invite))
+        .route("/researcher/people/{key}", post(accounts::person))
+        .route("/researcher/log", get(accounts::log))
+        .route(&format!("{STUDY}/stage"), post(uploads::stage))
+        .route(&format!("{STUDY}/remove"), post(uploads::remove))
+        .route("/researcher/upload/{study}", get(uploads::preparing))
+        .route(UPLOAD, get(uploads::page).merge(upload))
+        .route("/researcher/language/{code}", get(accounts::language))
+        .layer(middleware::from_fn_with_state(app.clone(), for_people::refusals_as_pages))
 }
 
 /// A JSON body; what is wrong with it is a refusal like any other.
@@ -72,7 +114,8 @@ impl<S: Send + Sync, T: serde::de::DeserializeOwned> FromRequest<S> for Body<T> 
 }
 
 async fn time_limit(request: Request, next: Next) -> Response {
-    match tokio::time::timeout(LONGEST_REQUEST, next.run(request)).await {
+    let longest = if request.uri().path() == UPLOAD { LONGEST_UPLOAD } else { LONGEST_REQUEST };
+    match tokio::time::timeout(longest, next.run(request)).await {
         Ok(response) => response,
         Err(_) => Error::Timeout.into_response(),
     }
@@ -87,7 +130,8 @@ async fn security_headers(request: Request, next: Next) -> Response {
         (header::REFERRER_POLICY, "no-referrer"),
         (header::X_FRAME_OPTIONS, "DENY"),
     ] {
-        headers.insert(name, HeaderValue::from_static(value));
+        // A page that needs another policy has said so.
+        headers.entry(name).or_insert(HeaderValue::from_static(value));
     }
     // What is not said to be kept is not kept.
     headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));

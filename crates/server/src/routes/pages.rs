@@ -5,12 +5,16 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, html};
 
+use crate::accounts::Researcher;
 use crate::app::App;
 use crate::error::Error;
 
-/// The list of studies.
-pub(super) async fn index(State(app): State<App>) -> Html<String> {
+/// The list of studies, for those who may know it.
+pub(super) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
     let assets = app.assets.prefix();
+    // Which studies there are is for those who were told.
+    let is_open = may_look(&app, &headers).await.is_ok();
+    let studies = if is_open { app.catalogue.studies() } else { Vec::new() };
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -25,7 +29,11 @@ pub(super) async fn index(State(app): State<App>) -> Html<String> {
             body {
                 main.page {
                     h1 { "Studies" }
-                    @for study in app.catalogue.studies() {
+                    @if !is_open {
+                        p { "Open the address that you were given." }
+                        p lang="fr" { "Ouvrez l’adresse qui vous a été donnée." }
+                    }
+                    @for study in studies {
                         @let language = study.study().default_language();
                         section.card lang=(language) {
                             h2 { (study.title(language)) }
@@ -69,7 +77,16 @@ pub(super) async fn preview(
     Path(study): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
+    may_look(&app, &headers).await?;
     from_template(&app, "preview.html", &study, &headers)
+}
+
+/// Lets researchers see what participants should not, or everybody where the server is told so.
+pub(super) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error> {
+    if app.access.open_preview {
+        return Ok(());
+    }
+    Researcher::of(app, headers).await.map(|_| ())
 }
 
 /// Whether answers can be stored.

@@ -2,16 +2,21 @@
 
 use axum::Json;
 use axum::extract::{Path, Query, State};
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use mimique_study::wire::StudySummary;
 use serde::Deserialize;
 
+use super::pages::may_look;
 use crate::app::App;
 use crate::error::Error;
 
-pub(super) async fn list(State(app): State<App>) -> Json<Vec<StudySummary>> {
-    Json(app.catalogue.studies().iter().map(|study| study.summary()).collect())
+pub(super) async fn list(
+    State(app): State<App>,
+    headers: HeaderMap,
+) -> Result<Json<Vec<StudySummary>>, Error> {
+    may_look(&app, &headers).await?;
+    Ok(Json(app.catalogue.studies().iter().map(|study| study.summary()).collect()))
 }
 
 #[derive(Deserialize)]

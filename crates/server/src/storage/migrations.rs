@@ -10,11 +10,18 @@ pub(super) struct Migration {
 }
 
 /// Every step, in order.
-pub(super) const MIGRATIONS: &[Migration] = &[Migration {
-    version: 1,
-    sqlite: include_str!("migrations/sqlite/0001_answers.sql"),
-    postgres: include_str!("migrations/postgres/0001_answers.sql"),
-}];
+pub(super) const MIGRATIONS: &[Migration] = &[
+    Migration {
+        version: 1,
+        sqlite: include_str!("migrations/sqlite/0001_answers.sql"),
+        postgres: include_str!("migrations/postgres/0001_answers.sql"),
+    },
+    Migration {
+        version: 2,
+        sqlite: include_str!("migrations/sqlite/0002_accounts.sql"),
+        postgres: include_str!("migrations/postgres/0002_accounts.sql"),
+    },
+];
 
 /// The version of today's schema.
 pub(super) const LATEST: i64 = MIGRATIONS[MIGRATIONS.len() - 1].version;

@@ -5,6 +5,8 @@
 //! what differs. Every change goes through a writer that commits many of them in one transaction
 //! and answers each only after the commit.
 
+mod account_calls;
+mod account_records;
 mod migrations;
 mod postgres;
 mod records;
@@ -15,8 +17,11 @@ use std::path::PathBuf;
 
 use mimique_study::wire::Event;
 
+pub use account_records::{
+    Account, AccountLink, ApiToken, AuditEntry, Exclusion, LinkPurpose, Role, UploadedStudy,
+};
 pub use records::{
-    Access, Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
+    Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
 };
 
 /// Why storage did not do what it was asked.
@@ -257,27 +262,6 @@ impl Storage {
         now_ms: i64,
     ) -> Result<u64, StorageError> {
         on_store!(self, store => store.withdraw(token_hash, withdrawal_hash, now_ms).await)
-    }
-
-    /// Remembers the hash of a researcher's secret until `expires_ms`; forgets expired ones.
-    pub async fn grant_access(
-        &self,
-        access: Access,
-        secret_hash: &str,
-        now_ms: i64,
-        expires_ms: i64,
-    ) -> Result<(), StorageError> {
-        on_store!(self, store => store.grant_access(access, secret_hash, now_ms, expires_ms).await)
-    }
-
-    /// Whether a researcher's secret with this hash is known and has not expired.
-    pub async fn has_access(
-        &self,
-        access: Access,
-        secret_hash: &str,
-        now_ms: i64,
-    ) -> Result<bool, StorageError> {
-        on_store!(self, store => store.has_access(access, secret_hash, now_ms).await)
     }
 }
 

@@ -138,21 +138,3 @@ pub struct RecruitmentEntry {
     /// Its value.
     pub value: String,
 }
-
-/// The two secrets of a researcher.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Access {
-    /// The key in the printed address.
-    Link,
-    /// The cookie of a browser that opened it.
-    Browser,
-}
-
-impl Access {
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            Self::Link => "link",
-            Self::Browser => "browser",
-        }
-    }
-}

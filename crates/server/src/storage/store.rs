@@ -1,5 +1,7 @@
 //! The database's readers and its writer; compiled once for each database (see `storage/mod.rs`).
 
+#[path = "accounts.rs"]
+mod accounts;
 #[path = "changes.rs"]
 mod changes;
 #[path = "writer.rs"]
@@ -13,7 +15,7 @@ use sqlx::{AssertSqlSafe, Pool, Row};
 use super::super::StorageError;
 use super::super::migrations::{LATEST, MIGRATIONS};
 use super::super::records::{
-    Access, Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
+    Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
 };
 use super::{BEGIN_WRITE, Db, FOR_UPDATE, LANES, LOCK_SCHEMA, migration_text};
 use changes::{Change, Outcome};
@@ -266,46 +268,6 @@ impl Store {
             Outcome::Withdrawn { deleted } => Ok(deleted),
             _ => Err(StorageError::Stopping),
         }
-    }
-
-    pub async fn grant_access(
-        &self,
-        access: Access,
-        secret_hash: &str,
-        now_ms: i64,
-        expires_ms: i64,
-    ) -> Result<(), StorageError> {
-        sqlx::query("DELETE FROM researcher_access WHERE expires_ms < $1")
-            .bind(now_ms)
-            .execute(&self.writers)
-            .await?;
-        sqlx::query(
-            "INSERT INTO researcher_access (secret_hash, kind, expires_ms) VALUES ($1, $2, $3)",
-        )
-        .bind(secret_hash)
-        .bind(access.word())
-        .bind(expires_ms)
-        .execute(&self.writers)
-        .await?;
-        Ok(())
-    }
-
-    pub async fn has_access(
-        &self,
-        access: Access,
-        secret_hash: &str,
-        now_ms: i64,
-    ) -> Result<bool, StorageError> {
-        let row = sqlx::query(
-            "SELECT expires_ms FROM researcher_access WHERE secret_hash = $1 AND kind = $2 \
-             AND expires_ms >= $3",
-        )
-        .bind(secret_hash)
-        .bind(access.word())
-        .bind(now_ms)
-        .fetch_optional(&self.readers)
-        .await?;
-        Ok(row.is_some())
     }
 }
 

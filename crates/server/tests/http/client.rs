@@ -31,7 +31,7 @@ pub struct TestServer {
     pub app: App,
     pub storage: Storage,
     router: Router,
-    _folder: tempfile::TempDir,
+    _folder: Option<tempfile::TempDir>,
 }
 
 /// An answer, read to its end.
@@ -87,7 +87,18 @@ impl TestServer {
         .await
         .unwrap();
         let router = router(app.clone());
-        Self { url: url.to_owned(), app, storage, router, _folder: folder }
+        Self { url: url.to_owned(), app, storage, router, _folder: Some(folder) }
+    }
+
+    /// The same server reached otherwise.
+    pub fn with_router(&self, router: Router) -> Self {
+        let (app, storage) = (self.app.clone(), self.storage.clone());
+        Self { url: self.url.clone(), app, storage, router, _folder: None }
+    }
+
+    /// The answer as it comes, its body not read.
+    pub async fn stream(&self, request: Request<Body>) -> axum::response::Response {
+        self.router.clone().oneshot(request).await.unwrap()
     }
 
     pub fn url(&self) -> &str {

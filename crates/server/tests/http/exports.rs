@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 
-use mimique_server::export::{ExportError, Exported, Format, export};
+use mimique_server::export::{ExportError, Exported, Format, Options, export};
 use serde_json::{Value, json};
 
 use crate::client::TestServer;
@@ -34,7 +34,7 @@ async fn take_part(server: &TestServer) -> Planted {
 }
 
 async fn exported(server: &TestServer, format: Format) -> Exported {
-    export(&server.storage, Some("demo"), format, false).await.unwrap()
+    export(&server.storage, Some("demo"), format, Options::default()).await.unwrap()
 }
 
 /// The only file, read as CSV: rows as name -> cell.
@@ -183,7 +183,14 @@ pub async fn identifiers_are_exported_only_when_asked_for(server: &TestServer) {
             assert!(!text.contains("person 1"), "{name}");
         }
     }
-    let with = export(&server.storage, Some("demo"), Format::Csv, true).await.unwrap();
+    let with = export(
+        &server.storage,
+        Some("demo"),
+        Format::Csv,
+        Options { with_identifiers: true, ..Options::default() },
+    )
+    .await
+    .unwrap();
     for row in rows(&with.files[0].1) {
         let number = row["participant"].clone();
         assert_eq!(row["PROLIFIC_PID"], format!("person {number}"));
@@ -224,13 +231,15 @@ pub async fn each_session_is_read_by_its_own_version(server: &TestServer) {
 }
 
 pub async fn a_study_must_be_named_where_there_are_several(server: &TestServer) {
-    let error = export(&server.storage, None, Format::Csv, false).await.unwrap_err();
+    let error = export(&server.storage, None, Format::Csv, Options::default()).await.unwrap_err();
     assert!(matches!(error, ExportError::SeveralStudies { .. }), "{error}");
-    let error = export(&server.storage, Some("other"), Format::Csv, false).await.unwrap_err();
+    let error =
+        export(&server.storage, Some("other"), Format::Csv, Options::default()).await.unwrap_err();
     let text = "study other: not in this database, which holds demo, faces; choose one of these";
     assert_eq!(error.to_string(), text);
     // Nobody has taken part: the header alone.
-    let empty = export(&server.storage, Some("faces"), Format::Csv, false).await.unwrap();
+    let empty =
+        export(&server.storage, Some("faces"), Format::Csv, Options::default()).await.unwrap();
     assert_eq!((empty.participants, empty.rows), (0, 0));
     assert!(empty.files[0].1.starts_with(b"participant_id,"));
 }

@@ -3,16 +3,19 @@
 //! On SQLite every topic is a test of its own; on PostgreSQL all topics run in one test on a private
 //! cluster, each in a fresh database.
 
+mod accounts;
 mod client;
 mod exports;
 mod pages;
 mod participant;
+mod people;
 mod postgres;
 mod researcher;
 mod sessions;
 mod simulated;
 mod storage;
 mod study;
+mod uploads;
 
 use client::TestServer;
 
@@ -40,7 +43,12 @@ macro_rules! topics {
             client::block_on(async {
                 $(
                     let url = cluster.fresh_database(stringify!($topic)).await;
-                    $module::$topic(&TestServer::open(&url).await).await;
+                    eprintln!("topic {}", stringify!($topic));
+                    // Each on the heap: all of them together are more than a stack holds.
+                    Box::pin(async {
+                        $module::$topic(&TestServer::open(&url).await).await;
+                    })
+                    .await;
                 )*
             });
         }
@@ -79,7 +87,23 @@ topics! {
     exports::each_session_is_read_by_its_own_version,
     exports::a_study_must_be_named_where_there_are_several,
     simulated::a_simulated_export_is_the_servers,
-    researcher::the_page_needs_the_printed_address,
+    accounts::the_first_link_makes_the_owner_once,
+    accounts::links_expire_and_secrets_are_not_stored,
+    accounts::logging_in_begins_a_new_session,
+    accounts::behind_tls_cookies_are_secure,
+    accounts::wrong_passwords_wait_and_say_nothing,
+    accounts::forged_forms_change_nothing,
+    accounts::each_role_may_do_what_it_may,
+    accounts::tokens_do_what_their_role_may_until_revoked,
+    accounts::a_lost_password_is_replaced,
+    accounts::somebody_always_owns_the_server,
+    accounts::the_log_says_who_did_what,
+    accounts::what_is_hosted_is_for_researchers,
     researcher::the_page_shows_what_was_stored,
-    researcher::exports_need_the_cookie,
+    researcher::a_change_is_told_at_once,
+    researcher::exports_are_files,
+    researcher::an_exclusion_is_in_export_and_report,
+    uploads::an_uploaded_study_is_hosted_as_a_pilot,
+    uploads::a_study_with_errors_is_refused_with_all_of_them,
+    uploads::hostile_uploads_leave_nothing,
 }

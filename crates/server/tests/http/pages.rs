@@ -7,14 +7,18 @@ use crate::client::TestServer;
 use crate::study;
 
 pub async fn pages_carry_a_strict_policy(server: &TestServer) {
-    for path in ["/", "/s/faces/", "/preview/faces"] {
-        let answer = server.get(path).await;
+    let mut owner = crate::people::owner(server).await;
+    for path in ["/", "/s/faces/", "/preview/faces", "/researcher", "/researcher/studies/faces"] {
+        let answer = owner.open(server, path).await;
         assert_eq!(answer.status, StatusCode::OK, "{path}");
         let policy = answer.header(header::CONTENT_SECURITY_POLICY);
         assert!(policy.contains("default-src 'none'"), "{policy}");
         assert!(!policy.contains("unsafe-inline") && !policy.contains("'unsafe-eval'"), "{policy}");
         assert_eq!(answer.header(header::X_CONTENT_TYPE_OPTIONS), "nosniff");
-        assert_eq!(answer.header(header::REFERRER_POLICY), "no-referrer");
+        // Without its own pages' origin no form could be told from a forged one.
+        let own = if path.starts_with("/researcher") { "same-origin" } else { "no-referrer" };
+        assert_eq!(answer.header(header::REFERRER_POLICY), own);
+        assert_eq!(answer.header(header::X_FRAME_OPTIONS), "DENY");
         assert!(!answer.text().contains("<feelings>"), "the title is escaped");
     }
     let french = [(header::ACCEPT_LANGUAGE, "fr-CA,fr;q=0.9,en;q=0.8")];
@@ -60,7 +64,8 @@ pub async fn assets_and_packs_are_kept_for_ever(server: &TestServer) {
 }
 
 pub async fn the_study_tells_participants_no_secrets(server: &TestServer) {
-    let studies: Vec<StudySummary> = server.get("/api/studies").await.ok();
+    let mut owner = crate::people::owner(server).await;
+    let studies: Vec<StudySummary> = owner.open(server, "/api/studies").await.ok();
     let ids: Vec<_> = studies.iter().map(|study| &*study.id).collect();
     assert_eq!(ids, ["demo", "faces"]);
     assert_eq!(studies[1].title, study::file()["studyMetadata"]["title"]);

@@ -1,56 +1,39 @@
-//! The researcher's pages.
+//! The researchers' pages: what they show, live; exclusion; export and report.
 
-use axum::http::{StatusCode, header};
+use std::time::Duration;
+
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
+use mimique_server::export::{Format, Options, export};
+use tokio_stream::StreamExt;
 
 use crate::client::{TestServer, events};
 use crate::participant::takes_part;
+use crate::people::{HOST, owner};
 use crate::study;
 
-/// The cookie of a browser that opened the printed address.
-async fn cookie(server: &TestServer) -> String {
-    let link = server.app.researcher_link().await.unwrap();
-    let admitted = server.get(&link).await;
-    admitted.header(header::SET_COOKIE).split(';').next().unwrap().to_owned()
-}
-
-pub async fn the_page_needs_the_printed_address(server: &TestServer) {
-    let denied = server.get("/researcher").await;
-    assert_eq!(denied.status, StatusCode::FORBIDDEN);
-    let wrong = server.get("/researcher?key=00112233445566778899aabbccddeeff").await;
-    assert_eq!(wrong.status, StatusCode::FORBIDDEN);
-
-    let link = server.app.researcher_link().await.unwrap();
-    let admitted = server.get(&link).await;
-    assert_eq!(admitted.status, StatusCode::SEE_OTHER);
-    assert_eq!(admitted.header(header::LOCATION), "/researcher");
-    let cookie = admitted.header(header::SET_COOKIE);
-    assert!(cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"), "{cookie}");
-    let cookie = cookie.split(';').next().unwrap();
-    let page = server.get_with("/researcher", &[(header::COOKIE, cookie)]).await;
-    assert_eq!(page.status, StatusCode::OK);
-    // The key of the address is no cookie.
-    let key = link.split('=').nth(1).unwrap();
-    let forged = format!("mimique_researcher={key}");
-    let answer = server.get_with("/researcher", &[(header::COOKIE, &forged)]).await;
-    assert_eq!(answer.status, StatusCode::FORBIDDEN);
+/// A participant of the demo who completes it, or stops after some steps.
+async fn demo_participant(server: &TestServer, nonce: u64, steps: usize) {
+    let demo = study::demo();
+    let started = server.start_in("demo", nonce).await;
+    let (events, _) = takes_part(demo.study(), &started, steps);
+    server.stored(&started.session, &events).await;
+    if steps == usize::MAX {
+        server.receipt(&started.session, events.len() as u64).await;
+    }
 }
 
 pub async fn the_page_shows_what_was_stored(server: &TestServer) {
-    let demo = study::demo();
-    for (nonce, steps) in [(1, usize::MAX), (2, 6)] {
-        let started = server.start_in("demo", nonce).await;
-        let (events, _) = takes_part(demo.study(), &started, steps);
-        server.stored(&started.session, &events).await;
-        if nonce == 1 {
-            server.receipt(&started.session, events.len() as u64).await;
-        }
-    }
-    let started = server.start(3).await;
+    demo_participant(server, 1, usize::MAX).await;
+    demo_participant(server, 2, 6).await;
+    let started = server.start_in("demo", 3).await;
     server.stored(&started.session, &events(0..2)).await;
     server.withdrawn(&started.session, &started.withdrawal_code).await;
 
-    let cookie = cookie(server).await;
-    let page = server.get_with("/researcher", &[(header::COOKIE, &cookie)]).await.text();
+    let mut owner = owner(server).await;
+    let home = owner.open(server, "/researcher").await.text();
+    assert!(home.contains("href=\"/researcher/studies/demo\""), "{home}");
+    let page = owner.open(server, "/researcher/studies/demo").await.text();
     for (standing, count) in [("completed", 1), ("under way", 1), ("withdrawn", 1)] {
         let wanted = format!("<dt>{standing}</dt><dd>{count}</dd>");
         assert!(page.contains(&wanted), "{wanted} in {page}");
@@ -60,46 +43,157 @@ pub async fn the_page_shows_what_was_stored(server: &TestServer) {
     let row = &page[page.find(boxed).unwrap()..];
     let row = &row[..row.find("</tr>").unwrap()];
     assert!(row.ends_with("<td class=\"number\">6</td>"), "{row}");
-    assert!(page.contains("Which emotion do you recognise?"));
-    assert!(page.contains("trial "), "where the second participant is");
+    for part in [
+        "Which emotion do you recognise?",
+        "Where people are and where they leave",
+        "Time per trial",
+        "Late frames by device",
+        "<th scope=\"row\">trial 12</th>",
+        "<th scope=\"row\">end</th>",
+    ] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
     for hidden in ["person 1", &started.session, &started.withdrawal_code] {
         assert!(!page.contains(hidden), "{hidden}");
     }
     for inline in ["<style", " style=", " onclick="] {
         assert!(!page.contains(inline), "{inline}");
     }
-
-    // A change is seen at the next look.
-    let started = server.start_in("demo", 2).await;
-    server.withdrawn(&started.session, &started.withdrawal_code).await;
-    let page = server.get_with("/researcher", &[(header::COOKIE, &cookie)]).await.text();
-    assert!(page.contains("<dt>under way</dt><dd>0</dd>"), "{page}");
+    // In French too, once chosen.
+    let chosen = owner.open(server, "/researcher/language/fr?next=/researcher/studies/demo").await;
+    assert_eq!(chosen.header(header::LOCATION), "/researcher/studies/demo");
+    let page = owner.open(server, "/researcher/studies/demo").await.text();
+    assert!(page.contains("<html lang=\"fr\">") && page.contains("<dt>terminé</dt>"), "{page}");
+    let answer = owner.open(server, "/researcher/studies/other").await;
+    assert_eq!(answer.status, StatusCode::NOT_FOUND);
+    assert!(answer.text().contains("Aucune étude"), "{}", answer.text());
 }
 
-pub async fn exports_need_the_cookie(server: &TestServer) {
-    for format in ["csv", "wide", "json", "events", "psych-ds"] {
-        let path = format!("/researcher/faces/export/{format}");
-        server.get(&path).await.refused(StatusCode::FORBIDDEN, "access-denied");
-    }
-    let cookie = cookie(server).await;
-    let with_cookie = [(header::COOKIE, cookie.as_str())];
-    for (format, kind, name) in [
+pub async fn a_change_is_told_at_once(server: &TestServer) {
+    let owner = owner(server).await;
+    let request = Request::get("/researcher/studies/faces/live")
+        .header(header::HOST, HOST)
+        .header(header::COOKIE, owner.cookie())
+        .body(Body::empty())
+        .unwrap();
+    let response = server.stream(request).await;
+    assert_eq!(response.status(), StatusCode::OK);
+    assert_eq!(response.headers()[header::CONTENT_TYPE], "text/event-stream");
+    let mut lines = response.into_body().into_data_stream();
+    let next = async |lines: &mut axum::body::BodyDataStream| {
+        let chunk = tokio::time::timeout(Duration::from_secs(5), lines.next()).await;
+        let chunk = chunk.expect("a line within five seconds").unwrap().unwrap();
+        String::from_utf8_lossy(&chunk).into_owned()
+    };
+    let first = next(&mut lines).await;
+    assert!(first.contains("event: changed"), "{first}");
+    let started = server.start(1).await;
+    let second = next(&mut lines).await;
+    assert!(second.contains("event: changed") && second != first, "{second}");
+    server.stored(&started.session, &events(0..1)).await;
+    let third = next(&mut lines).await;
+    assert!(third != second, "{third}");
+    // Who is not logged in hears nothing.
+    let nobody = server.get("/researcher/studies/faces/live").await;
+    nobody.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+}
+
+pub async fn exports_are_files(server: &TestServer) {
+    let started = server.start(1).await;
+    server.stored(&started.session, &events(0..3)).await;
+    let mut owner = owner(server).await;
+    for (word, kind, name) in [
         ("csv", "text/csv; charset=utf-8", "faces_responses.csv"),
         ("wide", "text/csv; charset=utf-8", "faces_wide.csv"),
         ("json", "application/x-ndjson", "faces_responses.jsonl"),
         ("events", "application/x-ndjson", "faces_events.jsonl"),
         ("psych-ds", "application/zip", "faces_psych-ds.zip"),
+        ("dictionary", "text/csv; charset=utf-8", "faces_dictionary.csv"),
+        ("study", "application/json", "faces.json"),
     ] {
-        let answer =
-            server.get_with(&format!("/researcher/faces/export/{format}"), &with_cookie).await;
+        let path = format!("/researcher/studies/faces/export/{word}");
+        let answer = owner.open(server, &path).await;
         assert_eq!(answer.status, StatusCode::OK, "{}", answer.text());
         assert_eq!(answer.header(header::CONTENT_TYPE), kind);
         let disposition = format!("attachment; filename=\"{name}\"");
         assert_eq!(answer.header(header::CONTENT_DISPOSITION), disposition);
         assert_eq!(answer.header(header::CACHE_CONTROL), "no-store");
+        match word {
+            "study" => assert_eq!(answer.json::<serde_json::Value>(), study::file()),
+            "dictionary" => {
+                let text = answer.text();
+                assert!(text.starts_with("name,kind,unit,levels,description\n"), "{text}");
+                assert!(text.contains("\nexclusion_reason,text,,,"), "{text}");
+            }
+            _ => {}
+        }
     }
-    let unknown = server.get_with("/researcher/faces/export/xls", &with_cookie).await;
-    unknown.refused(StatusCode::NOT_FOUND, "not-found");
-    let unknown = server.get_with("/researcher/other/export/csv", &with_cookie).await;
-    unknown.refused(StatusCode::NOT_FOUND, "unknown-study");
+    for (path, status) in [
+        ("/researcher/studies/faces/export/xls", StatusCode::NOT_FOUND),
+        ("/researcher/studies/other/export/csv", StatusCode::NOT_FOUND),
+        // A questionnaire without trials has no report, and that is said.
+        ("/researcher/studies/faces/report/en/report.html", StatusCode::CONFLICT),
+        ("/researcher/studies/faces/report/xx/report.html", StatusCode::NOT_FOUND),
+    ] {
+        assert_eq!(owner.open(server, path).await.status, status, "{path}");
+    }
+}
+
+pub async fn an_exclusion_is_in_export_and_report(server: &TestServer) {
+    for nonce in 1..=3 {
+        demo_participant(server, nonce, usize::MAX).await;
+    }
+    let mut owner = owner(server).await;
+    let person = "/researcher/studies/demo/participants/2";
+    let empty = owner.send(server, &format!("{person}/exclude"), &[("reason", " \n ")]).await;
+    empty.refused(StatusCode::BAD_REQUEST, "bad-request");
+    let fields = [("reason", "=watched  with a friend")];
+    let done = owner.send(server, &format!("{person}/exclude"), &fields).await;
+    assert_eq!(done.header(header::LOCATION), person);
+    let page = owner.open(server, person).await.text();
+    assert!(page.contains("<strong>=watched with a friend</strong>"), "{page}");
+    let dashboard = owner.open(server, "/researcher/studies/demo").await.text();
+    assert!(dashboard.contains("<dt>excluded</dt><dd>1</dd>"), "{dashboard}");
+    // Every answer is still exported, marked.
+    let rows = async |options: Options| {
+        let csv = export(&server.storage, Some("demo"), Format::Csv, options).await.unwrap();
+        let bytes = csv.files.into_iter().next().unwrap().1;
+        let rows: Vec<std::collections::BTreeMap<String, String>> =
+            csv::Reader::from_reader(&*bytes).deserialize().map(Result::unwrap).collect();
+        rows
+    };
+    let all = rows(Options::default()).await;
+    for row in &all {
+        let (excluded, reason) = match row["participant_id"].as_str() {
+            "p0002" => ("true", "=watched with a friend"),
+            _ => ("false", ""),
+        };
+        assert_eq!((&*row["excluded"], &*row["exclusion_reason"]), (excluded, reason));
+        assert_eq!(row["status"], "completed");
+    }
+    let people: std::collections::BTreeSet<_> =
+        all.iter().map(|row| row["participant_id"].clone()).collect();
+    assert_eq!(people.len(), 3);
+    let spreadsheet =
+        owner.open(server, "/researcher/studies/demo/export/csv?neutralised=true").await.text();
+    assert!(spreadsheet.contains("'=watched with a friend"), "{spreadsheet}");
+    // The report leaves the person out and says why.
+    let report = "/researcher/studies/demo/report/en";
+    let page = owner.open(server, &format!("{report}/report.html")).await;
+    assert_eq!(page.status, StatusCode::OK, "{}", page.text());
+    let policy = page.header(header::CONTENT_SECURITY_POLICY);
+    assert!(policy.contains("style-src 'sha256-") && !policy.contains("unsafe"), "{policy}");
+    assert!(page.text().contains("excluded by the researcher (=watched with a friend): 1"));
+    let figures = owner.open(server, &format!("{report}/results.json")).await;
+    let flow = figures.text();
+    assert!(flow.contains("\"people_used\": 2") || flow.contains("\"people_used\":2"), "{flow}");
+    let archive = owner.open(server, &format!("{report}/report.zip")).await;
+    assert_eq!(archive.header(header::CONTENT_TYPE), "application/zip");
+    // Taken back, everybody counts again; who did what is remembered.
+    owner.send(server, &format!("{person}/include"), &[]).await;
+    assert!(rows(Options::default()).await.iter().all(|row| row["excluded"] == "false"));
+    let page = owner.open(server, &format!("{report}/report.html")).await.text();
+    assert!(!page.contains("excluded by the researcher"));
+    let page = owner.open(server, person).await.text();
+    assert!(page.contains("taken back") && page.contains("excluded: =watched"), "{page}");
 }

@@ -234,7 +234,6 @@ pub async fn unknown_sessions_and_studies_are_not_found(server: &TestServer) {
         server.get("/api/studies/other").await,
         server.post("/api/studies/other/sessions", start).await,
         server.get("/s/other/").await,
-        server.get("/preview/other").await,
     ] {
         answer.refused(StatusCode::NOT_FOUND, "unknown-study");
     }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_server::export::{Format, Unstored, export};
+use mimique_server::export::{Format, Options, Unstored, export};
 use mimique_stats::{Dropout, Parameters, Simulation};
 use mimique_study::Study;
 
@@ -47,7 +47,8 @@ pub async fn a_simulated_export_is_the_servers(server: &TestServer) {
     assert!(status("declined") > 0 && status("completed") > 0, "the seed shows every fate");
     assert!(sessions.iter().any(|session| session.events.is_empty()), "somebody withdraws");
     for format in Format::ALL {
-        let stored = export(&server.storage, Some("demo"), format, false).await.unwrap();
+        let stored =
+            export(&server.storage, Some("demo"), format, Options::default()).await.unwrap();
         let writer = Unstored::new(file.clone(), BTreeMap::new(), format).unwrap();
         assert_eq!(writer.config_hash(), hash);
         let written: Vec<_> =

@@ -67,6 +67,9 @@ pub(crate) struct Flow {
     pub people: usize,
     /// People left out, by reason.
     pub people_left_out: BTreeMap<&'static str, usize>,
+    /// Those of them whom the researcher excluded, by the reason given.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub researcher_reasons: BTreeMap<String, usize>,
     /// People used.
     pub people_used: usize,
     /// Trials of the people used.
@@ -105,6 +108,9 @@ pub(crate) struct Export {
     /// Of the trials; found when first asked for.
     combinations: OnceLock<Combinations>,
 }
+
+/// Why somebody is left out whom the researcher excluded.
+pub(crate) const BY_RESEARCHER: &str = "excluded by the researcher";
 
 /// Columns that must be there.
 const NEEDED: [&str; 5] = ["participant_id", "trial_id", "trial_type", "response_id", "answer"];
@@ -162,7 +168,23 @@ impl Export {
             }
             person_of_row.push(person);
         }
-        let flow = exclude_people(study, &mut people, &stages);
+        // The server marks whom the researcher excluded; how the session stood is kept beside it.
+        let mut reasons: Vec<Option<&str>> = vec![None; people.len()];
+        if table.has("excluded") && table.has("exclusion_reason") {
+            let [excluded, reason] = ["excluded", "exclusion_reason"].map(column);
+            for (row, &person) in person_of_row.iter().enumerate() {
+                if excluded.text(row) == Some("true") {
+                    "excluded".clone_into(&mut people[person].status);
+                    reasons[person] = reason.text(row);
+                }
+            }
+        }
+        let mut flow = exclude_people(study, &mut people, &stages);
+        for (person, reason) in people.iter().zip(&reasons) {
+            if let (Some(BY_RESEARCHER), Some(reason)) = (person.excluded, reason) {
+                *flow.researcher_reasons.entry((*reason).to_owned()).or_insert(0) += 1;
+            }
+        }
         let factors = study.factor_names().into_iter().filter(|name| table.has(name)).collect();
         let about = about_people(table, study, &person_of_row, people.len());
         let mut export = Self { people, flow, ..Self::new(factors, about) };
@@ -392,7 +414,7 @@ pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&st
         } else if person.status == "declined" {
             Some("declined")
         } else if person.status == "excluded" {
-            Some("excluded by the researcher")
+            Some(BY_RESEARCHER)
         } else if rules.incomplete && person.status != "completed" {
             Some("incomplete")
         } else if rules

@@ -1,7 +1,7 @@
 //! The flow of people and trials, from the export to the analysis.
 
 use super::document::{DataTable, Figure};
-use super::export::Flow;
+use super::export::{BY_RESEARCHER, Flow};
 use super::language::Language;
 use super::svg::{Anchor, Svg};
 
@@ -18,7 +18,18 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
             .map(|(reason, count)| format!("{}: {count}", in_words(language, reason)))
             .collect()
     };
-    let people_out = reasons(&flow.people_left_out);
+    let mut people_out = reasons(&flow.people_left_out);
+    if !flow.researcher_reasons.is_empty() {
+        // Each of the researcher's own reasons has its line.
+        let whole = format!("{}: ", in_words(language, BY_RESEARCHER));
+        let place = people_out.iter().position(|line| line.starts_with(&whole));
+        let lines = flow.researcher_reasons.iter().map(|(reason, count)| {
+            format!("{} ({}): {count}", in_words(language, BY_RESEARCHER), shortened(reason))
+        });
+        if let Some(place) = place {
+            people_out.splice(place..=place, lines);
+        }
+    }
     let trials_out = reasons(&flow.trials_left_out);
     let steps = [
         (
@@ -81,12 +92,21 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
     Figure { id: "participants".to_owned(), caption, alt, svg: svg.finish(), data }
 }
 
+/// A reason as it fits beside the chart.
+fn shortened(reason: &str) -> String {
+    const MOST: usize = 40;
+    if reason.chars().count() <= MOST {
+        return reason.to_owned();
+    }
+    reason.chars().take(MOST - 1).chain(['…']).collect()
+}
+
 fn in_words(language: Language, reason: &str) -> String {
     let french = match reason {
         "pilot" => "pilote",
         "withdrawn" => "retirés",
         "declined" => "sans accord",
-        "excluded by the researcher" => "exclus par le chercheur",
+        BY_RESEARCHER => "exclus par le chercheur",
         "incomplete" => "incomplets",
         "attention checks" => "contrôles d’attention",
         "late frames" => "images en retard",

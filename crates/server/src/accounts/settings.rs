@@ -1,0 +1,11 @@
+//! How the server is reached and what is open without an account.
+
+/// How the server is reached and what is open without an account.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Access {
+    /// Previews and the list of studies are for everybody, as in the demonstration.
+    pub open_preview: bool,
+    /// The address that people type, e.g. `https://faces.example.org`, where a proxy stands before
+    /// the server. With `https` the cookies are for encrypted connections alone.
+    pub public_url: Option<String>,
+}

@@ -1,0 +1,135 @@
+//! Pages of those who are not logged in: log in, use a link, what was refused.
+
+use axum::response::Response;
+use maud::{Markup, html};
+use mimique_study::wire::Refusal;
+
+use super::frame::{escaped, field, open_page, role_line, role_word};
+use crate::accounts::{SHORTEST_PASSWORD, Tongue};
+use crate::storage::{AccountLink, LinkPurpose};
+
+/// The form to log in with; `problem` is what was wrong with the last attempt.
+pub(crate) fn login_page(
+    assets: &str,
+    tongue: Tongue,
+    csrf: &str,
+    next: &str,
+    problem: Option<&str>,
+) -> Response {
+    let title = tongue.pick("Log in", "Se connecter");
+    let body = html! {
+        div.card.narrow {
+            h1 { (title) }
+            (problem_line(problem))
+            form.stack method="post" action="/researcher/login" {
+                input type="hidden" name="csrf" value=(csrf);
+                input type="hidden" name="next" value=(next);
+                (field(tongue.pick("E-mail", "Courriel"), "email", "email", "username", ""))
+                (field(tongue.pick("Password", "Mot de passe"), "password", "password", "current-password", ""))
+                div.actions { button.primary type="submit" { (title) } }
+            }
+            p.soft {
+                (tongue.pick(
+                    "No account, or a forgotten password? An owner of this server can give you a link.",
+                    "Pas de compte, ou mot de passe oublié ? Une personne responsable de ce serveur peut vous donner un lien.",
+                ))
+            }
+        }
+    };
+    let address = format!("/researcher/login?next={}", escaped(next));
+    open_page(assets, tongue, title, &address, &body)
+}
+
+/// The form behind a one-time link.
+pub(crate) fn link_page(
+    assets: &str,
+    tongue: Tongue,
+    csrf: &str,
+    secret: &str,
+    link: &AccountLink,
+    problem: Option<&str>,
+) -> Response {
+    let title = match link.purpose {
+        LinkPurpose::FirstOwner => tongue.pick("Make the first account", "Créer le premier compte"),
+        LinkPurpose::Invitation => tongue.pick("Make your account", "Créer votre compte"),
+        LinkPurpose::Reset => {
+            tongue.pick("Choose a new password", "Choisir un nouveau mot de passe")
+        }
+    };
+    let hint = format!(
+        "{} {SHORTEST_PASSWORD} {}",
+        tongue.pick("At least", "Au moins"),
+        tongue.pick("characters; four words are good.", "caractères ; quatre mots conviennent."),
+    );
+    let body = html! {
+        div.card.narrow {
+            h1 { (title) }
+            @if link.purpose != LinkPurpose::Reset {
+                p {
+                    (tongue.pick("Role: ", "Rôle : ")) strong { (role_word(tongue, link.role)) } ", "
+                    (role_line(tongue, link.role)) "."
+                }
+            }
+            (problem_line(problem))
+            form.stack method="post" action={ "/researcher/link/" (secret) } {
+                input type="hidden" name="csrf" value=(csrf);
+                @if link.email.is_empty() {
+                    (field(tongue.pick("E-mail", "Courriel"), "email", "email", "username", ""))
+                } @else {
+                    p { (tongue.pick("E-mail: ", "Courriel : ")) strong { (link.email) } }
+                    input type="hidden" name="email" value=(link.email);
+                }
+                (field(tongue.pick("Password", "Mot de passe"), "password", "password", "new-password", &hint))
+                div.actions { button.primary type="submit" { (title) } }
+            }
+        }
+    };
+    open_page(assets, tongue, title, &format!("/researcher/link/{secret}"), &body)
+}
+
+/// What was refused, for people.
+pub(crate) fn refusal_page(assets: &str, tongue: Tongue, refusal: &Refusal) -> Response {
+    let title = tongue.pick("This cannot be done", "Impossible");
+    let body = html! {
+        div.card.narrow {
+            h1 { (title) }
+            p { (in_french(tongue, refusal)) }
+            p { a href="/researcher" { (tongue.pick("To the studies", "Vers les études")) } }
+        }
+    };
+    open_page(assets, tongue, title, "/researcher", &body)
+}
+
+/// The refusal's words in the reader's language.
+pub(crate) fn in_french(tongue: Tongue, refusal: &Refusal) -> String {
+    let french = match refusal.code.as_str() {
+        "not-allowed" => "Votre rôle ne le permet pas ; demandez à une personne responsable.",
+        "foreign-form" => {
+            "Le formulaire ne vient pas de cette page, ou la page est trop ancienne ; rechargez-la."
+        }
+        "wrong-password" => "L’adresse ou le mot de passe est faux ; saisissez-les à nouveau.",
+        "too-many-attempts" => "Trop d’essais ; attendez un quart d’heure.",
+        "dead-link" => "Le lien a servi, a expiré ou n’a jamais existé ; demandez-en un autre.",
+        "unknown-study" => "Aucune étude ne porte ce nom sur ce serveur.",
+        "not-found" => "Il n’y a rien à cette adresse.",
+        "last-owner" => "Il resterait un serveur sans responsable.",
+        _ => "",
+    };
+    match tongue {
+        Tongue::French if !french.is_empty() => french.to_owned(),
+        _ => sentence(&format!("{}; {}.", refusal.message, refusal.remedy)),
+    }
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+fn problem_line(problem: Option<&str>) -> Markup {
+    html! {
+        @if let Some(problem) = problem {
+            div.notice.bad role="alert" { p { (problem) } }
+        }
+    }
+}

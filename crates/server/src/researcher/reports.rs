@@ -1,0 +1,70 @@
+//! The statistical report of a study, made from the answers as they are now and kept until they change.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use mimique_stats::{Language, Report, Table, analyze};
+use mimique_study::Study;
+use tokio::sync::Semaphore;
+
+use crate::accounts::Tongue;
+use crate::error::Error;
+use crate::export::{Format, Options, export};
+use crate::hosted::HostedStudy;
+use crate::storage::Storage;
+
+/// A report takes a core for some seconds: one at a time.
+static TURN: Semaphore = Semaphore::const_new(1);
+/// Reports kept; beyond it all are made anew.
+const MOST_KEPT: usize = 8;
+
+/// What the report was made from, and the report.
+type Kept = (String, Arc<Report>);
+
+/// The reports made so far, by study and language.
+#[derive(Default)]
+pub(crate) struct Reports {
+    made: Mutex<BTreeMap<(String, &'static str), Kept>>,
+}
+
+impl Reports {
+    /// The report on the answers as they are now.
+    pub async fn get(
+        &self,
+        storage: &Storage,
+        study: &HostedStudy,
+        tongue: Tongue,
+    ) -> Result<Arc<Report>, Error> {
+        let key = (study.id().to_owned(), tongue.code());
+        let beats = storage.pulse().await?;
+        let beat = beats.into_iter().find(|(id, _)| id == study.id()).map(|(_, beat)| beat);
+        let state = format!("{} {}", study.config_hash(), beat.unwrap_or_default());
+        let known = self.made.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+        if let Some((made_from, report)) = known
+            && made_from == state
+        {
+            return Ok(report);
+        }
+        let closed = |_| Error::Internal("the queue of reports is closed".into());
+        let _turn = TURN.acquire().await.map_err(closed)?;
+        let exported = export(storage, Some(study.id()), Format::Csv, Options::default()).await?;
+        let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
+        let study = study.study().clone();
+        let language = tongue.pick(Language::English, Language::French);
+        let made = tokio::task::spawn_blocking(move || make(&csv, &study, language));
+        let report = made.await.map_err(|error| Error::Internal(error.to_string()))??;
+        let report = Arc::new(report);
+        let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= MOST_KEPT {
+            kept.clear();
+        }
+        kept.insert(key, (state, report.clone()));
+        Ok(report)
+    }
+}
+
+fn make(csv: &[u8], study: &Study, language: Language) -> Result<Report, Error> {
+    // Without any row there is no table.
+    let table = Table::parse(csv).map_err(|refusal| Error::NoReport(refusal.to_string()))?;
+    analyze(&table, study, language).map_err(|refusal| Error::NoReport(refusal.to_string()))
+}

@@ -1,0 +1,272 @@
+//! An uploaded archive, unpacked into a folder: every name stays inside it, every byte is counted
+//! while it is unpacked, whatever the archive says of itself.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::{Component, Path, PathBuf};
+
+use zip::ZipArchive;
+
+/// Bytes of an upload.
+pub(super) const LARGEST_UPLOAD: u64 = 512 * 1024 * 1024;
+/// Bytes of everything in it, unpacked.
+const LARGEST_CONTENT: u64 = 2 * 1024 * 1024 * 1024;
+/// Files and folders in it.
+const MOST_ENTRIES: usize = 5000;
+/// Folders within folders.
+const DEEPEST: usize = 12;
+/// Bytes of a name.
+const LONGEST_NAME: usize = 400;
+
+/// An upload cannot be unpacked.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ArchiveError {
+    #[error("this is neither a ZIP archive nor a study file: {0}; upload a .zip or a .json")]
+    NotAnArchive(String),
+    #[error("the archive has {0} entries; {MOST_ENTRIES} are taken at most")]
+    TooMany(usize),
+    #[error("entry {0:?}: the name leads out of the archive; pack the folder anew")]
+    Outside(String),
+    #[error("entry {0:?}: it is a link; put the file itself into the archive")]
+    Link(String),
+    #[error("entry {0:?}: another entry has this name, or one like it; rename one of them")]
+    Twice(String),
+    #[error(
+        "entry {0:?}: the archive holds more than 2 GiB unpacked; leave out what the study does not name"
+    )]
+    TooLarge(String),
+    #[error("entry {entry:?}: it is damaged or encrypted ({problem}); pack the folder anew")]
+    Damaged { entry: String, problem: String },
+    #[error(
+        "there is no study file at the top of the archive; name it study.json, or put only one .json there"
+    )]
+    NoStudyFile,
+    #[error("the server cannot write the files: {0}; see that its disk has room")]
+    Disk(#[from] io::Error),
+}
+
+/// Unpacks an upload (a ZIP archive, or a study file alone) into an empty folder; gives the study file.
+pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
+    fs::create_dir_all(folder)?;
+    let mut start = [0; 4];
+    let read = File::open(upload)?.read(&mut start)?;
+    if &start[..read] != b"PK\x03\x04" {
+        return single_file(upload, folder);
+    }
+    let mut archive = ZipArchive::new(File::open(upload)?)
+        .map_err(|error| ArchiveError::NotAnArchive(error.to_string()))?;
+    if archive.len() > MOST_ENTRIES {
+        return Err(ArchiveError::TooMany(archive.len()));
+    }
+    let mut left = LARGEST_CONTENT;
+    let mut names = BTreeSet::new();
+    for index in 0..archive.len() {
+        let mut entry = archive
+            .by_index(index)
+            .map_err(|error| damaged(index.to_string(), error.to_string()))?;
+        let name = match entry.name() {
+            Ok(name) => name.into_owned(),
+            Err(error) => return Err(damaged(index.to_string(), error.to_string())),
+        };
+        let inside = inside(&name).ok_or_else(|| ArchiveError::Outside(name.clone()))?;
+        if entry.is_symlink() {
+            return Err(ArchiveError::Link(name));
+        }
+        if entry.is_dir() {
+            fs::create_dir_all(folder.join(inside))?;
+            continue;
+        }
+        // Two names may be one on a disk that does not tell large letters from small ones.
+        if !names.insert(inside.to_string_lossy().to_lowercase()) {
+            return Err(ArchiveError::Twice(name));
+        }
+        let path = folder.join(&inside);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        left -= copy(&mut entry, &path, left, &name)?;
+    }
+    study_file(folder)
+}
+
+/// A path below the folder, or none.
+fn inside(name: &str) -> Option<PathBuf> {
+    if name.is_empty() || name.len() > LONGEST_NAME || name.contains(['\\', '\0', ':']) {
+        return None;
+    }
+    let path = Path::new(name);
+    let plain = path.components().all(|part| matches!(part, Component::Normal(_)));
+    (plain && path.components().count() <= DEEPEST).then(|| path.to_owned())
+}
+
+/// Copies an entry, never more than is left; how many bytes it had.
+fn copy(entry: &mut impl Read, path: &Path, left: u64, name: &str) -> Result<u64, ArchiveError> {
+    let damaged = |error: io::Error| damaged(name.to_owned(), error.to_string());
+    let mut file = File::options().write(true).create_new(true).open(path)?;
+    let mut buffer = vec![0; 64 * 1024];
+    let mut copied = 0;
+    loop {
+        let read = entry.read(&mut buffer).map_err(damaged)?;
+        if read == 0 {
+            return Ok(copied);
+        }
+        copied += read as u64;
+        if copied > left {
+            return Err(ArchiveError::TooLarge(name.to_owned()));
+        }
+        file.write_all(&buffer[..read])?;
+    }
+}
+
+fn damaged(entry: String, problem: String) -> ArchiveError {
+    ArchiveError::Damaged { entry, problem }
+}
+
+fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
+    const LARGEST_STUDY: u64 = 8 * 1024 * 1024;
+    let size = fs::metadata(upload)?.len();
+    let mut start = [0; 64];
+    let read = File::open(upload)?.read(&mut start)?;
+    let first = start[..read].iter().find(|byte| !byte.is_ascii_whitespace());
+    // An object, or the comment before it.
+    if size > LARGEST_STUDY || !matches!(first, Some(b'{' | b'/')) {
+        return Err(ArchiveError::NotAnArchive("it begins like neither".to_owned()));
+    }
+    let path = folder.join("study.json");
+    fs::copy(upload, &path)?;
+    Ok(path)
+}
+
+/// `study.json`, or the only `.json` beside which no other could be it; at the top, or in the only
+/// folder that stands there (as archives of a folder have it).
+fn study_file(folder: &Path) -> Result<PathBuf, ArchiveError> {
+    let mut files = Vec::new();
+    let mut folders = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        // What archivers of macOS add.
+        if name == "__MACOSX" || name.starts_with('.') {
+            continue;
+        }
+        if entry.file_type()?.is_dir() {
+            folders.push(entry.path());
+        } else {
+            files.push(entry.path());
+        }
+    }
+    if let Some(named) =
+        files.iter().find(|path| path.file_name().is_some_and(|n| n == "study.json"))
+    {
+        return Ok(named.clone());
+    }
+    let is_study = |path: &&PathBuf| {
+        let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase());
+        // `head.avatar.json`, `take.repair.json` are settings beside something else.
+        name.is_some_and(|name| name.ends_with(".json") && name.matches('.').count() == 1)
+    };
+    let mut studies = files.iter().filter(is_study);
+    match (studies.next(), studies.next()) {
+        (Some(only), None) => Ok(only.clone()),
+        (None, _) if files.is_empty() && folders.len() == 1 => study_file(&folders[0]),
+        _ => Err(ArchiveError::NoStudyFile),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use zip::write::SimpleFileOptions;
+
+    use super::*;
+
+    fn packed(entries: &[(&str, &[u8])]) -> Vec<u8> {
+        let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, bytes) in entries {
+            writer.start_file(*name, SimpleFileOptions::default()).unwrap();
+            writer.write_all(bytes).unwrap();
+        }
+        writer.finish().unwrap().into_inner()
+    }
+
+    fn unpacked(bytes: &[u8]) -> Result<String, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let upload = folder.path().join("upload");
+        fs::write(&upload, bytes).unwrap();
+        let found = unpack(&upload, &folder.path().join("files"));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is written elsewhere");
+        let found = found.map_err(|error| error.to_string())?;
+        Ok(found.strip_prefix(folder.path().join("files")).unwrap().display().to_string())
+    }
+
+    #[test]
+    fn the_study_file_is_found() {
+        for (entries, expected) in [
+            (vec!["study.json", "other.json"], "study.json"),
+            (vec!["faces.json", "take.c3d", "take.repair.json"], "faces.json"),
+            (
+                vec!["faces/faces.json", "faces/heads/a.glb", "__MACOSX/faces.json"],
+                "faces/faces.json",
+            ),
+        ] {
+            let entries: Vec<_> = entries.iter().map(|name| (*name, b"{}".as_slice())).collect();
+            assert_eq!(unpacked(&packed(&entries)).unwrap(), expected);
+        }
+        assert_eq!(unpacked(b" {\"id\": 1}").unwrap(), "study.json");
+        for wrong in
+            [packed(&[("a.json", b"{}"), ("b.json", b"{}")]), packed(&[("a/b/c.txt", b"")])]
+        {
+            assert!(unpacked(&wrong).unwrap_err().contains("no study file"));
+        }
+        assert!(unpacked(b"MZ").unwrap_err().contains("neither"));
+    }
+
+    #[test]
+    fn names_stay_inside() {
+        for name in ["../a", "/a", "a/../../b", "..\\a", "C:a", "a/\0b", "./../a", &"a/".repeat(20)]
+        {
+            assert_eq!(inside(name), None, "{name:?}");
+        }
+        assert!(inside("heads/a b.glb").is_some());
+        for name in ["../evil.json", "/etc/evil.json", "a/../../evil.json"] {
+            let error = unpacked(&packed(&[("study.json", b"{}"), (name, b"x")])).unwrap_err();
+            assert!(error.contains("leads out"), "{name}: {error}");
+        }
+        let twice = packed(&[("study.json", b"{}"), ("STUDY.json", b"{}")]);
+        assert!(unpacked(&twice).unwrap_err().contains("another entry"));
+    }
+
+    #[test]
+    fn links_are_refused() {
+        let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        writer.add_symlink("study.json", "/etc/passwd", SimpleFileOptions::default()).unwrap();
+        let bytes = writer.finish().unwrap().into_inner();
+        assert!(unpacked(&bytes).unwrap_err().contains("a link"));
+    }
+
+    #[test]
+    fn a_bomb_is_counted_while_it_unpacks() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut endless = io::repeat(0);
+        let error = copy(&mut endless, &folder.path().join("a"), 1_000_000, "a").unwrap_err();
+        assert!(matches!(error, ArchiveError::TooLarge(_)), "{error}");
+        assert!(fs::metadata(folder.path().join("a")).unwrap().len() <= 1_000_000);
+        let entries: Vec<String> = (0..=MOST_ENTRIES).map(|index| format!("{index}")).collect();
+        let entries: Vec<_> = entries.iter().map(|name| (name.as_str(), b"".as_slice())).collect();
+        assert!(unpacked(&packed(&entries)).unwrap_err().contains("5001 entries"));
+    }
+
+    #[test]
+    fn damaged_archives_are_refused() {
+        let mut bytes = packed(&[("study.json", b"{}"), ("a.bin", &[7; 5000])]);
+        for cut in [10, bytes.len() / 2, bytes.len() - 1] {
+            assert!(unpacked(&bytes[..cut]).is_err(), "{cut}");
+        }
+        let middle = 60;
+        bytes[middle] ^= 0xff;
+        // Whatever the flipped byte was, nothing panics.
+        let _ = unpacked(&bytes);
+    }
+}

@@ -1,0 +1,363 @@
+//! Studies that come through the page: taken in, unpacked, checked, prepared, hosted as pilots.
+//!
+//! An upload's files lie in the data folder under the hash of what was uploaded, its packs among the
+//! others; the study itself is in the database, so that every server on the same database and the
+//! same (shared) data folder hosts it.
+
+mod archive;
+mod checked;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use mimique_stimulus::{Places, Progress, prepare};
+use mimique_study::{CheckedStudy, Issue};
+use sha2::{Digest, Sha256};
+use tokio::io::AsyncWriteExt;
+use tokio::sync::Semaphore;
+
+pub(crate) use archive::ArchiveError;
+use archive::unpack;
+use checked::{Checked, check_upload};
+
+use crate::accounts::{Researcher, audit};
+use crate::app::App;
+use crate::clock::now_ms;
+use crate::error::Error;
+use crate::hosted::{HostedStudy, Stage};
+use crate::packs::PackStore;
+use crate::secret;
+use crate::storage::UploadedStudy;
+
+/// Bytes of an upload.
+pub(crate) const LARGEST_UPLOAD: u64 = archive::LARGEST_UPLOAD;
+
+/// Preparing takes a core and much memory: one study at a time.
+static TURN: Semaphore = Semaphore::const_new(1);
+
+/// Where preparing a study stands.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Preparing {
+    /// So many clips of so many are ready.
+    Under { done: usize, of: usize },
+    /// It is hosted; what should be said of its stimuli.
+    Ready { warnings: Vec<String> },
+    /// Its stimuli cannot be prepared.
+    Failed { problem: String },
+}
+
+/// A study that was uploaded since the server started.
+#[derive(Debug, Clone)]
+pub(crate) struct Preparation {
+    pub state: Preparing,
+    /// What the check found: warnings.
+    pub issues: Vec<Issue>,
+}
+
+/// The studies that were uploaded since the server started, by identifier.
+pub(crate) type Preparations = Arc<Mutex<BTreeMap<String, Preparation>>>;
+
+/// An upload while it comes in: written to a file, counted and hashed.
+pub(crate) struct Incoming {
+    path: PathBuf,
+    file: tokio::fs::File,
+    hasher: Sha256,
+    bytes: u64,
+}
+
+/// An upload on disk; deleted when dropped.
+pub(crate) struct Arrived {
+    path: PathBuf,
+    hash: String,
+}
+
+impl Drop for Arrived {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+impl Incoming {
+    pub async fn open(app: &App) -> Result<Self, Error> {
+        let folder = uploads_folder(app)?;
+        tokio::fs::create_dir_all(&folder).await.map_err(on_disk)?;
+        let random = secret::random::<8>().map_err(|e| Error::Internal(e.to_string()))?;
+        let path = folder.join(format!(".incoming-{random}"));
+        let file = tokio::fs::File::create_new(&path).await.map_err(on_disk)?;
+        Ok(Self { path, file, hasher: Sha256::new(), bytes: 0 })
+    }
+
+    pub async fn add(&mut self, chunk: &[u8]) -> Result<(), Error> {
+        self.bytes += chunk.len() as u64;
+        if self.bytes > LARGEST_UPLOAD {
+            return Err(Error::UploadTooLarge);
+        }
+        self.hasher.update(chunk);
+        self.file.write_all(chunk).await.map_err(on_disk)
+    }
+
+    pub async fn finish(mut self) -> Result<Arrived, Error> {
+        self.file.flush().await.map_err(on_disk)?;
+        let hash = secret::hex(&self.hasher.clone().finalize());
+        Ok(Arrived { path: std::mem::take(&mut self.path), hash })
+    }
+}
+
+impl Drop for Incoming {
+    fn drop(&mut self) {
+        if !self.path.as_os_str().is_empty() {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// What became of an upload.
+pub(crate) enum Taken {
+    /// It cannot be hosted; why.
+    Refused(Vec<Issue>),
+    /// It is being prepared.
+    Accepted { study_id: String },
+}
+
+/// Unpacks and checks what has arrived; if it has no errors, preparing it begins.
+pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Result<Taken, Error> {
+    let folder = uploads_folder(app)?;
+    let random = secret::random::<8>().map_err(|error| Error::Internal(error.to_string()))?;
+    let fresh = folder.join(format!(".unpacked-{random}"));
+    let place = folder.join(&arrived.hash);
+    let hash = arrived.hash.clone();
+    let work = move || -> Result<(Checked, PathBuf), ArchiveError> {
+        let outcome = (|| {
+            let study_file = unpack(&arrived.path, &fresh)?;
+            let checked = check_upload(&study_file);
+            let inside = study_file.strip_prefix(&fresh).unwrap_or(&study_file).to_owned();
+            if checked.study.is_some() && !place.exists() {
+                std::fs::rename(&fresh, &place)?;
+            }
+            Ok((checked, place.join(inside)))
+        })();
+        let _ = std::fs::remove_dir_all(&fresh);
+        outcome
+    };
+    let done = tokio::task::spawn_blocking(work).await;
+    let (checked, study_file) = done.map_err(|error| Error::Internal(error.to_string()))??;
+    let Some(study) = checked.study.clone() else { return Ok(Taken::Refused(checked.issues)) };
+    let study_id = study.study().id.clone();
+    if app.study(&study_id).is_ok() && !is_uploaded(app, &study_id).await? {
+        return Err(Error::bad_request(
+            format!("study {study_id:?} is hosted from the server's own files"),
+            "give the study another id",
+        ));
+    }
+    {
+        let mut preparations = app.preparations.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = preparations.get(&study_id).map(|known| &known.state);
+        if matches!(known, Some(Preparing::Under { .. })) {
+            return Err(Error::bad_request(
+                format!("study {study_id:?} is being prepared"),
+                "wait until that is done",
+            ));
+        }
+        let state = Preparing::Under { done: 0, of: 0 };
+        let issues = checked.issues;
+        preparations.insert(study_id.clone(), Preparation { state, issues });
+    }
+    audit(app, who, "upload a study", &study_id, &study.config_hash()[..12]).await?;
+    tokio::spawn(host(app.clone(), study_file, study, hash));
+    Ok(Taken::Accepted { study_id })
+}
+
+/// Prepares the stimuli and hosts the study as a pilot.
+async fn host(app: App, study_file: PathBuf, study: CheckedStudy, archive_hash: String) {
+    let id = study.study().id.clone();
+    let outcome = prepare_and_host(&app, &study_file, study, archive_hash).await;
+    let state = match outcome {
+        Ok(warnings) => Preparing::Ready { warnings },
+        Err(problem) => Preparing::Failed { problem },
+    };
+    note(&app.preparations, &id, state);
+}
+
+async fn prepare_and_host(
+    app: &App,
+    study_file: &Path,
+    study: CheckedStudy,
+    archive_hash: String,
+) -> Result<Vec<String>, String> {
+    let folder = app.data_folder.as_deref().ok_or("the server has no data folder")?;
+    let packs_folder = folder.join("packs");
+    let places = Places {
+        study: study_file.parent().unwrap_or(Path::new(".")).to_owned(),
+        data: None,
+        packs: packs_folder.clone(),
+    };
+    let _turn = TURN.acquire().await.map_err(|error| error.to_string())?;
+    let id = study.study().id.clone();
+    let preparations = app.preparations.clone();
+    let work = move || {
+        let mut said = |progress: Progress<'_>| {
+            let under = Preparing::Under { done: progress.done, of: progress.total };
+            note(&preparations, &id, under);
+        };
+        let prepared =
+            prepare(study.study(), &places, &mut said).map_err(|error| error.to_string())?;
+        let warnings =
+            prepared.warnings.iter().map(|(pointer, text)| format!("{pointer}: {text}")).collect();
+        let mut packs = PackStore::default();
+        for hash in prepared.clips.values().flat_map(|clip| clip.packs()) {
+            packs.load(&packs_folder, hash).map_err(|error| error.to_string())?;
+        }
+        let hosted = HostedStudy::new(study.value().clone(), prepared.clips, Stage::Pilot)
+            .map_err(|error| error.to_string())?;
+        Ok::<_, String>((hosted, packs, warnings))
+    };
+    let (hosted, packs, warnings): (_, _, Vec<String>) =
+        tokio::task::spawn_blocking(work).await.map_err(|error| error.to_string())??;
+    let stored = async {
+        app.register(&hosted).await?;
+        app.storage
+            .put_upload(&UploadedStudy {
+                study_id: hosted.id().to_owned(),
+                config_hash: hosted.config_hash().to_owned(),
+                archive_hash,
+                stage: hosted.stage().word().to_owned(),
+                changed_ms: now_ms(),
+            })
+            .await?;
+        let versions = app.storage.study_versions().await?;
+        app.catalogue.put(hosted, &versions, packs)
+    };
+    stored.await.map_err(|error| {
+        tracing::error!("an uploaded study cannot be hosted: {error}");
+        "the database failed; upload the study again".to_owned()
+    })?;
+    Ok(warnings)
+}
+
+fn note(preparations: &Preparations, id: &str, state: Preparing) {
+    let mut known = preparations.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = known.get_mut(id) {
+        known.state = state;
+    }
+}
+
+/// Changes whether an uploaded study's answers count.
+pub(crate) async fn set_stage(app: &App, study_id: &str, stage: Stage) -> Result<(), Error> {
+    let mut upload = find(app, study_id).await?;
+    upload.stage = stage.word().to_owned();
+    upload.changed_ms = now_ms();
+    app.storage.put_upload(&upload).await?;
+    app.host_uploads().await?;
+    Ok(())
+}
+
+/// Hosts an uploaded study no more; its answers stay.
+pub(crate) async fn remove(app: &App, study_id: &str) -> Result<(), Error> {
+    let upload = find(app, study_id).await?;
+    app.storage.remove_upload(&upload.study_id, now_ms()).await?;
+    app.host_uploads().await?;
+    Ok(())
+}
+
+/// Whether a study came through the page.
+pub(crate) async fn is_uploaded(app: &App, study_id: &str) -> Result<bool, Error> {
+    let uploads = app.storage.uploads().await?;
+    Ok(uploads.iter().any(|upload| upload.study_id == study_id))
+}
+
+async fn find(app: &App, study_id: &str) -> Result<UploadedStudy, Error> {
+    let uploads = app.storage.uploads().await?;
+    let found = uploads.into_iter().find(|upload| upload.study_id == study_id);
+    found.ok_or_else(|| {
+        Error::bad_request(
+            "this study is hosted from the server's own files",
+            "change it where the server is started",
+        )
+    })
+}
+
+impl App {
+    /// The same server with a folder for uploaded studies and their packs; without one nothing can
+    /// be uploaded.
+    pub fn with_data_folder(mut self, folder: PathBuf) -> Self {
+        self.data_folder = Some(folder.into());
+        self
+    }
+
+    /// Hosts every uploaded study in the database as it is now, and none that was removed. Studies
+    /// of the server's own files are left as they are.
+    ///
+    /// # Errors
+    /// Storage failed. A study whose packs are not in the data folder is left out, and that is logged.
+    pub async fn host_uploads(&self) -> Result<(), crate::StorageError> {
+        let Some(folder) = &self.data_folder else { return Ok(()) };
+        let uploads = self.storage.uploads().await?;
+        let mut hosted = self.uploaded.lock().await;
+        for gone in hosted.keys().filter(|id| !uploads.iter().any(|up| up.study_id == **id)) {
+            self.catalogue.take(gone);
+        }
+        hosted.retain(|id, _| uploads.iter().any(|upload| upload.study_id == *id));
+        let mut versions = None;
+        for upload in uploads {
+            let state = (upload.config_hash.clone(), upload.stage.clone());
+            if hosted.get(&upload.study_id) == Some(&state) {
+                continue;
+            }
+            if !hosted.contains_key(&upload.study_id)
+                && let Ok(own) = self.catalogue.study(&upload.study_id)
+                && own.config_hash() != upload.config_hash
+            {
+                tracing::warn!(
+                    "study {}: the server's own file stands before the uploaded one",
+                    upload.study_id
+                );
+                continue;
+            }
+            let versions = match &versions {
+                Some(versions) => versions,
+                None => versions.insert(self.storage.study_versions().await?),
+            };
+            let Some(version) = versions.iter().find(|version| {
+                version.study_id == upload.study_id && version.config_hash == upload.config_hash
+            }) else {
+                continue;
+            };
+            let stage = if upload.stage == "live" { Stage::Live } else { Stage::Pilot };
+            let study = HostedStudy::from_version(version, stage)?;
+            let mut packs = PackStore::default();
+            let folder = folder.join("packs");
+            let failed = {
+                let mut hashes = study.bundle().clips.values().flat_map(|clip| clip.packs());
+                hashes.find_map(|hash| packs.load(&folder, hash).err())
+            };
+            if let Some(error) = failed {
+                tracing::error!("study {}: {error}", upload.study_id);
+                continue;
+            }
+            self.catalogue.put(study, versions, packs)?;
+            hosted.insert(upload.study_id, state);
+        }
+        Ok(())
+    }
+}
+
+fn uploads_folder(app: &App) -> Result<PathBuf, Error> {
+    let folder = app.data_folder.as_ref().ok_or_else(|| {
+        Error::bad_request("this server has no data folder", "start it with --data-dir")
+    })?;
+    Ok(folder.join("uploads"))
+}
+
+fn on_disk(error: std::io::Error) -> Error {
+    Error::Internal(format!("an upload cannot be written: {error}"))
+}
+
+impl From<ArchiveError> for Error {
+    fn from(error: ArchiveError) -> Self {
+        match error {
+            ArchiveError::Disk(error) => on_disk(error),
+            other => Self::BadUpload(other.to_string()),
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Studies through the page: checked, prepared, hosted as pilots; hostile ones are refused whole.
+
+use std::io::{Cursor, Write};
+use std::time::Duration;
+
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
+use mimique_server::router;
+use mimique_study::wire::SessionStarted;
+use serde_json::{Value, json};
+use zip::write::SimpleFileOptions;
+
+use crate::client::{Answer, TestServer};
+use crate::people::{Browser, HOST, ORIGIN, owner};
+use crate::study;
+
+const BOUNDARY: &str = "----a-boundary";
+
+/// A server with a data folder.
+fn with_folder(server: &TestServer, folder: &std::path::Path) -> TestServer {
+    let app = server.app.clone().with_data_folder(folder.to_owned());
+    let mut hosting = server.with_router(router(app.clone()));
+    hosting.app = app;
+    hosting
+}
+
+/// A file sent by the page's form.
+async fn upload(server: &TestServer, browser: &Browser, file: &[u8]) -> Answer {
+    upload_with(server, browser, file, &browser.csrf, ORIGIN).await
+}
+
+async fn upload_with(
+    server: &TestServer,
+    browser: &Browser,
+    file: &[u8],
+    csrf: &str,
+    origin: &str,
+) -> Answer {
+    let mut body = format!(
+        "--{BOUNDARY}\r\nContent-Disposition: form-data; name=\"csrf\"\r\n\r\n{csrf}\r\n\
+         --{BOUNDARY}\r\nContent-Disposition: form-data; name=\"study\"; filename=\"../../x.zip\"\r\n\
+         Content-Type: application/zip\r\n\r\n"
+    )
+    .into_bytes();
+    body.extend(file);
+    body.extend(format!("\r\n--{BOUNDARY}--\r\n").bytes());
+    let request = Request::post("/researcher/upload")
+        .header(header::HOST, HOST)
+        .header(header::ORIGIN, origin)
+        .header(header::ACCEPT, "text/html")
+        .header(header::COOKIE, browser.cookie())
+        .header(header::CONTENT_TYPE, format!("multipart/form-data; boundary={BOUNDARY}"))
+        .body(Body::from(body))
+        .unwrap();
+    server.send(request).await
+}
+
+fn packed(entries: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in entries {
+        writer.start_file(*name, SimpleFileOptions::default()).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// A whole study without stimuli.
+fn whole_study(id: &str) -> Value {
+    let mut file = study::demo_file();
+    let object = file.as_object_mut().unwrap();
+    object.insert("id".into(), id.into());
+    file
+}
+
+/// Waits until preparing has come to an end; the page then.
+async fn prepared(server: &TestServer, browser: &mut Browser, id: &str) -> String {
+    for _ in 0..600 {
+        let page = browser.open(server, &format!("/researcher/upload/{id}")).await.text();
+        if !page.contains("data-reload-s") {
+            return page;
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    panic!("the study is not prepared within a minute");
+}
+
+pub async fn an_uploaded_study_is_hosted_as_a_pilot(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    let file = whole_study("uploaded");
+    let archive = packed(&[("faces/study.json", file.to_string().as_bytes())]);
+    let answer = upload(&server, &owner, &archive).await;
+    assert_eq!(answer.status, StatusCode::SEE_OTHER, "{}", answer.text());
+    assert_eq!(answer.header(header::LOCATION), "/researcher/upload/uploaded");
+    let page = prepared(&server, &mut owner, "uploaded").await;
+    assert!(page.contains("hosted as a pilot"), "{page}");
+    let listed = owner.open(&server, "/researcher").await.text();
+    assert!(listed.contains("/researcher/studies/uploaded") && listed.contains("<td>pilot</td>"));
+    let started: SessionStarted = server.start_in("uploaded", 1).await;
+    assert_eq!(started.stage, "pilot");
+    let bundle: mimique_study::wire::Bundle = server.get("/api/studies/uploaded").await.ok();
+    let pack = bundle.clips.values().flat_map(|clip| clip.packs()).next().unwrap().to_owned();
+    assert_eq!(server.get(&format!("/packs/{pack}")).await.status, StatusCode::OK);
+    // Live: sessions that begin now count.
+    let stage = "/researcher/studies/uploaded/stage";
+    let done = owner.send(&server, stage, &[("stage", "live")]).await;
+    assert_eq!(done.status, StatusCode::SEE_OTHER, "{}", done.text());
+    assert_eq!(server.start_in("uploaded", 2).await.stage, "live");
+    // Another server on the same database and folder hosts it too; a third has no folder.
+    let restarted = server.restart().await;
+    assert_eq!(restarted.get("/s/uploaded/").await.status, StatusCode::NOT_FOUND);
+    let other = with_folder(&restarted, folder.path());
+    other.app.host_uploads().await.unwrap();
+    assert_eq!(other.get("/s/uploaded/").await.status, StatusCode::OK);
+    assert_eq!(other.start_in("uploaded", 3).await.stage, "live");
+    assert_eq!(other.get(&format!("/packs/{pack}")).await.status, StatusCode::OK);
+    // Hosted no more; its answers stay.
+    let done = owner.send(&other, "/researcher/studies/uploaded/remove", &[]).await;
+    assert_eq!(done.status, StatusCode::SEE_OTHER);
+    assert_eq!(other.get("/s/uploaded/").await.status, StatusCode::NOT_FOUND);
+    assert_eq!(other.storage.sessions("uploaded").await.unwrap().len(), 3);
+    // What the server was started with is not the page's to change.
+    let own = owner.send(&other, "/researcher/studies/faces/remove", &[]).await;
+    own.refused(StatusCode::BAD_REQUEST, "bad-request");
+}
+
+pub async fn a_study_with_errors_is_refused_with_all_of_them(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let owner = owner(&server).await;
+    let mut file = whole_study("broken");
+    let object = file.as_object_mut().unwrap();
+    object.insert("languges".into(), json!(["en"]));
+    object.remove("sequence");
+    let answer = upload(&server, &owner, file.to_string().as_bytes()).await;
+    assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY);
+    let page = answer.text();
+    for part in ["/languges", "did you mean", "sequence"] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    // An identifier of the server's own files is taken.
+    let taken = upload(&server, &owner, whole_study("demo").to_string().as_bytes()).await;
+    assert_eq!(taken.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert!(taken.text().contains("another id"), "{}", taken.text());
+    assert!(server.storage.uploads().await.unwrap().is_empty());
+}
+
+pub async fn hostile_uploads_leave_nothing(server: &TestServer) {
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("data");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(outer.path().join("secret.csv"), "a secret").unwrap();
+    let server = with_folder(server, &folder);
+    let owner = owner(&server).await;
+    let study = whole_study("hostile").to_string();
+    let outside = {
+        let mut file = whole_study("hostile");
+        let path = outer.path().join("secret.csv").display().to_string();
+        file["stimuli"]["captures"] =
+            json!({"actor": {"file": path, "markers": "../../secret.csv"}});
+        file.to_string()
+    };
+    // Ten MiB of zeros in ten KiB, a thousand times over.
+    let zeros = vec![0; 10 * 1024 * 1024];
+    let names: Vec<String> = (0..210).map(|index| format!("{index}.bin")).collect();
+    let mut bomb = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    bomb.start_file("study.json", SimpleFileOptions::default()).unwrap();
+    bomb.write_all(study.as_bytes()).unwrap();
+    bomb.start_file(&*names[0], SimpleFileOptions::default()).unwrap();
+    bomb.write_all(&zeros).unwrap();
+    for name in &names[1..] {
+        bomb.deep_copy_file(&names[0], name).unwrap();
+    }
+    let bomb = bomb.finish().unwrap().into_inner();
+    assert!(bomb.len() < 4 * 1024 * 1024, "{}", bomb.len());
+    for (what, bytes) in [
+        ("traversal", packed(&[("study.json", study.as_bytes()), ("../../evil.txt", b"x")])),
+        ("absolute", packed(&[("study.json", study.as_bytes()), ("/tmp/evil.txt", b"x")])),
+        ("no study", packed(&[("readme.txt", b"x")])),
+        ("not an archive", b"MZ\x90\x00".to_vec()),
+        ("cut off", packed(&[("study.json", study.as_bytes())])[..200].to_vec()),
+        ("empty", Vec::new()),
+        ("a path outside", packed(&[("study.json", outside.as_bytes())])),
+        ("a bomb", bomb),
+    ] {
+        let answer = upload(&server, &owner, &bytes).await;
+        assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{what}: {}", answer.text());
+        assert!(!answer.text().contains("a secret"), "{what}");
+        let left: Vec<_> = std::fs::read_dir(folder.join("uploads")).unwrap().collect();
+        assert!(left.is_empty(), "{what} leaves {left:?}");
+        assert!(!outer.path().join("evil.txt").exists(), "{what}");
+    }
+    // A forged form is not even taken in.
+    for (csrf, origin) in [("", ORIGIN), (owner.csrf.as_str(), "https://evil.example")] {
+        let answer = upload_with(&server, &owner, study.as_bytes(), csrf, origin).await;
+        assert_eq!(answer.status, StatusCode::FORBIDDEN);
+    }
+    assert!(std::fs::read_dir(folder.join("uploads")).unwrap().next().is_none());
+    assert!(server.storage.uploads().await.unwrap().is_empty());
+}

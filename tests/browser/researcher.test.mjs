@@ -1,0 +1,199 @@
+// A researcher's first day: makes the owner's account by the printed link, watches somebody take part
+// without touching the page, excludes with a reason, exports, reads the report, uploads a study; every
+// page for everybody (axe, 360 px, dark, French).
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { parse } from "./lib/csv.mjs";
+import { serve } from "./lib/server.mjs";
+import { small, text } from "./lib/small_study.mjs";
+
+const unable = skip(!executable && "Chromium not found");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+const password = "four words are good";
+
+const study = (id) =>
+  small(id, {
+    components: {
+      how: {
+        type: "questionnaire",
+        questions: [
+          { id: "mood", type: "likert", prompt: text("How are you?"), numItems: 7, leftLabel: text("bad"), rightLabel: text("good") },
+          { id: "remark", type: "longText", prompt: text("Anything else?"), required: false },
+        ],
+      },
+    },
+    sequence: { order: "fixed", components: ["how"] },
+    stimuli: { avatars: {}, captures: {}, segments: [], methods: {} },
+    hypotheses: [],
+  });
+
+/** Takes part as the pages do, by the interface alone. */
+async function takePart(server, id, nonce, mood, whole = true) {
+  const post = async (path, body) => {
+    const answer = await fetch(`${server.url}${path}`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+    assert.ok(answer.ok, `${path}: ${answer.status} ${await answer.clone().text()}`);
+    return answer.json();
+  };
+  const client = { browser: "Firefox", version: "140", platform: "Linux" };
+  const started = await post(`/api/studies/${id}/sessions`, { nonce: nonce.repeat(32), language: "en", client });
+  const display = { viewport: [1280, 900], device_pixel_ratio: 1, about: client };
+  const bodies = [
+    { type: "opened", client: display, language: "en" },
+    { type: "consented", version: "1", language: "en" },
+    { type: "page_shown", step: "how" },
+  ];
+  if (whole) {
+    bodies.push({ type: "answered", step: "how", question: "mood", value: mood });
+    bodies.push({ type: "page_finished", step: "how", answers: { mood, remark: "=SUM(1)" } });
+    bodies.push({ type: "finished" });
+  }
+  const events = bodies.map((body, sequence) => ({ sequence, at_ms: Date.now() + sequence, body }));
+  await post(`/api/sessions/${started.session}/events`, { events });
+  if (whole) await post(`/api/sessions/${started.session}/complete`, { events: events.length });
+  return started;
+}
+
+test("researcher: account, live dashboard, exclusion, export, upload", { skip: unable, timeout: 300_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-researcher-"));
+  writeFileSync(join(folder, "moods.json"), JSON.stringify(study("moods")));
+  writeFileSync(join(folder, "second.json"), JSON.stringify(study("second")));
+  const broken = { ...study("broken"), languges: ["en"] };
+  writeFileSync(join(folder, "broken.json"), JSON.stringify(broken));
+  const server = await serve([join(folder, "moods.json")]);
+  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
+  const { page } = browser;
+  const shots = screenshotFolder("researcher");
+  let count = 0;
+  /** Nothing for axe to find, nothing wider than the window, and pictures for people to look at. */
+  const look = async (name, sizes = [[1280, "light"], [768, "dark"], [360, "light"]]) => {
+    count += 1;
+    for (const [width, colorScheme] of sizes) {
+      await page.setViewportSize({ width, height: 900 });
+      await page.emulateMedia({ colorScheme });
+      await page.screenshot({ path: join(shots, `${String(count).padStart(2, "0")}-${name}-${width}.png`), fullPage: true });
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.ok(wide <= 0, `${name} scrolls sideways by ${wide} px at ${width} px`);
+      await page.evaluate(axe);
+      const found = await page.evaluate(async (tags) => {
+        const { violations } = await window.axe.run(document, { runOnly: { type: "tag", values: tags } });
+        return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
+      }, standards);
+      assert.deepEqual(found, [], `${name}, ${width} px: axe`);
+      assert.equal(await page.locator("h1").count(), 1, `${name}: one main heading`);
+    }
+    await page.setViewportSize({ width: 1280, height: 900 });
+    await page.emulateMedia({ colorScheme: "light" });
+  };
+  try {
+    // The link makes the account and logs in; used once, it is dead.
+    const link = server.researcher();
+    assert.match(link, /\/researcher\/link\/[0-9a-f]{32}$/);
+    await page.goto(link);
+    await look("first-account");
+    await page.getByLabel("E-mail").fill("ada@example.org");
+    await page.getByLabel("Password").fill(password);
+    await page.keyboard.press("Enter");
+    await page.waitForURL("**/researcher");
+    await look("studies");
+    assert.equal((await fetch(link)).status, 410);
+    await page.getByRole("button", { name: "Log out" }).click();
+    await page.waitForURL("**/researcher/login");
+    await look("login");
+    await page.goto(`${server.url}/researcher/studies/moods`);
+    await page.getByLabel("E-mail").fill("ada@example.org");
+    await page.getByLabel("Password").fill("not the password");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("[role=alert]");
+    await look("wrong-password", [[1280, "light"]]);
+    await page.getByLabel("E-mail").fill("ada@example.org");
+    await page.getByLabel("Password").fill(password);
+    await page.keyboard.press("Enter");
+    // Back to where one wanted to be.
+    await page.waitForURL("**/researcher/studies/moods");
+
+    // Somebody arrives and is seen without a touch.
+    await page.waitForSelector("text=Nobody yet.");
+    await page.waitForSelector("text=Live: the page follows");
+    const first = await takePart(server, "moods", "a", 6);
+    await page.waitForSelector(`a:has-text("${first.participant_id}")`, { timeout: 10_000 });
+    await takePart(server, "moods", "b", 2);
+    await takePart(server, "moods", "c", 4, false);
+    await page.waitForFunction(() => document.querySelectorAll("[data-live] td.browser").length === 3, undefined, { timeout: 10_000 });
+    const counts = await page.locator("dl.counts").innerText();
+    assert.match(counts.replace(/\s+/g, " "), /under way 1 completed 2/);
+    await look("dashboard");
+
+    // One is excluded with a reason.
+    await page.getByRole("link", { name: "p0002" }).click();
+    await page.waitForURL("**/participants/2");
+    await look("participant");
+    await page.getByLabel("Reason").fill("watched with a friend");
+    await page.getByRole("button", { name: "Exclude" }).click();
+    await page.waitForSelector("text=Take the exclusion back");
+    await look("excluded", [[1280, "dark"], [360, "light"]]);
+    await page.goto(`${server.url}/researcher/studies/moods`);
+    assert.match((await page.locator("dl.counts").innerText()).replace(/\s+/g, " "), /excluded 1/);
+
+    // Exports are one click each; the one excluded is in them, marked.
+    const saved = async (name) => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name, exact: true }).click()]);
+      return readFileSync(await download.path(), "utf8");
+    };
+    const rows = parse(await saved("Tidy CSV"));
+    const second = rows.filter((row) => row.participant_id === "p0002");
+    assert.ok(second.length > 0 && second.every((row) => row.excluded === "true" && row.exclusion_reason === "watched with a friend"));
+    assert.ok(rows.some((row) => row.participant_id === "p0001" && row.excluded === "false"));
+    assert.ok(rows.some((row) => row.answer === "=SUM(1)"), "texts are as they were written");
+    const spreadsheet = parse(await saved("tidy"));
+    assert.ok(spreadsheet.some((row) => row.answer === "'=SUM(1)"), "for a spreadsheet they are neutralised");
+    assert.equal(JSON.parse(await saved("Study file")).id, "moods");
+    assert.match(await saved("Data dictionary"), /^name,kind,unit,levels,description/);
+
+    // A study with errors is refused with the whole report, a good one is prepared and hosted.
+    await page.goto(`${server.url}/researcher/upload`);
+    await page.getByLabel("Archive or study file").setInputFiles(join(folder, "broken.json"));
+    await page.getByRole("button", { name: "Upload and check" }).click();
+    await page.waitForSelector("text=unknown key");
+    await look("upload-refused");
+    await page.getByLabel("Archive or study file").setInputFiles(join(folder, "second.json"));
+    await page.getByRole("button", { name: "Upload and check" }).click();
+    await page.waitForSelector("text=hosted as a pilot", { timeout: 30_000 });
+    await look("upload-ready", [[1280, "light"]]);
+    await page.getByRole("link", { name: "To the study" }).click();
+    await page.getByRole("button", { name: "End the pilot" }).waitFor();
+    const there = await takePart(server, "second", "d", 5);
+    assert.equal(there.stage, "pilot");
+
+    // Accounts, tokens, log; in French.
+    await page.goto(`${server.url}/researcher/people`);
+    await page.getByLabel("E-mail").fill("bo@example.org");
+    await page.getByLabel(/^analyst/).check();
+    await page.getByRole("button", { name: "Make a link" }).click();
+    await page.waitForSelector("[data-secret]");
+    await look("people");
+    await page.goto(`${server.url}/researcher/account`);
+    await look("account");
+    await page.getByRole("link", { name: "Français" }).click();
+    await page.waitForSelector("html[lang=fr]");
+    await look("account-french", [[360, "dark"]]);
+    await page.goto(`${server.url}/researcher/studies/moods`);
+    await look("dashboard-french", [[1280, "dark"], [360, "dark"]]);
+    await page.goto(`${server.url}/researcher/log`);
+    await look("log-french", [[1280, "light"], [360, "light"]]);
+    // What the refusals above did to the console is what they should.
+    const errors = browser.errors.filter((error) => !/status of (403|410|422)/.test(error));
+    assert.deepEqual(errors, [], "the console is clean");
+    const elsewhere = browser.requests.filter((url) => !url.startsWith(server.url) && !/^(data|blob|about):/.test(url));
+    assert.deepEqual(elsewhere, [], "no request leaves the study's own server");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
