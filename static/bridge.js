@@ -30,6 +30,47 @@ export function about() {
   return JSON.stringify({ browser, version, platform });
 }
 
+/** What browser and display can do, as the JSON of `study::Display`. */
+export async function measure() {
+  const [{ refreshPeriod }, { backend }] = await Promise.all([import("./stage-clock.js"), import("./stage-backend.js")]);
+  const period = document.hidden ? null : await refreshPeriod(true);
+  return JSON.stringify({
+    viewport: [innerWidth, innerHeight],
+    device_pixel_ratio: devicePixelRatio,
+    refresh_hz: period === null ? null : thousandth(1000 / period),
+    backend: await backend().catch(() => null),
+    desktop: matchMedia("(any-pointer: fine)").matches && matchMedia("(any-hover: hover)").matches,
+    fullscreen: document.fullscreenEnabled ?? false,
+  });
+}
+
+/** Gives the participant a text as a file. */
+export function download(name, text) {
+  const address = URL.createObjectURL(new Blob([text], { type: "application/x-ndjson" }));
+  const link = document.createElement("a");
+  link.href = address;
+  link.download = name;
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+}
+
+/** Lets the page fill the screen; the browser allows it after a press alone. */
+export function requestFullscreen() {
+  document.documentElement.requestFullscreen?.({ navigationUI: "hide" }).catch(() => {});
+}
+
+/** Gives the screen back. */
+export function leaveFullscreen() {
+  if (isFullscreen()) document.exitFullscreen().catch(() => {});
+}
+
+/** Whether the page fills the screen. */
+export function isFullscreen() {
+  return document.fullscreenElement != null;
+}
+
 /** Fetches packs and solves. Resolves with the solved clip's facts as JSON. */
 export async function prepareClip(clip, source, progress) {
   const { prepareClip } = await stageHost();

@@ -3,8 +3,9 @@
 let estimate = null;
 
 /// Median interval between the display's frames, ms, over 24 of them; measured once while the page
-/// is visible and does nothing else.
-export function refreshPeriod() {
+/// is visible and does nothing else. `anew`: measured once more.
+export function refreshPeriod(anew = false) {
+  if (anew) estimate = null;
   estimate ??= measure(24).then((period) => {
     // A hidden page gets no frames: ask again the next time.
     if (period === null) estimate = null;

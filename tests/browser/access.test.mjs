@@ -2,19 +2,17 @@
 // 320 px, with text of 200 %; every type of question among them.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { go, leave, phase, place } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
-const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
 
 const option = (value) => ({ value, label: text(value) });
 const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
@@ -44,16 +42,6 @@ const study = small("access", {
   ),
 });
 
-/** What axe finds on the page as it stands. */
-async function violations(page) {
-  // Not by a script element: the pages allow none but their own.
-  await page.evaluate(axe);
-  return page.evaluate(async (tags) => {
-    const { violations } = await window.axe.run(document, { runOnly: { type: "tag", values: tags } });
-    return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
-  }, standards);
-}
-
 /** One answer of each question, by the controls that people use. */
 async function answerAll(page) {
   for (const question of await page.locator("fieldset[data-question]").all()) {
@@ -77,17 +65,7 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
     const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
     const shots = screenshotFolder(`access-${scheme}-${width}-${zoom}`);
     const { page } = browser;
-    const seen = [];
-    const look = async (name) => {
-      seen.push(name);
-      if (zoom !== 1) await page.evaluate((factor) => (document.documentElement.style.fontSize = `${factor * 100}%`), zoom);
-      await page.screenshot({ path: join(shots, `${seen.length}-${name}.png`), fullPage: true });
-      assert.deepEqual(await violations(page), [], `${name}: axe`);
-      const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-      assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px`);
-      const headings = await page.locator("h1").count();
-      assert.equal(headings, 1, `${name}: one main heading`);
-    };
+    const { seen, look } = looker(page, shots, zoom);
     try {
       await page.goto(`${server.url}/s/access/?backend=webgl2`);
       await page.waitForSelector('main[data-view="consent"]', { timeout: 30_000 });

@@ -77,7 +77,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn parse_format(word: &str) -> Result<Format, String> {
+pub fn parse_format(word: &str) -> Result<Format, String> {
     Format::from_word(word).ok_or_else(|| {
         let known = Format::ALL.map(Format::word).join(", ");
         format!("there are {known}")

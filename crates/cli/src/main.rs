@@ -7,6 +7,8 @@ mod account;
 mod analyze;
 mod check;
 mod export;
+mod export_site;
+mod import;
 mod inspect;
 mod order;
 mod output;
@@ -54,6 +56,10 @@ enum Command {
     Account(account::Args),
     /// Write the responses of a study to a file
     Export(export::Args),
+    /// Write a study as plain files that any web host can serve, without the server
+    ExportSite(export_site::Args),
+    /// Export the sessions of a study that was hosted as files
+    Import(import::Args),
     /// Write an export of simulated participants
     Simulate(simulate::Args),
     /// Find the power of a study by simulation, and write its preregistration
@@ -83,6 +89,8 @@ fn main() -> ExitCode {
         Command::Segment(args) => segment::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
+        Command::ExportSite(args) => export_site::run(args, json),
+        Command::Import(args) => import::run(args, json),
         Command::Simulate(args) => simulate::run(args, json),
         Command::Power(args) => power::run(args, json),
         Command::Test(args) => test_command::run(args, json),

@@ -183,7 +183,11 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
 
 type Clips = std::collections::BTreeMap<String, mimique_study::wire::ClipSource>;
 
-fn prepare_study(file: &Path, study: &mimique_study::Study, packs: &Path) -> Result<Clips, String> {
+pub fn prepare_study(
+    file: &Path,
+    study: &mimique_study::Study,
+    packs: &Path,
+) -> Result<Clips, String> {
     // Hidden where no terminal is.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {

@@ -110,6 +110,16 @@ impl Assets {
         Ok(Self { hash, files })
     }
 
+    /// The hash of all files, which their addresses carry.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// Every file as it is, pages (templates) among them, by its name.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.files.iter().map(|(name, file)| (name.as_str(), file.raw.as_ref()))
+    }
+
     /// What addresses of files begin with: `/assets/{hash}`.
     pub(crate) fn prefix(&self) -> String {
         format!("/assets/{}", self.hash)
@@ -122,7 +132,7 @@ impl Assets {
     }
 
     /// A page with `{{name}}` replaced by each value, escaped for HTML.
-    pub(crate) fn page(&self, name: &str, values: &[(&str, &str)]) -> Option<String> {
+    pub fn page(&self, name: &str, values: &[(&str, &str)]) -> Option<String> {
         let template = std::str::from_utf8(&self.files.get(name)?.raw).ok()?;
         Some(values.iter().fold(template.to_owned(), |page, (name, value)| {
             page.replace(&format!("{{{{{name}}}}}"), &escaped(value))

@@ -138,12 +138,15 @@ impl HostedStudy {
             .collect()
     }
 
-    /// Where a participant who has finished goes back to.
-    pub(crate) fn redirect(&self, parameters: &BTreeMap<String, String>) -> Option<String> {
+    /// Where a participant whose session has ended goes back to, with this code.
+    pub(crate) fn redirect(
+        &self,
+        parameters: &BTreeMap<String, String>,
+        code: Option<&str>,
+    ) -> Option<String> {
         let recruitment = &self.study.recruitment;
         let address = recruitment.redirect.as_ref()?;
-        let code = recruitment.completion_code.as_deref().unwrap_or_default();
-        let mut filled = address.replace("{code}", &percent_encoded(code));
+        let mut filled = address.replace("{code}", &percent_encoded(code.unwrap_or_default()));
         for name in &recruitment.url_parameters {
             let value = parameters.get(name).map_or("", String::as_str);
             filled = filled.replace(&format!("{{{name}}}"), &percent_encoded(value));

@@ -53,13 +53,42 @@ pub enum EventKind {
         /// The answer; null where it was taken back.
         value: Value,
     },
-    /// A page was left by its button.
+    /// What the browser and its display can do.
+    DeviceMeasured {
+        /// What was found.
+        display: Display,
+    },
+    /// The size of a CSS pixel and the distance of the eyes.
+    Calibrated(Calibrated),
+    /// The participant asked for more time.
+    TimeExtended {
+        /// Identifier of the step.
+        step: String,
+    },
+    /// The study does not take this participant. The session ends.
+    ScreenedOut {
+        /// Identifier of the step that stood on the screen.
+        step: String,
+        /// `device`, `screening` or `training`.
+        reason: String,
+        /// What was missing: the rules' keys, or the question.
+        details: Vec<String>,
+    },
+    /// More attention checks were failed than the study allows. The session ends.
+    ChecksFailed {
+        /// How many were failed.
+        failed: u32,
+    },
+    /// A page was left by its button, or its time was over.
     PageFinished {
         /// Identifier of the step.
         step: String,
         /// Its answers, if it asked something.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         answers: Answers,
+        /// Whether its time was over.
+        #[serde(default, skip_serializing_if = "is_false")]
+        timed_out: bool,
     },
     /// The first play of a trial was asked for.
     TrialStarted {
@@ -90,6 +119,9 @@ pub enum EventKind {
         rt_ms: f64,
         /// Whole plays after the first.
         replays: u32,
+        /// Whether their time was over.
+        #[serde(default, skip_serializing_if = "is_false")]
+        timed_out: bool,
     },
     /// A clip could not be loaded, solved or shown.
     ClipFailed {
@@ -127,6 +159,10 @@ pub enum EventKind {
 
 tagged_by_type!(EventKind);
 
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 impl EventKind {
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
@@ -160,6 +196,44 @@ pub struct Client {
     /// Browser name, its major version, platform class.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub about: BTreeMap<String, String>,
+}
+
+/// What the browser and its display can do.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Display {
+    /// Width and height of the window, CSS pixels.
+    pub viewport: [u32; 2],
+    /// Device pixels per CSS pixel.
+    pub device_pixel_ratio: f64,
+    /// The rate at which the browser draws, Hz; none if it drew nothing (a hidden page).
+    pub refresh_hz: Option<f64>,
+    /// `webgpu` or `webgl2`; none if it has neither.
+    pub backend: Option<String>,
+    /// Whether the main pointer is a mouse or a touch pad.
+    pub desktop: bool,
+    /// Whether a page may fill the screen.
+    pub fullscreen: bool,
+}
+
+/// The size of a CSS pixel and the distance of the eyes, as the participant set them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Calibrated {
+    /// CSS pixels per millimetre; none if it was left out.
+    pub px_per_mm: Option<f64>,
+    /// Device pixels per CSS pixel at that moment: zooming the page changes both.
+    pub device_pixel_ratio: f64,
+    /// Distance from eyes to screen, centimetres, as the participant says.
+    pub distance_cm: Option<f64>,
+}
+
+impl Calibrated {
+    /// CSS pixels per millimetre in a window of that many device pixels per CSS pixel.
+    pub fn px_per_mm_at(&self, device_pixel_ratio: f64) -> Option<f64> {
+        let ratio = self.device_pixel_ratio / device_pixel_ratio;
+        self.px_per_mm.map(|px| if ratio.is_finite() && ratio > 0.0 { px * ratio } else { px })
+    }
 }
 
 /// What the stage measured while a clip was played once (`static/stage-host.js`, `stage.play`).

@@ -8,6 +8,7 @@ pub mod flow;
 mod json_reader;
 mod order;
 pub mod responses;
+mod session_file;
 mod study_file;
 mod tagged;
 pub mod text;
@@ -18,6 +19,7 @@ pub use canonical::{canonical, config_hash};
 pub use check::{
     CheckedStudy, FileLookup, Issue, Report, SCHEMA_ADDRESS, Severity, check, json_schema,
 };
-pub use event::{Answers, Client, EventKind, PlayLog, ShownBeside};
+pub use event::{Answers, Calibrated, Client, Display, EventKind, PlayLog, ShownBeside};
 pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
+pub use session_file::{SessionFile, SessionFileError};
 pub use study_file::*;

@@ -227,6 +227,102 @@ fn samples_show_each_clip_equally_often() {
     assert!(shown.values().all(|&times| times == 2), "{shown:?}");
 }
 
+/// Ten parts, four each: every cycle of five participants shows each part twice, and over a thousand
+/// cycles the 45 pairs stand together equally often (44 degrees of freedom; 78.7 is the 0.999 quantile;
+/// pairs of one block repel each other a little, which makes the statistic smaller, not larger).
+#[test]
+fn samples_show_each_pair_together_equally_often() {
+    let study = small_study(
+        &[("p", "x"), ("q", "x"), ("r", "y"), ("s", "y"), ("t", "y")],
+        &["box", "other"],
+        "{ order: 'random', components: ['faces'], numSamples: 4 }",
+    );
+    let mut pairs: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for participant in 0..5_000 {
+        let mut order = clips(&study, "h", participant);
+        order.sort();
+        for (place, left) in order.iter().enumerate() {
+            for right in &order[place + 1..] {
+                *pairs.entry((left.clone(), right.clone())).or_default() += 1;
+            }
+        }
+    }
+    assert_eq!(pairs.len(), 45, "every pair");
+    let expected = 5_000.0 * 6.0 / 45.0;
+    let statistic = chi_square(pairs.into_values(), expected);
+    assert!(statistic < 78.7, "{statistic}");
+}
+
+/// Orders of drawn designs, `MIMIQUE_ORDERS` of them (20,000 if not given; a million in the long
+/// run): every constraint is kept, every clip comes as often as it should, nothing hangs. Designs
+/// that the search gives up are counted, and must be those that no order satisfies.
+#[test]
+fn a_million_orders_keep_their_constraints() {
+    let wanted: u64 = std::env::var("MIMIQUE_ORDERS")
+        .map_or(20_000, |text| text.parse().expect("MIMIQUE_ORDERS is a number"));
+    let names = ["a", "b", "x", "y"];
+    let all_ids: Vec<String> = (0..12).map(|index| format!("s{index}")).collect();
+    let (mut drawn, mut design, mut impossible) = (0, 0_u64, 0);
+    let mut longest = std::time::Duration::ZERO;
+    while drawn < wanted {
+        design += 1;
+        // SplitMix64 (Steele, Lea & Flood 2014): the design's own numbers.
+        let mut state = design;
+        let mut below = |n: u64| {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((mixed ^ (mixed >> 31)) % n) as usize
+        };
+        let count = 1 + below(12);
+        let kinds: Vec<&str> = (0..count).map(|_| names[below(4)]).collect();
+        let methods = &["m0", "m1", "m2"][..1 + below(3)];
+        let (alike, distance) = (1 + below(4), 1 + below(4));
+        let segments: Vec<(&str, &str)> =
+            all_ids.iter().map(String::as_str).zip(kinds.iter().copied()).collect();
+        let sequence = format!(
+            "{{ order: 'random', components: ['faces'], constraints: [
+               {{ factor: 'kind', minimumDistance: {distance} }},
+               {{ factor: 'method', atMostAlike: {alike} }} ] }}"
+        );
+        let study = small_study(&segments, methods, &sequence);
+        let kind_of: BTreeMap<&str, &str> = segments.iter().copied().collect();
+        for participant in 0..50 {
+            let draw = Draw { seed: design, config_hash: "h", participant };
+            let begun = std::time::Instant::now();
+            let ordered = order(&study, draw);
+            longest = longest.max(begun.elapsed());
+            let Ok(items) = ordered else {
+                impossible += 1;
+                break;
+            };
+            drawn += 1;
+            let clips: Vec<&str> = items
+                .iter()
+                .filter_map(|item| match item {
+                    OrderedItem::Trial { clip, .. } => Some(clip.as_str()),
+                    OrderedItem::Component { .. } => None,
+                })
+                .collect();
+            let parts: Vec<(&str, &str)> =
+                clips.iter().map(|clip| clip.split_once('.').expect("segment.method")).collect();
+            for (place, (segment, _)) in parts.iter().enumerate() {
+                let near = parts[place + 1..].iter().take(distance - 1);
+                let same = near.filter(|(other, _)| kind_of[other] == kind_of[segment]).count();
+                assert_eq!(same, 0, "design {design}, participant {participant}: {clips:?}");
+            }
+            for run in parts.windows(alike + 1) {
+                let mixed = run.iter().any(|(_, method)| *method != run[0].1);
+                assert!(mixed, "design {design}, participant {participant}: {clips:?}");
+            }
+            let different: std::collections::BTreeSet<&&str> = clips.iter().collect();
+            assert_eq!(different.len(), count * methods.len(), "each clip once");
+        }
+    }
+    println!("{drawn} orders of {design} designs, {impossible} without any; longest {longest:?}");
+    assert!(drawn >= wanted && impossible < design, "{impossible} of {design}");
+}
+
 #[test]
 fn nested_sequences_stay_together_and_breaks_come_between() {
     let study = small_study(

@@ -26,7 +26,12 @@ impl Address {
         if parts.next() != Some("s") {
             return None;
         }
-        let mut address = Self { study: decode(parts.next()?), ..Self::default() };
+        Some(Self::of_study(&decode(parts.next()?), query))
+    }
+
+    /// The address of a study whose name the page itself gives (hosted without the server).
+    pub fn of_study(study: &str, query: &str) -> Self {
+        let mut address = Self { study: study.to_owned(), ..Self::default() };
         for pair in query.trim_start_matches('?').split('&').filter(|pair| !pair.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
             let (name, value) = (decode(name), decode(value));
@@ -40,7 +45,7 @@ impl Address {
                 }
             }
         }
-        Some(address)
+        address
     }
 }
 

@@ -37,6 +37,26 @@ extern "C" {
     #[wasm_bindgen(js_name = playClip, catch)]
     pub async fn play_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
 
+    /// What browser and display can do, as the JSON of `mimique_study::Display`.
+    #[wasm_bindgen(js_name = measure, catch)]
+    pub async fn measure() -> Result<JsValue, JsValue>;
+
+    /// Lets the page fill the screen; called from a press.
+    #[wasm_bindgen(js_name = requestFullscreen)]
+    pub fn request_fullscreen();
+
+    /// Gives the screen back.
+    #[wasm_bindgen(js_name = leaveFullscreen)]
+    pub fn leave_fullscreen();
+
+    /// Whether the page fills the screen.
+    #[wasm_bindgen(js_name = isFullscreen)]
+    pub fn is_fullscreen() -> bool;
+
+    /// Gives the participant a text as a file.
+    #[wasm_bindgen(js_name = download)]
+    pub fn download(name: &str, text: &str);
+
     /// Aborts the play in progress.
     #[wasm_bindgen(js_name = stopClip)]
     pub fn stop_clip();

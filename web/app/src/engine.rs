@@ -9,9 +9,9 @@ use std::rc::Rc;
 
 use gloo::timers::future::TimeoutFuture;
 use leptos::prelude::*;
-use mimique_study::PlayLog;
-use mimique_study::flow::{Effect, Input, Plan, State, update};
+use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_study::wire::{Event, Refusal};
+use mimique_study::{Display, PlayLog};
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -120,12 +120,39 @@ impl Engine {
             }
             Effect::PlayClip { clip, beside } => self.play(clip, beside),
             Effect::StopClip => bridge::stop_clip(),
+            Effect::MeasureDevice => self.measure(),
+            Effect::RequestFullscreen => bridge::request_fullscreen(),
+            Effect::LeaveFullscreen => bridge::leave_fullscreen(),
             Effect::Complete { events } => self.complete(events),
             Effect::Withdraw => self.withdraw(),
             Effect::FocusHeading if self.open.get() => focus::heading(),
             Effect::FocusHeading => {}
             // An effect of a later version of the flow: the page is older than the study.
             _ => {}
+        }
+    }
+
+    /// What browser and display can do.
+    fn measure(self: &Rc<Self>) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let measured = bridge::measure().await.ok().and_then(|text| text.as_string());
+            let display = measured.and_then(|text| crate::json::read(&text).ok());
+            engine.dispatch(Input::Measured(display.unwrap_or_default()));
+        });
+    }
+
+    /// The window has another size: the device gate looks again.
+    pub fn resized(self: &Rc<Self>) {
+        let known = self.state.with_untracked(|state| {
+            let step = self.plan.step(state.record.step);
+            let gate = step.is_some_and(|step| step.kind == StepKind::Device);
+            state.record.display.clone().filter(|_| gate)
+        });
+        if let Some(display) = known {
+            let now = crate::start::client();
+            let (viewport, device_pixel_ratio) = (now.viewport, now.device_pixel_ratio);
+            self.dispatch(Input::Measured(Display { viewport, device_pixel_ratio, ..display }));
         }
     }
 

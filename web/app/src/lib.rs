@@ -31,6 +31,8 @@ mod network;
 mod pages;
 #[cfg(target_arch = "wasm32")]
 mod session;
+#[cfg(target_arch = "wasm32")]
+mod site;
 
 #[cfg(target_arch = "wasm32")]
 mod start;

@@ -52,15 +52,24 @@ fn storage() -> Option<web_sys::Storage> {
 /// the page goes on with what it holds in memory, and `is_lasting` says so.
 pub struct Keep {
     database: Option<Database>,
+    store: &'static str,
     session: String,
 }
 
-const STORE: &str = "outbox";
+/// What the server has not acknowledged.
+const OUTBOX: &str = "outbox";
+/// All answers, where there is no server.
+pub const ANSWERS: &str = "answers";
 
 impl Keep {
     /// Opens the keep of a session.
     pub async fn open(session: &str) -> Self {
-        Self { database: open().await.ok(), session: session.to_owned() }
+        Self::open_store(OUTBOX, session).await
+    }
+
+    /// Opens one of the stores for a session.
+    pub async fn open_store(store: &'static str, session: &str) -> Self {
+        Self { database: open().await.ok(), store, session: session.to_owned() }
     }
 
     /// Whether what is put survives a reload.
@@ -81,8 +90,8 @@ impl Keep {
     pub async fn put(&self, event: &Event) -> Result<(), idb::Error> {
         let Some(database) = &self.database else { return Ok(()) };
         let text = serde_json::to_string(event).unwrap_or_default();
-        let transaction = database.transaction(&[STORE], TransactionMode::ReadWrite)?;
-        let store = transaction.object_store(STORE)?;
+        let transaction = database.transaction(&[self.store], TransactionMode::ReadWrite)?;
+        let store = transaction.object_store(self.store)?;
         store.put(&JsValue::from_str(&text), Some(&self.key(event.sequence)))?.await?;
         transaction.commit()?.await?;
         Ok(())
@@ -91,8 +100,8 @@ impl Keep {
     /// Forgets events that the server has.
     pub async fn forget(&self, sequences: &[u64]) -> Result<(), idb::Error> {
         let Some(database) = &self.database else { return Ok(()) };
-        let transaction = database.transaction(&[STORE], TransactionMode::ReadWrite)?;
-        let store = transaction.object_store(STORE)?;
+        let transaction = database.transaction(&[self.store], TransactionMode::ReadWrite)?;
+        let store = transaction.object_store(self.store)?;
         for sequence in sequences {
             store.delete(self.key(*sequence))?.await?;
         }
@@ -103,27 +112,30 @@ impl Keep {
     /// Everything kept of the session, by sequence.
     pub async fn all(&self) -> Result<Vec<Event>, idb::Error> {
         let Some(database) = &self.database else { return Ok(Vec::new()) };
-        let transaction = database.transaction(&[STORE], TransactionMode::ReadOnly)?;
-        let values = transaction.object_store(STORE)?.get_all(Some(self.range()?), None)?.await?;
+        let transaction = database.transaction(&[self.store], TransactionMode::ReadOnly)?;
+        let values =
+            transaction.object_store(self.store)?.get_all(Some(self.range()?), None)?.await?;
         Ok(values.iter().filter_map(|value| json::read(&value.as_string()?).ok()).collect())
     }
 
     /// Forgets everything of the session.
     pub async fn clear(&self) -> Result<(), idb::Error> {
         let Some(database) = &self.database else { return Ok(()) };
-        let transaction = database.transaction(&[STORE], TransactionMode::ReadWrite)?;
-        transaction.object_store(STORE)?.delete(self.range()?)?.await?;
+        let transaction = database.transaction(&[self.store], TransactionMode::ReadWrite)?;
+        transaction.object_store(self.store)?.delete(self.range()?)?.await?;
         transaction.commit()?.await?;
         Ok(())
     }
 }
 
 async fn open() -> Result<Database, idb::Error> {
-    let mut request = Factory::new()?.open("mimique", Some(1))?;
+    let mut request = Factory::new()?.open("mimique", Some(2))?;
     request.on_upgrade_needed(|event| {
         if let Ok(database) = event.database() {
-            // It fails only if the store is there already.
-            let _ = database.create_object_store(STORE, ObjectStoreParams::new());
+            for store in [OUTBOX, ANSWERS] {
+                // It fails only if the store is there already.
+                let _ = database.create_object_store(store, ObjectStoreParams::new());
+            }
         }
     });
     request.await

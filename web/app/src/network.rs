@@ -1,4 +1,4 @@
-//! Talking to the server: `mimique_study::wire`, as JSON.
+//! Talking to the server: `mimique_study::wire`, as JSON; or to [`site`] where there is none.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::json;
+use crate::{json, site};
 
 /// Why a request brought nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,32 +35,50 @@ pub struct Bundle {
 
 /// `GET /api/studies/{study}`: the version of today, or the one of that configuration hash.
 pub async fn bundle(study: &str, config_hash: Option<&str>) -> Result<Bundle, Failure> {
+    if site::is_site() {
+        return site::bundle().await;
+    }
     let version = config_hash.map(|hash| format!("?config_hash={hash}")).unwrap_or_default();
     read(Request::get(&format!("/api/studies/{study}{version}")).send().await).await
 }
 
 /// `POST /api/studies/{study}/sessions`
 pub async fn start(study: &str, body: &StartSession) -> Result<SessionStarted, Failure> {
+    if site::is_site() {
+        return site::start(body);
+    }
     post(&format!("/api/studies/{study}/sessions"), body).await
 }
 
 /// `GET /api/sessions/{session}`
 pub async fn resume(session: &str) -> Result<Resume, Failure> {
+    if site::is_site() {
+        return site::resume(session).await;
+    }
     read(Request::get(&format!("/api/sessions/{session}")).send().await).await
 }
 
 /// `POST /api/sessions/{session}/events`
 pub async fn append(session: &str, events: Vec<Event>) -> Result<Acknowledged, Failure> {
+    if site::is_site() {
+        return site::append(events).await;
+    }
     post(&format!("/api/sessions/{session}/events"), &AppendEvents { events }).await
 }
 
 /// `POST /api/sessions/{session}/complete`
 pub async fn complete(session: &str, events: u64) -> Result<Receipt, Failure> {
+    if site::is_site() {
+        return site::complete(events).await;
+    }
     post(&format!("/api/sessions/{session}/complete"), &Complete { events }).await
 }
 
 /// `POST /api/sessions/{session}/withdraw`
 pub async fn withdraw(session: &str, withdrawal_code: String) -> Result<Withdrawn, Failure> {
+    if site::is_site() {
+        return site::withdraw().await;
+    }
     post(&format!("/api/sessions/{session}/withdraw"), &Withdraw { withdrawal_code }).await
 }
 
@@ -73,7 +91,7 @@ async fn post<T: DeserializeOwned>(address: &str, body: &impl Serialize) -> Resu
     }
 }
 
-async fn read<T: DeserializeOwned>(
+pub async fn read<T: DeserializeOwned>(
     answer: Result<Response, gloo::net::Error>,
 ) -> Result<T, Failure> {
     let answer = answer.map_err(|error| Failure::Unreachable(error.to_string()))?;

@@ -8,8 +8,9 @@ use leptos::prelude::*;
 use mimique_study::flow::{Input, Plan, State};
 use mimique_study::wire::{Event, SessionStarted, StartSession};
 use mimique_study::{Client, Study};
-use wasm_bindgen::JsValue;
+use wasm_bindgen::closure::Closure;
 use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 
 use crate::address::Address;
@@ -20,7 +21,7 @@ use crate::outbox::back_off;
 use crate::pages::Pages;
 use crate::pages::failure::{Trouble, TroublePage};
 use crate::session::Session;
-use crate::{bridge, pages};
+use crate::{bridge, pages, site};
 
 /// The module's entry.
 #[wasm_bindgen(start)]
@@ -84,7 +85,10 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     let location = window().location();
     let path = location.pathname().unwrap_or_default();
     let query = location.search().unwrap_or_default();
-    let address = Address::parse(&path, &query).ok_or(Trouble::NoStudy)?;
+    let address = match site::study() {
+        Some(study) => Address::of_study(&study, &query),
+        None => Address::parse(&path, &query).ok_or(Trouble::NoStudy)?,
+    };
     let wanted = wanted_languages(&address);
 
     let bundle = bundle(&address.study).await?;
@@ -234,7 +238,7 @@ fn about() -> BTreeMap<String, String> {
 }
 
 /// The display and the page, as events record them.
-fn client() -> Client {
+pub fn client() -> Client {
     let window = window();
     let size = |value: Result<JsValue, JsValue>| {
         value.ok().and_then(|value| value.as_f64()).unwrap_or(0.0) as u32
@@ -253,6 +257,14 @@ fn listen(session: Session) {
     let (lost, gained) = (on(|| Input::FocusLost), on(|| Input::FocusGained));
     window_event_listener(ev::blur, move |_| lost());
     window_event_listener(ev::focus, move |_| gained());
+    window_event_listener(ev::resize, move |_| session.engine().resized());
+    let root = document();
+    let filled =
+        Closure::<dyn Fn()>::new(move || session.send(Input::Fullscreen(bridge::is_fullscreen())));
+    let _ =
+        root.add_event_listener_with_callback("fullscreenchange", filled.as_ref().unchecked_ref());
+    // It lives as long as the page.
+    filled.forget();
     window_event_listener(ev::online, move |_| session.engine().flush());
     // A hidden page may never come back: what waits goes out now.
     window_event_listener(ev::pagehide, move |_| session.engine().flush());

@@ -115,10 +115,12 @@ pub(super) async fn complete(
     // A session may outlive its study's place on this server; its receipt stays good.
     if let Ok(study) = app.study(&completed.study_id) {
         let events = app.storage.events(completed.key).await?;
-        if events.iter().any(|event| event.body["type"] == "finished") {
+        let status = mimique_study::responses::session_status(&events);
+        let code = study.study().recruitment.code_for(status);
+        if code.is_some() || status == "completed" {
             let parameters = app.storage.session_recruitment(completed.key).await?;
-            receipt.completion_code = study.study().recruitment.completion_code.clone();
-            receipt.redirect = study.redirect(&parameters);
+            receipt.redirect = study.redirect(&parameters, code);
+            receipt.completion_code = code.map(str::to_owned);
         }
     }
     Ok(Json(receipt))

@@ -2,7 +2,7 @@
 
 use mimique_study::flow::{Effect, Input, Plan, State, Status, StepKind, update};
 use mimique_study::wire::{Event, SessionStarted};
-use mimique_study::{Answers, Client, OrderError, PlayLog};
+use mimique_study::{Answers, Client, Display, OrderError, PlayLog};
 
 use super::latent::ClipEffects;
 use super::model::Model;
@@ -141,9 +141,29 @@ impl Walk<'_, '_> {
                     self.page.wait(1000.0 * rest.minimum_seconds);
                     self.read(4_000.0);
                 }
-                StepKind::Page(_) | StepKind::Debriefing(_) => {
+                StepKind::Page(_) | StepKind::Debriefing(_) | StepKind::Feedback { .. } => {
                     self.shown(&step.id);
                     self.read(15_000.0);
+                }
+                StepKind::Device => {
+                    self.page.send(Input::Measured(display(&client)));
+                    if self.page.state.record.step != here {
+                        continue;
+                    }
+                    self.read(4_000.0);
+                    self.page.send(Input::Next);
+                    self.page.send(Input::Fullscreen(true));
+                    if self.page.state.record.step == here {
+                        self.page.send(Input::GiveUp);
+                    }
+                    continue;
+                }
+                StepKind::Calibration(_) => {
+                    self.shown(&step.id);
+                    self.read(20_000.0);
+                    let device_pixel_ratio = client.device_pixel_ratio;
+                    self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
+                    self.page.send(Input::Distance(Some(60.0)));
                 }
             }
             self.page.send(Input::Next);
@@ -275,6 +295,18 @@ impl Walk<'_, '_> {
                 self.page.send(Input::Answer { question: question.id.clone(), value });
             }
         }
+    }
+}
+
+/// A computer that can show every study.
+fn display(client: &Client) -> Display {
+    Display {
+        viewport: client.viewport,
+        device_pixel_ratio: client.device_pixel_ratio,
+        refresh_hz: Some(60.0),
+        backend: Some("webgpu".to_owned()),
+        desktop: true,
+        fullscreen: true,
     }
 }
 

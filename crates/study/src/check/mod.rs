@@ -1,10 +1,11 @@
 //! Every problem of a study file at once, each with its place and a remedy.
 //!
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
-//! raw types -> [`general`], [`questions`], [`stimuli`], [`sequence`], [`hypotheses`],
+//! raw types -> [`general`], [`questions`], [`conduct`], [`stimuli`], [`sequence`], [`hypotheses`],
 //! [`tables`] (what no type can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
 
 mod avatars;
+mod conduct;
 mod general;
 mod hypotheses;
 mod issue;
@@ -110,6 +111,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     let subject = Subject { study: &study, value: &value, clips: &clips, hash: &config_hash };
     general::examine(&subject, &texts, issues);
     questions::examine(&subject, issues);
+    conduct::examine(&subject, issues);
     stimuli::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);

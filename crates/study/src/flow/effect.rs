@@ -19,6 +19,14 @@ pub enum Effect {
         /// The one beside it.
         beside: Option<String>,
     },
+    /// Measure what browser and display can do; report by `Measured`, and by `Measured` again
+    /// whenever the window changes its size while the device gate stands there.
+    MeasureDevice,
+    /// Let the page fill the screen (the effect of a press, so that the browser allows it); report
+    /// by `Fullscreen`.
+    RequestFullscreen,
+    /// Give the screen back, if the page fills it.
+    LeaveFullscreen,
     /// Abort the play in progress, if there is one.
     StopClip,
     /// Send the outbox now.

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::event::{Client, PlayLog};
+use crate::event::{Client, Display, PlayLog};
 use crate::wire::Receipt;
 
 /// What comes in: acts of the participant, reports of the page.
@@ -65,7 +65,28 @@ pub enum Input {
     FocusGained,
     /// The page fills the screen, or no longer does.
     Fullscreen(bool),
-    /// Time has passed (a break waits for it). About once a second is enough.
+    /// What browser and display can do.
+    Measured(Display),
+    /// The button of the device gate that measures again.
+    MeasureAgain,
+    /// The button of the device gate for those who cannot mend what is missing.
+    GiveUp,
+    /// The button of the device gate that goes on without a full screen.
+    WithoutFullscreen,
+    /// The picture of the card is as large as the card.
+    CardWidth {
+        /// Its width, CSS pixels.
+        px: f64,
+        /// Device pixels per CSS pixel of the window.
+        device_pixel_ratio: f64,
+    },
+    /// The participant has no card.
+    NoCard,
+    /// How far the participant sits from the screen, centimetres.
+    Distance(Option<f64>),
+    /// The button that gives more time.
+    ExtendTime,
+    /// Time has passed (a break and a time limit wait for it). About once a second is enough.
     Tick,
     /// The participant takes everything back (the page has asked whether that is meant).
     Withdraw,
@@ -101,6 +122,14 @@ impl Input {
             Self::FocusLost => "focus_lost",
             Self::FocusGained => "focus_gained",
             Self::Fullscreen(_) => "fullscreen",
+            Self::Measured(_) => "measured",
+            Self::MeasureAgain => "measure_again",
+            Self::GiveUp => "give_up",
+            Self::WithoutFullscreen => "without_fullscreen",
+            Self::CardWidth { .. } => "card_width",
+            Self::NoCard => "no_card",
+            Self::Distance(_) => "distance",
+            Self::ExtendTime => "extend_time",
             Self::Tick => "tick",
             Self::Withdraw => "withdraw",
             Self::Acknowledged { .. } => "acknowledged",

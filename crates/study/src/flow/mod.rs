@@ -12,21 +12,29 @@
 //! then:        render view(plan, state); wait; update(input); carry out effects; again
 //! ```
 
+mod clock;
+mod device;
 mod effect;
+mod gate;
 mod input;
 mod plan;
 mod render;
+mod render_gate;
 mod state;
 mod update;
 mod view;
 
+pub use device::Unmet;
 pub use effect::Effect;
+pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM};
 pub use input::Input;
+pub(crate) use plan::right_answers;
 pub use plan::{Companion, Plan, Step, StepKind, TrialStep};
 pub use render::view;
 pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
-    BesideView, ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView,
-    QuestionKindView, QuestionView, SectionView, TrialView, View,
+    BesideView, ButtonView, CalibrationView, CardView, ChoiceView, ClockView, ContactView,
+    DeviceView, DistanceView, EndView, FeedbackItem, FeedbackView, Phase, ProgressView,
+    QuestionKindView, QuestionView, SectionView, StageSize, TrialView, View,
 };

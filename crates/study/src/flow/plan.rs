@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::event::Answers;
 use crate::order::{Draw, OrderError, OrderedItem, option_order, order};
 use crate::study_file::{
-    Beside, BreakComponent, Clip, Component, LocalText, OptionOrder, Question, QuestionKind,
-    Questionnaire, Section, Side, Study,
+    Beside, BreakComponent, Calibration, Clip, Component, LocalText, OptionOrder, Question,
+    QuestionKind, Questionnaire, Section, Side, Study, TimeLimit, Training,
 };
 use crate::text::{Words, words};
 use crate::wire::SessionStarted;
@@ -21,6 +22,8 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Shown order of options, by question, where it is drawn.
     pub option_orders: BTreeMap<String, Vec<usize>>,
+    /// Index of the step after each round of practice.
+    pub rounds: Vec<usize>,
 }
 
 /// One page or trial.
@@ -30,6 +33,8 @@ pub struct Step {
     pub id: String,
     /// What it is.
     pub kind: StepKind,
+    /// How long it may take.
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// What a step is.
@@ -37,6 +42,15 @@ pub struct Step {
 pub enum StepKind {
     /// The agreement.
     Consent,
+    /// What browser and display can do.
+    Device,
+    /// How large a CSS pixel is.
+    Calibration(Calibration),
+    /// Which answers to the practice clip before were right.
+    Feedback {
+        /// Index of the trial's step.
+        of: usize,
+    },
     /// A page of questions; `demographics` is true for those about the participant.
     Questions {
         /// The page.
@@ -73,6 +87,8 @@ pub struct TrialStep {
     pub condition: String,
     /// What is played in step beside the clip.
     pub beside: Option<Companion>,
+    /// Right answers by question, of a practice trial.
+    pub right: Answers,
 }
 
 /// A clip that is played in step beside another.
@@ -98,9 +114,13 @@ impl Plan {
         };
         let items = order(&study, draw)?;
         let mut steps = Vec::new();
-        let mut push = |id: String, kind: StepKind| steps.push(Step { id, kind });
+        let clips = study.clips();
+        let mut push = |id: String, kind: StepKind| steps.push(Step::new(id, kind));
         if study.consent.is_some() {
             push("consent".to_owned(), StepKind::Consent);
+        }
+        if study.device.is_some() {
+            push("device".to_owned(), StepKind::Device);
         }
         if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {
             push("demographics".to_owned(), StepKind::Questions { page, demographics: true });
@@ -108,22 +128,16 @@ impl Plan {
         for (index, section) in study.instructions.iter().enumerate() {
             push(format!("instructions/{}", index + 1), StepKind::Page(section.clone()));
         }
-        if let Some(training) = &study.training {
-            for (index, clip) in training.clips.iter().enumerate() {
-                let trial = TrialStep {
-                    clip: clip.clone(),
-                    questions: questions(&study, &training.questions),
-                    instruction: training.instruction.clone(),
-                    maximum_replays: None,
-                    training: true,
-                    number: index + 1,
-                    condition: "training".to_owned(),
-                    beside: None,
-                };
-                push(format!("training/{}/{clip}", index + 1), StepKind::Trial(trial));
-            }
+        if let Some(calibration) = study.calibration.clone() {
+            push("calibration".to_owned(), StepKind::Calibration(calibration));
         }
-        let clips = study.clips();
+        let rounds = study
+            .training
+            .as_ref()
+            .map_or_else(Vec::new, |training| practice(&study, training, &clips, &mut steps));
+        let mut push = |id: String, kind: StepKind, time_limit: Option<TimeLimit>| {
+            steps.push(Step { time_limit, ..Step::new(id, kind) });
+        };
         let mut sides = Sides::new(&study, draw, &items);
         let mut trials = 0;
         let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
@@ -145,8 +159,9 @@ impl Plan {
                         beside: block.beside.as_ref().and_then(|beside| {
                             companion(beside, clip, &clips, sides.next(component))
                         }),
+                        right: Answers::new(),
                     };
-                    push(trial.clone(), StepKind::Trial(step));
+                    push(trial.clone(), StepKind::Trial(step), block.time_limit.clone());
                 }
                 OrderedItem::Component { component } => {
                     let times = shown.entry(component).or_default();
@@ -155,26 +170,30 @@ impl Plan {
                         1 => component.clone(),
                         again => format!("{component}#{again}"),
                     };
-                    let kind = match study.components.get(component) {
-                        Some(Component::Questionnaire(page)) => {
-                            StepKind::Questions { page: page.clone(), demographics: false }
-                        }
-                        Some(Component::Page(page)) => StepKind::Page(Section {
-                            heading: page.heading.clone(),
-                            text: page.text.clone(),
-                        }),
-                        Some(Component::Break(rest)) => StepKind::Break(rest.clone()),
+                    let (kind, limit) = match study.components.get(component) {
+                        Some(Component::Questionnaire(page)) => (
+                            StepKind::Questions { page: page.clone(), demographics: false },
+                            page.time_limit.clone(),
+                        ),
+                        Some(Component::Page(page)) => (
+                            StepKind::Page(Section {
+                                heading: page.heading.clone(),
+                                text: page.text.clone(),
+                            }),
+                            page.time_limit.clone(),
+                        ),
+                        Some(Component::Break(rest)) => (StepKind::Break(rest.clone()), None),
                         Some(Component::Trials(_)) | None => continue,
                     };
-                    push(id, kind);
+                    push(id, kind, limit);
                 }
             }
         }
         for (index, section) in study.debriefing.iter().enumerate() {
-            push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()));
+            push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()), None);
         }
         let option_orders = option_orders(&study, draw);
-        Ok(Self { study, started, steps, option_orders })
+        Ok(Self { study, started, steps, option_orders, rounds })
     }
 
     /// The step at this place; `None` past the last one.
@@ -182,8 +201,11 @@ impl Plan {
         self.steps.get(index)
     }
 
-    /// How many trials there are, practice or not.
+    /// How many trials there are, or practice trials in a round.
     pub fn trial_count(&self, training: bool) -> usize {
+        if let (true, Some(training)) = (training, &self.study.training) {
+            return training.clips.len();
+        }
         let counts = |step: &&Step| matches!(&step.kind, StepKind::Trial(trial) if trial.training == training);
         self.steps.iter().filter(counts).count()
     }
@@ -254,6 +276,14 @@ fn companion(
 }
 
 impl Step {
+    fn new(id: String, kind: StepKind) -> Self {
+        let time_limit = match &kind {
+            StepKind::Questions { page, .. } => page.time_limit.clone(),
+            _ => None,
+        };
+        Self { id, kind, time_limit }
+    }
+
     /// The questions it asks.
     pub fn questions(&self) -> &[Question] {
         match &self.kind {
@@ -270,6 +300,71 @@ impl Step {
             _ => None,
         }
     }
+}
+
+/// Adds the practice trials of every round, with the pages that say what was right; returns where
+/// each round ends.
+fn practice(
+    study: &Study,
+    training: &Training,
+    clips: &[Clip],
+    steps: &mut Vec<Step>,
+) -> Vec<usize> {
+    let rounds = training.criterion.as_ref().map_or(1, |rule| rule.maximum_rounds.max(1));
+    let mut ends = Vec::new();
+    for round in 1..=rounds {
+        let again = if round > 1 { format!("#{round}") } else { String::new() };
+        for (index, clip) in training.clips.iter().enumerate() {
+            let questions = questions(study, &training.questions);
+            let right = right_answers(training, clip, clips, &questions);
+            let asked = !right.is_empty();
+            let trial = TrialStep {
+                clip: clip.clone(),
+                questions,
+                instruction: training.instruction.clone(),
+                maximum_replays: None,
+                training: true,
+                number: index + 1,
+                condition: "training".to_owned(),
+                beside: None,
+                right,
+            };
+            let id = format!("training/{}/{clip}{again}", index + 1);
+            let time_limit = training.time_limit.clone();
+            steps.push(Step { id, kind: StepKind::Trial(trial), time_limit });
+            if training.feedback && asked {
+                let of = steps.len() - 1;
+                let id = format!("feedback/{}/{clip}{again}", index + 1);
+                steps.push(Step::new(id, StepKind::Feedback { of }));
+            }
+        }
+        ends.push(steps.len());
+    }
+    ends
+}
+
+/// The right answers to a practice clip, as far as they are known: stated, or by a question's
+/// factor.
+pub(crate) fn right_answers(
+    training: &Training,
+    clip: &str,
+    clips: &[Clip],
+    questions: &[Question],
+) -> Answers {
+    let stated = training.answers.get(clip);
+    let known = clips.iter().find(|each| each.id == clip);
+    let of = |question: &Question| {
+        if let Some(answer) = stated.and_then(|answers| answers.get(&question.id)) {
+            return Some(answer.clone());
+        }
+        match &question.kind {
+            QuestionKind::SingleChoice(choice) => {
+                known?.factor_text(choice.truth.as_ref()?).map(Into::into)
+            }
+            _ => None,
+        }
+    };
+    questions.iter().filter_map(|each| Some((each.id.clone(), of(each)?))).collect()
 }
 
 fn questions(study: &Study, ids: &[String]) -> Vec<Question> {

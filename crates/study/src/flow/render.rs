@@ -1,5 +1,6 @@
 //! From state to screen: decisions made, texts in the participant's language.
 
+use super::gate;
 use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
 use super::update::{break_seconds_left, can_play, can_submit, is_saving, shown_questions};
@@ -29,23 +30,23 @@ pub fn view(plan: &Plan, state: &State) -> View {
         return View::Declined { heading, text };
     }
     match plan.step(state.record.step) {
-        Some(step) => screen.step(step),
-        None => screen.end(),
+        Some(step) if state.record.status == Status::Active => screen.step(step),
+        _ => screen.end(),
     }
 }
 
-struct Screen<'a> {
-    plan: &'a Plan,
-    state: &'a State,
-    words: &'static Words,
+pub(super) struct Screen<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) state: &'a State,
+    pub(super) words: &'static Words,
 }
 
 impl Screen<'_> {
-    fn text(&self, text: &LocalText) -> String {
+    pub(super) fn text(&self, text: &LocalText) -> String {
         text.in_language(&self.state.record.language).to_owned()
     }
 
-    fn paragraphs(&self, text: &LocalText) -> Vec<String> {
+    pub(super) fn paragraphs(&self, text: &LocalText) -> Vec<String> {
         let text = text.in_language(&self.state.record.language);
         let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
         paragraphs.map(str::to_owned).collect()
@@ -55,11 +56,11 @@ impl Screen<'_> {
         SectionView { heading: self.text(&section.heading), text: self.paragraphs(&section.text) }
     }
 
-    fn progress(&self) -> ProgressView {
+    pub(super) fn progress(&self) -> ProgressView {
         ProgressView { done: self.state.record.step, total: self.plan.steps.len() }
     }
 
-    fn button(&self, label: &str) -> ButtonView {
+    pub(super) fn button(&self, label: &str) -> ButtonView {
         ButtonView {
             label: label.to_owned(),
             can_submit: can_submit(self.plan, self.state),
@@ -79,8 +80,14 @@ impl Screen<'_> {
                 text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
                 questions: self.questions(step),
                 button: self.button(self.words.next),
+                clock: self.clock(step),
                 progress: self.progress(),
             },
+            StepKind::Device => View::Device(Box::new(self.device(step))),
+            StepKind::Calibration(calibration) => {
+                View::Calibration(Box::new(self.calibration(step, calibration)))
+            }
+            StepKind::Feedback { of } => View::Feedback(Box::new(self.feedback(step, *of))),
             StepKind::Page(section) => {
                 let next = self.plan.step(self.state.record.step + 1);
                 let before_trial = next.is_some_and(|step| step.trial().is_some());
@@ -101,7 +108,8 @@ impl Screen<'_> {
 
     fn page(&self, step: &Step, section: &Section, button: ButtonView) -> View {
         let SectionView { heading, text } = self.section(section);
-        View::Page { step: step.id.clone(), heading, text, button, progress: self.progress() }
+        let (step, clock) = (step.id.clone(), self.clock(step));
+        View::Page { step, heading, text, button, clock, progress: self.progress() }
     }
 
     fn consent(&self, step: &Step) -> View {
@@ -174,7 +182,9 @@ impl Screen<'_> {
         } else {
             Phase::Ready
         };
+        let fullscreen_first = gate::needs_fullscreen(self.plan, state);
         let message = match &phase {
+            Phase::Ready if fullscreen_first => words.fullscreen_first(),
             Phase::Playing => words.playing,
             Phase::Failed { .. } => words.clip_failed,
             Phase::Answering => words.answer_now,
@@ -193,7 +203,11 @@ impl Screen<'_> {
         let can_answer = progress.plays > 0 && !playing;
         let mut button = self.button(words.submit);
         button.hint = (!can_answer).then(|| words.watch_first.to_owned());
-        let play_label = if progress.plays > 0 { words.play_again } else { words.play };
+        let play_label = match progress.plays {
+            _ if fullscreen_first => words.back_to_fullscreen(),
+            0 => words.play,
+            _ => words.play_again,
+        };
         TrialView {
             step: step.id.clone(),
             clip: trial.clip.clone(),
@@ -205,6 +219,8 @@ impl Screen<'_> {
             }),
             heading,
             instruction: trial.instruction.as_ref().map(|text| self.text(text)),
+            size: self.stage_size(),
+            clock: self.clock(step),
             phase,
             message: message.to_owned(),
             can_play,
@@ -230,9 +246,11 @@ impl Screen<'_> {
         let labelled = |label: &str, value: &Option<String>| {
             value.as_ref().map(|value| (label.to_owned(), value.clone()))
         };
+        let (outcome, heading, text) = self.outcome();
         View::End(Box::new(EndView {
-            heading: words.thanks.to_owned(),
-            text: words.thanks_text.to_owned(),
+            outcome,
+            heading,
+            text,
             completion_code: labelled(words.completion_code, &receipt.completion_code),
             redirect: labelled(words.go_back, &receipt.redirect),
             receipt: (words.receipt.to_owned(), receipt.receipt.clone()),

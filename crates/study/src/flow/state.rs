@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use super::plan::{Plan, StepKind};
-use crate::event::{Answers, EventKind};
+use super::plan::{Plan, Step, StepKind};
+use crate::answer::alike;
+use crate::event::{Answers, Calibrated, Display, EventKind};
 use crate::wire::{self, Receipt};
 
 /// The state of a session.
@@ -27,8 +28,19 @@ pub enum Status {
     Declined,
     /// Every step is done.
     Finished,
+    /// The study does not take this participant.
+    ScreenedOut,
+    /// More attention checks were failed than the study allows.
+    ChecksFailed,
     /// The participant took everything back.
     Withdrawn,
+}
+
+impl Status {
+    /// Whether a session with this status waits for its receipt, and then shows its code.
+    pub fn has_receipt(self) -> bool {
+        matches!(self, Self::Finished | Self::ScreenedOut | Self::ChecksFailed)
+    }
 }
 
 /// A fold of the events.
@@ -59,6 +71,24 @@ pub struct Record {
     pub consent_version: Option<String>,
     /// Whether the page has the focus.
     pub focused: bool,
+    /// Whether the page fills the screen.
+    pub fullscreen: bool,
+    /// What browser and display can do, as last measured.
+    pub display: Option<Display>,
+    /// How often that was recorded.
+    pub measurements: u32,
+    /// The size of a CSS pixel.
+    pub calibrated: Option<Calibrated>,
+    /// Answers to the practice clip before.
+    pub practised: Answers,
+    /// Practice clips of this round that were answered right.
+    pub right: u32,
+    /// Whether the last round of practice ended without success.
+    pub training_failed: bool,
+    /// Attention checks that were failed.
+    pub failed_checks: u32,
+    /// Why the study does not take this participant: reason and details.
+    pub screened_out: Option<(String, Vec<String>)>,
     /// Events and inputs that did not fit.
     pub unexpected: u32,
     /// Time of the last event, page clock.
@@ -76,6 +106,10 @@ pub struct Progress {
     pub onset_ms: Option<f64>,
     /// Whether the last play was cut short.
     pub cut_short: bool,
+    /// When answers could first be given, page clock.
+    pub answering_ms: Option<f64>,
+    /// How often the time of the step was extended.
+    pub extensions: u32,
 }
 
 /// A play in progress.
@@ -101,6 +135,14 @@ pub struct Live {
     pub play: Play,
     /// Whether missing answers are pointed out.
     pub show_problems: bool,
+    /// Whether the device gate waits for the screen to be filled.
+    pub entering: bool,
+    /// The calibration on the screen.
+    pub calibration: Calibrated,
+    /// Whether the participant has no card.
+    pub no_card: bool,
+    /// Whether the time of the step before was over.
+    pub timed_out: bool,
     /// Events that the server has.
     pub stored: u64,
     /// Whether the server was asked to complete the session.
@@ -192,13 +234,14 @@ impl Record {
                 }
                 true
             }
-            EventKind::PageFinished { step, answers } => {
+            EventKind::PageFinished { step, answers, .. } => {
                 let is_trial = plan.step(self.step).is_some_and(|each| each.trial().is_some());
                 if !active || !here(step) || is_trial {
                     return false;
                 }
+                self.count_failed_checks(plan, answers);
                 self.answers.extend(answers.iter().map(|(id, value)| (id.clone(), value.clone())));
-                self.enter(self.step + 1, at_ms);
+                self.advance(plan, at_ms);
                 true
             }
             EventKind::TrialStarted { step, .. } => {
@@ -216,14 +259,53 @@ impl Record {
                 if log.is_whole() {
                     self.trial.plays += 1;
                     self.trial.onset_ms.get_or_insert(log.onset_ms);
+                    self.trial.answering_ms.get_or_insert(at_ms);
                 }
                 true
             }
-            EventKind::TrialFinished { step, .. } => {
+            EventKind::TrialFinished { step, answers, .. } => {
+                let trial = plan.step(self.step).and_then(Step::trial);
+                let Some(trial) = trial.filter(|_| active && here(step)) else { return false };
+                if trial.training {
+                    let is_right = |(id, right): (&String, &Value)| {
+                        answers.get(id).is_some_and(|given| alike(given, right))
+                    };
+                    self.right += u32::from(trial.right.iter().all(is_right));
+                    self.practised = answers.clone();
+                }
+                self.count_failed_checks(plan, answers);
+                self.advance(plan, at_ms);
+                true
+            }
+            EventKind::TimeExtended { step } => {
                 if !active || !here(step) {
                     return false;
                 }
-                self.enter(self.step + 1, at_ms);
+                self.trial.extensions += 1;
+                true
+            }
+            EventKind::DeviceMeasured { display } => {
+                self.display = Some(display.clone());
+                self.measurements += 1;
+                true
+            }
+            EventKind::Calibrated(calibrated) => {
+                self.calibrated = Some(calibrated.clone());
+                true
+            }
+            EventKind::ScreenedOut { reason, details, .. } => {
+                if !active {
+                    return false;
+                }
+                self.status = Status::ScreenedOut;
+                self.screened_out = Some((reason.clone(), details.clone()));
+                true
+            }
+            EventKind::ChecksFailed { .. } => {
+                if !active {
+                    return false;
+                }
+                self.status = Status::ChecksFailed;
                 true
             }
             EventKind::FocusLost => {
@@ -237,6 +319,7 @@ impl Record {
             EventKind::Resumed { .. } => {
                 self.resumptions += 1;
                 self.focused = true;
+                self.fullscreen = false;
                 if plan.step(self.step).is_some_and(|step| step.trial().is_some()) {
                     self.drafts.clear();
                     self.trial = Progress::default();
@@ -254,13 +337,48 @@ impl Record {
                 self.status = Status::Withdrawn;
                 true
             }
-            EventKind::ClipFailed { .. } | EventKind::Fullscreen { .. } => true,
+            EventKind::Fullscreen { on } => {
+                self.fullscreen = *on;
+                true
+            }
+            EventKind::ClipFailed { .. } => true,
             EventKind::Unexpected { .. } => false,
         }
     }
 
     fn is_at_consent(&self, plan: &Plan) -> bool {
         plan.step(self.step).is_some_and(|step| step.kind == StepKind::Consent)
+    }
+
+    /// To the next step; from the end of a round of practice that is the next round, or what follows
+    /// practice.
+    fn advance(&mut self, plan: &Plan, at_ms: f64) {
+        let mut next = self.step + 1;
+        if plan.rounds.contains(&next) {
+            let training = plan.study.training.as_ref();
+            let wanted = training.and_then(|it| it.criterion.as_ref()).map(|rule| rule.correct);
+            let enough = wanted.is_none_or(|wanted| self.right >= wanted);
+            let last = plan.rounds.last().copied().unwrap_or(next);
+            if enough {
+                next = last;
+            } else if next == last {
+                self.training_failed = true;
+            }
+            self.right = 0;
+        }
+        self.enter(next, at_ms);
+    }
+
+    /// Counts the attention checks of the page or trial on the screen that these answers fail.
+    fn count_failed_checks(&mut self, plan: &Plan, answers: &Answers) {
+        let questions = plan.step(self.step).map_or(&[][..], Step::questions);
+        for question in questions.iter().filter(|each| each.is_shown(answers, &self.answers)) {
+            if let Some(check) = &question.attention_check {
+                let given = answers.get(&question.id);
+                let passed = given.is_some_and(|given| alike(given, &check.expected));
+                self.failed_checks += u32::from(!passed);
+            }
+        }
     }
 
     fn enter(&mut self, step: usize, at_ms: f64) {

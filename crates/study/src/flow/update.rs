@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::effect::Effect;
+use super::gate;
 use super::input::Input;
 use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
@@ -29,10 +30,10 @@ pub fn update(plan: &Plan, state: State, input: Input, now_ms: f64) -> (State, V
     (turn.state, turn.effects)
 }
 
-struct Turn<'a> {
-    plan: &'a Plan,
-    state: State,
-    effects: Vec<Effect>,
+pub(super) struct Turn<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) state: State,
+    pub(super) effects: Vec<Effect>,
     now_ms: f64,
 }
 
@@ -40,7 +41,10 @@ impl<'a> Turn<'a> {
     /// Takes an input; false if it does not fit the state.
     fn take(&mut self, input: &Input) -> bool {
         match input {
-            Input::Tick => true,
+            Input::Tick => {
+                self.tick();
+                true
+            }
             Input::Acknowledged { stored } => self.acknowledged(*stored),
             Input::ReceiptArrived(receipt) => {
                 self.state.live.receipt = Some(receipt.clone());
@@ -82,15 +86,22 @@ impl<'a> Turn<'a> {
             Input::Retry => self.retry(),
             Input::FocusLost => self.focus(false),
             Input::FocusGained => self.focus(true),
-            Input::Fullscreen(on) => {
-                self.record(EventKind::Fullscreen { on: *on });
-                true
+            Input::Fullscreen(on) => self.fullscreen(*on),
+            Input::Measured(display) => self.measured(display),
+            Input::MeasureAgain => self.remeasure(),
+            Input::GiveUp => self.give_up(),
+            Input::WithoutFullscreen => self.without_fullscreen(),
+            Input::CardWidth { px, device_pixel_ratio } => {
+                self.card_width(*px, *device_pixel_ratio)
             }
+            Input::NoCard => self.no_card(),
+            Input::Distance(centimetres) => self.distance(*centimetres),
+            Input::ExtendTime => self.extend_time(),
         }
     }
 
     /// Makes an event: it is applied, and stored under the next number.
-    fn record(&mut self, kind: EventKind) {
+    pub(super) fn record(&mut self, kind: EventKind) {
         let body = kind.to_body();
         let sequence = self.state.record.events;
         self.state.record.apply(self.plan, &kind, self.now_ms);
@@ -104,7 +115,7 @@ impl<'a> Turn<'a> {
         }
     }
 
-    fn step(&self) -> Option<&'a Step> {
+    pub(super) fn step(&self) -> Option<&'a Step> {
         self.plan.step(self.state.record.step)
     }
 
@@ -135,7 +146,7 @@ impl<'a> Turn<'a> {
         if self.state.record.status == Status::Withdrawn {
             self.state.live.withdrawing = true;
             self.effects.push(Effect::Withdraw);
-        } else if self.state.record.status == Status::Finished {
+        } else if self.state.record.status.has_receipt() {
             self.state.live.completing = true;
             self.effects.push(Effect::Complete { events: self.state.record.events });
         }
@@ -145,9 +156,16 @@ impl<'a> Turn<'a> {
     /// A step stands there: what it and the next trials need is prepared, what is behind is sent.
     fn arrive(&mut self) {
         self.state.live.show_problems = false;
+        self.state.live.timed_out = false;
         self.state.live.play = Play::Still;
+        self.turn_away();
+        if self.state.record.status != Status::Active || self.step().is_none() {
+            self.effects.push(Effect::LeaveFullscreen);
+        } else if self.step().is_some_and(|step| step.kind == StepKind::Device) {
+            self.effects.push(Effect::MeasureDevice);
+        }
         let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
-        if !clips.is_empty() {
+        if !clips.is_empty() && self.state.record.status == Status::Active {
             self.effects.push(Effect::PrepareClips(clips));
         }
         if self.step().is_none() && self.state.record.status == Status::Active {
@@ -225,7 +243,9 @@ impl<'a> Turn<'a> {
         if !can_submit(self.plan, &self.state) {
             let watched = step.trial().is_none() || self.state.record.trial.plays > 0;
             let may_answer = watched && self.state.live.play == Play::Still;
-            self.state.live.show_problems = may_answer && !step.questions().is_empty();
+            let asks =
+                !step.questions().is_empty() || matches!(step.kind, StepKind::Calibration(_));
+            self.state.live.show_problems = may_answer && asks;
             // A break that has not lasted long enough is no mistake either.
             return may_answer;
         }
@@ -235,29 +255,46 @@ impl<'a> Turn<'a> {
                 Some((question.id.clone(), value.clone()))
             })
             .collect();
-        match step.trial() {
-            None => self.record(EventKind::PageFinished { step: step.id.clone(), answers }),
-            Some(trial) => {
-                let progress = &self.state.record.trial;
-                let onset_ms = progress.onset_ms.unwrap_or(self.now_ms);
-                let replays = progress.plays.saturating_sub(1);
-                self.record(EventKind::TrialFinished {
-                    step: step.id.clone(),
-                    clip: trial.clip.clone(),
-                    answers,
-                    rt_ms: self.now_ms - onset_ms,
-                    replays,
-                });
-            }
+        match &step.kind {
+            StepKind::Trial(_) => self.finish_trial(answers, false),
+            StepKind::Device => return self.pass_gate(),
+            StepKind::Calibration(_) => self.calibrate(),
+            _ => self.finish_page(answers, false),
         }
-        self.arrive();
         true
+    }
+
+    pub(super) fn finish_page(&mut self, answers: Answers, timed_out: bool) {
+        let Some(step) = self.step() else { return };
+        self.record(EventKind::PageFinished { step: step.id.clone(), answers, timed_out });
+        self.arrive();
+    }
+
+    pub(super) fn finish_trial(&mut self, answers: Answers, timed_out: bool) {
+        let Some((step, trial)) = self.trial() else { return };
+        let progress = &self.state.record.trial;
+        let onset_ms = progress.onset_ms.unwrap_or(self.now_ms);
+        let replays = progress.plays.saturating_sub(1);
+        self.record(EventKind::TrialFinished {
+            step: step.id.clone(),
+            clip: trial.clip.clone(),
+            answers,
+            rt_ms: self.now_ms - onset_ms,
+            replays,
+            timed_out,
+        });
+        self.arrive();
     }
 
     fn play(&mut self) -> bool {
         let Some((step, trial)) = self.trial() else { return false };
         if !can_play(self.plan, &self.state) {
             return false;
+        }
+        if gate::needs_fullscreen(self.plan, &self.state) {
+            // The first press fills the screen, the next one plays.
+            self.effects.push(Effect::RequestFullscreen);
+            return true;
         }
         if !self.state.record.trial.started {
             let (step, clip) = (step.id.clone(), trial.clip.clone());
@@ -331,7 +368,7 @@ impl<'a> Turn<'a> {
 
     fn acknowledged(&mut self, stored: u64) -> bool {
         self.state.live.stored = self.state.live.stored.max(stored);
-        let finished = self.state.record.status == Status::Finished;
+        let finished = self.state.record.status.has_receipt();
         let everything = self.state.live.stored >= self.state.record.events;
         if finished && everything && !self.state.live.completing {
             self.state.live.completing = true;
@@ -358,7 +395,11 @@ pub(super) fn can_submit(plan: &Plan, state: &State) -> bool {
         .all(|question| question.accept(state.record.draft(&question.id)).is_ok());
     match &step.kind {
         StepKind::Consent => false,
-        StepKind::Page(_) | StepKind::Debriefing(_) => true,
+        StepKind::Page(_) | StepKind::Debriefing(_) | StepKind::Feedback { .. } => true,
+        StepKind::Device => {
+            gate::device_problems(plan, state).is_some_and(|unmet| unmet.is_empty())
+        }
+        StepKind::Calibration(calibration) => gate::is_calibrated(calibration, state),
         StepKind::Break(_) => break_seconds_left(plan, state) == 0,
         StepKind::Questions { .. } => answered,
         StepKind::Trial(_) => {

@@ -36,6 +36,8 @@ pub enum View {
         questions: Vec<QuestionView>,
         /// The button that leads on.
         button: ButtonView,
+        /// How much time is left.
+        clock: Option<ClockView>,
         /// How far the session is.
         progress: ProgressView,
     },
@@ -49,9 +51,17 @@ pub enum View {
         text: Vec<String>,
         /// The button that leads on; a break says in its `hint` how long it still lasts.
         button: ButtonView,
+        /// How much time is left.
+        clock: Option<ClockView>,
         /// How far the session is.
         progress: ProgressView,
     },
+    /// What the device lacks, or that it is being looked at.
+    Device(Box<DeviceView>),
+    /// How large a CSS pixel is.
+    Calibration(Box<CalibrationView>),
+    /// Which answers to a practice clip were right.
+    Feedback(Box<FeedbackView>),
     /// A trial.
     Trial(Box<TrialView>),
     /// Everything is answered; the last answers are on their way.
@@ -128,6 +138,137 @@ pub struct ProgressView {
     pub total: usize,
 }
 
+/// What the device lacks, or that it is being looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviceView {
+    /// Identifier of the step.
+    pub step: String,
+    /// Heading.
+    pub heading: String,
+    /// Text below it.
+    pub text: String,
+    /// Whether it was not measured yet.
+    pub measuring: bool,
+    /// What is missing, each with what to do about it.
+    pub problems: Vec<(String, String)>,
+    /// The button that leads on.
+    pub button: ButtonView,
+    /// The button that goes on without a full screen, where that is allowed.
+    pub without: Option<String>,
+    /// The button that measures again, where something is missing.
+    pub again: Option<String>,
+    /// The button for those who cannot mend what is missing.
+    pub give_up: Option<String>,
+    /// How far the session is.
+    pub progress: ProgressView,
+}
+
+/// How large a CSS pixel is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationView {
+    /// Identifier of the step.
+    pub step: String,
+    /// Heading.
+    pub heading: String,
+    /// Paragraphs below it.
+    pub text: Vec<String>,
+    /// The card to be made as large as a real one.
+    pub card: Option<CardView>,
+    /// The distance of the eyes.
+    pub distance: Option<DistanceView>,
+    /// The button that leads on.
+    pub button: ButtonView,
+    /// How far the session is.
+    pub progress: ProgressView,
+}
+
+/// A card to be made as large as a real one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CardView {
+    /// What to do.
+    pub instruction: String,
+    /// Label of the slider.
+    pub label: String,
+    /// Labels of the buttons that make it smaller and larger.
+    pub steps: (String, String),
+    /// Width of the picture, CSS pixels.
+    pub width_px: f64,
+    /// Height of the picture, CSS pixels.
+    pub height_px: f64,
+    /// Whether its size was set.
+    pub set: bool,
+    /// The button for those who have no card, where that is allowed; whether it was pressed.
+    pub no_card: Option<(String, bool)>,
+    /// What to mend; only after the button was pressed.
+    pub problem: Option<String>,
+}
+
+/// The distance of the eyes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DistanceView {
+    /// What is asked.
+    pub label: String,
+    /// Unit after the field.
+    pub unit: String,
+    /// What was written.
+    pub value: Option<f64>,
+    /// What to mend; only after the button was pressed.
+    pub problem: Option<String>,
+}
+
+/// Which answers to a practice clip were right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FeedbackView {
+    /// Identifier of the step.
+    pub step: String,
+    /// Heading: all right, or not.
+    pub heading: String,
+    /// Whether all were right.
+    pub correct: bool,
+    /// A question each.
+    pub items: Vec<FeedbackItem>,
+    /// What follows from this round.
+    pub text: Option<String>,
+    /// The button that leads on.
+    pub button: ButtonView,
+    /// How far the session is.
+    pub progress: ProgressView,
+}
+
+/// What was right about one answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FeedbackItem {
+    /// What was asked.
+    pub prompt: String,
+    /// "You answered: joy".
+    pub given: String,
+    /// "Right is: fear"; none if it was right.
+    pub right: Option<String>,
+}
+
+/// How much time is left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClockView {
+    /// "12 s left", or why there is a limit before it begins.
+    pub text: String,
+    /// Said once when the end is near.
+    pub warning: Option<String>,
+    /// The button that gives more time.
+    pub extend: Option<String>,
+}
+
+/// How large the canvas is to be shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StageSize {
+    /// Width, CSS pixels.
+    pub width: f64,
+    /// Height, CSS pixels.
+    pub height: f64,
+    /// Where the size is one in millimetres: device pixels per CSS pixel for which it holds. In a
+    /// window of another ratio `r` both are multiplied by this / `r`.
+    pub device_pixel_ratio: Option<f64>,
+}
+
 /// A trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialView {
@@ -141,6 +282,10 @@ pub struct TrialView {
     pub heading: String,
     /// A line above the clip.
     pub instruction: Option<String>,
+    /// How large the clip is to be shown.
+    pub size: StageSize,
+    /// How much time is left.
+    pub clock: Option<ClockView>,
     /// Where the trial is.
     pub phase: Phase,
     /// What to tell: loading, watch first, answer now, interrupted.
@@ -200,10 +345,12 @@ pub enum Phase {
 /// The last page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndView {
+    /// How the session ended: `completed`, `screened_out`, `failed_checks`.
+    pub outcome: &'static str,
     /// Heading.
     pub heading: String,
-    /// Text.
-    pub text: String,
+    /// Paragraphs.
+    pub text: Vec<String>,
     /// Label and completion code.
     pub completion_code: Option<(String, String)>,
     /// Label and address of the way back.

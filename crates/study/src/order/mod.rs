@@ -12,6 +12,7 @@
 mod constrained;
 mod latin_square;
 mod stream;
+mod subset;
 
 use std::collections::BTreeMap;
 
@@ -249,8 +250,7 @@ impl Context<'_> {
         Ok(parts)
     }
 
-    /// `samples` of the parts, each part equally often over participants: a window that moves round
-    /// a circle on which the parts were shuffled once for the whole study.
+    /// `samples` of the parts, each part equally often over participants, and each pair too.
     fn sample(
         &self,
         parts: Vec<Vec<OrderedItem>>,
@@ -261,15 +261,17 @@ impl Context<'_> {
         if samples >= count {
             return parts;
         }
-        let mut circle: Vec<usize> = (0..count).collect();
-        self.draw.shared_stream(&format!("sample{pointer}")).shuffle(&mut circle);
-        let start = (u128::from(self.draw.participant) * samples as u128 % count as u128) as usize;
-        let chosen: Vec<usize> =
-            (0..samples).map(|offset| circle[(start + offset) % count]).collect();
+        let chosen = subset::subset(count, samples, self.draw.participant, |number| {
+            let mut circle: Vec<usize> = (0..count).collect();
+            let name = match number {
+                0 => format!("sample{pointer}"),
+                _ => format!("sample{pointer}/{number}"),
+            };
+            self.draw.shared_stream(&name).shuffle(&mut circle);
+            circle
+        });
         let mut parts: Vec<Option<Vec<OrderedItem>>> = parts.into_iter().map(Some).collect();
-        let mut chosen_in_order = chosen;
-        chosen_in_order.sort_unstable();
-        chosen_in_order.into_iter().filter_map(|index| parts[index].take()).collect()
+        chosen.into_iter().filter_map(|index| parts[index].take()).collect()
     }
 
     /// The parts' order as indices.

@@ -4,7 +4,7 @@ use super::column::ColumnKind;
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 46] = {
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 50] = {
     use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
     [
         ("participant_id", Text, "", "Public identifier of the participant"),
@@ -22,10 +22,20 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 46] = {
             "",
             "Place among the trials (or among the practice trials), from 1",
         ),
-        ("trial_type", Text, "", "trial, training, demographics or questionnaire"),
+        (
+            "trial_type",
+            Text,
+            "",
+            "trial, training, demographics, questionnaire, or screening: why a session ended early",
+        ),
         ("condition", Text, "", "Sequence or block that the trial belongs to"),
         ("stage", Text, "", "pilot or live"),
-        ("status", Text, "", "How the session stands: completed, active, withdrawn, declined"),
+        (
+            "status",
+            Text,
+            "",
+            "How the session stands: completed, active, withdrawn, declined, screened_out, failed_checks",
+        ),
         ("stimulus", Text, "", "Identifier of the clip"),
         ("beside", Text, "", "Clip shown in step beside it"),
         ("beside_side", Text, "", "Side of that clip: left or right"),
@@ -52,6 +62,8 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 46] = {
         ("replays", Integer, "", "Whole plays after the first"),
         ("interruptions", Integer, "", "Reloads and plays cut short within the trial or page"),
         ("focus_losses", Integer, "", "Times the page lost the focus or was hidden"),
+        ("timed_out", Boolean, "", "Whether the time limit ended it"),
+        ("fullscreen", Boolean, "", "Whether the page filled the screen"),
         (
             "onset_ms",
             Number,
@@ -72,6 +84,13 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 46] = {
         ("clip_width", Number, "px", "Width of the clip as shown, CSS pixels"),
         ("clip_height", Number, "px", "Height of the clip as shown, CSS pixels"),
         ("viewport", Text, "px", "Width x height of the window, CSS pixels"),
+        ("px_per_mm", Number, "px/mm", "CSS pixels per millimetre, by the card held to the screen"),
+        (
+            "viewing_distance_cm",
+            Number,
+            "cm",
+            "Distance from eyes to screen, as the participant says",
+        ),
         ("device_pixel_ratio", Number, "", "Device pixels per CSS pixel"),
         ("weights_hash", Text, "", "SHA-256 of the weights as the browser solved them"),
         (

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::answer::alike;
-use crate::event::{Answers, Client, EventKind, PlayLog, ShownBeside};
+use crate::event::{Answers, Calibrated, Client, EventKind, PlayLog, ShownBeside};
 use crate::study_file::Study;
 use crate::wire::{Event, SessionStarted};
 
@@ -18,13 +18,16 @@ pub struct SessionRecord<'a> {
     pub status: Option<&'a str>,
 }
 
-/// How a session stands, from its events: `completed`, `declined`, `withdrawn` or `active`.
+/// How a session stands, from its events: `completed`, `screened_out`, `failed_checks`, `declined`,
+/// `withdrawn` or `active`.
 pub fn session_status(events: &[Event]) -> &'static str {
     let mut status = "active";
     for event in events {
         match event.body.get("type").and_then(|word| word.as_str()) {
             Some("finished") => status = "completed",
             Some("declined") => status = "declined",
+            Some("screened_out") => status = "screened_out",
+            Some("checks_failed") => status = "failed_checks",
             Some("withdrawn") => return "withdrawn",
             _ => {}
         }
@@ -40,6 +43,21 @@ pub(super) struct Walk {
     pub language: String,
     pub consent_version: Option<String>,
     pub steps: Vec<FinishedStep>,
+    /// How a session ended before its last page.
+    pub end: Option<EarlyEnd>,
+    calibrated: Calibrated,
+    fullscreen: bool,
+}
+
+/// A session that ended before its last page.
+#[derive(Debug)]
+pub(super) struct EarlyEnd {
+    pub step: String,
+    /// `screened_out` or `failed_checks`.
+    pub what: &'static str,
+    /// Why: `device: minimumWidth`; or how many checks were failed.
+    pub why: serde_json::Value,
+    pub at_ms: f64,
 }
 
 /// A page or a trial that was finished.
@@ -61,6 +79,11 @@ pub(super) struct FinishedStep {
     pub interruptions: u32,
     pub focus_losses: u32,
     pub client: Client,
+    /// Whether its time was over.
+    pub timed_out: bool,
+    /// Whether the page filled the screen when the clip was played (of a page: when it was sent).
+    pub fullscreen: bool,
+    pub calibrated: Calibrated,
 }
 
 impl Walk {
@@ -79,7 +102,20 @@ impl Walk {
                     walk.client = client;
                     walk.language = language;
                 }
+                EventKind::Fullscreen { on } => walk.fullscreen = on,
+                EventKind::Calibrated(calibrated) => walk.calibrated = calibrated,
+                EventKind::ScreenedOut { step, reason, details } => {
+                    let why = format!("{reason}: {}", details.join(", "));
+                    let why = why.trim_end_matches([':', ' ']).into();
+                    walk.end = Some(EarlyEnd { step, what: "screened_out", why, at_ms });
+                }
+                EventKind::ChecksFailed { failed } => {
+                    let step = "end".to_owned();
+                    let why = failed.into();
+                    walk.end = Some(EarlyEnd { step, what: "failed_checks", why, at_ms });
+                }
                 EventKind::Resumed { client } => {
+                    walk.fullscreen = false;
                     walk.client = client;
                     here.interruptions += 1;
                     here.play = None;
@@ -107,18 +143,21 @@ impl Walk {
                         here.interruptions += 1;
                     } else if here.play.is_none() {
                         here.play = Some(log);
+                        here.fullscreen = walk.fullscreen;
                     }
                 }
                 EventKind::FocusLost => here.focus_losses += 1,
-                EventKind::PageFinished { step, answers } => {
-                    let done = FinishedStep { id: step, answers, ..here };
+                EventKind::PageFinished { step, answers, timed_out } => {
+                    let fullscreen = walk.fullscreen;
+                    let done = FinishedStep { id: step, answers, timed_out, fullscreen, ..here };
                     walk.finish(done, begun_ms, at_ms);
                     (here, begun_ms, started_ms) = (FinishedStep::default(), at_ms, None);
                 }
-                EventKind::TrialFinished { step, clip, answers, rt_ms, replays } => {
+                EventKind::TrialFinished { step, clip, answers, rt_ms, replays, timed_out } => {
                     let start_ms = started_ms.unwrap_or(begun_ms);
                     let (clip, rt_ms) = (Some(clip), Some(rt_ms));
-                    let done = FinishedStep { id: step, clip, answers, rt_ms, replays, ..here };
+                    let done =
+                        FinishedStep { id: step, clip, answers, rt_ms, replays, timed_out, ..here };
                     walk.finish(done, start_ms, at_ms);
                     (here, begun_ms, started_ms) = (FinishedStep::default(), at_ms, None);
                 }
@@ -136,6 +175,7 @@ impl Walk {
         step.start_ms = start_ms;
         step.end_ms = end_ms;
         step.client = self.client.clone();
+        step.calibrated = self.calibrated.clone();
         self.steps.push(step);
     }
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::cells::{answer_cells, iso_time, milliseconds, number, plain};
 use super::column::{Column, ColumnKind, Table};
 use super::fixed_columns::FIXED_COLUMNS;
-use super::session::{FinishedStep, SessionRecord, Walk, session_status};
+use super::session::{EarlyEnd, FinishedStep, SessionRecord, Walk, session_status};
 use crate::answer::alike;
 use crate::study_file::{Clip, Question, QuestionKind, SequenceItem, Study, component_of};
 use crate::wire::ClipSource;
@@ -98,6 +98,27 @@ impl<'a> Layout<'a> {
             cells.insert("trial_order".to_owned(), order);
             self.answer_rows(step, &cells, rows);
         }
+        if let Some(end) = &walk.end {
+            rows.push(self.end_row(&walk, end, common));
+        }
+    }
+
+    /// The row that says why a session ended before its last page.
+    fn end_row(&self, walk: &Walk, end: &EarlyEnd, mut cells: Cells) -> Vec<Value> {
+        let mut put = |name: &str, value: Value| cells.insert(name.to_owned(), value);
+        put("trial_id", end.step.as_str().into());
+        put("trial_type", "screening".into());
+        put("trial_index", walk.steps.len().into());
+        put("time_elapsed", milliseconds(end.at_ms - walk.opened_ms));
+        put("end_time", iso_time(end.at_ms).into());
+        let about: Vec<&str> = walk.client.about.values().map(String::as_str).collect();
+        put("browser", about.join(" ").into());
+        let [width, height] = walk.client.viewport;
+        put("viewport", format!("{width}x{height}").into());
+        put("response_id", end.what.into());
+        put("answer", end.why.clone());
+        put("response", end.why.clone());
+        self.ordered(cells)
     }
 
     fn kind(&self, step: &FinishedStep) -> StepType {
@@ -122,6 +143,15 @@ impl<'a> Layout<'a> {
         put("time_elapsed", milliseconds(step.end_ms - walk.opened_ms));
         put("interruptions", step.interruptions.into());
         put("focus_losses", step.focus_losses.into());
+        put("timed_out", step.timed_out.into());
+        put("fullscreen", step.fullscreen.into());
+        let ratio = step
+            .play
+            .as_ref()
+            .map_or(step.client.device_pixel_ratio, |play| play.device_pixel_ratio);
+        let px_per_mm = step.calibrated.px_per_mm_at(ratio);
+        put("px_per_mm", px_per_mm.map_or(Value::Null, milliseconds));
+        put("viewing_distance_cm", step.calibrated.distance_cm.map_or(Value::Null, number));
         put("start_time", iso_time(step.start_ms).into());
         put("end_time", iso_time(step.end_ms).into());
         let [width, height] = step.client.viewport;
@@ -226,6 +256,11 @@ impl<'a> Layout<'a> {
         cells.insert("rt".to_owned(), rt.map_or(Value::Null, milliseconds));
         cells.insert("response".to_owned(), answer.clone());
         cells.insert("answer".to_owned(), answer);
+        self.ordered(cells)
+    }
+
+    /// The cells in the order of the columns.
+    fn ordered(&self, mut cells: Cells) -> Vec<Value> {
         self.columns
             .iter()
             .map(|column| cells.remove(&column.name).unwrap_or(Value::Null))

@@ -6,6 +6,7 @@
 //! are methods.
 
 mod clips;
+mod conduct;
 mod general;
 mod hypotheses;
 mod local_text;
@@ -22,6 +23,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
+pub use conduct::{
+    AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,
+    DeviceRules, FullscreenRule, ScreeningRule, StatedAnswers, StaticHosting, TimeLimit,
+};
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
@@ -70,12 +75,24 @@ pub struct Study {
     /// What a participant agrees to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub consent: Option<Consent>,
+    /// What a device must have; looked at right after consent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<DeviceRules>,
     /// Questions about the participant, asked after consent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub demographics: Option<Questionnaire>,
+    /// Whom the study does not take, by their answers to pages of questions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub screening: Vec<ScreeningRule>,
+    /// What becomes of failed attention checks; they are only recorded if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attention_checks: Option<AttentionRule>,
     /// Pages read before the first trial.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instructions: Vec<Section>,
+    /// How large a CSS pixel is, and how far away the eyes are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
     /// Trials for practice; their answers are marked `training`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training: Option<Training>,
@@ -91,6 +108,9 @@ pub struct Study {
     pub debriefing: Vec<Section>,
     /// Avatars, captures, segments, methods and the clips made of them.
     pub stimuli: Stimuli,
+    /// Where answers go when the pages are hosted without the server.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_hosting: Option<StaticHosting>,
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<Hypothesis>,

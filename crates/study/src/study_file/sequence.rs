@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use super::{FactorValue, LocalText, Question};
+use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
 use crate::tagged::{self, tagged_by_type};
 
 /// A part of the study that a sequence names.
@@ -49,6 +49,9 @@ pub struct TrialsComponent {
     /// Beside each clip, in step with it: another clip of the same segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beside: Option<Beside>,
+    /// How long its answers may take, from the end of the first whole play.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
@@ -113,6 +116,9 @@ pub struct Questionnaire {
     pub text: Option<LocalText>,
     /// The questions.
     pub questions: Vec<Question>,
+    /// How long the page may stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// A page to read.
@@ -123,6 +129,9 @@ pub struct PageComponent {
     pub heading: LocalText,
     /// Text; an empty line parts paragraphs.
     pub text: LocalText,
+    /// How long the page may stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// A rest.
@@ -149,6 +158,19 @@ pub struct Training {
     /// A line above the clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instruction: Option<LocalText>,
+    /// Whether each practice clip is followed by a page that says which answers were right. Right
+    /// is what the question's `truth` says of the clip, or `answers`.
+    #[serde(default)]
+    pub feedback: bool,
+    /// Right answers that no factor of the clip gives: clip -> question -> answer.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub answers: StatedAnswers,
+    /// How many clips must be answered right before the study goes on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub criterion: Option<Criterion>,
+    /// How long its answers may take, from the end of the first whole play.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// Components, or further sequences, in an order.

@@ -303,11 +303,18 @@ pub struct Look {
     /// Height in CSS pixels.
     #[serde(default = "size")]
     pub height: u32,
+    /// Width on the screen in millimetres, by the section `calibration`. Whoever left the
+    /// calibration out sees the clip at the size in pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_mm: Option<f64>,
+    /// Height on the screen in millimetres; given together with the width.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_mm: Option<f64>,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { background: grey(), width: size(), height: size() }
+        Self { background: grey(), width: size(), height: size(), width_mm: None, height_mm: None }
     }
 }
 

@@ -8,7 +8,7 @@ use mimique_study::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_study::wire::{Event, Receipt, SessionStarted};
-use mimique_study::{Client, PlayLog, Study, config_hash};
+use mimique_study::{Client, Display, PlayLog, Study, config_hash};
 use serde_json::{Value, json};
 
 /// The text of a study of the repository.
@@ -46,6 +46,8 @@ pub struct Page {
     pub now_ms: f64,
     pub played: Vec<String>,
     pub completed: Option<u64>,
+    /// What the browser says of itself.
+    pub display: Display,
 }
 
 impl Page {
@@ -60,6 +62,7 @@ impl Page {
             now_ms: 1_790_000_000_000.0,
             played: Vec::new(),
             completed: None,
+            display: display(),
         };
         page.send(Input::Opened(client()));
         page
@@ -105,6 +108,9 @@ impl Page {
                 self.completed = Some(events);
                 self.send(Input::ReceiptArrived(receipt(events)));
             }
+            Effect::MeasureDevice => self.send(Input::Measured(self.display.clone())),
+            Effect::RequestFullscreen => self.send(Input::Fullscreen(true)),
+            Effect::LeaveFullscreen => self.send(Input::Fullscreen(false)),
             Effect::Withdraw => self.send(Input::WithdrawalConfirmed),
             _ => {}
         }
@@ -136,6 +142,20 @@ impl Page {
                 }
                 self.send(Input::Next);
             }
+            View::Device(device) => {
+                let fine = device.button.can_submit;
+                self.send(if fine { Input::Next } else { Input::GiveUp });
+            }
+            View::Calibration(calibration) => {
+                if calibration.card.is_some_and(|card| !card.set) {
+                    self.send(Input::CardWidth { px: 428.0, device_pixel_ratio: 2.0 });
+                }
+                if calibration.distance.is_some_and(|distance| distance.value.is_none()) {
+                    self.send(Input::Distance(Some(60.0)));
+                }
+                self.send(Input::Next);
+            }
+            View::Feedback(_) => self.send(Input::Next),
             View::Trial(trial) => match trial.phase {
                 Phase::Ready => self.send(Input::Play),
                 Phase::Answering => {
@@ -170,7 +190,8 @@ pub fn first_answer(_: &str, kind: &QuestionKindView) -> Value {
         QuestionKindView::MultipleChoice { options, .. } => json!([options[0].value]),
         QuestionKindView::Likert { points, .. } => json!(points[0].0),
         QuestionKindView::Slider { minimum, .. } => json!(minimum),
-        QuestionKindView::Number { minimum, .. } => json!(minimum.unwrap_or(1.0)),
+        // An adult.
+        QuestionKindView::Number { minimum, .. } => json!(minimum.unwrap_or(18.0).max(18.0)),
         QuestionKindView::Text { .. } => json!("text"),
         QuestionKindView::Matrix { rows, options } => {
             let row = |each: &mimique_study::flow::ChoiceView| {
@@ -188,6 +209,17 @@ pub fn first_answer(_: &str, kind: &QuestionKindView) -> Value {
 
 pub fn client() -> Client {
     Client { viewport: [1280, 720], device_pixel_ratio: 2.0, about: BTreeMap::new() }
+}
+
+pub fn display() -> Display {
+    Display {
+        viewport: [1280, 720],
+        device_pixel_ratio: 2.0,
+        refresh_hz: Some(59.9),
+        backend: Some("webgl2".into()),
+        desktop: true,
+        fullscreen: true,
+    }
 }
 
 pub fn whole_play(onset_ms: f64) -> PlayLog {

@@ -5,6 +5,7 @@ use mimique_study::flow::View;
 
 use super::message::AnotherPerson;
 use crate::session::Session;
+use crate::{bridge, site};
 
 /// Thanks, completion code, receipt, withdrawal code.
 #[component]
@@ -13,11 +14,31 @@ pub fn EndPage() -> impl IntoView {
         return ().into_any();
     };
     let end = *end;
+    let words = untrack(|| Session::here().words());
+    let (text, file) = match site::ending() {
+        None => (end.text, None),
+        // Without a server nothing has arrived unless it was posted.
+        Some((posted, offered, email)) => {
+            let mut text = if posted || end.outcome != "completed" { end.text } else { Vec::new() };
+            text.extend((!posted).then(|| words.kept_here(&email)));
+            (text, offered.then(|| words.download))
+        }
+    };
+    let give = move |_| {
+        if let Some((name, text, _)) = site::file() {
+            bridge::download(&name, &text);
+        }
+    };
     view! {
-        <main class="page" data-view="end">
+        <main class="page" data-view="end" data-outcome=end.outcome>
             <div class="card">
                 <h1 tabindex="-1">{end.heading}</h1>
-                <p>{end.text}</p>
+                {text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}
+                {file.map(|label| view! {
+                    <div class="actions">
+                        <button type="button" class="primary" data-action="download" on:click=give>{label}</button>
+                    </div>
+                })}
                 {end.completion_code.map(|(label, code)| view! {
                     <h2>{label}</h2>
                     <p><span class="code-block" data-code="completion">{code}</span></p>

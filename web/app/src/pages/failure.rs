@@ -33,9 +33,7 @@ pub fn TroublePage(trouble: Trouble, retry: impl Fn() + 'static) -> impl IntoVie
     let (heading, detail) = match trouble {
         Trouble::NoStudy => (words.no_study, String::new()),
         Trouble::Unreachable(reason) => (words.unreachable, reason),
-        Trouble::Refused(refusal) => {
-            (words.cannot_begin, format!("{} {}", refusal.message, refusal.remedy))
-        }
+        Trouble::Refused(refusal) => (words.cannot_begin, words.refused(&refusal)),
         Trouble::Unreadable(reason) => (words.cannot_run, reason),
         Trouble::OtherTab(_) => (words.other_tab, words.other_tab_text.to_owned()),
     };

@@ -22,6 +22,9 @@ pub fn Header() -> impl IntoView {
                 view,
                 View::Questions { .. }
                     | View::Page { .. }
+                    | View::Device(_)
+                    | View::Calibration(_)
+                    | View::Feedback(_)
                     | View::Trial(_)
                     | View::ReceiptPending { .. }
             )
@@ -40,6 +43,8 @@ pub fn Header() -> impl IntoView {
         }
     };
     let connection = session.connection;
+    let state = session.engine().state;
+    let timed_out = Memo::new(move |_| state.with(|state| state.live.timed_out));
     view! {
         <header class="site-header narrow">
             <span class="title">{title}</span>
@@ -50,6 +55,9 @@ pub fn Header() -> impl IntoView {
             </Show>
         </header>
         <div class="site-notices" role="status">
+            <Show when=move || timed_out.get()>
+                <p class="notice">{move || session.words().time_over()}</p>
+            </Show>
             <Show when=move || connection.with(|connection| connection.offline)>
                 <p class="notice warn">{move || session.words().offline}</p>
             </Show>
@@ -57,7 +65,7 @@ pub fn Header() -> impl IntoView {
                 <p class="notice warn">{move || session.words().not_kept}</p>
             </Show>
             {move || connection.with(|connection| connection.refused.clone()).map(|refusal| view! {
-                <p class="notice bad">{refusal.message}" "{refusal.remedy}</p>
+                <p class="notice bad">{session.words().refused(&refusal)}</p>
             })}
         </div>
         <dialog node_ref=dialog class="card" aria-labelledby="withdraw-question">

@@ -1,8 +1,12 @@
 //! The frame of every page, and which page stands in it.
 
+mod calibration;
+mod clock;
 mod consent;
+mod device;
 mod end;
 pub mod failure;
+mod feedback;
 mod header;
 mod message;
 mod questions;
@@ -22,6 +26,9 @@ enum Shape {
     Consent,
     Questions(String),
     Page(String),
+    Device,
+    Calibration,
+    Feedback(String),
     /// The canvas stays from one trial to the next.
     Trial,
     ReceiptPending,
@@ -36,6 +43,9 @@ impl Shape {
             View::Consent { .. } => Self::Consent,
             View::Questions { step, .. } => Self::Questions(step.clone()),
             View::Page { step, .. } => Self::Page(step.clone()),
+            View::Device(_) => Self::Device,
+            View::Calibration(_) => Self::Calibration,
+            View::Feedback(feedback) => Self::Feedback(feedback.step.clone()),
             View::Trial(_) => Self::Trial,
             View::ReceiptPending { .. } => Self::ReceiptPending,
             View::End(_) => Self::End,
@@ -51,6 +61,9 @@ pub fn step_of(view: &View) -> Option<&str> {
         View::Consent { step, .. } | View::Questions { step, .. } | View::Page { step, .. } => {
             Some(step)
         }
+        View::Device(gate) => Some(&gate.step),
+        View::Calibration(shown) => Some(&shown.step),
+        View::Feedback(feedback) => Some(&feedback.step),
         View::Trial(trial) => Some(&trial.step),
         _ => None,
     }
@@ -93,6 +106,9 @@ pub fn Pages() -> impl IntoView {
             Shape::Consent => view! { <consent::ConsentPage/> }.into_any(),
             Shape::Questions(_) => view! { <questions::QuestionsPage/> }.into_any(),
             Shape::Page(_) => view! { <read::ReadPage/> }.into_any(),
+            Shape::Device => view! { <device::DevicePage/> }.into_any(),
+            Shape::Calibration => view! { <calibration::CalibrationPage/> }.into_any(),
+            Shape::Feedback(_) => view! { <feedback::FeedbackPage/> }.into_any(),
             Shape::Trial => view! { <trial::TrialPage/> }.into_any(),
             Shape::ReceiptPending => view! { <message::ReceiptPendingPage/> }.into_any(),
             Shape::End => view! { <end::EndPage/> }.into_any(),

@@ -4,6 +4,7 @@ use leptos::prelude::*;
 use mimique_study::flow::{Input, QuestionView, View};
 
 use super::ProgressLine;
+use super::clock::Clock;
 use crate::controls::QuestionField;
 use crate::focus;
 use crate::session::Session;
@@ -28,9 +29,16 @@ pub fn QuestionsPage() -> impl IntoView {
             _ => String::new(),
         })
     };
+    let clock = Memo::new(move |_| {
+        session.view.with(|view| match view {
+            View::Questions { clock, .. } => clock.clone(),
+            _ => None,
+        })
+    });
     view! {
         <main class="page" data-view="questions" data-step=step>
             <ProgressLine done=progress.done total=progress.total/>
+            <Clock clock/>
             <form class="card" novalidate
                 on:submit=move |event| {
                     event.prevent_default();

@@ -4,6 +4,7 @@ use leptos::prelude::*;
 use mimique_study::flow::{Input, View};
 
 use super::ProgressLine;
+use super::clock::Clock;
 use crate::session::Session;
 
 /// A page to read.
@@ -20,9 +21,16 @@ pub fn ReadPage() -> impl IntoView {
         })
     });
     let hint = move || button.get().and_then(|button| button.hint);
+    let clock = Memo::new(move |_| {
+        session.view.with(|view| match view {
+            View::Page { clock, .. } => clock.clone(),
+            _ => None,
+        })
+    });
     view! {
         <main class="page" data-view="page" data-step=step>
             <ProgressLine done=progress.done total=progress.total/>
+            <Clock clock/>
             <div class="card">
                 <h1 tabindex="-1">{heading}</h1>
                 {text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}

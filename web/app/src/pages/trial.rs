@@ -5,6 +5,7 @@ use leptos::prelude::*;
 use mimique_study::flow::{BesideView, Input, Phase, TrialView, View};
 
 use super::ProgressLine;
+use super::clock::Clock;
 use super::questions::QuestionList;
 use crate::session::Session;
 use crate::{bridge, focus};
@@ -56,7 +57,14 @@ pub fn TrialPage() -> impl IntoView {
     });
 
     let look = session.engine().plan.study.stimuli.look.clone();
-    let (width, height) = (look.width, look.height);
+    // In millimetres, the size follows the zoom of the page.
+    let size = Memo::new(move |_| {
+        let size = trial.with(|trial| trial.size);
+        let now = window().device_pixel_ratio();
+        let scale = size.device_pixel_ratio.filter(|_| now > 0.0).map_or(1.0, |then| then / now);
+        (size.width * scale, size.height * scale)
+    });
+    let clock = Memo::new(move |_| trial.with(|trial| trial.clock.clone()));
     let look = serde_json::to_string(&look).unwrap_or_default();
     let canvas = NodeRef::<Canvas>::new();
     let beside_look = look.clone();
@@ -90,8 +98,8 @@ pub fn TrialPage() -> impl IntoView {
                 <h1 tabindex="-1">{heading}</h1>
                 {move || trial.with(|trial| trial.instruction.clone()).map(|text| view! { <p>{text}</p> })}
                 <div class="stage-frame" class:pair=move || companion.get().is_some()
-                    style=("--stage-width", format!("{width}px"))
-                    style=("--stage-aspect", format!("{width} / {height}"))>
+                    style=("--stage-width", move || format!("{:.2}px", size.get().0))
+                    style=("--stage-aspect", move || format!("{:.2} / {:.2}", size.get().0, size.get().1))>
                     <figure>
                         <div class="stage">
                             <canvas node_ref=canvas role="img" aria-label=heading></canvas>
@@ -126,6 +134,7 @@ pub fn TrialPage() -> impl IntoView {
                     </div>
                 </Show>
             </div>
+            <Clock clock/>
             <Show when=move || seen.get().1>
                 <form class="card" novalidate
                     on:submit=move |event| {

@@ -1,5 +1,8 @@
 //! The words of the pages that no study file writes: buttons, messages, in English and French.
 
+mod gate;
+mod refusals;
+
 use crate::answer::AnswerProblem;
 
 /// Every fixed text of the pages in one language.
@@ -123,6 +126,8 @@ pub struct Words {
     pub both_alike: &'static str,
     /// Button: another person takes part in the same browser.
     pub another_person: &'static str,
+    /// Button: the answers as a file, where there is no server.
+    pub download: &'static str,
 }
 
 /// English.
@@ -186,6 +191,7 @@ const ENGLISH: Words = Words {
     right_one: "The right one (or lower one)",
     both_alike: "No difference",
     another_person: "Start again for another person",
+    download: "Download my answers",
 };
 
 /// French.
@@ -249,6 +255,7 @@ const FRENCH: Words = Words {
     right_one: "Celui de droite (ou du bas)",
     both_alike: "Aucune différence",
     another_person: "Recommencer pour une autre personne",
+    download: "Télécharger mes réponses",
 };
 
 /// Languages whose fixed texts are complete.
@@ -265,6 +272,18 @@ impl Words {
         match self.language {
             "fr" => format!("Extrait {number} sur {of}"),
             _ => format!("Clip {number} of {of}"),
+        }
+    }
+
+    /// The answers are in this browser alone.
+    pub fn kept_here(&self, email: &str) -> String {
+        match self.language {
+            "fr" => format!(
+                "Vos réponses sont gardées dans ce navigateur seulement. Téléchargez-les et envoyez le fichier au responsable de l’étude : {email}."
+            ),
+            _ => format!(
+                "Your answers are kept in this browser only. Please download them and send the file to the investigator: {email}."
+            ),
         }
     }
 

@@ -1,0 +1,206 @@
+//! `mimique export-site`: a study as plain files that any web host can serve, without the server.
+//!
+//! ```text
+//! DIR/index.html            the participant's page
+//! DIR/site.json             the study, its clips, its codes
+//! DIR/assets/{hash}/...     modules, scripts, styles
+//! DIR/packs/{sha256}        stimuli
+//! ```
+//!
+//! Answers stay in the participant's browser, are posted to the study's own address at the end, or
+//! downloaded (`staticHosting` of the study file); `mimique import` turns the files into an export.
+//! What no server keeps secret is no secret: the completion codes lie in `site.json`.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use mimique_server::{Assets, HostedStudy, Stage};
+use mimique_study::Severity;
+use serde_json::{Map, json};
+
+use crate::check::check_file;
+use crate::serve::prepare_study;
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Study file
+    study: PathBuf,
+    /// Folder to write; it must not be there, or be empty
+    #[arg(long)]
+    out: PathBuf,
+    /// Folder where prepared stimuli are kept between runs
+    #[arg(long, default_value = "mimique-data/packs")]
+    packs: PathBuf,
+    /// Folder of the pages, instead of those inside the binary
+    #[arg(long)]
+    web_dir: Option<PathBuf>,
+    /// Mark the answers as those of a pilot
+    #[arg(long)]
+    pilot: bool,
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let assets = match &args.web_dir {
+        Some(folder) => Assets::from_folder(folder)?,
+        None => Assets::embedded()?,
+    };
+    let place = || args.out.display().to_string();
+    let taken = std::fs::read_dir(&args.out).is_ok_and(|mut entries| entries.next().is_some());
+    anyhow::ensure!(
+        !taken,
+        "{}: there is something in this folder; choose another by --out",
+        place()
+    );
+    let report = check_file(&args.study)?;
+    let mut problems = Vec::new();
+    for issue in &report.issues {
+        let at = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
+        let text = format!("{}: {at}: {}; {}", args.study.display(), issue.message, issue.hint);
+        match issue.severity {
+            Severity::Error => problems.push(text),
+            Severity::Warning => eprintln!("warning: {text}"),
+        }
+    }
+    anyhow::ensure!(problems.is_empty(), "{}", problems.join("\nerror: "));
+    let Some(checked) = report.study else { anyhow::bail!("{}: no study", args.study.display()) };
+    let clips = prepare_study(&args.study, checked.study(), &args.packs)
+        .map_err(|problem| anyhow::anyhow!(problem))?;
+    let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
+    let hosted = HostedStudy::new(checked.value().clone(), clips, stage)?;
+
+    // Written beside and moved into place: a site is whole or absent.
+    let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let parent = parent.unwrap_or(Path::new("."));
+    std::fs::create_dir_all(parent).with_context(|| parent.display().to_string())?;
+    let beside = parent.join(format!(".mimique-site.{}.part", std::process::id()));
+    let written =
+        write(&beside, &assets, checked.study(), &hosted, stage, &args.packs).and_then(|size| {
+            // An empty folder gives way.
+            let _ = std::fs::remove_dir(&args.out);
+            std::fs::rename(&beside, &args.out).with_context(place)?;
+            Ok(size)
+        });
+    if written.is_err() {
+        let _ = std::fs::remove_dir_all(&beside);
+    }
+    let (files, bytes) = written?;
+
+    let study = checked.study();
+    let hosting = study.static_hosting.clone().unwrap_or_default();
+    let way = match (&hosting.post, hosting.download) {
+        (Some(address), true) => format!("posted to {address}, and downloaded by the participant"),
+        (Some(address), false) => format!("posted to {address}"),
+        (None, _) => "downloaded by the participant, who must send you the file".to_owned(),
+    };
+    let mut out = std::io::stdout().lock();
+    if json {
+        let line = json!({
+            "study": study.id, "config_hash": checked.config_hash(), "out": place(),
+            "files": files, "bytes": bytes, "post": hosting.post, "download": hosting.download,
+        });
+        writeln!(out, "{line}")?;
+        return Ok(());
+    }
+    writeln!(out, "{}: {files} files, {:.1} MB", place(), bytes as f64 / 1e6)?;
+    writeln!(out, "  put the folder on any web host (https) and open its index.html there")?;
+    writeln!(out, "  answers are kept in the browser, at the end {way}")?;
+    writeln!(out, "  read them with: mimique import {} FILES", args.study.display())?;
+    writeln!(
+        out,
+        "  without the server a completion code does not prove that answers were stored:"
+    )?;
+    writeln!(out, "  it lies in site.json, and nothing counts participants or stops repeats")?;
+    Ok(())
+}
+
+/// Writes the site; returns the number of files and bytes.
+fn write(
+    folder: &Path,
+    assets: &Assets,
+    study: &mimique_study::Study,
+    hosted: &HostedStudy,
+    stage: Stage,
+    packs: &Path,
+) -> anyhow::Result<(usize, u64)> {
+    let mut written = (0, 0);
+    let mut put = |name: &str, bytes: &[u8]| -> anyhow::Result<()> {
+        let path = folder.join(name);
+        let place = || path.display().to_string();
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).with_context(place)?;
+        }
+        std::fs::write(&path, bytes).with_context(place)?;
+        written = (written.0 + 1, written.1 + bytes.len() as u64);
+        Ok(())
+    };
+    let prefix = format!("assets/{}", assets.hash());
+    for (name, bytes) in assets.files() {
+        // Pages of the server, and what only they need.
+        let servers = name.ends_with(".html")
+            || ["preview.", "researcher."].iter().any(|start| name.starts_with(start));
+        if !servers {
+            put(&format!("{prefix}/{name}"), bytes)?;
+        }
+    }
+    let bundle = hosted.bundle();
+    let mut hashes: Vec<&str> = bundle.clips.values().flat_map(|clip| clip.packs()).collect();
+    hashes.sort_unstable();
+    hashes.dedup();
+    for hash in hashes {
+        let path = packs.join(hash);
+        let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
+        put(&format!("packs/{hash}"), &bytes)?;
+    }
+    let recruitment = &study.recruitment;
+    let codes: Map<String, serde_json::Value> = ["completed", "screened_out", "failed_checks"]
+        .into_iter()
+        .filter_map(|status| Some((status.to_owned(), recruitment.code_for(status)?.into())))
+        .collect();
+    let hosting = study.static_hosting.clone().unwrap_or_default();
+    let site = json!({
+        "bundle": bundle,
+        "stage": stage.word(),
+        "seed": study.seed,
+        "codes": codes,
+        "redirect": recruitment.redirect,
+        "hosting": hosting,
+        "email": study.contact.as_ref().map_or("", |contact| &contact.investigator.email),
+    });
+    put("site.json", serde_json::to_string(&site)?.as_bytes())?;
+    let language = study.default_language();
+    let post = hosting.post.as_deref().map_or_else(String::new, origin);
+    let values = [
+        ("assets", prefix.as_str()),
+        ("lang", language),
+        ("title", study.study_metadata.title.in_language(language)),
+        ("study", &study.id),
+        ("post", &post),
+    ];
+    let page = assets
+        .page("site.html", &values)
+        .context("site.html is not among the pages; run `cargo xtask web` and build again")?;
+    put("index.html", page.as_bytes())?;
+    Ok(written)
+}
+
+/// Scheme and host of an address, as a content security policy wants them.
+fn origin(address: &str) -> String {
+    let (scheme, rest) = address.split_once("://").unwrap_or(("https", address));
+    let host = rest.split(['/', '?', '#', '{']).next().unwrap_or_default();
+    format!("{scheme}://{host}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::origin;
+
+    #[test]
+    fn the_policy_names_scheme_and_host_alone() {
+        assert_eq!(origin("https://example.org/a/{session}?x=1"), "https://example.org");
+        assert_eq!(origin("http://127.0.0.1:99/"), "http://127.0.0.1:99");
+        assert_eq!(origin("https://example.org"), "https://example.org");
+    }
+}

@@ -1,0 +1,35 @@
+// What everybody needs of a page: axe against WCAG 2.2 AA, one main heading, nothing sideways.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+
+/** What axe finds on the page as it stands. */
+export async function violations(page) {
+  // Not by a script element: the pages allow none but their own.
+  await page.evaluate(axe);
+  return page.evaluate(async (tags) => {
+    const { violations } = await window.axe.run(document, { runOnly: { type: "tag", values: tags } });
+    return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
+  }, standards);
+}
+
+/** A function that looks at the page as it stands, keeps a picture of it, and names it in `seen`. */
+export function looker(page, folder, zoom = 1) {
+  const seen = [];
+  const look = async (name) => {
+    seen.push(name);
+    if (zoom !== 1) await page.evaluate((factor) => (document.documentElement.style.fontSize = `${factor * 100}%`), zoom);
+    await page.screenshot({ path: join(folder, `${seen.length}-${name}.png`), fullPage: true });
+    assert.deepEqual(await violations(page), [], `${name}: axe`);
+    const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px`);
+    const headings = await page.locator("h1").count();
+    assert.equal(headings, 1, `${name}: one main heading`);
+  };
+  return { seen, look };
+}

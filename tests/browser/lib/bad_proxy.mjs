@@ -1,0 +1,74 @@
+// A network that drops, delays, doubles and reorders what goes to the server's /api, by a drawn fate
+// each request; everything else goes through.
+
+import { createServer, request } from "node:http";
+
+/** `{url, counts, calm(), close()}`; `seed` decides every fate, `calm` ends the storm. */
+export async function badProxy(target, seed) {
+  const { hostname, port } = new URL(target);
+  const counts = { lost: 0, unanswered: 0, late: 0, doubled: 0, held: 0, whole: 0 };
+  let state = seed >>> 0 || 1;
+  let stormy = true;
+  // xorshift32 (Marsaglia 2003).
+  const below = (n) => {
+    state ^= state << 13;
+    state ^= state >>> 17;
+    state ^= state << 5;
+    state >>>= 0;
+    return state % n;
+  };
+  const forward = (method, path, headers, body) =>
+    new Promise((resolve, reject) => {
+      const out = request({ hostname, port, method, path, headers: { ...headers, host: `${hostname}:${port}` } }, (answer) => {
+        const parts = [];
+        answer.on("data", (part) => parts.push(part));
+        answer.on("end", () => resolve({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(parts) }));
+        answer.on("error", reject);
+      });
+      out.on("error", reject);
+      out.end(body);
+    });
+  const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+  const proxy = createServer((incoming, answer) => {
+    const parts = [];
+    incoming.on("data", (part) => parts.push(part));
+    incoming.on("end", async () => {
+      const { method, url, headers } = incoming;
+      const body = Buffer.concat(parts);
+      const drop = () => answer.destroy();
+      try {
+        const fate = stormy && url.startsWith("/api/sessions/") ? below(10) : 9;
+        if (fate === 0) return (counts.lost++, drop());
+        if (fate === 1) {
+          // It arrives, and nobody hears of it.
+          counts.unanswered++;
+          await forward(method, url, headers, body);
+          return drop();
+        }
+        if (fate === 2) (counts.late++, await pause(200 + below(1500)));
+        if (fate === 3) (counts.doubled++, await forward(method, url, headers, body));
+        if (fate === 4) {
+          // The page hears that it failed; the request arrives after those that follow.
+          counts.held++;
+          setTimeout(() => forward(method, url, headers, body).catch(() => {}), 1000 + below(3000));
+          return drop();
+        }
+        counts.whole++;
+        const given = await forward(method, url, headers, body);
+        if (answer.destroyed) return;
+        answer.writeHead(given.status, given.headers);
+        answer.end(given.body);
+      } catch {
+        drop();
+      }
+    });
+    incoming.on("error", () => {});
+  });
+  await new Promise((done) => proxy.listen(0, "127.0.0.1", done));
+  return {
+    url: `http://127.0.0.1:${proxy.address().port}`,
+    counts,
+    calm: () => (stormy = false),
+    close: () => (proxy.closeAllConnections(), new Promise((done) => proxy.close(done))),
+  };
+}

@@ -1,0 +1,71 @@
+// How fast the participant's page is over 10 Mbit/s (40 ms round trip) on a processor slowed down four
+// times: time until the first page, the first question and the first clip. Not a test: figures.
+//
+//   node page_speed.mjs [times]
+
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { open } from "./lib/browser.mjs";
+import { serve } from "./lib/server.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+
+const times = Number(process.argv[2] ?? 5);
+const rating = { id: "rating", type: "likert", prompt: text("How strong?"), numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
+const study = small("speed", {
+  demographics: { questions: [{ ...rating, id: "mood" }] },
+  questions: [rating],
+  components: { faces: trials(["joy2.lsts"], ["rating"]) },
+  sequence: { order: "fixed", components: ["faces"] },
+  stimuli: stimuli({ head: { builtin: { seed: 1 } } }, { lsts: { method: "lsts", alpha: 0.3 } }, [["head", "lsts"]]),
+});
+const folder = mkdtempSync(join(tmpdir(), "mimique-speed-"));
+writeFileSync(join(folder, "speed.json"), JSON.stringify(study));
+const server = await serve([join(folder, "speed.json")]);
+
+// When each view or phase first stood there; and a participant who presses at once.
+const watcher = () => {
+  window.__seen = {};
+  new MutationObserver(() => {
+    const main = document.querySelector("main[data-view]");
+    if (!main) return;
+    for (const name of [main.dataset.view, main.dataset.phase && `trial ${main.dataset.phase}`]) {
+      if (name && !(name in window.__seen)) requestAnimationFrame(() => (window.__seen[name] ??= performance.now()));
+    }
+    if (main.dataset.view === "consent") main.querySelector("[data-action=agree]")?.click();
+    if (main.dataset.view === "questions" && "questions" in window.__seen) {
+      main.querySelector("input:not(:checked)")?.click();
+      if (main.querySelector("input:checked")) main.querySelector("[data-action=next]")?.click();
+    }
+    if (main.dataset.phase === "ready") main.querySelector("[data-action=play]:not([aria-disabled])")?.click();
+  }).observe(document, { subtree: true, childList: true, attributes: true });
+};
+
+const results = [];
+for (const backend of ["webgl2", "webgpu"]) {
+  for (let time = 0; time < times; time++) {
+    const browser = await open(backend, { viewport: { width: 1280, height: 800 } });
+    try {
+      const { page, context } = browser;
+      const cdp = await context.newCDPSession(page);
+      await cdp.send("Network.enable");
+      await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 40, downloadThroughput: 1.25e6, uploadThroughput: 1.25e6 });
+      await cdp.send("Emulation.setCPUThrottlingRate", { rate: 4 });
+      await page.addInitScript(watcher);
+      await page.goto(`${server.url}/s/speed/?backend=${backend}`);
+      await page.waitForFunction(() => window.__seen?.["trial playing"] !== undefined, undefined, { timeout: 120_000 });
+      const seen = await page.evaluate(() => window.__seen);
+      const bytes = await page.evaluate(() => performance.getEntriesByType("resource").reduce((sum, each) => sum + each.transferSize, 0));
+      results.push({ backend, consent: seen.consent, question: seen.questions, ready: seen["trial ready"], playing: seen["trial playing"], bytes });
+    } finally {
+      await browser.close();
+    }
+  }
+}
+await server.stop();
+const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+for (const backend of ["webgl2", "webgpu"]) {
+  const of = (key) => results.filter((each) => each.backend === backend).map((each) => each[key]);
+  const seconds = (key) => (median(of(key)) / 1000).toFixed(2);
+  console.log(`${backend}: first page ${seconds("consent")} s, first question ${seconds("question")} s, clip ready ${seconds("ready")} s, clip playing ${seconds("playing")} s; ${(median(of("bytes")) / 1e6).toFixed(2)} MB (median of ${times})`);
+}

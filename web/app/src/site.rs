@@ -1,0 +1,239 @@
+//! The server's part where there is none: pages hosted as files (`mimique export-site`).
+//!
+//! Answers stay in this browser's IndexedDB; at the end they are posted to the study's address, where
+//! it names one, and offered as a file. Everything else of the page goes on as if a server answered.
+
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+
+use gloo::net::http::Request;
+use leptos::prelude::document;
+use mimique_study::responses::session_status;
+use mimique_study::wire::{
+    Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
+};
+use mimique_study::{SessionFile, StaticHosting};
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::json;
+use crate::memory::{ANSWERS, Identity, Keep};
+use crate::network::{self, Bundle, Failure};
+
+/// What `mimique export-site` writes beside the pages.
+#[derive(Debug, Clone, Deserialize)]
+struct SiteFile {
+    bundle: Bundle,
+    stage: String,
+    seed: u64,
+    /// Status of the export -> code.
+    codes: BTreeMap<String, String>,
+    redirect: Option<String>,
+    hosting: StaticHosting,
+    email: String,
+}
+
+/// The answers of this page, and where they are kept.
+struct Answers {
+    keep: Keep,
+    started: SessionStarted,
+    events: BTreeMap<u64, Event>,
+}
+
+thread_local! {
+    static ADDRESS: OnceCell<Option<(String, String)>> = const { OnceCell::new() };
+    static FILE: RefCell<Option<SiteFile>> = const { RefCell::new(None) };
+    static ANSWERS_HERE: RefCell<Option<Answers>> = const { RefCell::new(None) };
+}
+
+/// Where the site's file is, and the study's name; `None` where a server answers.
+fn address() -> Option<(String, String)> {
+    ADDRESS.with(|address| {
+        let read = || {
+            let meta = document().query_selector("meta[name=mimique-site]").ok()??;
+            Some((meta.get_attribute("content")?, meta.get_attribute("data-study")?))
+        };
+        address.get_or_init(read).clone()
+    })
+}
+
+/// Whether the pages are hosted without the server.
+pub fn is_site() -> bool {
+    address().is_some()
+}
+
+/// The study's name.
+pub fn study() -> Option<String> {
+    address().map(|(_, study)| study)
+}
+
+/// The study, from the site's file.
+pub async fn bundle() -> Result<Bundle, Failure> {
+    let (file, _) = address().ok_or_else(|| Failure::Unreachable("no site".to_owned()))?;
+    let site: SiteFile = network::read(Request::get(&file).send().await).await?;
+    let bundle = site.bundle.clone();
+    FILE.with(|here| *here.borrow_mut() = Some(site));
+    Ok(bundle)
+}
+
+/// Begins a session: everything comes of the nonce, so that a repeated start is the same session.
+pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
+    let nonce = &body.nonce;
+    let number = nonce.get(..12).and_then(|digits| u64::from_str_radix(digits, 16).ok());
+    let (Some(number), Some(name), Some(code)) = (number, nonce.get(12..20), nonce.get(20..))
+    else {
+        return Err(Failure::Unreachable("no nonce".to_owned()));
+    };
+    let started = FILE.with(|file| {
+        file.borrow().as_ref().map(|site| {
+            json!({
+                "session": nonce,
+                "participant_id": format!("s{name}"),
+                // Nobody counts here: the place in squares and subsets is drawn.
+                "participant": number,
+                "seed": site.seed,
+                "stage": site.stage,
+                "config_hash": site.bundle.config_hash,
+                "withdrawal_code": code,
+            })
+        })
+    });
+    let started = started.unwrap_or_default();
+    json::read(&started.to_string()).map_err(|error| Failure::Unreachable(error.to_string()))
+}
+
+/// The session that this browser is in the middle of.
+pub async fn resume(session: &str) -> Result<Resume, Failure> {
+    let started = study()
+        .and_then(|study| Identity::load(&study)?.started)
+        .filter(|started| started.session == session)
+        .ok_or_else(|| refused("unknown-session"))?;
+    let answers = open(started.clone()).await;
+    Ok(Resume { started, events: answers })
+}
+
+/// Opens the answers of a session; returns its events.
+async fn open(started: SessionStarted) -> Vec<Event> {
+    let keep = Keep::open_store(ANSWERS, &started.session).await;
+    let events = keep.all().await.unwrap_or_default();
+    let map = events.iter().map(|event| (event.sequence, event.clone())).collect();
+    ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(Answers { keep, started, events: map }));
+    events
+}
+
+/// Keeps events; an event that is there already stays as it is.
+pub async fn append(events: Vec<Event>) -> Result<Acknowledged, Failure> {
+    if ANSWERS_HERE.with(|here| here.borrow().is_none()) {
+        let started = study().and_then(|study| Identity::load(&study)?.started);
+        open(started.ok_or_else(|| refused("unknown-session"))?).await;
+    }
+    // Taken out while it is awaited: there is one sender only.
+    let Some(mut answers) = ANSWERS_HERE.with(|here| here.borrow_mut().take()) else {
+        return Err(Failure::Unreachable("busy".to_owned()));
+    };
+    let mut failed = None;
+    for event in events {
+        if answers.events.contains_key(&event.sequence) {
+            continue;
+        }
+        if let Err(error) = answers.keep.put(&event).await {
+            failed = Some(error.to_string());
+            break;
+        }
+        answers.events.insert(event.sequence, event);
+    }
+    let stored = (0..).take_while(|n| answers.events.contains_key(n)).count() as u64;
+    ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(answers));
+    match failed {
+        Some(reason) => Err(Failure::Unreachable(reason)),
+        None => Ok(Acknowledged { stored, gaps: Vec::new() }),
+    }
+}
+
+/// The whole session as a file: its name, its text and its hash.
+pub fn file() -> Option<(String, String, String)> {
+    let study = study()?;
+    ANSWERS_HERE.with(|here| {
+        let here = here.borrow();
+        let answers = here.as_ref()?;
+        let name = format!("{study}_{}.jsonl", answers.started.participant_id);
+        let events = answers.events.values().cloned().collect();
+        let file = SessionFile { study, started: answers.started.clone(), events };
+        let (text, hash) = file.write();
+        Some((name, text, hash))
+    })
+}
+
+/// Posts the session where the study says; then the code.
+pub async fn complete(events: u64) -> Result<Receipt, Failure> {
+    let (_, text, hash) = file().ok_or_else(|| refused("missing-events"))?;
+    let (status, stored, session) = ANSWERS_HERE.with(|here| {
+        here.borrow().as_ref().map_or(("active", 0, String::new()), |answers| {
+            let all: Vec<Event> = answers.events.values().cloned().collect();
+            (session_status(&all), all.len() as u64, answers.started.participant_id.clone())
+        })
+    });
+    if stored < events {
+        return Err(refused("missing-events"));
+    }
+    let site = FILE.with(|file| file.borrow().clone());
+    let Some(site) = site else { return Err(Failure::Unreachable("no site".to_owned())) };
+    if let Some(address) = &site.hosting.post {
+        let address = address.replace("{session}", &session);
+        // Plain text asks the other site for nothing but to be taken.
+        let request = Request::post(&address)
+            .header("content-type", "text/plain;charset=UTF-8")
+            .body(text)
+            .map_err(|error| Failure::Unreachable(error.to_string()))?;
+        let answer =
+            request.send().await.map_err(|error| Failure::Unreachable(error.to_string()))?;
+        if !answer.ok() {
+            return Err(Failure::Unreachable(format!("HTTP {}", answer.status())));
+        }
+    }
+    let code = site.codes.get(status).cloned();
+    let redirect = site.redirect.map(|address| filled(&address, code.as_deref()));
+    Ok(Receipt { receipt: hash, stored, completion_code: code, redirect })
+}
+
+/// Forgets the answers.
+pub async fn withdraw() -> Result<Withdrawn, Failure> {
+    let answers = ANSWERS_HERE.with(|here| here.borrow_mut().take());
+    let Some(answers) = answers else { return Ok(Withdrawn { deleted: 0 }) };
+    let deleted = answers.events.len() as u64;
+    match answers.keep.clear().await {
+        Ok(()) => Ok(Withdrawn { deleted }),
+        Err(error) => Err(Failure::Unreachable(error.to_string())),
+    }
+}
+
+/// What the last page says: whether the answers were posted, whether they are offered as a file, and
+/// whom to send it to. `None` where a server answers.
+pub fn ending() -> Option<(bool, bool, String)> {
+    FILE.with(|file| {
+        let file = file.borrow();
+        let site = file.as_ref()?;
+        Some((site.hosting.post.is_some(), site.hosting.download, site.email.clone()))
+    })
+}
+
+/// The way back, with the code and the arrival's parameters.
+fn filled(address: &str, code: Option<&str>) -> String {
+    let query = leptos::prelude::window().location().search().unwrap_or_default();
+    let arrival = crate::address::Address::of_study("", &query);
+    let encoded = |text: &str| String::from(js_sys::encode_uri_component(text));
+    let mut filled = address.replace("{code}", &encoded(code.unwrap_or_default()));
+    for (name, value) in &arrival.recruitment {
+        filled = filled.replace(&format!("{{{name}}}"), &encoded(value));
+    }
+    filled
+}
+
+fn refused(code: &str) -> Failure {
+    Failure::Refused(Refusal {
+        code: code.to_owned(),
+        message: code.to_owned(),
+        remedy: String::new(),
+        sequences: Vec::new(),
+    })
+}
