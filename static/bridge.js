@@ -5,6 +5,7 @@ let host;
 const stageHost = () => (host ??= import("./stage-host.js"));
 
 const held = new Set();
+const media = {};
 
 /** Takes a lock for as long as this page lives. False if another tab of this browser has it. */
 export async function holdSession(name) {
@@ -42,6 +43,14 @@ export async function measure() {
     desktop: matchMedia("(any-pointer: fine)").matches && matchMedia("(any-hover: hover)").matches,
     fullscreen: document.fullscreenEnabled ?? false,
   });
+}
+
+/** The address of a picture or a signed video of the study, fetched by its hash. */
+export async function mediaAddress(hash, type) {
+  const { fetchPack } = await import("./stage-packs.js");
+  const bytes = await fetchPack(hash);
+  media[hash] ??= URL.createObjectURL(new Blob([bytes], { type }));
+  return media[hash];
 }
 
 /** Gives the participant a text as a file. */

@@ -118,7 +118,7 @@ class Panel {
     this.#look = look;
     this.#select = made("select", { id: `clip-${letter.toLowerCase()}`, ariaLabel: `Clip ${letter}` });
     if (optional) this.#select.append(new Option("Nothing beside it", ""));
-    for (const id of Object.keys(clips)) this.#select.append(new Option(id, id));
+    for (const id of Object.keys(clips).filter((id) => !id.startsWith("media:"))) this.#select.append(new Option(id, id));
     this.#canvas = made("canvas", { role: "img" });
     this.#veil = made("div", { className: "veil", hidden: true });
     const frame = made("div", { className: "stage" }, this.#canvas, this.#veil);

@@ -6,6 +6,10 @@ const STALL_MS = 15_000;
 
 const packs = new Map();
 
+// Another place that holds the packs by their hash, if this server names one. What comes from there
+// is checked like everything else; where it fails, the server itself is asked.
+const elsewhere = document.querySelector('meta[name="mimique-packs"]')?.content || "/packs";
+
 /// The bytes of a pack. `onBytes(count)` is told of every piece that arrives; a try that fails
 /// takes its pieces back with a negative count.
 export function fetchPack(hash, onBytes = () => {}) {
@@ -32,20 +36,21 @@ async function fetchWithRetry(hash, tell) {
     if (attempt > 0) await pause(Math.min(500 * 2 ** (attempt - 1), 8000));
     let received = 0;
     try {
-      return await fetchOnce(hash, (count) => {
+      const place = attempt % 2 === 0 ? elsewhere : "/packs";
+      return await fetchOnce(`${place}/${hash}`, hash, (count) => {
         received += count;
         tell(count);
       });
     } catch (error) {
       tell(-received);
       reason = error;
-      if (error.final) break;
+      if (error.final && elsewhere === "/packs") break;
     }
   }
   throw new Error(`pack ${hash.slice(0, 12)}: ${reason.message}; check the connection and try again`);
 }
 
-async function fetchOnce(hash, tell) {
+async function fetchOnce(address, hash, tell) {
   const stalled = new AbortController();
   let timer = setTimeout(() => stalled.abort(), STALL_MS);
   const alive = () => {
@@ -53,7 +58,7 @@ async function fetchOnce(hash, tell) {
     timer = setTimeout(() => stalled.abort(), STALL_MS);
   };
   try {
-    const answer = await fetch(`/packs/${hash}`, { signal: stalled.signal });
+    const answer = await fetch(address, { signal: stalled.signal });
     if (!answer.ok) {
       const refused = new Error(`the server answered ${answer.status}`);
       refused.final = answer.status >= 400 && answer.status < 500 && answer.status !== 408 && answer.status !== 429;

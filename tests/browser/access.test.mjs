@@ -8,6 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { film } from "./lib/film.mjs";
 import { go, leave, phase, place } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
@@ -17,7 +18,7 @@ const unable = skip(!executable && "Chromium not found");
 const option = (value) => ({ value, label: text(value) });
 const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
 const questions = [
-  { id: "single", type: "singleChoice", prompt: text("One of these?"), options: ["a", "b", "c"].map(option) },
+  { id: "single", type: "singleChoice", prompt: text("One of these?"), video: { en: "sign.webm", fr: "sign.webm" }, options: [{ ...option("a"), video: { en: "sign.webm", fr: "sign.webm" } }, { ...option("b"), image: "dot.svg" }, option("c")] },
   { id: "several", type: "multipleChoice", prompt: text("Any of these?"), help: text("Choose some."), options: ["a", "b", "c"].map(option) },
   { id: "likert", type: "likert", prompt: text("How strong?"), ...scale },
   { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") },
@@ -61,8 +62,10 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
   test(`access: every page, ${scheme}, ${width} px, text ${zoom * 100} %`, { skip: unable, timeout: 300_000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
     writeFileSync(join(folder, "access.json"), JSON.stringify(study));
-    const server = await serve([join(folder, "access.json")]);
+    writeFileSync(join(folder, "dot.svg"), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="15"/></svg>');
     const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
+    writeFileSync(join(folder, "sign.webm"), await film(browser.page));
+    const server = await serve([join(folder, "access.json")]);
     const shots = screenshotFolder(`access-${scheme}-${width}-${zoom}`);
     const { page } = browser;
     const { seen, look } = looker(page, shots, zoom);
@@ -76,6 +79,8 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
           continue;
         }
         if (here.view === "questions") {
+          // What is signed can be played, and a picture is there.
+          await page.waitForFunction(() => [...document.querySelectorAll("video")].length === 2 && [...document.querySelectorAll("video")].every((video) => video.readyState >= 1 && video.videoWidth > 0) && document.querySelector(".choice img").naturalWidth > 0, undefined, { timeout: 30_000 });
           // Without answers the page says what is missing, and stays.
           await go(page, "mouse");
           await page.waitForSelector(".problem");

@@ -5,6 +5,7 @@ import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { film } from "./lib/film.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
@@ -31,32 +32,6 @@ const study = (film) => small("pairs", {
     [["head", "box"], ["actor", "real"], ["person", "real"]],
   ),
 });
-
-/** A film of two seconds, made by the browser itself: a disc that crosses the picture. */
-async function film(page) {
-  const base64 = await page.evaluate(async () => {
-    const canvas = Object.assign(document.createElement("canvas"), { width: 240, height: 240 });
-    const brush = canvas.getContext("2d");
-    const recorder = new MediaRecorder(canvas.captureStream(25), { mimeType: "video/webm;codecs=vp8" });
-    const pieces = [];
-    recorder.ondataavailable = ({ data }) => pieces.push(data);
-    recorder.start();
-    const began = performance.now();
-    for (let ms = 0; ms < 2000; ms = performance.now() - began) {
-      brush.fillStyle = "#6b4f3a";
-      brush.fillRect(0, 0, 240, 240);
-      brush.fillStyle = "#f2d0a0";
-      brush.beginPath();
-      brush.arc(20 + ms / 10, 120, 18, 0, 7);
-      brush.fill();
-      await new Promise((done) => setTimeout(done, 40));
-    }
-    await new Promise((done) => ((recorder.onstop = done), recorder.stop()));
-    const bytes = new Uint8Array(await new Blob(pieces).arrayBuffer());
-    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
-  });
-  return Buffer.from(base64, "base64");
-}
 
 for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
   test(`pairs: in step beside a head and beside a film, ${backend}`, { skip: unable, timeout: 400_000 }, async () => {

@@ -70,6 +70,12 @@ pub const CHROMIUM: Package = Package {
     sign: Sign::Program("chromium"),
     elsewhere: "Chromium on the path as `chromium`",
 };
+/// The other browser, for a smoke run.
+pub const FIREFOX: Package = Package {
+    name: "firefox-esr",
+    sign: Sign::Program("firefox-esr"),
+    elsewhere: "Firefox, its path in MIMIQUE_FIREFOX",
+};
 /// A Vulkan driver on the processor, for pictures without a graphics card.
 pub const LAVAPIPE: Package = Package {
     name: "mesa-vulkan-drivers",

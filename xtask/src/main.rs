@@ -8,6 +8,7 @@
 mod bench;
 mod bench_plot;
 mod bench_stats;
+mod budget;
 mod demo;
 mod install;
 mod process;

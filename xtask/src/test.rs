@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use crate::install::{self, Found, Package};
 use crate::process::{cargo, locked, root, say};
 use crate::tally::Tally;
-use crate::{demo, web};
+use crate::{budget, demo, web};
 
 /// Options of `cargo xtask test`.
 #[derive(clap::Args)]
@@ -49,6 +49,10 @@ pub fn run(args: &Args) -> Result<()> {
     match web::all() {
         Ok(()) => tally.passed += 1,
         Err(error) => tally.fail(format!("pages: {error:#}")),
+    }
+    match budget::check() {
+        Ok(()) => tally.passed += 1,
+        Err(error) => tally.fail(format!("size of the pages: {error:#}")),
     }
 
     let mut lint = cargo();
@@ -108,6 +112,7 @@ pub fn run(args: &Args) -> Result<()> {
 /// Pages are used as a person uses them: by click, by keyboard, on both graphics back ends.
 fn browser(tally: &mut Tally) -> Result<()> {
     need(&install::CHROMIUM);
+    need(&install::FIREFOX);
     let folder = root().join("tests/browser");
     if let Found::No(remedy) = install::npm(&folder)? {
         say(&format!("browser tests cannot run: {remedy}"));

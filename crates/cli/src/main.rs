@@ -10,6 +10,7 @@ mod export;
 mod export_site;
 mod import;
 mod inspect;
+mod media;
 mod order;
 mod output;
 mod power;

@@ -11,7 +11,7 @@ use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Stage, Storage};
 use mimique_stimulus::{Places, prepare};
-use mimique_study::Severity;
+use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;
 
@@ -99,7 +99,10 @@ async fn host(
     let addresses: Vec<_> = studies
         .iter()
         .map(|study| {
-            let (id, clips) = (study.id().to_owned(), study.bundle().clips.len());
+            let (id, clips) = (
+                study.id().to_owned(),
+                study.bundle().clips.keys().filter(|id| !id.starts_with(MEDIA_PREFIX)).count(),
+            );
             (id, study.config_hash().to_owned(), clips)
         })
         .collect();
@@ -203,7 +206,10 @@ pub fn prepare_study(
     for (pointer, text) in &prepared.warnings {
         eprintln!("warning: {}: {pointer}: {text}", file.display());
     }
-    Ok(prepared.clips)
+    let mut clips = prepared.clips;
+    crate::media::add(study, file, packs, &mut clips)
+        .map_err(|error| format!("{}: {error}", file.display()))?;
+    Ok(clips)
 }
 
 /// An address that a browser on this machine can open.

@@ -351,3 +351,89 @@ fn replays_are_limited_and_counted() {
     }
     assert_eq!(page.stored.last().unwrap().body["replays"], 3);
 }
+
+/// Where the browser has no locks: two tabs of one session. What the second one stored stands; the
+/// first one's event under the same number is refused by the server, and after its reload both see
+/// the same session.
+#[test]
+fn a_second_tab_takes_the_session_over_and_the_first_follows_after_a_reload() {
+    let text = study_text("demo.json");
+    let mut first = Page::open(&text, 16);
+    first.send(Input::Consent);
+    first.send(Input::Answer { question: "age".into(), value: json!(41) });
+    let mut second = Page::open(&text, 16);
+    second.stored.clone_from(&first.stored);
+    second.reload();
+    second.send(Input::Answer { question: "age".into(), value: json!(42) });
+    // The first tab goes on from what it knows: the same number, another event.
+    let number = first.stored.len();
+    first.send(Input::Answer { question: "age".into(), value: json!(43) });
+    assert_eq!(first.stored[number].sequence, second.stored[number].sequence);
+    assert_ne!(first.stored[number].body, second.stored[number].body, "a conflict for the server");
+    // First write wins; the first tab is told so (409) and loads anew what is stored.
+    first.stored.clone_from(&second.stored);
+    first.reload();
+    let View::Questions { questions, .. } = first.view() else { panic!() };
+    assert_eq!(questions[0].value, Some(json!(42)));
+    first.finish();
+    assert!(matches!(first.view(), View::End(_)));
+    assert_eq!(first.state.record.unexpected, 0);
+}
+
+/// A slow network: answers are on their way for minutes, and come acknowledged in one piece.
+#[test]
+fn a_slow_network_holds_nobody_up_and_the_code_back() {
+    let (study, session) = started(&study_text("demo.json"), 17);
+    let plan = Plan::new(study, session).unwrap();
+    let mut now_ms = 1_790_000_000_000.0;
+    let mut state = State::new(&plan, "en");
+    let mut made = 0_u64;
+    let mut inputs = std::collections::VecDeque::from([Input::Opened(client())]);
+    for _ in 0..10_000 {
+        let input = inputs.pop_front().unwrap_or_else(|| {
+            now_ms += 5_000.0;
+            match mimique_study::flow::view(&plan, &state) {
+                View::Consent { .. } => Input::Consent,
+                View::Questions { questions, .. } => questions
+                    .iter()
+                    .find(|question| question.value.is_none())
+                    .map_or(Input::Next, |question| Input::Answer {
+                        question: question.id.clone(),
+                        value: first_answer(&question.id, &question.kind),
+                    }),
+                View::Trial(trial) if trial.phase == Phase::Answering => trial
+                    .questions
+                    .iter()
+                    .find(|question| question.value.is_none())
+                    .map_or(Input::Next, |question| Input::Answer {
+                        question: question.id.clone(),
+                        value: first_answer(&question.id, &question.kind),
+                    }),
+                View::Trial(trial) if trial.can_play => Input::Play,
+                View::Page { .. } => Input::Next,
+                _ => Input::Tick,
+            }
+        });
+        let (next, effects) = update(&plan, state, input, now_ms);
+        state = next;
+        for effect in effects {
+            match effect {
+                Effect::Store(_) => made += 1,
+                Effect::PrepareClips(clips) => {
+                    inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
+                }
+                Effect::PlayClip { .. } => inputs.push_back(Input::Played(whole_play(now_ms))),
+                Effect::Complete { .. } => panic!("nothing has arrived"),
+                _ => {}
+            }
+        }
+        if state.record.status == Status::Finished {
+            break;
+        }
+    }
+    assert_eq!(state.record.status, Status::Finished, "the participant got to the end");
+    let shown = mimique_study::flow::view(&plan, &state);
+    assert!(matches!(shown, View::ReceiptPending { stored: 0, .. }), "{shown:?}");
+    let (_, effects) = update(&plan, state, Input::Acknowledged { stored: made }, now_ms);
+    assert_eq!(effects, vec![Effect::Complete { events: made }]);
+}

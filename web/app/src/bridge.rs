@@ -53,6 +53,10 @@ extern "C" {
     #[wasm_bindgen(js_name = isFullscreen)]
     pub fn is_fullscreen() -> bool;
 
+    /// The address of a picture or a signed video of the study, fetched by its hash.
+    #[wasm_bindgen(js_name = mediaAddress, catch)]
+    pub async fn media_address(hash: &str, media_type: &str) -> Result<JsValue, JsValue>;
+
     /// Gives the participant a text as a file.
     #[wasm_bindgen(js_name = download)]
     pub fn download(name: &str, text: &str);

@@ -142,6 +142,11 @@ impl Engine {
         });
     }
 
+    /// Where a clip, a picture or a signed video comes from.
+    pub fn source(&self, id: &str) -> Option<Value> {
+        self.clips.get(id).cloned()
+    }
+
     /// The window has another size: the device gate looks again.
     pub fn resized(self: &Rc<Self>) {
         let known = self.state.with_untracked(|state| {

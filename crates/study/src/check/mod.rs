@@ -9,6 +9,7 @@ mod conduct;
 mod general;
 mod hypotheses;
 mod issue;
+mod media;
 mod nearest;
 mod questions;
 mod schema;
@@ -112,6 +113,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     general::examine(&subject, &texts, issues);
     questions::examine(&subject, issues);
     conduct::examine(&subject, issues);
+    media::examine(&subject, lookup, issues);
     stimuli::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);

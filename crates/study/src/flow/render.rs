@@ -274,7 +274,7 @@ impl Screen<'_> {
             id: question.id.clone(),
             prompt: self.text(&question.prompt),
             help: question.help.as_ref().map(|help| self.text(help)),
-            video: question.video.clone(),
+            video: question.video.as_ref().map(|path| self.text(path)),
             required: question.required,
             optional_mark: (!question.required).then(|| self.words.optional.to_owned()),
             kind: self.kind(question),
@@ -371,7 +371,7 @@ impl Screen<'_> {
             value: choice.value.clone(),
             label: self.text(&choice.label),
             image: choice.image.clone(),
-            video: choice.video.clone(),
+            video: choice.video.as_ref().map(|path| self.text(path)),
         }
     }
 }

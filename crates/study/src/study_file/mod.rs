@@ -10,6 +10,7 @@ mod conduct;
 mod general;
 mod hypotheses;
 mod local_text;
+mod media;
 mod method;
 mod paths;
 mod questions;
@@ -32,6 +33,7 @@ pub use general::{
 };
 pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
 pub use local_text::LocalText;
+pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining, method_keys};
 pub use paths::{PathError, resolve_path};
 pub use questions::{

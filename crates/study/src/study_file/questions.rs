@@ -24,9 +24,9 @@ pub struct Question {
     /// A line below the prompt.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub help: Option<LocalText>,
-    /// A signed video of the prompt.
+    /// A signed video of the prompt: an MP4 or WebM file, or one a language.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub video: Option<String>,
+    pub video: Option<LocalText>,
     /// Whether the page waits for an answer.
     #[serde(default = "yes")]
     pub required: bool,
@@ -54,7 +54,7 @@ struct Common {
     #[serde(default)]
     help: Option<LocalText>,
     #[serde(default)]
-    video: Option<String>,
+    video: Option<LocalText>,
     #[serde(default = "yes")]
     required: bool,
     #[serde(default)]
@@ -172,12 +172,12 @@ pub struct Choice {
     pub value: String,
     /// What the participant reads.
     pub label: LocalText,
-    /// A picture shown with the label.
+    /// A picture shown with the label: a PNG, JPEG, WebP or SVG file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<String>,
-    /// A signed video shown with the label.
+    /// A signed video shown with the label: an MP4 or WebM file, or one a language.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub video: Option<String>,
+    pub video: Option<LocalText>,
 }
 
 /// In which order options are shown.

@@ -5,6 +5,7 @@ use mimique_study::flow::ChoiceView;
 use serde_json::{Value, json};
 
 use super::Answering;
+use super::media::{Picture, SignedVideo};
 
 /// Radio buttons.
 pub fn single(answering: Answering, options: Vec<ChoiceView>) -> impl IntoView {
@@ -12,13 +13,17 @@ pub fn single(answering: Answering, options: Vec<ChoiceView>) -> impl IntoView {
     let tiles = options.into_iter().map(|option| {
         let (is, give) = (answering.clone(), answering.clone());
         let (wanted, value) = (option.value.clone(), option.value.clone());
+        let video = video_of(&option);
         view! {
+            <div class="option-box">
+            {video}
             <label class="choice">
                 <input type="radio" name=name.clone() value=option.value.clone()
                     prop:checked=move || is.is(&wanted)
                     on:change=move |_| give.give(json!(value))/>
                 <OptionLabel option/>
             </label>
+            </div>
         }
     });
     view! { <div class="choices">{tiles.collect_view()}</div> }
@@ -45,7 +50,10 @@ pub fn multiple(
                 maximum.is_some_and(|most| now.len() >= most) && !now.contains(&own)
             }
         };
+        let video = video_of(&option);
         view! {
+            <div class="option-box">
+            {video}
             <label class="choice">
                 <input type="checkbox" value=option.value.clone() prop:checked=chosen disabled=full
                     on:change=move |event| {
@@ -59,6 +67,7 @@ pub fn multiple(
                     }/>
                 <OptionLabel option/>
             </label>
+            </div>
         }
     });
     view! { <div class="choices">{tiles.collect_view()}</div> }
@@ -70,14 +79,17 @@ fn chosen(answering: &Answering) -> Vec<String> {
     values.iter().filter_map(|each| each.as_str().map(str::to_owned)).collect()
 }
 
-/// What an option shows: picture or signed video, and its label.
+/// What an option shows: its picture and its label.
 #[component]
 pub fn OptionLabel(option: ChoiceView) -> impl IntoView {
     view! {
-        {option.image.map(|address| view! { <img src=address alt=""/> })}
-        {option.video.map(|address| view! {
-            <video src=address controls playsinline preload="metadata"></video>
-        })}
+        {option.image.map(|path| view! { <Picture path/> })}
         <span>{option.label}</span>
     }
+}
+
+/// The signed video of an option stands above its tile: its controls are not the tile's.
+pub fn video_of(option: &ChoiceView) -> Option<AnyView> {
+    let (path, label) = (option.video.clone()?, option.label.clone());
+    Some(view! { <SignedVideo path label class="option"/> }.into_any())
 }

@@ -5,7 +5,7 @@ use mimique_study::flow::ChoiceView;
 use serde_json::{Map, Value, json};
 
 use super::Answering;
-use super::choice::OptionLabel;
+use super::choice::{OptionLabel, video_of};
 
 /// The rows, each a group of radio buttons. The answer is an object from row to option.
 pub fn matrix(
@@ -20,7 +20,10 @@ pub fn matrix(
                 let (read, give) = (answering.clone(), answering.clone());
                 let (of_row, wanted) = (row.value.clone(), option.value.clone());
                 let (in_row, value) = (row.value.clone(), option.value.clone());
+                let video = video_of(&option);
                 view! {
+                    <div class="option-box">
+                    {video}
                     <label class="choice">
                         <input type="radio" name=name.clone() value=option.value.clone()
                             prop:checked=move || {
@@ -35,12 +38,14 @@ pub fn matrix(
                             }/>
                         <OptionLabel option/>
                     </label>
+                    </div>
                 }
             });
             let tiles = tiles.collect_view();
             view! {
                 <div class="matrix-row" role="radiogroup" aria-label=row.label.clone()>
                     <p class="row-label">{row.label.clone()}</p>
+                    {video_of(&row)}
                     <div class="choices">{tiles}</div>
                 </div>
             }

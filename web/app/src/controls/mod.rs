@@ -5,6 +5,7 @@ mod field;
 mod grid;
 mod likert;
 mod matrix;
+mod media;
 mod ranking;
 mod slider;
 
@@ -126,6 +127,7 @@ pub fn QuestionField(
         // A kind of a later version of the study file: the page is older than the server.
         _ => view! { <p class="notice bad">"?"</p> }.into_any(),
     };
+    let prompt = first.prompt.clone();
     view! {
         <fieldset class="question" data-question=first.id role=radios.then_some("radiogroup")
             aria-required=required aria-describedby=move || of.described()
@@ -134,8 +136,8 @@ pub fn QuestionField(
                 {first.prompt}
                 {first.optional_mark.map(|mark| view! { <span class="optional">" ("{mark}")"</span> })}
             </legend>
-            {first.video.map(|address| view! {
-                <video class="prompt" src=address controls playsinline preload="metadata"></video>
+            {first.video.map(|path| view! {
+                <media::SignedVideo path label=prompt class="prompt"/>
             })}
             {first.help.map(|text| view! { <p class="hint" id=help_id.clone()>{text}</p> })}
             {control}

@@ -6,7 +6,7 @@ use mimique_study::flow::ChoiceView;
 use serde_json::json;
 
 use super::Answering;
-use super::choice::OptionLabel;
+use super::choice::{OptionLabel, video_of};
 
 /// The list, from first to last.
 pub fn ranking(answering: Answering, options: Vec<ChoiceView>) -> impl IntoView {
@@ -55,7 +55,10 @@ pub fn ranking(answering: Answering, options: Vec<ChoiceView>) -> impl IntoView 
         let (up, down, last) = (swap.clone(), swap.clone(), at + 1 == options.len());
         view! {
             <li class="row">
-                <span class="what">{move || option.get().map(|option| view! { <OptionLabel option/> })}</span>
+                <span class="what">{move || option.get().map(|option| view! {
+                    {video_of(&option)}
+                    <OptionLabel option/>
+                })}</span>
                 <button type="button" aria-label=move || name(words.move_up) disabled=at == 0
                     on:click=move |_| up(at, at.saturating_sub(1))>"\u{2191}"</button>
                 <button type="button" aria-label=move || name(words.move_down) disabled=last

@@ -19,8 +19,10 @@ pub fn EndPage() -> impl IntoView {
         None => (end.text, None),
         // Without a server nothing has arrived unless it was posted.
         Some((posted, offered, email)) => {
-            let mut text = if posted || end.outcome != "completed" { end.text } else { Vec::new() };
-            text.extend((!posted).then(|| words.kept_here(&email)));
+            let text = match end.outcome {
+                "completed" if !posted => vec![words.kept_here(&email)],
+                _ => end.text,
+            };
             (text, offered.then(|| words.download))
         }
     };

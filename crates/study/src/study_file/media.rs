@@ -1,0 +1,49 @@
+//! The pictures and signed videos that questions and their options show.
+
+use super::{LocalText, Question, QuestionKind, Study};
+
+/// What the key of such a file in [`crate::wire::Bundle::clips`] begins with: it is served like a film.
+pub const MEDIA_PREFIX: &str = "media:";
+
+/// The media type of a picture or a video, by the ending of its name; `None` for what browsers do not
+/// all show.
+pub fn media_type(path: &str) -> Option<&'static str> {
+    let (_, ending) = path.rsplit_once('.')?;
+    Some(match ending.to_ascii_lowercase().as_str() {
+        "mp4" | "m4v" => "video/mp4",
+        "webm" => "video/webm",
+        "png" => "image/png",
+        "jpg" | "jpeg" => "image/jpeg",
+        "webp" => "image/webp",
+        "svg" => "image/svg+xml",
+        _ => return None,
+    })
+}
+
+impl Study {
+    /// The paths of every picture and signed video of its questions, each once.
+    pub fn media(&self) -> Vec<&str> {
+        fn videos(text: &LocalText) -> Vec<&str> {
+            match text {
+                LocalText::Plain(path) => vec![path],
+                LocalText::Languages(paths) => paths.values().map(String::as_str).collect(),
+            }
+        }
+        let mut paths: Vec<&str> = Vec::new();
+        for question in self.all_questions() {
+            let Question { video, kind, .. } = question;
+            paths.extend(video.iter().flat_map(videos));
+            let rows = match kind {
+                QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
+                _ => &[],
+            };
+            for choice in kind.options().iter().chain(rows) {
+                paths.extend(choice.video.iter().flat_map(videos));
+                paths.extend(choice.image.as_deref());
+            }
+        }
+        paths.sort_unstable();
+        paths.dedup();
+        paths
+    }
+}

@@ -1,0 +1,89 @@
+//! How large the pages may be: a build that outgrows these fails `cargo xtask test`. Raise a budget
+//! only with a reason, and never silently; the targets are what it should come down to.
+
+use std::io::Write as _;
+
+use anyhow::{Context as _, Result, bail};
+
+use crate::process::say;
+use crate::web::dist;
+
+/// What is downloaded together.
+struct Budget {
+    name: &'static str,
+    files: &'static [&'static str],
+    /// Most kilobytes (1000 bytes), gzipped.
+    kilobytes: f64,
+    /// What the project aims at.
+    target: f64,
+}
+
+const BUDGETS: [Budget; 4] = [
+    Budget {
+        name: "the page with its first question",
+        files: &["index.html", "style.css", "boot.js", "bridge.js", "app.js", "app_bg.wasm"],
+        kilobytes: 545.0,
+        target: 150.0,
+    },
+    Budget {
+        name: "the solver and the scripts of the stage",
+        files: &[
+            "stage-host.js",
+            "stage-backend.js",
+            "stage-clips.js",
+            "stage-clock.js",
+            "stage-film.js",
+            "stage-packs.js",
+            "stage-playback.js",
+            "solver-worker.js",
+            "solver.js",
+            "solver_bg.wasm",
+        ],
+        kilobytes: 165.0,
+        target: 100.0,
+    },
+    Budget {
+        name: "the WebGPU canvas",
+        files: &["stage_webgpu.js", "stage_webgpu_bg.wasm"],
+        kilobytes: 140.0,
+        target: 50.0,
+    },
+    Budget {
+        name: "the WebGL2 canvas",
+        files: &["stage_webgl.js", "stage_webgl_bg.wasm"],
+        kilobytes: 920.0,
+        target: 750.0,
+    },
+];
+
+/// Weighs what was built; an error names every group that is too large.
+pub fn check() -> Result<()> {
+    let mut over = Vec::new();
+    for budget in &BUDGETS {
+        let mut bytes = 0;
+        for name in budget.files {
+            bytes += gzipped(name)?;
+        }
+        let kilobytes = bytes as f64 / 1000.0;
+        let line = format!(
+            "{}: {kilobytes:.0} KB gzipped (budget {:.0}, target {:.0})",
+            budget.name, budget.kilobytes, budget.target
+        );
+        say(&line);
+        if kilobytes > budget.kilobytes {
+            over.push(line);
+        }
+    }
+    if !over.is_empty() {
+        bail!("pages outgrow their budget; make them smaller: {}", over.join("; "));
+    }
+    Ok(())
+}
+
+fn gzipped(name: &str) -> Result<usize> {
+    let path = dist().join(name);
+    let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    gzip.write_all(&bytes)?;
+    Ok(gzip.finish()?.len())
+}
