@@ -319,7 +319,7 @@ fn a_million_orders_keep_their_constraints() {
             assert_eq!(different.len(), count * methods.len(), "each clip once");
         }
     }
-    println!("{drawn} orders of {design} designs, {impossible} without any; longest {longest:?}");
+    eprintln!("{drawn} orders of {design} designs, {impossible} without any; longest {longest:?}");
     assert!(drawn >= wanted && impossible < design, "{impossible} of {design}");
 }
 

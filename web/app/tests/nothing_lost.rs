@@ -363,6 +363,6 @@ fn ten_thousand_sessions_lose_nothing_and_double_nothing() {
         events += made;
         reloads += world.reloads;
     }
-    println!("{sessions} sessions, {events} events, {reloads} reloads: 0 lost, 0 doubled");
+    eprintln!("{sessions} sessions, {events} events, {reloads} reloads: 0 lost, 0 doubled");
     assert!(sessions < 100 || reloads > sessions as u32 / 10, "{reloads} reloads");
 }
