@@ -22,7 +22,7 @@ const BUDGETS: [Budget; 4] = [
     Budget {
         name: "the page with its first question",
         files: &["index.html", "style.css", "boot.js", "bridge.js", "app.js", "app_bg.wasm"],
-        kilobytes: 545.0,
+        kilobytes: 530.0,
         target: 150.0,
     },
     Budget {
@@ -39,19 +39,19 @@ const BUDGETS: [Budget; 4] = [
             "solver.js",
             "solver_bg.wasm",
         ],
-        kilobytes: 165.0,
+        kilobytes: 200.0,
         target: 100.0,
     },
     Budget {
         name: "the WebGPU canvas",
         files: &["stage_webgpu.js", "stage_webgpu_bg.wasm"],
-        kilobytes: 140.0,
+        kilobytes: 195.0,
         target: 50.0,
     },
     Budget {
         name: "the WebGL2 canvas",
         files: &["stage_webgl.js", "stage_webgl_bg.wasm"],
-        kilobytes: 920.0,
+        kilobytes: 985.0,
         target: 750.0,
     },
 ];

@@ -121,6 +121,10 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
         all.insert(event.sequence, event);
     }
     let all: Vec<Event> = all.into_values().collect();
+    // What the server has need not be kept: the answer that said so was never heard here.
+    let known: Vec<u64> =
+        unsent.iter().map(|event| event.sequence).filter(|number| *number < stored).collect();
+    let _ = keep.forget(&known).await;
 
     let plan = Plan::new(study, started).map_err(|error| Trouble::Unreadable(error.to_string()))?;
     let (state, input): (State, fn(Client) -> Input) = if all.is_empty() {

@@ -162,6 +162,7 @@ impl<'p> World<'p> {
         all.extend(self.server.stored.iter().map(|(n, event)| (*n, event.clone())));
         let stored = (0..).take_while(|n| self.server.stored.contains_key(n)).count() as u64;
         self.outbox = Outbox::new(stored);
+        self.kept.retain(|number, _| *number >= stored);
         self.kept.values().cloned().for_each(|event| self.outbox.push(event));
         let events: Vec<Event> = all.into_values().collect();
         if events.is_empty() {
