@@ -1,99 +1,12 @@
 // The preview of a study's stimuli: two clips side by side, played in step, scrubbed, slowed down.
 import { backend, openStage, prepareClip, preparedClip } from "./stage-host.js";
 import { refreshPeriod } from "./stage-clock.js";
+import { Player, made } from "./stage-player.js";
 
 const $ = (id) => document.getElementById(id);
 const study = document.body.dataset.study;
 
-const player = {
-  panels: [],
-  timeMs: 0,
-  playing: false,
-  speed: 1,
-  last: null,
-  drawn: 0,
-  since: null,
-  longest: 0,
-
-  durationMs() {
-    return Math.max(0, ...this.panels.map((panel) => panel.clip()?.duration_ms ?? 0));
-  },
-
-  frameMs() {
-    const rates = this.panels.map((panel) => panel.clip()?.rate_hz ?? 0);
-    return 1000 / Math.max(...rates, 1);
-  },
-
-  seek(timeMs) {
-    this.timeMs = Math.min(Math.max(timeMs, 0), this.durationMs());
-    this.draw();
-  },
-
-  draw() {
-    const drawn = this.panels.map((panel) => panel.draw(this.timeMs));
-    // A busy adapter takes the frame later; a play draws anew anyway.
-    if (!this.playing && drawn.includes(false)) requestAnimationFrame(() => this.playing || this.draw());
-    const duration = this.durationMs();
-    const scrub = $("scrub");
-    scrub.max = Math.max(1, Math.round(duration));
-    scrub.value = Math.round(this.timeMs);
-    const text = `${(this.timeMs / 1000).toFixed(2)} / ${(duration / 1000).toFixed(2)} s`;
-    $("clock").textContent = text;
-    scrub.setAttribute("aria-valuetext", text);
-  },
-
-  toggle() {
-    if (this.playing) return this.pause();
-    if (this.durationMs() === 0) return;
-    if (this.timeMs >= this.durationMs()) this.timeMs = 0;
-    this.playing = true;
-    this.last = null;
-    this.since = null;
-    $("play").textContent = "Pause";
-    requestAnimationFrame((now) => this.tick(now));
-  },
-
-  pause() {
-    this.playing = false;
-    $("play").textContent = "Play";
-  },
-
-  tick(now) {
-    if (!this.playing) return;
-    if (this.last !== null) this.timeMs += (now - this.last) * this.speed;
-    this.count(now);
-    this.last = now;
-    const duration = this.durationMs();
-    if (this.timeMs >= duration) {
-      if ($("loop").checked && duration > 0) this.timeMs %= duration;
-      else {
-        this.timeMs = duration;
-        this.draw();
-        return this.pause();
-      }
-    }
-    this.draw();
-    requestAnimationFrame((next) => this.tick(next));
-  },
-
-  // Frames a second and the longest frame, over each second.
-  count(now) {
-    if (this.since === null) {
-      [this.since, this.drawn, this.longest] = [now, this.framesDrawn(), 0];
-      return;
-    }
-    this.longest = Math.max(this.longest, now - this.last);
-    if (now - this.since < 1000) return;
-    const rate = (1000 * (this.framesDrawn() - this.drawn)) / (now - this.since);
-    $("rate").textContent = `${rate.toFixed(1)} frames/s, longest ${this.longest.toFixed(1)} ms`;
-    [this.since, this.drawn, this.longest] = [now, this.framesDrawn(), 0];
-  },
-
-  // Of the panel that drew most.
-  framesDrawn() {
-    return Math.max(...this.panels.map((panel) => panel.drawn));
-  },
-};
+const player = new Player();
 
 class Panel {
   #element;
@@ -231,60 +144,9 @@ function round(value) {
   return Number(value.toFixed(2));
 }
 
-function made(tag, properties, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(properties)) {
-    if (name in element) element[name] = value;
-    else element.setAttribute(name, value);
-  }
-  element.append(...children);
-  return element;
-}
-
 function problem(error) {
   $("problem").textContent = String(error.message ?? error);
   $("problem").hidden = false;
-}
-
-function cycle(select) {
-  select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
-  select.dispatchEvent(new Event("change"));
-}
-
-const KEYS = {
-  " ": () => player.toggle(),
-  ",": () => (player.pause(), player.seek(player.timeMs - player.frameMs())),
-  ".": () => (player.pause(), player.seek(player.timeMs + player.frameMs())),
-  l: () => ($("loop").checked = !$("loop").checked),
-  s: () => cycle($("speed")),
-  v: () => cycle($("view")),
-  a: () => player.panels[0]?.focus(),
-  b: () => player.panels[1]?.focus(),
-};
-
-function onKey(event) {
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const inControl = event.target.closest("select, button, input, a");
-  // A control keeps its own keys: typing chooses in a list, Space presses a button.
-  if (inControl?.matches("select") || (inControl && event.key === " ")) return;
-  const act = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!act) return;
-  event.preventDefault();
-  act();
-}
-
-function wire() {
-  $("play").addEventListener("click", () => player.toggle());
-  $("back").addEventListener("click", KEYS[","]);
-  $("forth").addEventListener("click", KEYS["."]);
-  $("speed").addEventListener("change", () => (player.speed = Number($("speed").value)));
-  $("view").addEventListener("change", () => {
-    for (const panel of player.panels) panel.turn();
-    player.draw();
-  });
-  $("scrub").addEventListener("input", () => (player.pause(), player.seek(Number($("scrub").value))));
-  addEventListener("keydown", onKey);
-  addEventListener("resize", () => player.playing || player.draw());
 }
 
 async function start() {
@@ -302,7 +164,9 @@ async function start() {
   player.panels = [...document.querySelectorAll(".preview-panel")].map(
     (element, i) => new Panel(element, clips, look, i > 0),
   );
-  wire();
+  player.onRate = (rate, longest) =>
+    ($("rate").textContent = `${rate.toFixed(1)} frames/s, longest ${longest.toFixed(1)} ms`);
+  player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
   refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
   // B: the same take solved by another method, where the study has one.
   const other = ids.find((id) => clips[id].take === clips[ids[0]].take && id !== ids[0]) ?? "";

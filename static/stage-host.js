@@ -1,12 +1,12 @@
 // Joins the canvas module and the solver's worker for the participant's page and the preview.
 // The contract is in ARCHITECTURE.md, "The host scripts".
 import { backend, loadModule } from "./stage-backend.js";
-import { prepareClip, preparedClip, weightsAt } from "./stage-clips.js";
+import { prepareClip, preparedClip, putClip, weightsAt } from "./stage-clips.js";
 import { refreshPeriod } from "./stage-clock.js";
 import { Film } from "./stage-film.js";
 import { Playback } from "./stage-playback.js";
 
-export { backend, prepareClip, preparedClip };
+export { backend, prepareClip, preparedClip, putClip };
 
 /// A stage on a canvas. `look`: {background: "#rrggbb", width, height (CSS pixels), variant:
 /// "stimulus" (or left out) | "reference"}; a clip's own look goes before the variant.
@@ -140,6 +140,15 @@ class Stage {
   /// Turns the camera: {yaw, pitch} in radians, {zoom} 1 for the standard portrait.
   setView(view) {
     this.#view = { ...this.#view, ...view };
+  }
+
+  /// The clip-from-world matrix (16 numbers, column by column) of the camera on a prepared clip.
+  camera(clipId) {
+    const clip = preparedClip(clipId);
+    this.#fit();
+    this.#load(clip);
+    const { yaw, pitch, zoom } = this.#view;
+    return this.#gpu.camera(clip.avatarHash, yaw, pitch, zoom);
   }
 
   /// Another backdrop or variant.

@@ -5,6 +5,7 @@
 //! | `app` | `web/app` | `web` | the participant's pages |
 //! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
+//! | `desk` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //!
 //! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
@@ -24,7 +25,7 @@ use crate::process::{cargo, locked, root, run as run_program, say, target};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (app, stage_webgpu, stage_webgl, solver); static files always
+    /// Build only these modules (app, stage_webgpu, stage_webgl, solver, desk); static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
     /// Leave out wasm-opt: a quicker build of larger files
@@ -46,7 +47,7 @@ struct Module {
 /// The flags of `.cargo/config.toml` for wasm32.
 const CONFIGURED_FLAGS: &str = "-Ctarget-feature=+simd128 --cfg=getrandom_backend=\"wasm_js\"";
 
-const MODULES: [Module; 4] = [
+const MODULES: [Module; 5] = [
     Module {
         name: "app",
         package: "mimique-app",
@@ -61,6 +62,15 @@ const MODULES: [Module; 4] = [
         name: "solver",
         package: "mimique-web-solver",
         library: "mimique_web_solver",
+        features: None,
+        profile: "web-solver",
+        opt_level: "-O3",
+        rustflags: None,
+    },
+    Module {
+        name: "desk",
+        package: "mimique-web-studio",
+        library: "mimique_web_studio",
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
@@ -95,7 +105,9 @@ pub fn dist() -> PathBuf {
 pub fn run(args: &Args) -> Result<()> {
     for name in &args.only {
         if !MODULES.iter().any(|m| m.name == name) {
-            bail!("no module is called {name}; there are: app, solver, stage_webgpu, stage_webgl");
+            bail!(
+                "no module is called {name}; there are: app, solver, desk, stage_webgpu, stage_webgl"
+            );
         }
     }
     build(|name| args.only.is_empty() || args.only.iter().any(|n| n == name), !args.no_opt)

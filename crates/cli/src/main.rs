@@ -14,6 +14,7 @@ mod media;
 mod order;
 mod output;
 mod power;
+mod preview;
 mod repair;
 mod segment;
 mod serve;
@@ -41,6 +42,8 @@ struct Cli {
 enum Command {
     /// Host a study: questionnaire, preview and researcher's pages
     Serve(serve::Args),
+    /// Open the studio: an avatar and a capture, the match, methods side by side, exports
+    Preview(preview::Args),
     /// List every problem of a study file
     Check(check::Args),
     /// Print the exact trial order that a participant gets
@@ -82,6 +85,7 @@ fn main() -> ExitCode {
     let json = cli.json;
     let outcome = match cli.command {
         Command::Serve(args) => serve::run(args, json),
+        Command::Preview(args) => preview::run(args, json),
         Command::Check(args) => check::run(args, json),
         Command::Order(args) => order::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),

@@ -6,6 +6,7 @@ mod driven;
 mod files;
 #[cfg(feature = "readers")]
 mod glb;
+mod glb_write;
 #[cfg(feature = "readers")]
 mod obj;
 pub mod pack;
@@ -27,6 +28,7 @@ pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape, Texture, Textur
 pub use driven::{Driven, DrivenError};
 #[cfg(feature = "readers")]
 pub use glb::read_gltf;
+pub use glb_write::{GlbWriteError, write_glb};
 #[cfg(feature = "readers")]
 pub use parts::find_eyeballs;
 #[cfg(feature = "readers")]

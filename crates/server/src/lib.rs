@@ -27,6 +27,7 @@ mod secret;
 mod serve;
 mod static_file;
 mod storage;
+mod studio;
 mod uploads;
 
 pub use accounts::Access;
@@ -41,6 +42,7 @@ pub use storage::{
     MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry, Role, SessionRecord, Status, Storage,
     StorageError, StudyVersion, UploadedStudy,
 };
+pub use studio::{StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
 
 /// The public name of a participant: `p0007`.
 pub fn participant_id(number: u64) -> String {

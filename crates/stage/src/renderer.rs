@@ -87,6 +87,13 @@ impl Renderer {
         Ok(head)
     }
 
+    /// The camera's clip-from-world matrix for a head, column by column: for what is drawn over the
+    /// picture, such as markers.
+    pub fn camera(&self, head: &Head, view: View) -> [f32; 16] {
+        let aspect = self.size[0] as f32 / self.size[1] as f32;
+        Camera::portrait(&head.landmarks, view, aspect).clip_from_world.to_cols_array()
+    }
+
     /// Changes the size of the pictures, pixels.
     pub fn resize(&mut self, size: [u32; 2]) {
         let size = size.map(|s| s.max(1));

@@ -35,6 +35,8 @@ mod solve_take;
 #[cfg(feature = "prepare")]
 mod split_shapes;
 #[cfg(feature = "prepare")]
+mod suggest_map;
+#[cfg(feature = "prepare")]
 mod surface_avatar;
 #[cfg(feature = "prepare")]
 mod take_adjustments;
@@ -81,6 +83,10 @@ pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
 #[cfg(feature = "prepare")]
 pub use split_shapes::{SplitError, split_shapes};
+#[cfg(feature = "prepare")]
+pub use suggest_map::{
+    MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,
+};
 #[cfg(feature = "prepare")]
 pub use surface_avatar::surface_avatar;
 pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};

@@ -180,6 +180,10 @@ pub struct SolvedCapture {
     pub surface: Option<SurfaceResponse>,
     /// How it went.
     pub report: SolveReport,
+    /// The face markers on the welded skin.
+    pub sites: Vec<MarkerSite>,
+    /// Where each marker asks the skin to go: frames x 3P, metres, NaN where it is lost.
+    pub displacements: Vec<f64>,
 }
 
 /// What a method is set up with.
@@ -328,7 +332,7 @@ pub fn solve_take(
     };
     let names = operators.parts().shape_names.clone();
     let table = WeightsTable::at_rate(names, solution.weights, joined.first_frame, joined.rate_hz);
-    Ok(SolvedCapture { table, surface, report })
+    Ok(SolvedCapture { table, surface, report, sites: joined.markers, displacements })
 }
 
 /// The face markers of a take, and how their displacements are read.

@@ -171,6 +171,22 @@ impl Canvas {
         Ok(true)
     }
 
+    /// The camera's clip-from-world matrix for the head under `key`, 16 numbers, column by column.
+    ///
+    /// # Errors
+    /// When there is no such head.
+    pub fn camera(&self, key: &str, yaw: f32, pitch: f32, zoom: f32) -> Result<Vec<f32>, JsError> {
+        let head = (self.heads.get(key))
+            .ok_or_else(|| JsError::new(&format!("avatar {key}: not loaded; load it first")))?;
+        Ok(self.renderer.camera(head, View { yaw, pitch, zoom }).to_vec())
+    }
+
+    /// Gives a head back.
+    #[wasm_bindgen(js_name = dropAvatar)]
+    pub fn drop_avatar(&mut self, key: &str) {
+        self.heads.remove(key);
+    }
+
     /// Changes the size in device pixels.
     pub fn resize(&mut self, width: u32, height: u32) {
         let (width, height) = (width.max(1), height.max(1));

@@ -44,6 +44,7 @@ pub fn router(app: App) -> Router {
         .route("/", get(pages::index))
         .route("/s/{study}", get(pages::participant_without_slash))
         .route("/s/{study}/", get(pages::participant))
+        .route("/studio", get(pages::studio))
         .route("/assets/{hash}/{*name}", get(statics::asset))
         .route("/packs/{hash}", get(statics::pack))
         .route("/api/studies", get(studies::list))
@@ -121,7 +122,7 @@ async fn time_limit(request: Request, next: Next) -> Response {
     }
 }
 
-async fn security_headers(request: Request, next: Next) -> Response {
+pub(crate) async fn security_headers(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     for (name, value) in [

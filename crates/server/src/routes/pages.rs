@@ -81,6 +81,15 @@ pub(super) async fn preview(
     from_template(&app, "preview.html", &study, &headers)
 }
 
+/// The studio: everything in it happens in the browser.
+pub(super) async fn studio(
+    State(app): State<App>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    may_look(&app, &headers).await?;
+    crate::studio::studio_page(&app.assets, &crate::studio::StudioFiles::new())
+}
+
 /// Lets researchers see what participants should not, or everybody where the server is told so.
 pub(super) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error> {
     if app.access.open_preview {

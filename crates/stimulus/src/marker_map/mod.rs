@@ -6,6 +6,7 @@
 mod csv;
 mod json;
 mod resolve;
+mod write;
 
 use std::collections::BTreeMap;
 use std::ops::Range;

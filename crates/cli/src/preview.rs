@@ -1,0 +1,84 @@
+//! `mimique preview`: the studio for one avatar and one capture, in the browser of this machine.
+
+use std::io::Write as _;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use mimique_server::{Assets, StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
+use serde_json::json;
+use tokio::net::TcpListener;
+
+use crate::serve::{reachable, stop_signal};
+
+/// Options.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Avatar: .glb, .gltf with its data inside, or an archive of OBJ poses; the built-in head if
+    /// not given
+    avatar: Option<PathBuf>,
+    /// Capture, or recorded weights: C3D, TRC, CSV, Live Link Face...
+    #[arg(long, value_name = "FILE")]
+    mocap: Option<PathBuf>,
+    /// Marker map; the studio suggests one if not given
+    #[arg(long, value_name = "FILE", requires = "mocap")]
+    markers: Option<PathBuf>,
+    /// Address and port to listen on
+    #[arg(long, default_value = "127.0.0.1:8090")]
+    listen: SocketAddr,
+    /// Folder of the pages, instead of those inside the binary
+    #[arg(long)]
+    web_dir: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    let assets = match &args.web_dir {
+        Some(folder) => Assets::from_folder(folder)?,
+        None => Assets::embedded()?,
+    };
+    let mut files = StudioFiles::new();
+    if let Some(avatar) = &args.avatar {
+        if avatar.is_dir() {
+            bail!("{}: a folder; pack its OBJ files as a .zip for the studio", avatar.display());
+        }
+        put(&mut files, StudioRole::Avatar, avatar)?;
+        let beside = avatar.with_extension("avatar.json");
+        if beside.is_file() {
+            put(&mut files, StudioRole::Settings, &beside)?;
+        }
+    }
+    for (role, file) in [(StudioRole::Take, &args.mocap), (StudioRole::Map, &args.markers)] {
+        if let Some(file) = file {
+            put(&mut files, role, file)?;
+        }
+    }
+    let runtime = tokio::runtime::Runtime::new().context("the server's threads")?;
+    runtime.block_on(async {
+        let listener = TcpListener::bind(args.listen).await.with_context(|| {
+            format!("{}: cannot listen there; choose another address by --listen", args.listen)
+        })?;
+        let address = format!("http://{}/studio", reachable(listener.local_addr()?));
+        {
+            let mut out = std::io::stdout().lock();
+            if json {
+                writeln!(out, "{}", json!({ "url": address }))?;
+            } else {
+                writeln!(out, "studio  {address}")?;
+                writeln!(out, "Nothing leaves the browser. Stop with Ctrl-C.")?;
+            }
+            out.flush()?;
+        }
+        serve_studio(studio_router(assets, files), listener, stop_signal()).await?;
+        Ok(())
+    })
+}
+
+fn put(files: &mut StudioFiles, role: StudioRole, path: &Path) -> anyhow::Result<()> {
+    let bytes = std::fs::read(path).with_context(|| {
+        format!("{}: cannot be read; check the path and its permissions", path.display())
+    })?;
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    files.insert(role, StudioFile { name, bytes: bytes.into() });
+    Ok(())
+}

@@ -1,0 +1,303 @@
+// One method on the avatar: choose it, change its parameters, see the face follow.
+import { openStage, preparedClip, putClip } from "./stage-host.js";
+import { made } from "./stage-player.js";
+import { desk } from "./studio-desk.js";
+import { drawMatch } from "./studio-overlay.js";
+
+const LOOK = { background: "#808080", width: 480, height: 480 };
+// A change waits so long for the next one before it is solved.
+const SETTLE_MS = 180;
+
+const NUMBERS = {
+  kappa: ["κ, priors against data", { min: 0, step: 0.01, placeholder: "0.1" }],
+  kS: ["k_s, stretching", { min: 0, step: 0.1, placeholder: "1" }],
+  kB: ["k_b, bending", { min: 0, step: 0.1, placeholder: "1" }],
+  s: ["s, softness of the bounds", { min: 0.01, step: 0.01, placeholder: "0.1" }],
+  eps: ["ε, smoothing of the norms", { min: 0, step: "any", placeholder: "default" }],
+  sigma: ["σ, zones, m", { min: 0.001, step: 0.001, placeholder: "0.012" }],
+  boundsWeight: ["Weight of the bounds", { min: 0, step: "any", placeholder: "0.001" }],
+  stiffness: ["Stiffness", { min: 0, step: 0.01, placeholder: "0" }],
+  headLowpassHz: ["Head low-pass, Hz", { min: 0.1, step: 0.1, placeholder: "none" }],
+};
+const WORDS = {
+  laplacian: ["Laplacian", ["uniform", "umbrella", "cotan-clamped", "cotan-literal"]],
+  association: ["Association", ["points", "zones", "triangles"]],
+  unit: ["Unit", ["m", "cm", "mm"]],
+  hold: ["At rest", ["unmoved", "nothing"]],
+};
+/// Names that the desk gives to methods that need recorded weights.
+const RECORDED = "recorded";
+
+export class MethodPanel {
+  #slot;
+  #page;
+  #element;
+  #canvas;
+  #overlay;
+  #heat;
+  #veil;
+  #facts;
+  #notices;
+  #select;
+  #parameters;
+  #compare;
+  #scale;
+  #stage = null;
+  #opening = null;
+  #timer = null;
+  #run = 0;
+  #heatBusy = false;
+  #matchBusy = false;
+  #generation = 0;
+  facts = null;
+  drawn = 0;
+
+  /// `page`: {methods, player, avatarShapes(), showMarkers(), changed(panel), remove(panel), report(error)}
+  constructor(slot, page, method, removable) {
+    this.#slot = slot;
+    this.#page = page;
+    const letter = slot.toUpperCase();
+    this.#select = made("select", { ariaLabel: `Method ${letter}` });
+    for (const { name } of page.methods) this.#select.append(new Option(name, name));
+    this.#select.value = method;
+    this.#select.addEventListener("change", () => (this.#controls(), this.solveSoon()));
+    const head = made("div", { className: "studio-panel-head" }, made("strong", {}, letter), this.#select);
+    if (removable) {
+      const remove = made("button", { type: "button", ariaLabel: `Remove method ${letter}` }, "✕");
+      remove.addEventListener("click", () => page.remove(this));
+      head.append(remove);
+    }
+    this.#parameters = made("div", { className: "parameters" });
+    const options = made("details", {}, made("summary", {}, "Parameters"), this.#parameters);
+    this.#canvas = made("canvas", { role: "img" });
+    this.#heat = made("canvas", { className: "studio-overlay", hidden: true });
+    this.#overlay = made("canvas", { className: "studio-overlay" });
+    this.#veil = made("div", { className: "veil" }, "Nothing to show yet");
+    const frame = made("div", { className: "stage studio-stage" }, this.#canvas, this.#heat, this.#overlay, this.#veil);
+    this.#facts = made("dl", { className: "preview-clip" });
+    this.#notices = made("div", { role: "status" });
+    this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
+    this.#element.append(made("div", { className: "studio-method" }, head, options), frame);
+    if (removable) {
+      this.#compare = made("input", { type: "checkbox" });
+      this.#compare.addEventListener("change", () => page.player.draw());
+      this.#scale = made("input", { type: "number", min: 0.1, step: 0.1, value: 1, ariaLabel: "Brightest colour, mm" });
+      this.#scale.addEventListener("change", () => page.player.draw());
+      this.#element.append(
+        made("label", { className: "preview-check" }, this.#compare, " Difference from A"),
+        made("div", { className: "studio-heat-scale" }, "0", made("i", {}), this.#scale, "mm"),
+      );
+    }
+    this.#element.append(this.#facts, this.#notices);
+    this.#controls();
+  }
+
+  get element() {
+    return this.#element;
+  }
+
+  get slot() {
+    return this.#slot;
+  }
+
+  get canvas() {
+    return this.#canvas;
+  }
+
+  title() {
+    return `${this.#slot.toUpperCase()}: ${this.#select.value}`;
+  }
+
+  clip() {
+    return this.facts ? preparedClip(this.#clipId()) : null;
+  }
+
+  #clipId() {
+    return `studio-${this.#slot}`;
+  }
+
+  // The parameters that the method has.
+  #controls() {
+    const { parameters } = this.#page.methods.find(({ name }) => name === this.#select.value);
+    const rows = [];
+    const change = () => this.solveSoon();
+    if (parameters.includes("alpha")) {
+      const value = this.#select.value === "lsts" ? 0.3 : 0.5;
+      const slider = made("input", { type: "range", min: 0, max: 1, step: 0.05, value, name: "alpha" });
+      const shown = made("output", { className: "number" }, value.toFixed(2));
+      slider.addEventListener("input", () => ((shown.textContent = Number(slider.value).toFixed(2)), change()));
+      rows.push(made("label", {}, made("span", {}, "α, thin shell against bounds ", shown), slider));
+    }
+    for (const [name, [label, options]] of Object.entries(NUMBERS)) {
+      if (!parameters.includes(name)) continue;
+      const field = made("input", { type: "number", name, ...options });
+      field.addEventListener("input", change);
+      rows.push(made("label", {}, label, field));
+    }
+    for (const [name, [label, words]] of Object.entries(WORDS)) {
+      if (!parameters.includes(name)) continue;
+      const select = made("select", { name }, new Option("default", ""), ...words.map((word) => new Option(word, word)));
+      select.addEventListener("change", change);
+      rows.push(made("label", {}, label, select));
+    }
+    this.#parameters.replaceChildren(...rows);
+    this.#parameters.parentElement.hidden = rows.length === 0;
+  }
+
+  /// The method as a study file writes it.
+  spec() {
+    const spec = { method: this.#select.value };
+    for (const field of this.#parameters.querySelectorAll("[name]")) {
+      if (field.value === "" || !field.checkValidity()) continue;
+      spec[field.name] = field.tagName === "SELECT" ? field.value : Number(field.value);
+    }
+    return spec;
+  }
+
+  /// Takes the method `recorded`, for takes that are weights; or the one before.
+  choose(method) {
+    if (this.#select.value === method) return;
+    this.#select.value = method;
+    this.#controls();
+  }
+
+  isRecorded() {
+    return this.#select.value === RECORDED;
+  }
+
+  solveSoon() {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.solve(), SETTLE_MS);
+  }
+
+  /// Solves and shows; resolves when the face stands.
+  async solve() {
+    const run = ++this.#run;
+    this.#veil.hidden = this.facts !== null;
+    this.#veil.textContent = "Solving";
+    try {
+      const started = performance.now();
+      const facts = await desk("solve", this.#slot, JSON.stringify(this.spec()));
+      const took = performance.now() - started;
+      if (run !== this.#run) return;
+      const [weights, pack] = await Promise.all([desk("weights", this.#slot), desk("slotPack", this.#slot)]);
+      if (run !== this.#run) return;
+      this.#generation += facts.own_avatar || this.#lastOwn ? 1 : 0;
+      this.#lastOwn = facts.own_avatar;
+      const avatarHash = `${this.#page.avatarKey()}-${facts.own_avatar ? `${this.#slot}${this.#generation}` : "bank"}`;
+      putClip({
+        clip: this.#clipId(), avatarHash, avatarPack: pack, weights,
+        frames: facts.frames, shapes: facts.shapes.length, rate_hz: facts.rate_hz,
+      });
+      this.facts = facts;
+      this.#opening ??= openStage(this.#canvas, LOOK);
+      this.#stage = await this.#opening;
+      this.#canvas.setAttribute("aria-label", `Animated face, method ${this.#select.value}`);
+      this.turn();
+      this.#describe(facts, took);
+      this.#veil.hidden = true;
+      this.#page.changed(this);
+      this.#page.player.draw();
+    } catch (error) {
+      if (run !== this.#run) return;
+      this.facts = null;
+      this.#veil.hidden = false;
+      this.#veil.textContent = String(error.message ?? error);
+      this.#facts.replaceChildren();
+      this.#notices.replaceChildren();
+      this.#page.changed(this);
+    }
+  }
+
+  #lastOwn = false;
+
+  turn() {
+    const [yaw, pitch] = document.getElementById("view").value.split(",").map(Number);
+    this.#stage?.setView({ yaw, pitch });
+  }
+
+  draw(timeMs) {
+    if (!this.facts || !this.#stage) return true;
+    try {
+      const drawn = this.#stage.drawNow(this.#clipId(), timeMs);
+      this.drawn += drawn;
+      this.#drawOver(timeMs);
+      return drawn;
+    } catch (error) {
+      this.#stage.reopen().then(() => this.#page.player.draw(), this.#page.report);
+      return true;
+    }
+  }
+
+  frameAt(timeMs) {
+    const { frames, rate_hz } = this.facts;
+    return Math.min(Math.max(Math.round((timeMs * rate_hz) / 1000), 0), frames - 1);
+  }
+
+  // What lies over the picture comes from the worker: the newest wish, one at a time.
+  #drawOver(timeMs) {
+    const frame = this.frameAt(timeMs);
+    const markers = this.#page.showMarkers() && this.facts.markers.length > 0;
+    this.#overlay.hidden = !markers;
+    if (markers && !this.#matchBusy) {
+      this.#matchBusy = true;
+      const camera = this.#stage.camera(this.#clipId());
+      desk("markerFrame", this.#slot, frame)
+        .then((points) => drawMatch(this.#overlay, camera, points), () => {})
+        .finally(() => (this.#matchBusy = false));
+    }
+    const first = this.#page.first();
+    const heat = Boolean(this.#compare?.checked && first?.facts);
+    this.#heat.hidden = !heat;
+    if (heat && !this.#heatBusy) {
+      this.#heatBusy = true;
+      this.#paintHeat(first.slot, frame).catch(this.#page.report).finally(() => (this.#heatBusy = false));
+    }
+  }
+
+  async #paintHeat(first, frame) {
+    const size = 480;
+    const camera = this.#stage.camera(this.#clipId());
+    const [rgba, { rms_mm, worst_mm }] = await Promise.all([
+      desk("heatMap", this.#slot, first, frame, camera, size, size, Number(this.#scale.value) || 1),
+      desk("difference", this.#slot, first, frame),
+    ]);
+    this.#heat.width = this.#heat.height = size;
+    this.#heat.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(rgba), size, size), 0, 0);
+    const words = `${rms_mm.toFixed(2)} mm rms, ${worst_mm.toFixed(2)} mm worst`;
+    this.#heat.setAttribute("aria-label", `Difference from A: ${words}`);
+    this.#row("Difference from A", words);
+  }
+
+  #describe(facts, took) {
+    this.#facts.replaceChildren();
+    const { summary } = facts;
+    this.#row("Frames", `${facts.frames} at ${Number(facts.rate_hz.toFixed(2))} Hz, in ${took.toFixed(0)} ms`);
+    if (summary) {
+      this.#row("Residual", `${summary.residual_rms_mm.toFixed(2)} mm rms, ${summary.residual_worst_mm.toFixed(2)} mm worst`);
+      this.#row("Iterations", `${summary.iterations_mean.toFixed(1)} a frame, KKT error ${summary.kkt_worst.toExponential(1)}`);
+    }
+    this.#row("Weights", facts.weights_hash.slice(0, 16));
+    this.#notices.replaceChildren(...facts.warnings.map((text) => made("p", { className: "notice warn" }, text)));
+  }
+
+  #row(name, value) {
+    const known = [...this.#facts.children].find((row) => row.firstChild.textContent === name);
+    const row = made("div", {}, made("dt", {}, name), made("dd", { className: "number" }, value));
+    if (known) known.replaceWith(row);
+    else this.#facts.append(row);
+  }
+
+  /// Draws a frame for certain, for exports.
+  async show(timeMs) {
+    await this.#stage.show(this.#clipId(), timeMs);
+  }
+
+  close() {
+    clearTimeout(this.#timer);
+    this.#run += 1;
+    this.#opening?.then((stage) => stage.close(), () => {});
+    this.#element.remove();
+    desk("forget", this.#slot);
+  }
+}

@@ -1,0 +1,181 @@
+// The studio as a researcher uses it: built-in head and actor, then a real capture that `mimique
+// preview` was given; markers, methods, curves, expressions, exports; wide, narrow, dark.
+
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { binary, root } from "./lib/server.mjs";
+
+const require = createRequire(import.meta.url);
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
+const head = join(data, "ict-facekit/ict-facekit.glb");
+const noBrowser = skip(!executable && "Chromium not found");
+const noData = noBrowser || skip(!existsSync(head) && `real data not found: ${head}`);
+
+/** A running `mimique preview`: `{url, stop()}`. */
+async function preview(args) {
+  const web = process.env.MIMIQUE_WEB_DIR ? ["--web-dir", process.env.MIMIQUE_WEB_DIR] : [];
+  const child = spawn(binary, ["preview", ...args, "--listen", "127.0.0.1:0", "--json", ...web], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
+  const line = await new Promise((resolve, reject) => {
+    child.stdout.once("data", (text) => resolve(String(text)));
+    child.once("exit", (code) => reject(new Error(`mimique preview ended (${code})`)));
+  });
+  const ended = new Promise((resolve) => child.once("exit", resolve));
+  return { url: JSON.parse(line).url, stop: async () => (child.kill("SIGTERM"), ended) };
+}
+
+/** The number in a fact of a panel, such as its residual. */
+async function fact(page, panel, name) {
+  const row = page.locator(`section[aria-label="Method ${panel}"] .preview-clip div`, { hasText: name }).first();
+  await row.waitFor({ timeout: 120_000 });
+  return Number.parseFloat(await row.locator("dd").textContent());
+}
+
+async function download(page, act) {
+  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 180_000 }), act()]);
+  return readFileSync(await file.path());
+}
+
+async function violations(page) {
+  await page.evaluate(axe);
+  return page.evaluate(async () => {
+    const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
+    const { violations } = await globalThis.axe.run(document, { runOnly: tags });
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
+  });
+}
+
+/** Opens a section that is folded. */
+async function unfold(page, id) {
+  if (!(await page.locator(`#${id}`).evaluate((section) => section.open))) await page.locator(`#${id} > summary`).click();
+}
+
+test("studio: the built-in head and actor, from nothing to every export", { skip: noBrowser, timeout: 900_000 }, async () => {
+  const server = await preview([]);
+  const browser = await open("webgl2");
+  const { page } = browser;
+  const shots = screenshotFolder("studio");
+  try {
+    await page.goto(`${server.url}?backend=webgl2`);
+    await page.click("#avatar-built-in");
+    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("51 shapes"));
+    await page.click("#take-built-in");
+    assert.ok((await fact(page, "A", "Residual")) < 3);
+    assert.equal(await page.locator("#problem").isVisible(), false);
+
+    // A parameter changes the weights; a second method stands beside.
+    const hash = async (panel) => page.locator(`section[aria-label="Method ${panel}"] .preview-clip div`, { hasText: "Weights" }).locator("dd").textContent();
+    const before = await hash("A");
+    await page.locator('section[aria-label="Method A"] summary').click();
+    await page.locator('section[aria-label="Method A"] input[name=alpha]').fill("0.9");
+    await page.waitForFunction((old) => {
+      const rows = [...document.querySelectorAll('section[aria-label="Method A"] .preview-clip div')];
+      const row = rows.find((each) => each.textContent.startsWith("Weights"));
+      return row && !row.textContent.includes(old);
+    }, before, { timeout: 60_000 });
+    await page.click("#add-panel");
+    await fact(page, "B", "Residual");
+    await page.locator("#scrub").fill("6000");
+    await page.locator('section[aria-label="Method B"] input[type=checkbox]').check();
+    assert.ok((await fact(page, "B", "Difference from A")) > 0);
+    await page.check("#show-markers");
+    await page.waitForTimeout(1500);
+    await page.screenshot({ path: join(shots, "methods.png"), fullPage: true });
+
+    // Markers: taken off and put back by a click on the head.
+    await unfold(page, "matching");
+    const row = page.locator('#markers tr[data-label="chin"]');
+    await row.getByRole("button", { name: "chin", exact: true }).click();
+    await row.getByRole("button", { name: "Take chin off" }).click();
+    await page.waitForFunction(() => document.querySelector('#markers tr[data-label="chin"] td.unplaced'));
+    await page.waitForTimeout(3000);
+    const box = await page.locator("#match-overlay").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + 0.8 * box.height);
+    await page.waitForFunction(() => !document.querySelector('#markers tr[data-label="chin"] td.unplaced'), null, { timeout: 30_000 });
+    await page.locator("#matching").screenshot({ path: join(shots, "markers.png") });
+    const map = JSON.parse(String(await download(page, () => page.click("#map-save"))));
+    assert.equal(Object.keys(map.markers).length, 40);
+
+    await unfold(page, "curves");
+    await page.waitForTimeout(1500);
+    await page.locator("#curves").screenshot({ path: join(shots, "curves.png") });
+
+    // Expressions: eighteen are found; one is renamed and shortened.
+    await unfold(page, "expressions");
+    await page.click("#expressions-suggest");
+    await page.waitForFunction(() => document.querySelectorAll("#segments tr").length === 18, null, { timeout: 60_000 });
+    await page.locator("#segments tr").first().locator("input[type=text]").fill("anger one");
+    await page.locator("#segments tr").first().locator("input[type=text]").press("Enter");
+    await page.waitForFunction(() => document.querySelector("#timeline .segment").textContent === "anger one");
+    await page.locator("#expressions").screenshot({ path: join(shots, "expressions.png") });
+    const csv = String(await download(page, () => page.click("#save-csv")));
+    assert.ok(csv.includes("anger one"), csv.slice(0, 200));
+    const eaf = String(await download(page, () => page.click("#save-eaf")));
+    assert.ok(eaf.includes("<ANNOTATION_VALUE>anger one</ANNOTATION_VALUE>"));
+
+    // Exports of a short part.
+    await page.locator("#scrub").fill("1000");
+    await page.locator("#segments tr").first().locator("input[type=number]").nth(1).fill("0.7");
+    await page.locator("#segments tr").first().locator("input[type=number]").nth(1).press("Enter");
+    await page.selectOption("#range", "0");
+    await page.selectOption("#export-rate", "25");
+    await unfold(page, "exports");
+    const weights = String(await download(page, () => page.click("#export-weights")));
+    assert.ok(weights.startsWith("frame,time,"));
+    const glb = await download(page, () => page.click("#export-glb"));
+    assert.equal(glb.subarray(0, 4).toString(), "glTF");
+    const zip = await download(page, () => page.click("#export-png"));
+    assert.equal(zip.subarray(0, 2).toString(), "PK");
+    assert.ok(zip.includes("-00003.png"));
+    const webm = await download(page, () => page.click("#export-webm"));
+    assert.deepEqual([...webm.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3]);
+    const sheet = await download(page, () => page.click("#export-sheet"));
+    assert.deepEqual([...sheet.subarray(1, 4)], [...Buffer.from("PNG")]);
+
+    assert.deepEqual(await violations(page), []);
+    // A phone in the dark.
+    await page.emulateMedia({ colorScheme: "dark" });
+    await page.setViewportSize({ width: 360, height: 780 });
+    await page.waitForTimeout(1500);
+    const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.ok(wider <= 0, `${wider} px wider than the screen`);
+    await page.screenshot({ path: join(shots, "phone-dark.png"), fullPage: true });
+    assert.deepEqual(await violations(page), []);
+    assert.ok(browser.requests.every((url) => url.startsWith(new URL(server.url).origin) || url.startsWith("blob:")));
+    assert.deepEqual(browser.errors, [], "the console is clean");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
+
+test("studio: a real capture is matched and solved; what is broken is said", { skip: noData, timeout: 600_000 }, async () => {
+  const take = join(data, "animface/JawMoCap.c3d");
+  const server = await preview([head, "--mocap", take, "--markers", join(data, "animface/markers-ict-facekit.json")]);
+  const browser = await open("webgl2");
+  const { page } = browser;
+  const shots = screenshotFolder("studio");
+  try {
+    await page.goto(`${server.url}?backend=webgl2`);
+    assert.ok((await fact(page, "A", "Residual")) < 3);
+    await page.waitForFunction(() => document.querySelector("#map-facts").textContent.includes("41 markers"), null, { timeout: 60_000 });
+    await page.click("#map-suggest");
+    await page.waitForFunction(() => document.querySelector("#map-facts").textContent.includes("suggested"), null, { timeout: 60_000 });
+    await page.waitForTimeout(8000);
+    assert.ok((await fact(page, "A", "Residual")) < 3);
+    await unfold(page, "matching");
+    await page.waitForTimeout(6000);
+    await page.screenshot({ path: join(shots, "real.png"), fullPage: true });
+    await page.setInputFiles("#take-file", { name: "take.c3d", mimeType: "application/octet-stream", buffer: Buffer.from("no capture") });
+    await page.waitForFunction(() => document.querySelector("#problem").textContent.includes("take.c3d"));
+    assert.deepEqual(browser.errors, [], "the console is clean");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});

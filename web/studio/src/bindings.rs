@@ -1,0 +1,266 @@
+//! What JavaScript calls.
+
+use std::io::{Cursor, Write as _};
+
+use wasm_bindgen::prelude::*;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use crate::desk::{Desk, Problem};
+
+/// The studio's desk.
+#[wasm_bindgen]
+#[derive(Debug, Default)]
+pub struct Studio {
+    desk: Desk,
+}
+
+fn text(value: serde_json::Value) -> String {
+    value.to_string()
+}
+
+fn error(problem: Problem) -> JsError {
+    JsError::new(&problem.0)
+}
+
+#[wasm_bindgen]
+impl Studio {
+    /// An empty desk.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// [`Desk::avatar_file`].
+    #[wasm_bindgen(js_name = avatarFile)]
+    pub fn avatar_file(
+        &mut self,
+        file: &str,
+        bytes: Vec<u8>,
+        settings: Option<String>,
+    ) -> Result<String, JsError> {
+        self.desk.avatar_file(file, bytes, settings.as_deref()).map(text).map_err(error)
+    }
+
+    /// [`Desk::built_in_avatar`].
+    #[wasm_bindgen(js_name = builtInAvatar)]
+    pub fn built_in_avatar(&mut self, seed: u32, vertices: usize) -> Result<String, JsError> {
+        self.desk.built_in_avatar(u64::from(seed), vertices).map(text).map_err(error)
+    }
+
+    /// [`Desk::avatar_pack`].
+    #[wasm_bindgen(js_name = avatarPack)]
+    pub fn avatar_pack(&self) -> Result<Vec<u8>, JsError> {
+        self.desk.avatar_pack().map_err(error)
+    }
+
+    /// [`Desk::take_file`].
+    #[wasm_bindgen(js_name = takeFile)]
+    pub fn take_file(
+        &mut self,
+        file: &str,
+        bytes: &[u8],
+        unit: Option<String>,
+        rate_hz: Option<f64>,
+    ) -> Result<String, JsError> {
+        self.desk.take_file(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
+    }
+
+    /// [`Desk::built_in_take`].
+    #[wasm_bindgen(js_name = builtInTake)]
+    pub fn built_in_take(&mut self, actor: u32) -> String {
+        text(self.desk.built_in_take(u64::from(actor)))
+    }
+
+    /// [`Desk::map_file`].
+    #[wasm_bindgen(js_name = mapFile)]
+    pub fn map_file(&mut self, file: &str, map: &str) -> Result<String, JsError> {
+        self.desk.map_file(file, map).map(text).map_err(error)
+    }
+
+    /// [`Desk::suggest_map`].
+    #[wasm_bindgen(js_name = suggestMap)]
+    pub fn suggest_map(&mut self) -> Result<String, JsError> {
+        self.desk.suggest_map().map(text).map_err(error)
+    }
+
+    /// [`Desk::place`].
+    pub fn place(
+        &mut self,
+        label: &str,
+        vertex: Option<usize>,
+        head: bool,
+    ) -> Result<String, JsError> {
+        self.desk.place(label, vertex, head).map(text).map_err(error)
+    }
+
+    /// [`Desk::set_neutral`].
+    #[wasm_bindgen(js_name = setNeutral)]
+    pub fn set_neutral(&mut self, first: usize, end: usize) -> Result<String, JsError> {
+        self.desk.set_neutral(first, end).map(text).map_err(error)
+    }
+
+    /// [`Desk::map_state`].
+    #[wasm_bindgen(js_name = mapState)]
+    pub fn map_state(&self) -> Result<String, JsError> {
+        self.desk.map_state().map(text).map_err(error)
+    }
+
+    /// [`Desk::map_json`].
+    #[wasm_bindgen(js_name = mapJson)]
+    pub fn map_json(&self) -> String {
+        self.desk.map_json()
+    }
+
+    /// [`Desk::solve`].
+    pub fn solve(&mut self, slot: &str, method: &str) -> Result<String, JsError> {
+        self.desk.solve(slot, method).map(text).map_err(error)
+    }
+
+    /// [`Desk::forget`].
+    pub fn forget(&mut self, slot: &str) {
+        self.desk.forget(slot);
+    }
+
+    /// [`Desk::weights`].
+    pub fn weights(&self, slot: &str) -> Result<Vec<f32>, JsError> {
+        self.desk.weights(slot).map_err(error)
+    }
+
+    /// [`Desk::series`].
+    pub fn series(&self, slot: &str, name: &str) -> Result<Vec<f32>, JsError> {
+        self.desk.series(slot, name).map_err(error)
+    }
+
+    /// [`Desk::slot_pack`].
+    #[wasm_bindgen(js_name = slotPack)]
+    pub fn slot_pack(&self, slot: &str) -> Result<Vec<u8>, JsError> {
+        self.desk.slot_pack(slot).map_err(error)
+    }
+
+    /// [`Desk::marker_frame`].
+    #[wasm_bindgen(js_name = markerFrame)]
+    pub fn marker_frame(&self, slot: &str, frame: usize) -> Result<Vec<f32>, JsError> {
+        self.desk.marker_frame(slot, frame).map_err(error)
+    }
+
+    /// [`Desk::difference`] as JSON.
+    pub fn difference(&self, a: &str, b: &str, frame: usize) -> Result<String, JsError> {
+        let found = self.desk.difference(a, b, frame).map_err(error)?;
+        Ok(serde_json::to_string(&found)?)
+    }
+
+    /// [`Desk::heat_map`], RGBA.
+    #[wasm_bindgen(js_name = heatMap)]
+    #[allow(clippy::too_many_arguments, reason = "JavaScript has no tuples")]
+    pub fn heat_map(
+        &self,
+        a: &str,
+        b: &str,
+        frame: usize,
+        camera: &[f32],
+        width: usize,
+        height: usize,
+        full_mm: f32,
+    ) -> Result<Vec<u8>, JsError> {
+        let picture =
+            self.desk.heat_map([a, b], frame, camera, [width, height], full_mm).map_err(error)?;
+        Ok(picture.rgba)
+    }
+
+    /// [`Desk::pick`].
+    pub fn pick(
+        &self,
+        camera: &[f32],
+        width: usize,
+        height: usize,
+        x: f32,
+        y: f32,
+    ) -> Result<Option<usize>, JsError> {
+        self.desk.pick(camera, [width, height], [x, y]).map_err(error)
+    }
+
+    /// [`Desk::suggest_expressions`].
+    #[wasm_bindgen(js_name = suggestExpressions)]
+    pub fn suggest_expressions(&mut self, slot: &str, labels: &str) -> Result<String, JsError> {
+        self.desk.suggest_expressions(slot, labels).map(text).map_err(error)
+    }
+
+    /// [`Desk::set_expressions`].
+    #[wasm_bindgen(js_name = setExpressions)]
+    pub fn set_expressions(&mut self, segments: &str) -> Result<String, JsError> {
+        self.desk.set_expressions(segments).map(text).map_err(error)
+    }
+
+    /// [`Desk::expressions_file`].
+    #[wasm_bindgen(js_name = expressionsFile)]
+    pub fn expressions_file(&mut self, file: &str, content: &str) -> Result<String, JsError> {
+        self.desk.expressions_file(file, content).map(text).map_err(error)
+    }
+
+    /// [`Desk::expressions_csv`].
+    #[wasm_bindgen(js_name = expressionsCsv)]
+    pub fn expressions_csv(&self) -> Result<String, JsError> {
+        self.desk.expressions_csv().map_err(error)
+    }
+
+    /// [`Desk::expressions_eaf`].
+    #[wasm_bindgen(js_name = expressionsEaf)]
+    pub fn expressions_eaf(&self, document: Option<String>, date: &str) -> Result<String, JsError> {
+        self.desk.expressions_eaf(document.as_deref(), date).map_err(error)
+    }
+
+    /// [`Desk::weights_csv`].
+    #[wasm_bindgen(js_name = weightsCsv)]
+    pub fn weights_csv(&self, slot: &str) -> Result<String, JsError> {
+        self.desk.weights_csv(slot).map_err(error)
+    }
+
+    /// [`Desk::animated_glb`].
+    #[wasm_bindgen(js_name = animatedGlb)]
+    pub fn animated_glb(&self, slot: &str, first: usize, end: usize) -> Result<Vec<u8>, JsError> {
+        self.desk.animated_glb(slot, first, end).map_err(error)
+    }
+}
+
+/// Every method that the studio solves by, with the names of its parameters, as JSON:
+/// `[{"name": "lsts", "parameters": ["alpha", ...]}, ...]`.
+#[wasm_bindgen]
+pub fn methods() -> String {
+    text(crate::desk::methods())
+}
+
+/// Files put into one archive, as they are: pictures do not get smaller.
+#[wasm_bindgen]
+pub struct Archive {
+    writer: ZipWriter<Cursor<Vec<u8>>>,
+}
+
+impl std::fmt::Debug for Archive {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Archive")
+    }
+}
+
+#[wasm_bindgen]
+impl Archive {
+    /// An empty archive.
+    #[wasm_bindgen(constructor)]
+    #[allow(clippy::new_without_default, reason = "JavaScript's constructor")]
+    pub fn new() -> Self {
+        Self { writer: ZipWriter::new(Cursor::new(Vec::new())) }
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), JsError> {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        self.writer.start_file(name, options)?;
+        self.writer.write_all(bytes)?;
+        Ok(())
+    }
+
+    /// The zip file.
+    pub fn finish(self) -> Result<Vec<u8>, JsError> {
+        Ok(self.writer.finish()?.into_inner())
+    }
+}

@@ -1,0 +1,282 @@
+//! What lies on the desk: an avatar, a take, a marker map, solved takes.
+
+use std::collections::BTreeMap;
+
+use mimique_face::{
+    AvatarSettings, Clip, Density, Emotion, HeadSpec, Identity, ReadAvatar, build_head,
+    marker_sites, read_avatar_bytes, synthetic_take,
+};
+use mimique_mocap::{Capture, CaptureFacts, Format, LengthUnit, ReadOptions, Recording};
+use mimique_solver::Method;
+use mimique_stimulus::{
+    AvatarSkin, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, WeightsTable,
+};
+use serde_json::{Value, json};
+
+use crate::solved::Solved;
+
+/// What is wrong: file or part, place, value, remedy.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem(pub String);
+
+impl Problem {
+    pub(crate) fn of(what: &str, error: impl std::fmt::Display) -> Self {
+        Self(format!("{what}: {error}"))
+    }
+}
+
+impl std::fmt::Display for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Problem {}
+
+/// Everything that the studio knows.
+#[derive(Debug, Default)]
+pub struct Desk {
+    pub(crate) face: Option<Face>,
+    pub(crate) take: Option<Take>,
+    pub(crate) map: MarkerMap,
+    pub(crate) solved: BTreeMap<String, Solved>,
+    pub(crate) segments: Vec<TakeSegment>,
+}
+
+/// An avatar and its skin.
+#[derive(Debug)]
+pub(crate) struct Face {
+    pub read: ReadAvatar,
+    pub skin: AvatarSkin,
+    /// Where the built-in head's markers sit.
+    pub sites: Option<MarkerMap>,
+}
+
+/// What is played on it.
+#[derive(Debug)]
+pub(crate) enum Take {
+    /// Marker trajectories.
+    Markers { name: String, recording: Recording, head: Vec<String> },
+    /// Weights that were recorded or solved elsewhere.
+    Weights { name: String, table: WeightsTable },
+}
+
+/// The methods that need nothing but an avatar, a take and a map.
+pub fn methods() -> Value {
+    let methods = Method::ALL.iter().filter(|m| **m != Method::Regression);
+    methods.map(|m| json!({"name": m.to_string(), "parameters": m.parameters()})).collect()
+}
+
+/// Seeds of actors, so that the actor is never the avatar's own person.
+const ACTORS: u64 = 0x6163_746f_7273_0000;
+/// Noise of the built-in actor's sensors, millimetres.
+const NOISE_MM: f64 = 0.1;
+
+impl Desk {
+    /// An empty desk.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes an avatar from a file: GLB, glTF with its data inside, or an archive of OBJ poses;
+    /// `settings` is the text of its `NAME.avatar.json`. What was solved for another avatar goes.
+    ///
+    /// # Errors
+    /// [`Problem`] with the file's name.
+    pub fn avatar_file(
+        &mut self,
+        file: &str,
+        bytes: Vec<u8>,
+        settings: Option<&str>,
+    ) -> Result<Value, Problem> {
+        let settings = settings
+            .map(|text| AvatarSettings::from_json(file, text.as_bytes()))
+            .transpose()
+            .map_err(|e| Problem::of(file, e))?;
+        let stem = file.split('.').next().unwrap_or(file);
+        let read =
+            read_avatar_bytes(bytes, stem, None, settings).map_err(|e| Problem::of(file, e))?;
+        self.put_avatar(file, read, None)
+    }
+
+    /// Takes a person of the built-in head.
+    ///
+    /// # Errors
+    /// None for heads that this version builds.
+    pub fn built_in_avatar(&mut self, seed: u64, vertices: usize) -> Result<Value, Problem> {
+        let spec =
+            HeadSpec { identity: Identity::from_seed(seed), density: Density::nearest(vertices) };
+        let sites = marker_sites(&spec);
+        let face = sites.face_labels().iter().zip(&sites.vertices).map(|(label, &vertex)| {
+            MappedMarker { label: label.clone(), place: MarkerPlace::Vertex(vertex) }
+        });
+        let map = MarkerMap { face: face.collect(), ..MarkerMap::default() };
+        let read = ReadAvatar {
+            avatar: build_head(&spec),
+            unit_metres: 1.0,
+            locked: Vec::new(),
+            notes: Vec::new(),
+        };
+        self.put_avatar("built-in head", read, Some(map))
+    }
+
+    fn put_avatar(
+        &mut self,
+        file: &str,
+        read: ReadAvatar,
+        sites: Option<MarkerMap>,
+    ) -> Result<Value, Problem> {
+        let skin = AvatarSkin::of(&read.avatar).map_err(|e| Problem::of(file, e))?;
+        self.solved.clear();
+        self.map.face.clear();
+        let face = self.face.insert(Face { read, skin, sites });
+        let avatar = &face.read.avatar;
+        let facts = json!({
+            "file": file,
+            "name": avatar.name,
+            "vertices": face.skin.mesh.positions.len(),
+            "shapes": avatar.shape_names,
+            "locked": face.read.locked,
+            "notes": face.read.notes,
+            "meshes": avatar.meshes.iter().map(|m| json!({
+                "name": m.name, "part": format!("{:?}", m.part), "vertices": m.positions.len(),
+            })).collect::<Vec<_>>(),
+        });
+        self.map_built_in();
+        Ok(facts)
+    }
+
+    /// The avatar as the stage draws it.
+    ///
+    /// # Errors
+    /// [`Problem`]: no avatar yet.
+    pub fn avatar_pack(&self) -> Result<Vec<u8>, Problem> {
+        Ok(mimique_face::pack::encode_pack(&self.face()?.read.avatar).bytes)
+    }
+
+    /// Takes a capture, or recorded weights (Live Link Face, CSV of `mimique solve`), from a file.
+    ///
+    /// # Errors
+    /// [`Problem`] with the file's name.
+    pub fn take_file(
+        &mut self,
+        file: &str,
+        bytes: &[u8],
+        unit: Option<&str>,
+        rate_hz: Option<f64>,
+    ) -> Result<Value, Problem> {
+        let format = mimique_mocap::recognise(bytes);
+        let is_weights = match format {
+            Some(Format::LiveLinkCsv) => true,
+            Some(_) => false,
+            None => bytes.starts_with(b"frame,time,"),
+        };
+        if is_weights {
+            let table = WeightsTable::from_recording(std::path::Path::new(file), bytes)
+                .map_err(|e| Problem::of(file, e))?;
+            return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
+        }
+        let unit = unit
+            .map(|word| match word {
+                "mm" => Ok(LengthUnit::Millimetre),
+                "cm" => Ok(LengthUnit::Centimetre),
+                "m" => Ok(LengthUnit::Metre),
+                _ => Err(Problem::of("unit", format!("{word:?}; use m, cm or mm"))),
+            })
+            .transpose()?;
+        let recording = mimique_mocap::read_recording(file, bytes, &ReadOptions { unit, rate_hz })
+            .map_err(|e| Problem::of(file, e))?;
+        let take = Take::Markers { name: file.to_owned(), recording, head: Vec::new() };
+        Ok(self.put_take(take))
+    }
+
+    /// Takes the built-in actor's performance of six emotions, each weak, middling and strong.
+    pub fn built_in_take(&mut self, actor: u64) -> Value {
+        let spec =
+            HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() };
+        let emotions = [
+            Emotion::Anger,
+            Emotion::Disgust,
+            Emotion::Fear,
+            Emotion::Joy,
+            Emotion::Sadness,
+            Emotion::Surprise,
+        ];
+        let clips: Vec<Clip> = emotions
+            .iter()
+            .flat_map(|&emotion| (1..=3).map(move |intensity| (emotion, intensity)))
+            .map(|(emotion, intensity)| Clip { emotion, intensity, seed: actor })
+            .collect();
+        let take =
+            synthetic_take(&build_head(&spec), &marker_sites(&spec), &clips, actor, NOISE_MM);
+        let capture = Capture {
+            labels: take.labels,
+            rate_hz: take.rate_hz,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions: take.positions,
+            notes: Vec::new(),
+        };
+        let recording = Recording {
+            capture,
+            format: Format::WideCsv,
+            system: None,
+            analog_channels: 0,
+            events: Vec::new(),
+        };
+        let name = "built-in actor".to_owned();
+        self.put_take(Take::Markers { name, recording, head: take.head_labels })
+    }
+
+    fn put_take(&mut self, take: Take) -> Value {
+        self.solved.clear();
+        self.segments.clear();
+        let facts = match &take {
+            Take::Markers { name, recording, .. } => {
+                let facts = CaptureFacts::of(recording);
+                json!({"file": name, "kind": "markers", "labels": recording.capture.labels,
+                       "facts": facts})
+            }
+            Take::Weights { name, table } => json!({
+                "file": name, "kind": "weights", "frames": table.frames.len(),
+                "rate_hz": table.rate_hz(), "columns": table.shape_names,
+            }),
+        };
+        self.take = Some(take);
+        self.map_built_in();
+        facts
+    }
+
+    /// The built-in actor's markers sit at known places of the built-in head.
+    fn map_built_in(&mut self) {
+        let (Some(face), Some(Take::Markers { head, recording, .. })) = (&self.face, &self.take)
+        else {
+            return;
+        };
+        let Some(sites) = &face.sites else { return };
+        let has = |label: &String| recording.capture.marker_index(label).is_some();
+        if !head.is_empty() && sites.face.iter().all(|m| has(&m.label)) {
+            self.map = MarkerMap {
+                avatar: Some(face.read.avatar.name.clone()),
+                head: head.clone(),
+                neutral: Some(0..60),
+                ..sites.clone()
+            };
+        }
+    }
+
+    pub(crate) fn face(&self) -> Result<&Face, Problem> {
+        self.face.as_ref().ok_or_else(|| Problem("no avatar yet; open one first".to_owned()))
+    }
+
+    pub(crate) fn capture(&self) -> Result<&Capture, Problem> {
+        match &self.take {
+            Some(Take::Markers { recording, .. }) => Ok(&recording.capture),
+            Some(Take::Weights { name, .. }) => Err(Problem::of(
+                name,
+                "holds weights, no markers; open a capture, or take the method recorded",
+            )),
+            None => Err(Problem("no capture yet; open one first".to_owned())),
+        }
+    }
+}

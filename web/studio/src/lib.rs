@@ -1,0 +1,27 @@
+//! The studio's worker: an avatar's and a capture's file in; marker map, weights, expressions and
+//! exports out. Nothing leaves the browser.
+//!
+//! ```js
+//! const studio = new Studio();
+//! studio.avatarFile("head.glb", bytes);      // facts as JSON
+//! studio.takeFile("take.c3d", bytes, null, null);
+//! studio.suggestMap();
+//! studio.solve("a", '{"method": "lsts", "alpha": 0.3}');
+//! studio.weights("a");                       // Float32Array, frames x shapes
+//! ```
+//!
+//! Every call throws an `Error` whose message says file, place, value and remedy. What comes in and
+//! goes out is JSON text and typed arrays; the work itself is [`Desk`]'s, which tests use natively.
+
+mod bindings;
+mod desk;
+mod difference;
+mod expressions;
+mod markers;
+mod picture;
+mod solved;
+
+pub use bindings::Studio;
+pub use desk::{Desk, Problem};
+pub use difference::Difference;
+pub use picture::{Picture, pick};

@@ -1,0 +1,278 @@
+//! The take by one method: weights, what the markers asked for, residuals; its exports.
+
+use mimique_face::Avatar;
+use mimique_solver::{MarkerSite, Method, MethodSpec, SurfaceResponse};
+use mimique_stimulus::{
+    RecordedWeights, SolvedCapture, TakeOptions, WeightsTable, lock_shapes, solve_take,
+    surface_avatar, weights_hash,
+};
+use serde_json::{Value, json};
+
+use crate::desk::{Desk, Face, Problem, Take};
+
+/// The take solved by one method.
+#[derive(Debug)]
+pub(crate) struct Solved {
+    pub table: WeightsTable,
+    pub surface: Option<SurfaceResponse>,
+    /// The surface's own avatar, of `thin-shell-surface`.
+    pub avatar: Option<Avatar>,
+    pub rate_hz: f64,
+    pub sites: Vec<MarkerSite>,
+    /// Where the markers asked the skin to go: frames x 3P, metres.
+    pub displacements: Vec<f64>,
+    pub residual_mm: Vec<f32>,
+    pub kkt_error: Vec<f32>,
+    pub iterations: Vec<f32>,
+}
+
+impl Desk {
+    /// Solves the take by a method (a `MethodSpec` as JSON) and keeps it under `slot`; answers facts
+    /// and the report's summary.
+    ///
+    /// # Errors
+    /// [`Problem`]: avatar, take or map are missing or do not fit, or the method does not solve.
+    pub fn solve(&mut self, slot: &str, method: &str) -> Result<Value, Problem> {
+        let mut spec: MethodSpec =
+            serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
+        spec.validate().map_err(|e| Problem::of("method", e))?;
+        let face = self.face()?;
+        lock_shapes(&mut spec, &face.read.locked);
+        let (solved, facts) = match (&self.take, spec.method) {
+            (Some(Take::Weights { name, table }), Method::Recorded) => recorded(face, name, table)?,
+            (Some(Take::Weights { name, .. }), _) => {
+                let what = "holds weights, no markers; take the method recorded";
+                return Err(Problem::of(name, what));
+            }
+            (_, Method::Recorded) => {
+                let what =
+                    "recorded needs weights; open a Live Link Face file, or a CSV of weights";
+                return Err(Problem::of("method", what));
+            }
+            (_, Method::Regression) => {
+                let what = "regression needs a take to learn from; use mimique solve --training";
+                return Err(Problem::of("method", what));
+            }
+            _ => self.fitted(face, &spec)?,
+        };
+        self.solved.insert(slot.to_owned(), solved);
+        Ok(facts)
+    }
+
+    fn fitted(&self, face: &Face, spec: &MethodSpec) -> Result<(Solved, Value), Problem> {
+        let capture = self.capture()?;
+        if self.map.face.is_empty() {
+            let what = "empty; suggest one, or open one";
+            return Err(Problem::of("marker map", what));
+        }
+        let done =
+            solve_take(&face.skin, capture, &self.map, spec, &TakeOptions::default(), &mut || 0.0)
+                .map_err(|e| Problem::of("solve", e))?;
+        let SolvedCapture { table, surface, report, sites, displacements } = done;
+        let avatar = match &surface {
+            None => None,
+            Some(surface) => Some(self.surface_avatar(face, surface, &sites)?),
+        };
+        let series = |of: fn(&mimique_stimulus::FrameRow) -> f64| {
+            report.frames.iter().map(|row| of(row) as f32).collect::<Vec<f32>>()
+        };
+        let facts = json!({
+            "method": report.method,
+            "frames": table.frames.len(),
+            "rate_hz": report.rate_hz,
+            "shapes": table.shape_names,
+            "neutral": report.neutral,
+            "markers": report.markers,
+            "head": report.head,
+            "summary": report.summary,
+            "warnings": report.warnings,
+            "weights_hash": report.weights_hash,
+            "provenance": report.provenance,
+            "own_avatar": avatar.is_some(),
+        });
+        let solved = Solved {
+            residual_mm: series(|row| row.residual_mm),
+            kkt_error: series(|row| row.kkt_error),
+            iterations: series(|row| f64::from(row.iterations)),
+            rate_hz: report.rate_hz,
+            table,
+            surface,
+            avatar,
+            sites,
+            displacements,
+        };
+        Ok((solved, facts))
+    }
+
+    fn surface_avatar(
+        &self,
+        face: &Face,
+        surface: &SurfaceResponse,
+        sites: &[MarkerSite],
+    ) -> Result<Avatar, Problem> {
+        let options = mimique_solver::OperatorOptions::of(&MethodSpec::new(Method::ThinShellOnly));
+        let bank = mimique_solver::Operators::build_at(
+            &face.skin.mesh,
+            &face.skin.shape_names,
+            sites,
+            &options,
+        )
+        .map_err(|e| Problem::of("avatar", e))?;
+        surface_avatar(&face.read.avatar, &face.skin, surface, &bank)
+            .map_err(|e| Problem::of("avatar", e))
+    }
+
+    /// Forgets what was solved under `slot`.
+    pub fn forget(&mut self, slot: &str) {
+        self.solved.remove(slot);
+    }
+
+    pub(crate) fn slot(&self, slot: &str) -> Result<&Solved, Problem> {
+        self.solved.get(slot).ok_or_else(|| Problem::of(slot, "nothing is solved here yet"))
+    }
+
+    /// The weights as they are drawn, frames x shapes.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`.
+    pub fn weights(&self, slot: &str) -> Result<Vec<f32>, Problem> {
+        Ok(self.slot(slot)?.table.weights.iter().map(|&w| w as f32).collect())
+    }
+
+    /// A value a frame: `residual` (mm), `kkt`, `iterations`; empty for recorded weights.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`, no such series.
+    pub fn series(&self, slot: &str, name: &str) -> Result<Vec<f32>, Problem> {
+        let solved = self.slot(slot)?;
+        match name {
+            "residual" => Ok(solved.residual_mm.clone()),
+            "kkt" => Ok(solved.kkt_error.clone()),
+            "iterations" => Ok(solved.iterations.clone()),
+            _ => Err(Problem::of(name, "no such series; use residual, kkt or iterations")),
+        }
+    }
+
+    /// The pack that the slot's weights move: of `thin-shell-surface` its own.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`.
+    pub fn slot_pack(&self, slot: &str) -> Result<Vec<u8>, Problem> {
+        match &self.slot(slot)?.avatar {
+            Some(own) => Ok(mimique_face::pack::encode_pack(own).bytes),
+            None => self.avatar_pack(),
+        }
+    }
+
+    /// Where the markers ask the skin to be in a frame, and where it is: 6 numbers a marker, metres,
+    /// NaN where the marker is lost.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`, no such frame.
+    pub fn marker_frame(&self, slot: &str, frame: usize) -> Result<Vec<f32>, Problem> {
+        let solved = self.slot(slot)?;
+        let moved = self.moved_skin(slot, frame)?;
+        let rest = &self.face()?.skin.mesh.positions;
+        let width = 3 * solved.sites.len();
+        let mut out = Vec::with_capacity(2 * width);
+        for (m, site) in solved.sites.iter().enumerate() {
+            let at = |points: &[[f64; 3]]| {
+                let mut p = [0.0; 3];
+                for (v, share) in site.parts() {
+                    (0..3).for_each(|a| p[a] += share * points[v][a]);
+                }
+                p
+            };
+            let (from, is) = (at(rest), at(&moved));
+            let asked = &solved.displacements[frame * width + 3 * m..][..3];
+            out.extend((0..3).map(|a| (from[a] + asked[a]) as f32));
+            out.extend(is.map(|x| x as f32));
+        }
+        Ok(out)
+    }
+
+    /// The welded skin in a frame, metres.
+    pub(crate) fn moved_skin(&self, slot: &str, frame: usize) -> Result<Vec<[f64; 3]>, Problem> {
+        let solved = self.slot(slot)?;
+        let frames = solved.table.frames.len();
+        if frame >= frames {
+            return Err(Problem::of(
+                slot,
+                format!("frame {frame} of {frames}; choose one of them"),
+            ));
+        }
+        let weights = solved.table.row(frame);
+        let mesh = &self.face()?.skin.mesh;
+        if let Some(surface) = &solved.surface {
+            let moved = surface.displacements(weights).into_iter().zip(&mesh.positions);
+            return Ok(moved.map(|(d, p)| [p[0] + d[0], p[1] + d[1], p[2] + d[2]]).collect());
+        }
+        let mut out = mesh.positions.clone();
+        for (shape, w) in mesh.shapes.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+            for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
+                (0..3).for_each(|a| out[v as usize][a] += w * d[a]);
+            }
+        }
+        Ok(out)
+    }
+
+    /// The weights as the CSV that `mimique solve` writes.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`.
+    pub fn weights_csv(&self, slot: &str) -> Result<String, Problem> {
+        Ok(self.slot(slot)?.table.to_csv())
+    }
+
+    /// The avatar with frames `first..end` of the slot as a morph animation: a binary glTF file.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is solved under `slot`, no such frames.
+    pub fn animated_glb(&self, slot: &str, first: usize, end: usize) -> Result<Vec<u8>, Problem> {
+        let solved = self.slot(slot)?;
+        let frames = solved.table.frames.len();
+        if first >= end || end > frames {
+            let what = format!("frames {first}:{end} of {frames}; give a range inside the take");
+            return Err(Problem::of(slot, what));
+        }
+        let avatar = solved.avatar.as_ref().unwrap_or(&self.face()?.read.avatar);
+        let count = solved.table.shape_names.len();
+        let weights: Vec<f32> =
+            solved.table.weights[first * count..end * count].iter().map(|&w| w as f32).collect();
+        mimique_face::write_glb(avatar, &weights, solved.rate_hz)
+            .map_err(|e| Problem::of("animation", e))
+    }
+}
+
+/// Recorded weights under the avatar's own names.
+fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Value), Problem> {
+    let RecordedWeights { table, names } =
+        RecordedWeights::of(table, &face.read.avatar.shape_names);
+    let rate_hz = table
+        .rate_hz()
+        .ok_or_else(|| Problem::of(name, "column time: no rate; write the time of each row"))?;
+    let facts = json!({
+        "method": {"method": "recorded"},
+        "frames": table.frames.len(),
+        "rate_hz": rate_hz,
+        "shapes": table.shape_names,
+        "markers": [],
+        "head": [],
+        "summary": null,
+        "warnings": names.warnings(),
+        "weights_hash": weights_hash(&table.weights),
+        "own_avatar": false,
+    });
+    let solved = Solved {
+        table,
+        surface: None,
+        avatar: None,
+        rate_hz,
+        sites: Vec::new(),
+        displacements: Vec::new(),
+        residual_mm: Vec::new(),
+        kkt_error: Vec::new(),
+        iterations: Vec::new(),
+    };
+    Ok((solved, facts))
+}

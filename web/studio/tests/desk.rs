@@ -1,0 +1,151 @@
+//! The studio's desk as the page uses it.
+
+use mimique_test_support::real_data;
+use mimique_web_studio::Desk;
+use serde_json::Value;
+
+fn built_in() -> Desk {
+    let mut desk = Desk::new();
+    desk.built_in_avatar(1, 2_000).unwrap();
+    desk.built_in_take(1);
+    desk
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+#[test]
+fn the_built_in_actor_is_solved_without_any_file() {
+    let mut desk = built_in();
+    let state = desk.map_state().unwrap();
+    let placed = state["markers"].as_array().unwrap().iter().filter(|m| !m["vertex"].is_null());
+    assert_eq!(placed.count(), 40);
+    let facts = desk.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#).unwrap();
+    let frames = facts["frames"].as_u64().unwrap() as usize;
+    assert_eq!(desk.weights("a").unwrap().len(), frames * 51);
+    for series in ["residual", "kkt", "iterations"] {
+        assert_eq!(desk.series("a", series).unwrap().len(), frames);
+    }
+    assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{facts}");
+
+    // Where the skin is and where it is asked to be agree with the residual.
+    let frame = frames / 2;
+    let points = desk.marker_frame("a", frame).unwrap();
+    assert_eq!(points.len(), 6 * 40);
+    let square: f64 = points
+        .chunks_exact(6)
+        .map(|p| (0..3).map(|a| (1e3 * f64::from(p[a] - p[3 + a])).powi(2)).sum::<f64>())
+        .sum();
+    let residual = f64::from(desk.series("a", "residual").unwrap()[frame]);
+    let rms = (square / 40.0).sqrt();
+    assert!((rms - residual).abs() < 0.01 * residual + 1e-3, "{rms} {residual}");
+}
+
+#[test]
+fn two_methods_differ_where_the_heat_map_says_so() {
+    let mut desk = built_in();
+    desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    desk.solve("b", r#"{"method": "box"}"#).unwrap();
+    let frame = 500;
+    let same = desk.difference("a", "a", frame).unwrap();
+    assert_eq!((same.rms_mm, same.worst_mm), (0.0, 0.0));
+    let found = desk.difference("a", "b", frame).unwrap();
+    assert!(found.worst_mm > found.rms_mm && found.rms_mm > 0.0, "{found:?}");
+    // Straight on, 0.36 m high: the head fills much of the picture.
+    let s = 1.0 / 0.18;
+    let camera = [s, 0., 0., 0., 0., s, 0., 0., 0., 0., -0.5, 0., 0., 0., 0.5, 1.0];
+    let picture = desk.heat_map(["b", "a"], frame, &camera, [64, 64], 3.0).unwrap();
+    let drawn = picture.rgba.chunks_exact(4).filter(|p| p[3] == 255).count();
+    assert!((400..3_500).contains(&drawn), "{drawn}");
+    assert!(desk.heat_map(["b", "a"], frame, &camera[..3], [64, 64], 3.0).is_err());
+    let vertex = desk.pick(&camera, [64, 64], [32.0, 32.0]).unwrap().unwrap();
+    let state = desk.place("chin", Some(vertex), false).unwrap();
+    let chin = state["markers"].as_array().unwrap().iter().find(|m| m["label"] == "chin").unwrap();
+    assert_eq!(chin["vertex"], vertex);
+    assert!(number(&chin["position"][2]) > 0.0, "a click finds the front: {chin}");
+}
+
+#[test]
+fn the_map_goes_out_and_comes_back() {
+    let mut desk = built_in();
+    desk.place("nose_tip", None, false).unwrap();
+    desk.set_neutral(5, 65).unwrap();
+    let text = desk.map_json();
+    let state = desk.map_file("markers.json", &text).unwrap();
+    assert_eq!(state["neutral"], serde_json::json!([5, 65]));
+    assert_eq!(desk.map_json(), text);
+    for (problem, part) in [
+        (
+            desk.place("no such", None, false).unwrap_err(),
+            "no such: the capture has no such marker",
+        ),
+        (desk.place("chin", Some(9_999_999), false).unwrap_err(), "vertex 9999999 of"),
+        (desk.set_neutral(9, 9).unwrap_err(), "9:9 of"),
+        (desk.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
+        (desk.solve("a", r#"{"method": "regression"}"#).unwrap_err(), "mimique solve --training"),
+        (desk.solve("a", r#"{"method": "lasso"}"#).unwrap_err(), "method: "),
+        (desk.weights("c").unwrap_err(), "c: nothing is solved"),
+    ] {
+        assert!(problem.0.contains(part), "{problem}");
+    }
+    let mut empty = Desk::new();
+    assert!(empty.solve("a", r#"{"method": "lsts"}"#).unwrap_err().0.contains("no avatar yet"));
+    let problem = empty.avatar_file("head.glb", b"glTF".to_vec(), None).unwrap_err();
+    assert!(problem.0.starts_with("head.glb: "), "{problem}");
+    let problem = empty.take_file("take.c3d", b"", None, None).unwrap_err();
+    assert!(problem.0.starts_with("take.c3d: "), "{problem}");
+}
+
+#[test]
+fn expressions_are_suggested_mended_and_carried() {
+    let mut desk = built_in();
+    desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    let found = desk.suggest_expressions("a", "one, two").unwrap();
+    let segments = found["segments"].as_array().unwrap();
+    assert_eq!(segments.len(), 18, "{found}");
+    assert_eq!((&segments[0]["label"], &segments[1]["label"]), (&"one".into(), &"two".into()));
+    let edited = r#"[{"label": "joy", "expression": [100, 300]}, {"label": "fear", "expression": [600, 900]}]"#;
+    desk.set_expressions(edited).unwrap();
+    let csv = desk.expressions_csv().unwrap();
+    let eaf = desk.expressions_eaf(None, "2026-01-01T00:00:00+00:00").unwrap();
+    for (file, text) in [("segments.csv", csv), ("segments.eaf", eaf)] {
+        desk.set_expressions("[]").unwrap();
+        let back = desk.expressions_file(file, &text).unwrap();
+        assert_eq!(back["segments"][1]["label"], "fear", "{file}: {text}");
+        assert_eq!(back["segments"][0]["expression"], serde_json::json!([100, 300]), "{file}");
+    }
+    let problem = desk.set_expressions(r#"[{"label": "x", "expression": [5, 5]}]"#).unwrap_err();
+    assert!(problem.0.contains("x: frames 5:5 of"), "{problem}");
+}
+
+#[test]
+fn what_is_exported_is_what_was_solved() {
+    let mut desk = built_in();
+    desk.solve("a", r#"{"method": "box"}"#).unwrap();
+    let csv = desk.weights_csv("a").unwrap();
+    let glb = desk.animated_glb("a", 60, 160).unwrap();
+    let mut again = Desk::new();
+    let facts = again.avatar_file("animated.glb", glb, None).unwrap();
+    assert_eq!(facts["shapes"].as_array().unwrap().len(), 51);
+    again.take_file("weights.csv", csv.as_bytes(), None, None).unwrap();
+    let facts = again.solve("a", r#"{"method": "recorded"}"#).unwrap();
+    assert_eq!(facts["warnings"], serde_json::json!([]));
+    let (a, b) = (desk.weights("a").unwrap(), again.weights("a").unwrap());
+    assert_eq!(a.len(), b.len());
+    assert!(a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-6));
+}
+
+#[test]
+fn a_real_capture_is_matched_and_solved_without_help() {
+    let Some(data) = real_data("a_real_capture_is_matched_and_solved_without_help") else { return };
+    let read = |path: &str| std::fs::read(data.join(path)).unwrap();
+    let mut desk = Desk::new();
+    desk.avatar_file("ict-facekit.glb", read("ict-facekit/ict-facekit.glb"), None).unwrap();
+    desk.take_file("JawMoCap.c3d", &read("animface/JawMoCap.c3d"), None, None).unwrap();
+    let state = desk.suggest_map().unwrap();
+    assert!(state["suggestion"]["notes"].is_array());
+    let facts = desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    println!("suggested map: {} warnings {}", facts["summary"], facts["warnings"]);
+    assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
+}
