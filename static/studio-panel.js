@@ -140,6 +140,11 @@ export class MethodPanel {
       select.addEventListener("change", change);
       rows.push(made("label", {}, label, select));
     }
+    if (parameters.includes("locked")) {
+      this.#hold = made("input", { type: "checkbox", checked: true });
+      this.#hold.addEventListener("change", change);
+      rows.push(made("label", { className: "preview-check" }, this.#hold, " Hold what no marker sees at 0"));
+    } else this.#hold = null;
     this.#parameters.replaceChildren(...rows);
     this.#parameters.parentElement.hidden = rows.length === 0;
   }
@@ -177,7 +182,7 @@ export class MethodPanel {
     this.#veil.textContent = "Solving";
     try {
       const started = performance.now();
-      const facts = await desk("solve", this.#slot, JSON.stringify(this.spec()));
+      const facts = await desk("solve", this.#slot, JSON.stringify(this.spec()), this.#hold?.checked ?? true);
       const took = performance.now() - started;
       if (run !== this.#run) return;
       const [weights, pack] = await Promise.all([desk("weights", this.#slot), desk("slotPack", this.#slot)]);
@@ -210,6 +215,7 @@ export class MethodPanel {
   }
 
   #lastOwn = false;
+  #hold = null;
 
   turn() {
     const [yaw, pitch] = document.getElementById("view").value.split(",").map(Number);
@@ -277,6 +283,7 @@ export class MethodPanel {
       this.#row("Residual", `${summary.residual_rms_mm.toFixed(2)} mm rms, ${summary.residual_worst_mm.toFixed(2)} mm worst`);
       this.#row("Iterations", `${summary.iterations_mean.toFixed(1)} a frame, KKT error ${summary.kkt_worst.toExponential(1)}`);
     }
+    if (facts.held?.length > 0) this.#row("Held at 0", facts.held.join(", "));
     this.#row("Weights", facts.weights_hash.slice(0, 16));
     this.#notices.replaceChildren(...facts.warnings.map((text) => made("p", { className: "notice warn" }, text)));
   }

@@ -113,8 +113,13 @@ impl Studio {
     }
 
     /// [`Desk::solve`].
-    pub fn solve(&mut self, slot: &str, method: &str) -> Result<String, JsError> {
-        self.desk.solve(slot, method).map(text).map_err(error)
+    pub fn solve(
+        &mut self,
+        slot: &str,
+        method: &str,
+        hold_unseen: bool,
+    ) -> Result<String, JsError> {
+        self.desk.solve(slot, method, hold_unseen).map(text).map_err(error)
     }
 
     /// [`Desk::forget`].

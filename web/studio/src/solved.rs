@@ -1,7 +1,7 @@
 //! The take by one method: weights, what the markers asked for, residuals; its exports.
 
 use mimique_face::Avatar;
-use mimique_solver::{MarkerSite, Method, MethodSpec, SurfaceResponse};
+use mimique_solver::{MarkerSite, Method, MethodSpec, SparseDeltas, SurfaceResponse};
 use mimique_stimulus::{
     RecordedWeights, SolvedCapture, TakeOptions, WeightsTable, lock_shapes, solve_take,
     surface_avatar, weights_hash,
@@ -9,6 +9,9 @@ use mimique_stimulus::{
 use serde_json::{Value, json};
 
 use crate::desk::{Desk, Face, Problem, Take};
+
+/// A shape that moves no marker farther is unseen, metres.
+const UNSEEN_M: f64 = 1e-3;
 
 /// The take solved by one method.
 #[derive(Debug)]
@@ -28,11 +31,11 @@ pub(crate) struct Solved {
 
 impl Desk {
     /// Solves the take by a method (a `MethodSpec` as JSON) and keeps it under `slot`; answers facts
-    /// and the report's summary.
+    /// and the report's summary. With `hold_unseen`, shapes that move no marker stay at 0.
     ///
     /// # Errors
     /// [`Problem`]: avatar, take or map are missing or do not fit, or the method does not solve.
-    pub fn solve(&mut self, slot: &str, method: &str) -> Result<Value, Problem> {
+    pub fn solve(&mut self, slot: &str, method: &str, hold_unseen: bool) -> Result<Value, Problem> {
         let mut spec: MethodSpec =
             serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
         spec.validate().map_err(|e| Problem::of("method", e))?;
@@ -53,10 +56,33 @@ impl Desk {
                 let what = "regression needs a take to learn from; use mimique solve --training";
                 return Err(Problem::of("method", what));
             }
-            _ => self.fitted(face, &spec)?,
+            _ => {
+                let unseen = if hold_unseen { self.unseen(face)? } else { Vec::new() };
+                lock_shapes(&mut spec, &unseen);
+                let (solved, mut facts) = self.fitted(face, &spec)?;
+                facts["held"] = json!(unseen);
+                (solved, facts)
+            }
         };
         self.solved.insert(slot.to_owned(), solved);
         Ok(facts)
+    }
+
+    /// Shapes that move no marker of map and capture by a millimetre.
+    fn unseen(&self, face: &Face) -> Result<Vec<String>, Problem> {
+        let capture = self.capture()?;
+        let sites = self.map.resolve(&face.skin).map_err(|e| Problem::of("marker map", e))?;
+        let mut marked = vec![false; face.skin.mesh.positions.len()];
+        for site in sites.iter().filter(|s| capture.marker_index(&s.label).is_some()) {
+            site.parts().for_each(|(vertex, _)| marked[vertex] = true);
+        }
+        let moves_marker = |shape: &SparseDeltas| {
+            let length = |d: &[f64; 3]| d.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (shape.vertices.iter().zip(&shape.deltas))
+                .any(|(&v, d)| marked[v as usize] && length(d) >= UNSEEN_M)
+        };
+        let shapes = face.skin.shape_names.iter().zip(&face.skin.mesh.shapes);
+        Ok(shapes.filter(|(_, s)| !moves_marker(s)).map(|(name, _)| name.clone()).collect())
     }
 
     fn fitted(&self, face: &Face, spec: &MethodSpec) -> Result<(Solved, Value), Problem> {

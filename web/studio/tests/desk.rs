@@ -21,13 +21,19 @@ fn the_built_in_actor_is_solved_without_any_file() {
     let state = desk.map_state().unwrap();
     let placed = state["markers"].as_array().unwrap().iter().filter(|m| !m["vertex"].is_null());
     assert_eq!(placed.count(), 40);
-    let facts = desk.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#).unwrap();
+    let facts = desk.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#, true).unwrap();
     let frames = facts["frames"].as_u64().unwrap() as usize;
     assert_eq!(desk.weights("a").unwrap().len(), frames * 51);
     for series in ["residual", "kkt", "iterations"] {
         assert_eq!(desk.series("a", series).unwrap().len(), frames);
     }
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{facts}");
+    // Gaze moves no marker: the eyes rest unless one asks for them.
+    let held = facts["held"].as_array().unwrap();
+    assert!(held.contains(&"eyeLookInLeft".into()) && held.len() < 10, "{held:?}");
+    assert_eq!(facts["warnings"], serde_json::json!([]));
+    let free = desk.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
+    assert!(free["warnings"][0].as_str().unwrap().contains("eyeLookInLeft"), "{free}");
 
     // Where the skin is and where it is asked to be agree with the residual.
     let frame = frames / 2;
@@ -45,8 +51,8 @@ fn the_built_in_actor_is_solved_without_any_file() {
 #[test]
 fn two_methods_differ_where_the_heat_map_says_so() {
     let mut desk = built_in();
-    desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
-    desk.solve("b", r#"{"method": "box"}"#).unwrap();
+    desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    desk.solve("b", r#"{"method": "box"}"#, true).unwrap();
     let frame = 500;
     let same = desk.difference("a", "a", frame).unwrap();
     assert_eq!((same.rms_mm, same.worst_mm), (0.0, 0.0));
@@ -83,14 +89,19 @@ fn the_map_goes_out_and_comes_back() {
         (desk.place("chin", Some(9_999_999), false).unwrap_err(), "vertex 9999999 of"),
         (desk.set_neutral(9, 9).unwrap_err(), "9:9 of"),
         (desk.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
-        (desk.solve("a", r#"{"method": "regression"}"#).unwrap_err(), "mimique solve --training"),
-        (desk.solve("a", r#"{"method": "lasso"}"#).unwrap_err(), "method: "),
+        (
+            desk.solve("a", r#"{"method": "regression"}"#, true).unwrap_err(),
+            "mimique solve --training",
+        ),
+        (desk.solve("a", r#"{"method": "lasso"}"#, true).unwrap_err(), "method: "),
         (desk.weights("c").unwrap_err(), "c: nothing is solved"),
     ] {
         assert!(problem.0.contains(part), "{problem}");
     }
     let mut empty = Desk::new();
-    assert!(empty.solve("a", r#"{"method": "lsts"}"#).unwrap_err().0.contains("no avatar yet"));
+    assert!(
+        empty.solve("a", r#"{"method": "lsts"}"#, true).unwrap_err().0.contains("no avatar yet")
+    );
     let problem = empty.avatar_file("head.glb", b"glTF".to_vec(), None).unwrap_err();
     assert!(problem.0.starts_with("head.glb: "), "{problem}");
     let problem = empty.take_file("take.c3d", b"", None, None).unwrap_err();
@@ -100,7 +111,7 @@ fn the_map_goes_out_and_comes_back() {
 #[test]
 fn expressions_are_suggested_mended_and_carried() {
     let mut desk = built_in();
-    desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
     let found = desk.suggest_expressions("a", "one, two").unwrap();
     let segments = found["segments"].as_array().unwrap();
     assert_eq!(segments.len(), 18, "{found}");
@@ -122,14 +133,14 @@ fn expressions_are_suggested_mended_and_carried() {
 #[test]
 fn what_is_exported_is_what_was_solved() {
     let mut desk = built_in();
-    desk.solve("a", r#"{"method": "box"}"#).unwrap();
+    desk.solve("a", r#"{"method": "box"}"#, true).unwrap();
     let csv = desk.weights_csv("a").unwrap();
     let glb = desk.animated_glb("a", 60, 160).unwrap();
     let mut again = Desk::new();
     let facts = again.avatar_file("animated.glb", glb, None).unwrap();
     assert_eq!(facts["shapes"].as_array().unwrap().len(), 51);
     again.take_file("weights.csv", csv.as_bytes(), None, None).unwrap();
-    let facts = again.solve("a", r#"{"method": "recorded"}"#).unwrap();
+    let facts = again.solve("a", r#"{"method": "recorded"}"#, true).unwrap();
     assert_eq!(facts["warnings"], serde_json::json!([]));
     let (a, b) = (desk.weights("a").unwrap(), again.weights("a").unwrap());
     assert_eq!(a.len(), b.len());
@@ -145,7 +156,7 @@ fn a_real_capture_is_matched_and_solved_without_help() {
     desk.take_file("JawMoCap.c3d", &read("animface/JawMoCap.c3d"), None, None).unwrap();
     let state = desk.suggest_map().unwrap();
     assert!(state["suggestion"]["notes"].is_array());
-    let facts = desk.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    let facts = desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
     println!("suggested map: {} warnings {}", facts["summary"], facts["warnings"]);
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
 }
