@@ -44,7 +44,6 @@ pub fn router(app: App) -> Router {
         .route("/", get(pages::index))
         .route("/s/{study}", get(pages::participant_without_slash))
         .route("/s/{study}/", get(pages::participant))
-        .route("/studio", get(pages::studio))
         .route("/assets/{hash}/{*name}", get(statics::asset))
         .route("/packs/{hash}", get(statics::pack))
         .route("/api/studies", get(studies::list))
@@ -74,6 +73,7 @@ fn researchers(app: &App) -> Router<App> {
     let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
     Router::new()
         .route("/preview/{study}", get(pages::preview))
+        .route("/studio", get(pages::studio))
         .route("/researcher", get(researcher::home))
         .route(STUDY, get(researcher::study))
         .route(&format!("{STUDY}/live"), get(researcher::live))

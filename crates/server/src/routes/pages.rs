@@ -82,10 +82,7 @@ pub(super) async fn preview(
 }
 
 /// The studio: everything in it happens in the browser.
-pub(super) async fn studio(
-    State(app): State<App>,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
+pub(super) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result<Response, Error> {
     may_look(&app, &headers).await?;
     crate::studio::studio_page(&app.assets, &crate::studio::StudioFiles::new())
 }
