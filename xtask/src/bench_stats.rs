@@ -48,7 +48,7 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     for (what, beside) in measurements() {
         let mut times = Vec::new();
         for _ in 0..rounds {
-            let mut seconds = |partner: &mut Partner| number(&partner.ask(&what)?, "\"seconds\":");
+            let seconds = |partner: &mut Partner| number(&partner.ask(&what)?, "\"seconds\":");
             times.push((seconds(&mut ours)?, seconds(&mut theirs)?));
         }
         let ratios: Vec<f64> = times.iter().map(|(own, peer)| peer / own).collect();

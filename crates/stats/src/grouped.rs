@@ -25,6 +25,8 @@ pub(crate) struct Grouped<'a> {
     values: Cow<'a, [f64]>,
     /// Count of each distinct value, group after group; none where there are too many.
     counts: Option<Vec<u64>>,
+    /// Median response of each group, where it was met on the way.
+    medians: Option<Vec<f64>>,
 }
 
 impl<'a> Grouped<'a> {
@@ -47,14 +49,22 @@ impl<'a> Grouped<'a> {
             }
             counts
         });
-        match &counts {
-            Some(counts) => {
+        let mut medians = None;
+        match (&counts, &ranks.order) {
+            (Some(counts), _) => {
                 for (code, own) in counts.chunks_exact(distinct).enumerate() {
                     sizes[code] = own.iter().sum::<u64>() as usize;
                     doubled_sums[code] = own.iter().zip(&ranks.doubled).map(|(n, r)| n * r).sum();
                 }
             }
-            None => {
+            (None, Some(order)) => {
+                for &code in &group.codes {
+                    sizes[code as usize] += 1;
+                }
+                let middles = in_order(&ranks, order, &group.codes, &sizes, &mut doubled_sums);
+                medians = Some(middles);
+            }
+            (None, None) => {
                 for (observation, &code) in group.codes.iter().enumerate() {
                     sizes[code as usize] += 1;
                     doubled_sums[code as usize] += ranks.doubled_rank(observation);
@@ -62,7 +72,16 @@ impl<'a> Grouped<'a> {
             }
         }
         let dropped = rows.dropped();
-        Ok(Outcome::Ok(Self { ranks, group, dropped, sizes, doubled_sums, values, counts }))
+        Ok(Outcome::Ok(Self {
+            ranks,
+            group,
+            dropped,
+            sizes,
+            doubled_sums,
+            values,
+            counts,
+            medians,
+        }))
     }
 
     /// Distinct responses of one group with their counts.
@@ -85,6 +104,9 @@ impl<'a> Grouped<'a> {
 
     /// Median response of each group.
     pub(crate) fn medians(&self) -> Vec<f64> {
+        if let Some(medians) = &self.medians {
+            return medians.clone();
+        }
         if self.counts.is_some() {
             return (0..self.sizes.len()).map(|group| self.tally(group).median()).collect();
         }
@@ -95,6 +117,39 @@ impl<'a> Grouped<'a> {
         }
         by_group.iter_mut().map(|values| middle(values)).collect()
     }
+}
+
+/// Walks the observations in ascending order: adds up the doubled ranks of each group, and meets the
+/// middle of each.
+fn in_order(
+    ranks: &Ranks,
+    order: &[u32],
+    groups: &[u32],
+    sizes: &[usize],
+    doubled_sums: &mut [u64],
+) -> Vec<f64> {
+    // Observations of the group so far; how many there are at its lower and its upper middle.
+    let mut walks: Vec<(usize, usize, usize)> =
+        sizes.iter().map(|&n| (0, n.saturating_sub(1) / 2 + 1, n / 2 + 1)).collect();
+    let mut middles = vec![(0.0, 0.0); sizes.len()];
+    let mut rest = order;
+    for ((&value, &count), &rank) in ranks.values.iter().zip(&ranks.counts).zip(&ranks.doubled) {
+        let (tied, after) = rest.split_at(count as usize);
+        rest = after;
+        for &observation in tied {
+            let group = groups[observation as usize] as usize;
+            doubled_sums[group] += rank;
+            let (met, lower, upper) = &mut walks[group];
+            *met += 1;
+            if *met == *lower {
+                middles[group].0 = value;
+            }
+            if *met == *upper {
+                middles[group].1 = value;
+            }
+        }
+    }
+    middles.into_iter().map(|(low, high)| low + 0.5 * (high - low)).collect()
 }
 
 /// Why ranks say nothing.

@@ -17,6 +17,9 @@ pub(crate) trait Pairs: Sync {
     /// Smallest and largest value.
     fn range(&self) -> (f64, f64);
 
+    /// All pairs.
+    fn all(&self) -> Count;
+
     /// Limits that should lie closely on both sides of the value with this share of all pairs below
     /// it, where they cost less than a few passes.
     fn guess(&self, share: f64) -> Option<(f64, f64)>;
@@ -40,7 +43,8 @@ const ASIDE: u64 = LISTED / 4;
 pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
     let (smallest, largest) = pairs.range();
     // Invariant: fewer than k at `low`, k or more at `high`.
-    let (mut low, mut high) = (Limit::below(smallest), Limit::at(largest, pairs));
+    let (mut low, mut high) =
+        (Limit::below(smallest), Limit { value: largest, count: pairs.all() });
     let all = high.count.pairs;
     if let Some((below, above)) = pairs.guess(k as f64 / all as f64) {
         for limit in [below, above].map(|value| Limit::at(value, pairs)) {

@@ -212,14 +212,18 @@ impl Table {
             .into_par_iter()
             .map(|(piece, values)| {
                 values.iter_mut().enumerate().find_map(|(record, value)| {
-                    match self.written(piece, record, position) {
-                        None => *value = f64::NAN,
-                        Some(cell) => match plain_decimal(cell).or_else(|| self.number(text(cell)))
-                        {
-                            Some(number) => *value = number,
+                    let (start, end) = self.pieces[piece].place(record, position, self.names.len());
+                    if let Some(number) = plain_decimal(&self.bytes[start..end]) {
+                        *value = number;
+                        return None;
+                    }
+                    *value = match self.written(piece, record, position) {
+                        None => f64::NAN,
+                        Some(cell) => match self.number(text(cell)) {
+                            Some(number) => number,
                             None => return Some(self.firsts[piece] + record),
                         },
-                    }
+                    };
                     None
                 })
             })

@@ -259,6 +259,11 @@ impl Pairs for WalshAverages<'_> {
         (self.values[0], self.values[self.values.len() - 1])
     }
 
+    fn all(&self) -> Count {
+        let distinct = self.values.len() as u64;
+        Count { pairs: pairs_of(self.before[self.values.len()]), distinct: pairs_of(distinct) }
+    }
+
     fn guess(&self, share: f64) -> Option<(f64, f64)> {
         let few = self.stand_ins.as_ref()?;
         Some(around(&WalshAverages::of(few), pairs_of(few.total()), share))
@@ -332,6 +337,11 @@ impl Pairs for Differences<'_> {
     fn range(&self) -> (f64, f64) {
         let (x, y) = (&self.x.values, &self.y.values);
         (x[0] - y[y.len() - 1], x[x.len() - 1] - y[0])
+    }
+
+    fn all(&self) -> Count {
+        let (x, y) = (self.x.values.len() as u64, self.y.values.len() as u64);
+        Count { pairs: self.x.total() * self.y_before[self.y.values.len()], distinct: x * y }
     }
 
     fn guess(&self, share: f64) -> Option<(f64, f64)> {

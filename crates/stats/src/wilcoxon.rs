@@ -130,7 +130,11 @@ pub fn wilcoxon(
     let alternative = options.alternative;
     let magnitudes = Magnitudes::of(&all);
     let dropping = SignedRanks::of(&magnitudes, Zeros::Drop);
-    let pratt = SignedRanks::of(&magnitudes, Zeros::Pratt);
+    let pratt = if without_zeros.is_some() {
+        SignedRanks::of(&magnitudes, Zeros::Pratt)
+    } else {
+        dropping.clone()
+    };
     let split = SignedRanks::of(&magnitudes, Zeros::Split);
     let ties = dropping.has_ties();
     let zeros = n > n_used;

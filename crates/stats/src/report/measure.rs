@@ -267,39 +267,51 @@ impl Measure {
     }
 }
 
-/// Sums and counts in rows of cells.
+/// Sums and counts in rows of cells; only rows that are met take room.
 struct Sums {
     width: usize,
     cells: Vec<(f64, f64)>,
-    met: Vec<bool>,
+    /// Where the cells of each row begin, in rows; [`ABSENT`] where none was met.
+    begins: Vec<u32>,
+    met: u32,
 }
+
+const ABSENT: u32 = u32::MAX;
 
 impl Sums {
     fn new(rows: usize, width: usize) -> Self {
-        Self { width, cells: vec![(0.0, 0.0); rows * width], met: vec![false; rows] }
+        Self { width, cells: Vec::new(), begins: vec![ABSENT; rows], met: 0 }
     }
 
     /// Adds a value; a code that is no cell only says that the row is there.
     fn add(&mut self, row: usize, code: u32, value: f64) {
-        self.met[row] = true;
-        let own = &mut self.cells[row * self.width..(row + 1) * self.width];
-        if let Some(cell) = own.get_mut(code as usize) {
+        if self.begins[row] == ABSENT {
+            self.begins[row] = self.met;
+            self.met += 1;
+            self.cells.resize(self.met as usize * self.width, (0.0, 0.0));
+        }
+        let begin = self.begins[row] as usize * self.width;
+        if let Some(cell) = self.cells[begin..begin + self.width].get_mut(code as usize) {
             cell.0 += value;
             cell.1 += 1.0;
         }
     }
 
-    /// Rows that were there.
+    /// Rows that were met.
     fn met(&self) -> usize {
-        self.met.iter().filter(|met| **met).count()
+        self.met as usize
     }
 
     /// Rows with a value in each cell, and their means.
     fn complete(&self) -> impl Iterator<Item = (usize, Vec<f64>)> {
-        let row = |row: usize| &self.cells[row * self.width..(row + 1) * self.width];
-        (0..self.met.len())
-            .filter(move |&place| self.met[place] && row(place).iter().all(|cell| cell.1 > 0.0))
-            .map(move |place| (place, row(place).iter().map(|(sum, n)| sum / n).collect()))
+        let own = |begin: u32| &self.cells[begin as usize * self.width..][..self.width];
+        self.begins
+            .iter()
+            .enumerate()
+            .filter(|(_, begin)| **begin != ABSENT)
+            .map(move |(row, &begin)| (row, own(begin)))
+            .filter(|(_, cells)| cells.iter().all(|(_, count)| *count > 0.0))
+            .map(|(row, cells)| (row, cells.iter().map(|(sum, count)| sum / count).collect()))
     }
 }
 
