@@ -12,6 +12,10 @@ export const firefox = candidates.find((path) => path && existsSync(path));
 /** A Firefox with a fresh profile: `{evaluate(code), goto(url), screenshot(path), errors, close()}`. */
 export async function openFirefox({ width = 1000, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "mimique-firefox-"));
+  // Graphics in software, as far as this machine has a driver for it.
+  const preferences = { "webgl.force-enabled": true, "webgl.disable-fail-if-major-performance-caveat": true, "gfx.webrender.software": true };
+  const lines = Object.entries(preferences).map(([name, value]) => `user_pref("${name}", ${value});`);
+  writeFileSync(join(profile, "user.js"), lines.join("\n"));
   const child = spawn(firefox, ["--headless", "--no-remote", "--profile", profile, "--remote-debugging-port", "0", `--width=${width}`, `--height=${height}`], {
     stdio: ["ignore", "pipe", "pipe"],
     env: { ...process.env, MOZ_REMOTE_ALLOW_SYSTEM_ACCESS: "1" },
