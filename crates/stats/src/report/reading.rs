@@ -145,7 +145,9 @@ fn pair_sentence(
         }
     };
     let observed = pair.difference.map_or_else(String::new, |d| {
-        let sign = if line.effect.unwrap_or(0.0) < 0.0 { -1.0 } else { 1.0 };
+        // The higher level is named first where there is one; else a is, as in the tables.
+        let named = pair.wilcoxon.p_that_counts().is_some_and(|p| p < LEVEL);
+        let sign = if named && line.effect.unwrap_or(0.0) < 0.0 { -1.0 } else { 1.0 };
         let mut ends = [d.ci_low * sign, d.ci_high * sign];
         ends.sort_unstable_by(f64::total_cmp);
         let [estimate, low, high] =
