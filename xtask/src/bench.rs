@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
         bail!("SciPy finds other weights than we do: nothing to compare");
     }
 
-    let mut rounds: Vec<[f64; 13]> = Vec::new();
+    let mut rounds: Vec<[f64; 14]> = Vec::new();
     let mut memory = 0.0;
     for round in 1..=args.rounds.max(1) {
         say(&format!("round {round} of {}", args.rounds.max(1)));
@@ -111,6 +111,7 @@ pub fn run(args: &Args) -> Result<()> {
             in_wasm_norm,
             1.0 / ours.rate("set-up 11248")?,
             1.0 / ours.rate("set-up 26719")?,
+            ours.rate("lsts fine")?,
         ]);
     }
     let column = |k: usize| median(rounds.iter().map(|r| r[k]).collect());
@@ -133,6 +134,12 @@ pub fn run(args: &Args) -> Result<()> {
     row("`lsts`, solve alone", rate(0), against(0, 1, "bvls"), "80 x");
     row("`lsts-norm`, solve alone", rate(2), against(2, 3, "L-BFGS-B, tight"), "60 x");
     row("", String::new(), against(2, 4, "L-BFGS-B as it comes"), "");
+    row(
+        "`lsts`, mesh four times as fine",
+        rate(13),
+        format!("{:.2} of the skin's", ratio(13, 0)),
+        "the same",
+    );
     row("front end", rate(5), String::new(), "100,000 frames/s");
     row("vertex synthesis, S = 11,248", rate(6), String::new(), "15,000 frames/s");
     let wasm_row =

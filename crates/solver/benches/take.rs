@@ -11,7 +11,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mimique_solver::{
     Fit, FrontEnd, Laplacian, LaplacianKind, MarkerColumns, MarkerFrames, Method, MethodSpec,
-    OperatorOptions, Operators, shell_gram,
+    OperatorOptions, Operators, Synthesis, shell_gram,
 };
 
 fn take(c: &mut Criterion) {
@@ -43,9 +43,22 @@ fn take(c: &mut Criterion) {
         let fit = Fit::new(&operators, &spec).unwrap();
         group.bench_function(method.name(), |b| b.iter(|| black_box(fit.solve_take(&d).unwrap())));
     }
+    let (mesh, names) = common::skin(&data);
+    let mut spec = MethodSpec::new(Method::Lsts);
+    spec.alpha = Some(0.3);
+    let weights = Fit::new(&operators, &spec).unwrap().solve_take(&d).unwrap().weights;
+    let synthesis = Synthesis::new(&mesh);
+    let mut out = vec![0.0; 64 * synthesis.coordinates()];
+    group.bench_function("synthesis", |b| {
+        b.iter(|| {
+            for frames in weights.chunks(64 * names.len()) {
+                synthesis.pose(black_box(frames), &mut out);
+                black_box(&out);
+            }
+        });
+    });
     group.finish();
 
-    let (mesh, names) = common::skin(&data);
     let markers = common::markers(&data, "face");
     let vertices: Vec<usize> = markers.iter().map(|m| m.1).collect();
     let mut group = c.benchmark_group("set-up");

@@ -96,7 +96,9 @@ impl BoxState {
                     c[i] = c[i].clamp(bounds[i][0], bounds[i][1]);
                 }
                 let kkt_error = kkt_error(q, &self.gradient, c, bounds);
-                return Outcome { iterations, kkt_error, converged: violations == 0 };
+                // What is no number violates nothing.
+                let finite = c.iter().chain(&self.gradient).all(|x| x.is_finite());
+                return Outcome { iterations, kkt_error, converged: violations == 0 && finite };
             }
             let block = if violations < fewest {
                 fewest = violations;
@@ -177,6 +179,11 @@ pub(crate) fn kkt_error(q: &[f64], gradient: &[f64], c: &[f64], bounds: &[[f64; 
             return worst;
         }
         let goal = (c[i] - gradient[i] / q[i * n + i]).clamp(bounds[i][0], bounds[i][1]);
-        worst.max((goal - c[i]).abs())
+        worse(worst, (goal - c[i]).abs())
     })
+}
+
+/// The larger of two errors; what is no number is infinitely wrong.
+pub(crate) fn worse(worst: f64, error: f64) -> f64 {
+    if error.is_nan() { f64::INFINITY } else { worst.max(error) }
 }

@@ -6,27 +6,37 @@
 
 /// Compile a function twice on x86-64, for the vectors that every processor has and for AVX's of
 /// twice the width, and choose at run time. Without the feature `fma` the bits are the same.
+/// `widest! { [FEATURES] fn ... }` names the features itself, the widest first.
 macro_rules! widest {
-    ($(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*) $(-> $out:ty)? $body:block) => {
+    ([$($feature:tt),*] $(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*)
+        $(-> $out:ty)? $body:block) => {
         $(#[$doc])*
         #[inline]
         #[allow(unsafe_code)]
         pub(crate) fn $name($($arg: $type),*) $(-> $out)? {
             #[inline(always)]
             fn any($($arg: $type),*) $(-> $out)? $body
-
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx")]
-                fn avx($($arg: $type),*) $(-> $out)? {
-                    any($($arg),*)
-                }
-                if std::arch::is_x86_feature_detected!("avx") {
-                    // SAFETY: the processor has AVX, as was just asked.
-                    return unsafe { avx($($arg),*) };
-                }
-            }
+            widest!(@choose any [$($feature),*] ($($arg: $type),*) ($($arg),*) ($($out)?));
             any($($arg),*)
+        }
+    };
+    ($(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*) $(-> $out:ty)? $body:block) => {
+        widest! { ["avx"] $(#[$doc])* fn $name($($arg: $type),*) $(-> $out)? $body }
+    };
+    (@choose $any:ident [$($feature:tt),*] $taken:tt $given:tt $out:tt) => {
+        $(widest!(@one $any $feature $taken $given $out);)*
+    };
+    (@one $any:ident $feature:tt ($($arg:ident: $type:ty),*) $given:tt ($($out:ty)?)) => {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = $feature)]
+            fn wide($($arg: $type),*) $(-> $out)? {
+                $any($($arg),*)
+            }
+            if std::arch::is_x86_feature_detected!($feature) {
+                // SAFETY: the processor has the feature, as was just asked.
+                return unsafe { wide $given };
+            }
         }
     };
 }

@@ -1,6 +1,6 @@
 //! One interface to every method: set up once, then displacements in, weights and a report out.
 
-use crate::box_qp::{BoxState, Outcome};
+use crate::box_qp::{BoxState, Outcome, worse};
 use crate::dense::{axpy, dot, mul, mul_transposed};
 use crate::method_spec::MethodSpec;
 use crate::newton::NewtonState;
@@ -244,8 +244,13 @@ impl FrameSolver<'_> {
             }
         };
         weights.fill(0.0);
-        for (&k, &c) in problem.free.iter().zip(&self.weights) {
-            weights[k] = c;
+        // A search that ends nowhere shows the neutral face, and its frame is warned of.
+        let somewhere = self.weights.iter().all(|c| c.is_finite());
+        let converged = outcome.converged && somewhere;
+        if somewhere {
+            for (&k, &c) in problem.free.iter().zip(&self.weights) {
+                weights[k] = c;
+            }
         }
         let misfit = match &problem.engine {
             Engine::Smooth { .. } => self.newton.misfit(),
@@ -260,7 +265,7 @@ impl FrameSolver<'_> {
         };
         let importance = seen.importance;
         let no_markers = !(importance > 0.0);
-        let warning = if !outcome.converged {
+        let warning = if !converged {
             // The next frame is better off with a fresh start.
             self.reset();
             Some(FrameWarning::NotConverged)
@@ -351,7 +356,7 @@ fn pseudo_inverse_outcome(seen: &Seen, d: &[f64], c: &[f64], scratch: &mut Vec<f
     mul_transposed(&seen.deltas, residual, gradient);
     let kkt_error = (0..n).fold(0.0, |worst: f64, i| {
         let h = seen.gram[i * n + i];
-        if h > 0.0 { worst.max((gradient[i] / h).abs()) } else { worst }
+        if h > 0.0 { worse(worst, (gradient[i] / h).abs()) } else { worst }
     });
     Outcome { iterations: 1, kkt_error, converged: kkt_error < 1e-6 }
 }

@@ -3,83 +3,14 @@
 
 use std::ops::Range;
 
+use crate::front_end_error::{FrontEndError, equal};
 use crate::head_pose::{head_poses, head_reference};
-use crate::lowpass::{Lowpass, LowpassError};
+use crate::lowpass::Lowpass;
+use crate::marker_frames::{MarkerColumns, MarkerFrames, check_columns, is_seen, point};
 use crate::marker_scales::MarkerScales;
-use crate::rbf::{Rbf, RbfError};
-use crate::rigid_alignment::{RigidError, RigidMotion, align_rigidly};
+use crate::rbf::Rbf;
+use crate::rigid_alignment::{RigidMotion, align_rigidly};
 use crate::surface_depth::SurfaceDepth;
-
-/// Frames of marker positions: x, y, z of column 0, then of column 1...; NaN = not seen.
-///
-/// The caller has converted to metres: the front end knows no unit.
-#[derive(Debug, Clone, Copy)]
-pub struct MarkerFrames<'a> {
-    /// frames x 3 columns.
-    pub positions: &'a [f64],
-    /// Markers a frame.
-    pub columns: usize,
-}
-
-/// Which columns of a frame are what.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MarkerColumns {
-    /// The column of each face marker, in the order of the operators' marker labels.
-    pub face: Vec<usize>,
-    /// The columns that move rigidly with the head: markers on a headband, or the face markers
-    /// that move least. None = the capture is already free of head motion.
-    pub head: Option<Vec<usize>>,
-}
-
-/// Where and why the front end cannot go on.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FrontEndError {
-    /// The head's pose cannot be told in a frame.
-    #[error("frame {frame}, head markers: {cause}; name other head markers, or fill the gap")]
-    Head {
-        /// Index of the frame.
-        frame: usize,
-        /// Why.
-        cause: RigidError,
-    },
-    /// The neutral frames are not in the take.
-    #[error("neutral frames {start}:{end} of {frames}; give a range inside the take")]
-    NeutralRange {
-        /// First frame.
-        start: usize,
-        /// One past the last.
-        end: usize,
-        /// Frames of the take.
-        frames: usize,
-    },
-    /// A face marker is never seen while the face is neutral.
-    #[error(
-        "face marker {marker} is not seen in any neutral frame; give other neutral frames or leave the marker out of the map"
-    )]
-    NeutralUnseen {
-        /// Index in [`MarkerColumns::face`].
-        marker: usize,
-    },
-    /// The neutral cannot be laid onto the avatar.
-    #[error("face markers: {0}; map more markers")]
-    Alignment(RigidError),
-    /// The adaptation of shape has no solution.
-    #[error(transparent)]
-    Rbf(#[from] RbfError),
-    /// The head's low-pass does not exist.
-    #[error("headLowpassHz: {0}")]
-    Lowpass(#[from] LowpassError),
-    /// Numbers that should be equal are not.
-    #[error("{what}: {found}, {expected} expected")]
-    Size {
-        /// What was counted.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        expected: usize,
-    },
-}
 
 /// The front end of one take and one avatar: fitted once, then a frame at a time.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,26 +30,6 @@ pub struct FrontEnd {
 pub struct FrontEndScratch {
     points: [Vec<f64>; 3],
     adapted: [Vec<f64>; 3],
-}
-
-impl<'a> MarkerFrames<'a> {
-    /// Number of frames.
-    pub fn len(&self) -> usize {
-        self.positions.len() / (3 * self.columns).max(1)
-    }
-
-    /// Whether there is no frame.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The numbers of one frame.
-    ///
-    /// # Panics
-    /// If the frame is not in the take.
-    pub fn frame(&self, frame: usize) -> &'a [f64] {
-        &self.positions[3 * self.columns * frame..3 * self.columns * (frame + 1)]
-    }
 }
 
 impl FrontEnd {
@@ -333,7 +244,8 @@ impl FrontEnd {
     }
 
     /// d = RBF(M) - avatar markers of one frame, eq. 5.21, with depth and scale factors where there
-    /// are some: 3P numbers, metres; NaN for a marker that is not seen. Allocates nothing after the first call with a scratch.
+    /// are some: 3P numbers, metres; NaN for a marker that is not seen. Allocates nothing after the
+    /// first call with a scratch.
     ///
     /// # Panics
     /// If `frame` or `out` is too short.
@@ -395,34 +307,4 @@ impl FrontEnd {
         }
         Ok(out)
     }
-}
-
-fn check_columns(take: MarkerFrames<'_>, columns: &MarkerColumns) -> Result<(), FrontEndError> {
-    let width = 3 * take.columns;
-    if width == 0 || !take.positions.len().is_multiple_of(width) {
-        let found = take.positions.len();
-        let expected = found.div_ceil(width.max(1)) * width;
-        return Err(FrontEndError::Size { what: "numbers of the take", found, expected });
-    }
-    let head = columns.head.as_deref().unwrap_or_default();
-    match columns.face.iter().chain(head).find(|&&c| c >= take.columns) {
-        Some(&c) => Err(FrontEndError::Size {
-            what: "columns of the take",
-            found: take.columns,
-            expected: c + 1,
-        }),
-        None => Ok(()),
-    }
-}
-
-fn equal(what: &'static str, found: usize, expected: usize) -> Result<(), FrontEndError> {
-    if found == expected { Ok(()) } else { Err(FrontEndError::Size { what, found, expected }) }
-}
-
-pub(crate) fn point(frame: &[f64], column: usize) -> [f64; 3] {
-    [frame[3 * column], frame[3 * column + 1], frame[3 * column + 2]]
-}
-
-fn is_seen(p: [f64; 3]) -> bool {
-    !p.iter().any(|x| x.is_nan())
 }

@@ -1,7 +1,8 @@
 //! The head's motion in each frame, from its markers, and its low-pass (thesis 5.2.1).
 
-use crate::front_end::{FrontEndError, MarkerColumns, MarkerFrames, point};
+use crate::front_end_error::FrontEndError;
 use crate::lowpass::Lowpass;
+use crate::marker_frames::{MarkerColumns, MarkerFrames, point};
 use crate::rigid_alignment::{Pose, RigidMotion, align};
 
 /// The head markers of the first frame, metres.

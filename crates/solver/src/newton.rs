@@ -2,7 +2,7 @@
 //!
 //! Stops on the step, not on the gradient: a relative gradient of 1e-6 leaves 1.6e-4 in the weights.
 
-use crate::box_qp::Outcome;
+use crate::box_qp::{Outcome, worse};
 use crate::cholesky::Cholesky;
 use crate::dense::dot;
 use crate::objective::{Evaluation, Matrices, Objective, Target};
@@ -79,7 +79,7 @@ impl NewtonState {
             }
         }
         let kkt_error = (self.here.gradient.iter().zip(&self.diagonal))
-            .fold(0.0, |worst: f64, (g, h)| worst.max((g / h).abs()));
+            .fold(0.0, |worst: f64, (g, h)| worse(worst, (g / h).abs()));
         Outcome { iterations, kkt_error, converged: converged && kkt_error.is_finite() }
     }
 

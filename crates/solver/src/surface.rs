@@ -19,7 +19,7 @@ use crate::laplacian::Laplacian;
 use crate::marker_site::MarkerSite;
 use crate::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 use crate::skin_mesh::{MeshError, SkinMesh};
-use crate::sparse_cholesky::{SparseCholesky, SymmetricRows};
+use crate::sparse_cholesky::{NoFactor, SparseCholesky, SymmetricRows};
 use crate::surface_fit::METRES_PER_WEIGHT;
 
 /// How a surface follows its markers.
@@ -60,6 +60,9 @@ pub enum SurfaceError {
          umbrella or cotan-clamped Laplacian, or mend the mesh's degenerate triangles"
     )]
     NotDefinite(usize),
+    /// The factor does not fit into memory.
+    #[error("thin shell: the factor of {0} vertices does not fit into memory; take a coarser skin")]
+    Memory(usize),
 }
 
 const MARKER: usize = usize::MAX - 1;
@@ -118,10 +121,12 @@ impl SurfaceResponse {
             }
         }
         let among_free = restricted(&k, &place, &free);
-        let places: Vec<[f64; 3]> = free.iter().map(|&v| mesh.positions[v]).collect();
-        SparseCholesky::new(&among_free, &places)
-            .map_err(|unknown| SurfaceError::NotDefinite(free[unknown]))?
-            .solve(&mut right, p);
+        SparseCholesky::new(&among_free).and_then(|factor| factor.solve(&mut right, p)).map_err(
+            |why| match why {
+                NoFactor::Pivot(unknown) => SurfaceError::NotDefinite(free[unknown]),
+                NoFactor::Memory => SurfaceError::Memory(free.len()),
+            },
+        )?;
 
         let mut fields = vec![0.0; count * p];
         for (m, &v) in markers.iter().enumerate() {

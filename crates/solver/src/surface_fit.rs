@@ -9,7 +9,7 @@
 //!
 //! Both are linear in d, so that a set of seen markers has one P x P matrix.
 
-use crate::box_qp::Outcome;
+use crate::box_qp::{Outcome, worse};
 use crate::cholesky::Cholesky;
 use crate::dense::{dot, mul};
 
@@ -126,7 +126,8 @@ impl SurfaceProblem {
                     (force[m], own)
                 };
                 if curvature > 0.0 {
-                    kkt_error = kkt_error.max((gradient / curvature / METRES_PER_WEIGHT).abs());
+                    let error = gradient / curvature / METRES_PER_WEIGHT;
+                    kkt_error = worse(kkt_error, error.abs());
                 }
             }
         }

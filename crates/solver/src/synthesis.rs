@@ -3,65 +3,80 @@
 use crate::dense::widest;
 use crate::skin_mesh::SkinMesh;
 
-/// Coordinates that are summed together, in registers: two of the widest vectors that we use.
-const TILE: usize = 16;
+/// Coordinates that are summed together, in registers: four of the widest vectors there are.
+const BLOCK: usize = 64;
 
-/// Frames that share what is loaded of the shapes.
-const FRAMES: usize = 4;
+/// Blocks whose shapes, some 11 KiB each, stay in a processor's second memory while all the frames
+/// pass.
+const BLOCKS: usize = 16;
 
-/// Tiles whose shapes stay in a processor's second memory while all the frames pass: some 80 KiB.
-const BLOCK_TILES: usize = 32;
+/// Frames that pass a block while its shapes are in a processor's first memory: more would be more
+/// places to write to than it follows.
+const FRAMES: usize = 8;
 
-/// The neutral and the shapes of a skin, cut into tiles of some five vertices; each has the shapes
+/// 64 coordinates, where the processor's lines begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+struct Block([f32; BLOCK]);
+
+/// The neutral and the shapes of a skin, cut into blocks of some 21 vertices; each has the shapes
 /// that move it and no others.
+///
+/// A frame costs what its weights that are not 0 move. The sums have the same bits as
+/// neutral + w_0 d_0 + w_1 d_1 + ... in single precision, one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Synthesis {
     shape_count: usize,
     coordinates: usize,
-    /// The 3S coordinates, filled up with zeros to whole tiles.
-    neutral: Vec<[f32; TILE]>,
-    /// Entries of tile t are `starts[t]..starts[t + 1]` of `shapes` and `deltas`.
+    /// The 3S coordinates, filled up with zeros to whole blocks.
+    neutral: Vec<Block>,
+    /// For each block a bit for each shape that moves it, in [`mask_words`] words.
+    moved_by: Vec<u64>,
+    /// Deltas of block b are `starts[b]..starts[b + 1]` of `deltas`.
     starts: Vec<usize>,
-    shapes: Vec<u32>,
-    deltas: Vec<[f32; TILE]>,
+    /// Among them, the place of each shape that moves the block; blocks x N.
+    places: Vec<u32>,
+    deltas: Vec<Block>,
 }
 
 impl Synthesis {
     /// Prepare a mesh that passes [`SkinMesh::check`]. Single precision: what is drawn.
     pub fn new(mesh: &SkinMesh) -> Synthesis {
         let coordinates = 3 * mesh.positions.len();
-        let mut neutral = vec![[0.0; TILE]; coordinates.div_ceil(TILE)];
+        let shape_count = mesh.shapes.len();
+        let words = mask_words(shape_count);
+        let mut neutral = vec![Block([0.0; BLOCK]); coordinates.div_ceil(BLOCK)];
         for (i, &x) in mesh.positions.as_flattened().iter().enumerate() {
-            neutral[i / TILE][i % TILE] = x as f32;
+            neutral[i / BLOCK].0[i % BLOCK] = x as f32;
         }
-        let mut tiles: Vec<Vec<(u32, [f32; TILE])>> = vec![Vec::new(); neutral.len()];
+        let mut blocks: Vec<Vec<(usize, Block)>> = vec![Vec::new(); neutral.len()];
         for (k, shape) in mesh.shapes.iter().enumerate() {
             for (&v, delta) in shape.vertices.iter().zip(&shape.deltas) {
                 for (axis, &x) in delta.iter().enumerate().filter(|(_, x)| **x != 0.0) {
                     let i = 3 * v as usize + axis;
-                    let tile = &mut tiles[i / TILE];
-                    if tile.last().is_none_or(|last| last.0 != k as u32) {
-                        tile.push((k as u32, [0.0; TILE]));
+                    let block = &mut blocks[i / BLOCK];
+                    if block.last().is_none_or(|last| last.0 != k) {
+                        block.push((k, Block([0.0; BLOCK])));
                     }
-                    if let Some((_, deltas)) = tile.last_mut() {
-                        deltas[i % TILE] = x as f32;
+                    if let Some((_, deltas)) = block.last_mut() {
+                        deltas.0[i % BLOCK] = x as f32;
                     }
                 }
             }
         }
+        let mut moved_by = vec![0; words * blocks.len()];
+        let mut places = vec![0; shape_count * blocks.len()];
         let mut starts = vec![0];
-        starts.extend(tiles.iter().scan(0, |sum, tile| {
-            *sum += tile.len();
-            Some(*sum)
-        }));
-        Synthesis {
-            shape_count: mesh.shapes.len(),
-            coordinates,
-            neutral,
-            starts,
-            shapes: tiles.iter().flatten().map(|e| e.0).collect(),
-            deltas: tiles.iter().flatten().map(|e| e.1).collect(),
+        let mut deltas = Vec::with_capacity(blocks.iter().map(Vec::len).sum());
+        for (b, block) in blocks.into_iter().enumerate() {
+            for (place, (k, delta)) in block.into_iter().enumerate() {
+                moved_by[b * words + k / 64] |= 1 << (k % 64);
+                places[b * shape_count + k] = place as u32;
+                deltas.push(delta);
+            }
+            starts.push(deltas.len());
         }
+        Synthesis { shape_count, coordinates, neutral, moved_by, starts, places, deltas }
     }
 
     /// 3S: the coordinates of a frame.
@@ -72,58 +87,81 @@ impl Synthesis {
     /// neutral + sum of weight times shape, shapes in their order: `weights` is frames x N, `out`
     /// begins with frames x 3S coordinates (x, y, z of vertex 0, then of vertex 1...), metres.
     ///
+    /// The shapes are read once for all the frames of a call: some 64 are a good number.
+    ///
     /// # Panics
     /// If `weights` is not whole frames or `out` is too short for them.
     pub fn pose(&self, weights: &[f64], out: &mut [f32]) {
         let n = self.shape_count;
         assert!(n > 0 && weights.len().is_multiple_of(n), "a frame has N weights");
         let out = &mut out[..weights.len() / n * self.coordinates];
-        // Weights of four frames side by side, shape by shape.
-        let groups: Vec<Vec<[f32; FRAMES]>> = (weights.chunks(FRAMES * n))
-            .map(|frames| {
-                let weight = |f: usize, k: usize| frames.get(f * n + k).map_or(0.0, |&w| w as f32);
-                (0..n).map(|k| std::array::from_fn(|f| weight(f, k))).collect()
-            })
-            .collect();
-        for first in (0..self.neutral.len()).step_by(BLOCK_TILES) {
-            let last = (first + BLOCK_TILES).min(self.neutral.len());
-            for (group, out) in groups.iter().zip(out.chunks_mut(FRAMES * self.coordinates)) {
-                for tile in first..last {
-                    let entries = self.starts[tile]..self.starts[tile + 1];
-                    let mut sums = [self.neutral[tile]; FRAMES];
-                    let (shapes, deltas) = (&self.shapes[entries.clone()], &self.deltas[entries]);
-                    add_shapes(shapes, deltas, group, &mut sums);
-                    let start = tile * TILE;
-                    let width = TILE.min(self.coordinates - start);
-                    for (frame, sum) in out.chunks_exact_mut(self.coordinates).zip(&sums) {
-                        frame[start..start + width].copy_from_slice(&sum[..width]);
-                    }
-                }
+        let weights: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
+        let words = mask_words(n);
+        let mut active = vec![0; weights.len() / n * words];
+        for (mask, weights) in active.chunks_exact_mut(words).zip(weights.chunks_exact(n)) {
+            for (k, _) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+                mask[k / 64] |= 1_u64 << (k % 64);
+            }
+        }
+        for first in (0..self.neutral.len()).step_by(BLOCKS) {
+            let last = (first + BLOCKS).min(self.neutral.len());
+            let frames = weights.chunks(FRAMES * n).zip(active.chunks(FRAMES * words));
+            for ((weights, active), out) in frames.zip(out.chunks_mut(FRAMES * self.coordinates)) {
+                pose_blocks(self, [first, last], weights, active, out);
             }
         }
     }
 }
 
+/// Words of a set of shapes.
+fn mask_words(shape_count: usize) -> usize {
+    shape_count.div_ceil(64)
+}
+
 widest! {
-    /// sums += weight times deltas of every shape that any of the frames has.
-    fn add_shapes(
-        shapes: &[u32],
-        deltas: &[[f32; TILE]],
-        weights: &[[f32; FRAMES]],
-        sums: &mut [[f32; TILE]; FRAMES]
+    ["avx512f", "avx"]
+    /// Blocks first..last of some frames.
+    fn pose_blocks(
+        shapes: &Synthesis,
+        blocks: [usize; 2],
+        weights: &[f32],
+        active: &[u64],
+        out: &mut [f32]
     ) {
-        let mut own = *sums;
-        for (&shape, delta) in shapes.iter().zip(deltas) {
-            let w = weights[shape as usize];
-            if w != [0.0; FRAMES] {
-                for f in 0..FRAMES {
-                    for i in 0..TILE {
-                        own[f][i] += w[f] * delta[i];
+        let n = shapes.shape_count;
+        let words = mask_words(n);
+        for b in blocks[0]..blocks[1] {
+            let moved_by = &shapes.moved_by[b * words..][..words];
+            let places = &shapes.places[b * n..][..n];
+            let deltas = &shapes.deltas[shapes.starts[b]..shapes.starts[b + 1]];
+            let start = b * BLOCK;
+            let width = BLOCK.min(shapes.coordinates - start);
+            let frames = weights.chunks_exact(n).zip(active.chunks_exact(words));
+            for ((weights, active), out) in frames.zip(out.chunks_exact_mut(shapes.coordinates)) {
+                let mut sums = shapes.neutral[b].0;
+                for (word, (moved_by, active)) in moved_by.iter().zip(active).enumerate() {
+                    let mut rest = moved_by & active;
+                    while rest != 0 {
+                        let k = 64 * word + rest.trailing_zeros() as usize;
+                        rest &= rest - 1;
+                        // Always there; without the possibility of a panic the sums stay in
+                        // registers.
+                        let (Some(weight), Some(&place)) = (weights.get(k), places.get(k)) else {
+                            continue;
+                        };
+                        let Some(Block(delta)) = deltas.get(place as usize) else { continue };
+                        for i in 0..BLOCK {
+                            sums[i] += weight * delta[i];
+                        }
                     }
+                }
+                let out = &mut out[start..start + width];
+                match out.first_chunk_mut::<BLOCK>() {
+                    Some(out) => *out = sums,
+                    None => out.copy_from_slice(&sums[..width]),
                 }
             }
         }
-        *sums = own;
     }
 }
 
@@ -133,36 +171,45 @@ mod tests {
     use crate::dense::numbers;
     use crate::skin_mesh::SparseDeltas;
 
+    /// Shapes that move parts of a skin of `count` vertices.
+    fn skin(count: usize, shapes: usize) -> SkinMesh {
+        let triples =
+            |seed: f64, count: usize| numbers(3 * count, seed).as_chunks::<3>().0.to_vec();
+        let shapes = (0..shapes)
+            .map(|k| {
+                let vertices: Vec<u32> =
+                    (0..count as u32).filter(|v| (*v as usize / 11 + k) % 3 != 0).collect();
+                let mut deltas = triples(k as f64, vertices.len());
+                deltas.iter_mut().step_by(5).for_each(|d| d[k % 3] = 0.0);
+                SparseDeltas { vertices, deltas }
+            })
+            .collect();
+        SkinMesh { positions: triples(0.1, count), triangles: vec![], shapes }
+    }
+
     #[test]
-    fn vertices_are_neutral_plus_weighted_shapes() {
-        for (count, frames) in [(1, 1), (7, 3), (16, 4), (700, 9)] {
-            let triples =
-                |seed: f64, count: usize| numbers(3 * count, seed).as_chunks::<3>().0.to_vec();
-            let positions = triples(0.1, count);
-            let shapes: Vec<SparseDeltas> = (0..5)
-                .map(|k| {
-                    let vertices: Vec<u32> =
-                        (0..count as u32).filter(|v| (v / 11 + k) % 3 != 0).collect();
-                    let deltas = triples(f64::from(k), vertices.len());
-                    SparseDeltas { vertices, deltas }
-                })
-                .collect();
-            let mut weights = numbers(5 * frames, 9.0);
-            weights[2] = 0.0;
-            let mesh = SkinMesh { positions, triangles: vec![], shapes };
+    fn vertices_have_the_bits_of_the_plain_sum() {
+        for (count, frames, shapes) in
+            [(1, 1, 5), (7, 3, 1), (64, 4, 53), (700, 9, 5), (190, 70, 131)]
+        {
+            let mesh = skin(count, shapes);
+            let mut weights = numbers(shapes * frames, 9.0);
+            weights.iter_mut().step_by(3).for_each(|w| *w = 0.0);
             let synthesis = Synthesis::new(&mesh);
-            let mut out = vec![f32::NAN; frames * synthesis.coordinates()];
+            let mut out = vec![f32::NAN; frames * synthesis.coordinates() + 2];
             synthesis.pose(&weights, &mut out);
-            for (c, out) in weights.chunks(5).zip(out.chunks(3 * count)) {
-                let mut expected = mesh.positions.clone();
-                for (shape, w) in mesh.shapes.iter().zip(c) {
+            assert!(out[frames * synthesis.coordinates()..].iter().all(|x| x.is_nan()));
+            for (c, out) in weights.chunks(shapes).zip(out.chunks_exact(3 * count)) {
+                let mut expected: Vec<f32> =
+                    mesh.positions.as_flattened().iter().map(|&x| x as f32).collect();
+                for (shape, &w) in mesh.shapes.iter().zip(c) {
                     for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                        (0..3).for_each(|a| expected[v as usize][a] += w * d[a]);
+                        for a in 0..3 {
+                            expected[3 * v as usize + a] += w as f32 * d[a] as f32;
+                        }
                     }
                 }
-                for (x, y) in expected.as_flattened().iter().zip(out) {
-                    assert!((x - f64::from(*y)).abs() < 2e-6, "{count} {frames}: {x} {y}");
-                }
+                assert_eq!(expected, out, "{count} vertices, {frames} frames, {shapes} shapes");
             }
         }
     }

@@ -260,6 +260,39 @@ fn exactly_met_markers_are_smoothed_and_said_so() {
 }
 
 #[test]
+fn frames_that_do_not_reach_their_tolerance_are_warned_of() {
+    let good = noisy(&EXPRESSION, 2e-4);
+    // Numbers whose squares, or sums, are none: no search can end there.
+    let mut absurd = good.clone();
+    absurd[7] = 1e300;
+    absurd[20] = f64::MAX;
+    absurd[21] = f64::MAX;
+    let take = [good.clone(), absurd, good].concat();
+    let mut failed = 0;
+    for method in SOLVED {
+        let solved = fit(&MethodSpec::new(method)).solve_take(&take).unwrap();
+        assert!(solved.weights.iter().all(|c| c.is_finite()), "{method}: {:?}", solved.weights);
+        let [before, during, after] = &solved.reports[..] else { panic!("three frames") };
+        assert_eq!((before.warning, after.warning), (None, None), "{method}");
+        assert!(before.kkt_error < 1e-9 && after.kkt_error < 1e-9, "{method}");
+        let reached = during.kkt_error < 1e-6;
+        assert_eq!(during.warning.is_none(), reached, "{method}: {during:?}");
+        if !reached {
+            assert_eq!(during.warning, Some(FrameWarning::NotConverged), "{method}");
+            failed += 1;
+        }
+    }
+    assert!(failed >= 8, "{failed} methods say so");
+
+    // A norm that is not smoothed has a corner where the face is neutral.
+    let mut spec = MethodSpec::new(Method::LstsShort);
+    spec.eps = Some(0.0);
+    let corner = fit(&spec).solve_frame(&[0.0; 36]).unwrap();
+    assert!(corner.weights.iter().all(|c| c.is_finite()), "{corner:?}");
+    assert!(corner.report.warning.is_some() || corner.report.kkt_error < 1e-6, "{corner:?}");
+}
+
+#[test]
 fn lost_markers_drop_their_rows() {
     let d = noisy(&EXPRESSION, 2e-4);
     for method in SOLVED {

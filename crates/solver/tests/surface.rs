@@ -320,6 +320,34 @@ fn what_is_held_rests_and_pieces_without_marker_too() {
 }
 
 #[test]
+fn a_real_skin_follows_its_markers() {
+    let Some(data) = mimique_test_support::real_data("a_real_skin_follows_its_markers") else {
+        return;
+    };
+    let (skin, _) = common::skin(&data);
+    let markers: Vec<usize> = common::markers(&data, "face").iter().map(|m| m.1).collect();
+    let p = markers.len();
+    // Nothing held: all markers moved by 1 carry the whole skin along.
+    let free = response(&skin, &markers, &OperatorOptions::default());
+    let worst = (free.fields.chunks_exact(p))
+        .fold(0.0_f64, |w, row| w.max((row.iter().sum::<f64>() - 1.0).abs()));
+    eprintln!("residual {:.1e}, partition of unity {worst:.1e}", free.residual);
+    assert!(free.residual < 1e-9 && worst < 1e-8, "{:e} {worst:e}", free.residual);
+    assert_eq!(free.without_marker, 0);
+    // What no shape moves rests; the energy of holding it is that much larger.
+    let held = skin.unmoved(1e-4);
+    let resting =
+        SurfaceResponse::build(&skin, &markers, &held, &OperatorOptions::default()).unwrap();
+    assert!(resting.residual < 1e-9);
+    for (v, row) in resting.fields.chunks_exact(p).enumerate() {
+        assert!(!held[v] || markers.contains(&v) || row.iter().all(|x| *x == 0.0));
+    }
+    for m in 0..p {
+        assert!(resting.stiffness[m * p + m] >= free.stiffness[m * p + m] * (1.0 - 1e-9));
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     let mesh = sheet(0.0);
     let held = vec![false; mesh.positions.len()];

@@ -72,6 +72,7 @@ fn serve(folder: &Path) {
                 black_box(set_up(&mesh, &names, &markers));
                 (1, start)
             }
+            "lsts fine" => planted.solve_on_finer_mesh(),
             packs if packs.starts_with("packs ") => {
                 let spec = spec(&packs[6..]);
                 let read = |name: &str| std::fs::read(folder.join(name)).expect("a pack");
@@ -134,6 +135,16 @@ impl Planted {
         let poses = FrontEnd::head_poses(self.take(), &self.columns, None).expect("poses");
         let front = FrontEnd::fit(self.take(), &self.columns, &poses, 0..60, avatar);
         front.expect("a front end").take_displacements(self.take(), &poses).expect("displacements")
+    }
+
+    /// `lsts` with operators of a skin four times as fine.
+    fn solve_on_finer_mesh(&self) -> (usize, Clock) {
+        let finer = mesh::finer(&self.skin.mesh, 2);
+        let operators = set_up(&finer, &self.skin.shape_names, &self.markers);
+        let fit = Fit::new(&operators, &spec("lsts")).expect("a method");
+        let start = Clock::start();
+        black_box(fit.solve_take(&self.displacements).expect("solved"));
+        (self.frames(), start)
     }
 
     /// Vertices of every frame of the take, from the weights of `lsts`.

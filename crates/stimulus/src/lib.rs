@@ -12,7 +12,11 @@
 #[cfg(feature = "prepare")]
 mod bank_diagnosis;
 #[cfg(feature = "prepare")]
+mod found_neutral;
+#[cfg(feature = "prepare")]
 mod head_check;
+#[cfg(feature = "prepare")]
+mod joined_take;
 #[cfg(feature = "prepare")]
 mod label_check;
 mod lids;
@@ -29,6 +33,8 @@ mod report;
 #[cfg(feature = "prepare")]
 mod segments;
 mod skin;
+#[cfg(feature = "prepare")]
+mod solve_error;
 mod solve_packs;
 #[cfg(feature = "prepare")]
 mod solve_take;
@@ -42,7 +48,13 @@ mod surface_avatar;
 mod take_adjustments;
 #[cfg(feature = "prepare")]
 mod take_checks;
+#[cfg(feature = "prepare")]
+mod take_lids;
 mod take_pack;
+#[cfg(feature = "prepare")]
+mod take_provenance;
+#[cfg(feature = "prepare")]
+mod take_segment;
 #[cfg(feature = "prepare")]
 mod training;
 #[cfg(feature = "prepare")]
@@ -53,6 +65,8 @@ mod weights_file;
 pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
 #[cfg(feature = "prepare")]
 pub use head_check::{HeadMarker, STILL_MM};
+#[cfg(feature = "prepare")]
+pub use joined_take::{JoinedTake, SetUp};
 #[cfg(feature = "prepare")]
 pub use label_check::{LabelFault, LabelProblem};
 pub use lids::{Lid, LidEdge};
@@ -78,9 +92,11 @@ pub use segments::{
     TimelineSegment, cut, read_segments, suggest, write_segments,
 };
 pub use skin::{AvatarSkin, lock_shapes};
+#[cfg(feature = "prepare")]
+pub use solve_error::SolveError;
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]
-pub use solve_take::{JoinedTake, SetUp, SolveError, SolvedCapture, TakeOptions, solve_take};
+pub use solve_take::{SolvedCapture, TakeOptions, solve_take};
 #[cfg(feature = "prepare")]
 pub use split_shapes::{SplitError, split_shapes};
 #[cfg(feature = "prepare")]

@@ -240,3 +240,28 @@ pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_fail_are_counted_and_named() {
+        let mut reports = vec![FrameReport::default(); 12];
+        assert_eq!(FrameStatistics::of(&reports).warnings(700), Vec::<String>::new());
+        for frame in [4, 9] {
+            reports[frame].warning = Some(FrameWarning::NotConverged);
+            reports[frame].kkt_error = 0.25;
+        }
+        reports[2].warning = Some(FrameWarning::NoMarkers);
+        let statistics = FrameStatistics::of(&reports);
+        assert_eq!(statistics.not_converged, Some((2, 4)));
+        let said = statistics.warnings(700);
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert_eq!(
+            said[0],
+            "2 frames did not reach the tolerance (the first is 704; KKT error up to 2.5e-1)"
+        );
+        assert!(said[1].starts_with("1 frame without any marker (the first is 702)"), "{said:?}");
+    }
+}

@@ -7,8 +7,7 @@ use mimique_solver::{
 };
 
 use crate::provenance::Provenance;
-use crate::solve_take::{JoinedTake, SolveError, TakeOptions};
-use crate::{Depth, MarkerMap, ScaleRule};
+use crate::{Depth, JoinedTake, MarkerMap, ScaleRule, SolveError, TakeOptions};
 
 impl JoinedTake<'_> {
     /// The factors of eq. 5.1: automatic, by hand and global, one after the other.

@@ -1,10 +1,15 @@
 //! A solved take looked over: head markers that move, labels that are not what they say.
 
-use mimique_solver::{Fit, FrontEnd, FrontEndError, Operators, RigidMotion};
+use mimique_solver::{Fit, FrontEnd, FrontEndError, Method, MethodSpec, Operators, RigidMotion};
 
 use crate::head_check::{HeadMarker, head_markers, moving_skin};
 use crate::label_check::{LabelCheck, LabelProblem};
-use crate::solve_take::JoinedTake;
+use crate::{JoinedTake, SolveError};
+
+/// Whether a method is fitted to the markers: only then a residual tells of labels.
+pub(crate) fn is_fitted(spec: &MethodSpec) -> bool {
+    !matches!(spec.method, Method::ThinShellSurface | Method::Regression | Method::Recorded)
+}
 
 impl JoinedTake<'_> {
     /// How still each head marker is on the head, without low-pass.
@@ -23,6 +28,28 @@ impl JoinedTake<'_> {
     /// As [`JoinedTake::head_markers`].
     pub fn head_warning(&self) -> Result<Option<String>, FrontEndError> {
         Ok(moving_skin(&self.head_markers()?))
+    }
+
+    /// The warnings of labels that are swapped or stand at one place, found by solving the whole take
+    /// by a method; none where the method is not fitted to the markers.
+    ///
+    /// # Errors
+    /// [`SolveError`]: a head or neutral that cannot be found, operators of another method.
+    pub fn label_warnings(
+        &self,
+        operators: &Operators,
+        spec: &MethodSpec,
+    ) -> Result<Vec<String>, SolveError> {
+        if !is_fitted(spec) {
+            return Ok(Vec::new());
+        }
+        let fit = Fit::new(operators, spec)?;
+        let (front_end, poses) = self.front_end(operators, spec)?;
+        let displacements = front_end.take_displacements(self.frames(), &poses)?;
+        let weights = fit.solve_take(&displacements)?.weights;
+        let front = (&front_end, poses.as_slice());
+        let problems = self.label_problems(operators, &fit, front, &displacements, &weights);
+        Ok(problems.iter().map(LabelProblem::sentence).collect())
     }
 
     /// Labels that are swapped or stand at one place. Not looked for where displacements are

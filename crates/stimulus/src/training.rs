@@ -78,10 +78,10 @@ impl Training {
         let map = mimique_face::map_shapes(names, &self.weights.shape_names);
         if map.terms.iter().all(Vec::is_empty) {
             return Err(SolveError::TrainingShapes {
-                weights: crate::solve_take::some(
+                weights: crate::joined_take::some(
                     self.weights.shape_names.iter().map(String::as_str),
                 ),
-                avatar: crate::solve_take::some(names.iter().map(String::as_str)),
+                avatar: crate::joined_take::some(names.iter().map(String::as_str)),
             });
         }
         let take =

@@ -2,7 +2,12 @@
 
 use std::io::{self, Write};
 
+use mimique_solver::Synthesis;
+
 use crate::{AvatarSkin, SolvedCapture};
+
+/// Frames that are posed together.
+const FRAMES: usize = 64;
 
 /// The moved skin of a solved take: a bank's shapes, or the surface itself.
 #[derive(Debug)]
@@ -55,10 +60,34 @@ impl<'a> VertexFrames<'a> {
         out.write_all(b"\x93NUMPY\x01\x00")?;
         out.write_all(&((padded + 1) as u16).to_le_bytes())?;
         out.write_all(format!("{head:padded$}\n").as_bytes())?;
+        if self.solved.surface.is_none() {
+            return self.write_bank(out);
+        }
         for row in 0..frames {
             let positions = self.positions(row);
             let bytes = positions.iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
             out.write_all(&bytes.collect::<Vec<u8>>())?;
+        }
+        Ok(())
+    }
+
+    /// The frames of a bank, in single precision.
+    fn write_bank(&self, out: &mut dyn Write) -> io::Result<()> {
+        let synthesis = Synthesis::new(&self.skin.mesh);
+        let width = synthesis.coordinates();
+        let shapes = self.skin.mesh.shapes.len().max(1);
+        let mut posed = vec![0.0; FRAMES * width];
+        let mut bytes = Vec::new();
+        for weights in self.solved.table.weights.chunks(FRAMES * shapes) {
+            synthesis.pose(weights, &mut posed);
+            for frame in posed.chunks_exact(width).take(weights.len() / shapes) {
+                bytes.clear();
+                for &v in &self.skin.welded_from_file {
+                    let place = &frame[3 * v as usize..3 * v as usize + 3];
+                    bytes.extend(place.iter().flat_map(|x| x.to_le_bytes()));
+                }
+                out.write_all(&bytes)?;
+            }
         }
         Ok(())
     }

@@ -211,6 +211,32 @@ fn a_surface_travels_as_an_avatar_of_markers() {
 }
 
 #[test]
+fn the_vertices_written_are_those_of_the_weights() {
+    let scene = scene();
+    let solved = solve(&scene, &MethodSpec::new(Method::Lsts), None);
+    let mut frames = VertexFrames::new(&scene.skin, &solved);
+    let mut npy = Vec::new();
+    frames.write(&mut npy).unwrap();
+    let (count, vertices) = (solved.table.frames.len(), scene.skin.welded_from_file.len());
+    let data = npy.len() - 12 * count * vertices;
+    assert!(npy.starts_with(b"\x93NUMPY\x01\x00") && data.is_multiple_of(64));
+    let shape = format!("'shape': ({count}, {vertices}, 3)");
+    assert!(String::from_utf8_lossy(&npy[..data]).contains(&shape));
+    let mut most = 0.0_f64;
+    for row in [0, 63, 64, 310, count - 1] {
+        let bytes = &npy[data + 12 * row * vertices..][..12 * vertices];
+        let written = bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b)));
+        for (x, y) in written.zip(frames.positions(row).as_flattened()) {
+            // Positions of some 0.2 m in single precision, and sums of it.
+            assert!((x - y).abs() < 2e-7, "row {row}: {x} {y}");
+        }
+        let moved = frames.positions(row).into_iter().zip(frames.positions(0));
+        most = moved.fold(most, |m, (p, q)| m.max((p[1] - q[1]).abs()));
+    }
+    assert!(most > 1e-3, "the face moves by {most} m");
+}
+
+#[test]
 fn bad_training_is_refused_with_what_to_do() {
     let scene = scene();
     let refuse = |spec: &MethodSpec, change: &dyn Fn(&mut Training)| {

@@ -330,6 +330,86 @@ fn the_actor_s_own_head_shows_the_performance_that_a_solve_recovers() {
     assert!(names.iter().any(|name| name.starts_with("mouthSmile")));
 }
 
+/// A capture file of somebody who acts, its labels `[a, b]` exchanged in some frames, and its map.
+fn labelled_take(folder: &Path, swapped: std::ops::Range<usize>) -> [String; 2] {
+    use mimique_face::{
+        Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
+    };
+    let head =
+        |seed| HeadSpec { identity: Identity::from_seed(seed), density: Density::nearest(2000) };
+    let (avatar, actor) = (head(3), head(77));
+    let clip = |emotion| Clip { emotion, intensity: 3, seed: 5 };
+    let clips = [clip(Emotion::Joy), clip(Emotion::Surprise)];
+    let take = synthetic_take(&build_head(&actor), &marker_sites(&actor), &clips, 9, 0.1);
+    let sites = marker_sites(&avatar);
+    let mut map = "marker,role,vertex\n".to_owned();
+    for (label, vertex) in sites.face_labels().iter().zip(&sites.vertices) {
+        map += &format!("{label},face,{vertex}\n");
+    }
+    for label in take.head_labels.iter().filter(|l| !sites.face_labels().contains(l)) {
+        map += &format!("{label},head,\n");
+    }
+    std::fs::write(folder.join("map.csv"), map).unwrap();
+    let mut capture = mimique_mocap::Capture {
+        labels: take.labels,
+        rate_hz: take.rate_hz,
+        first_frame: 0,
+        unit: mimique_mocap::LengthUnit::Millimetre,
+        positions: take.positions,
+        notes: vec![],
+    };
+    // Two neighbours: the first face marker and the one nearest to it.
+    let labels = capture.labels.clone();
+    let place = |m: usize| capture.positions[m];
+    let away =
+        |a: usize, b: usize| -> f64 { (0..3).map(|k| (place(a)[k] - place(b)[k]).powi(2)).sum() };
+    let face: Vec<usize> = (sites.face_labels().iter())
+        .filter(|l| !take.head_labels.contains(l))
+        .filter_map(|l| labels.iter().position(|m| m == l))
+        .collect();
+    let a = face[0];
+    let b = face[1..].iter().copied().min_by(|&x, &y| away(a, x).total_cmp(&away(a, y))).unwrap();
+    let p = labels.len();
+    for frame in swapped {
+        capture.positions.swap(frame * p + a, frame * p + b);
+    }
+    std::fs::write(folder.join("take.csv"), mimique_mocap::write_csv(&capture).unwrap()).unwrap();
+    [labels[a].clone(), labels[b].clone()]
+}
+
+#[test]
+fn swapped_labels_of_a_capture_are_said_once_at_their_capture() {
+    let stimuli = json!({
+        "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+        "captures": {"take": {"file": "take.csv", "markers": "map.csv", "neutral": [0, 60]}},
+        "segments": [{"id": "a", "capture": "take", "first": 100, "end": 200},
+                     {"id": "b", "capture": "take", "first": 500, "end": 600}],
+        "methods": {"surface": {"method": "thin-shell-surface"}, "lsts": {"method": "lsts"},
+                    "box": {"method": "box"}},
+    });
+    let said = |swapped: std::ops::Range<usize>| {
+        let folder = tempfile::tempdir().unwrap();
+        let labels = labelled_take(folder.path(), swapped);
+        let here = Places {
+            study: folder.path().to_owned(),
+            data: None,
+            packs: folder.path().join("packs"),
+        };
+        let prepared = prepare(&study(stimuli.clone()), &here, &mut |_| {}).unwrap();
+        assert_eq!(prepared.clips.len(), 6);
+        let mut swaps = prepared.warnings;
+        swaps.retain(|(_, w)| w.contains("look swapped"));
+        (labels, swaps)
+    };
+    assert_eq!(said(0..0).1, []);
+    let (labels, swaps) = said(300..420);
+    assert_eq!(swaps.len(), 1, "{swaps:?}");
+    let (pointer, sentence) = &swaps[0];
+    assert_eq!(pointer, "/stimuli/captures/take");
+    assert!(labels.iter().all(|l| sentence.contains(l)), "{labels:?}: {sentence}");
+    assert!(sentence.contains("300:420"), "{sentence}");
+}
+
 #[test]
 fn a_film_is_served_as_it_is() {
     let folder = tempfile::tempdir().unwrap();

@@ -35,7 +35,7 @@ pub fn whole_head(data: &Path, parts: usize) -> (SkinMesh, Vec<String>, Vec<(Str
 }
 
 /// Every triangle cut into `parts` x `parts` along straight lines, deltas in between as positions.
-fn finer(mesh: &SkinMesh, parts: usize) -> SkinMesh {
+pub fn finer(mesh: &SkinMesh, parts: usize) -> SkinMesh {
     if parts == 1 {
         return mesh.clone();
     }

@@ -6,31 +6,26 @@
 
 mod builtin;
 mod cache;
+mod solved_clip;
+mod source_files;
 mod sources;
 
-use std::cell::OnceCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use mimique_face::pack::encode_pack;
-use mimique_solver::{Method, MethodSpec, OperatorOptions};
+use mimique_solver::{Method, MethodSpec};
 use mimique_study::wire::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
-use self::cache::{Cache, StoredPack};
-use self::sources::{AvatarFile, Film, Performance, Recording, Sources};
+use self::cache::Cache;
+use self::solved_clip::{Wanted, to_solve};
+use self::source_files::{Film, Performance, Recording};
+use self::sources::Sources;
 use crate::provenance::Provenance;
-use crate::report::unseen_shapes;
-use crate::{
-    RecordedWeights, SetUp, SolveError, TakeContent, TakePack, Training, encode_operators,
-    encode_take, solve_packs, surface_avatar,
-};
+use crate::{RecordedWeights, TakeContent, TakePack, encode_take, solve_packs};
 
 /// Cut-off of the head's low-pass where the study file gives none, Hz.
 const HEAD_LOWPASS_HZ: f64 = 10.0;
-
-/// Blendshapes that the stage's shader holds.
-const MOST_STAGE_SHAPES: usize = 256;
 
 /// Where things are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,6 +56,15 @@ pub struct Prepared {
     pub clips: BTreeMap<String, ClipSource>,
     /// JSON pointer and sentence of what should be said.
     pub warnings: Vec<(String, String)>,
+}
+
+/// What is to be said, and which captures have been looked over already.
+#[derive(Default)]
+struct Remarks {
+    /// JSON pointer and sentence.
+    warnings: Vec<(String, String)>,
+    /// Avatar and take of every capture whose labels have been looked at.
+    looked_over: BTreeSet<[String; 2]>,
 }
 
 /// The stimuli cannot be prepared.
@@ -104,16 +108,18 @@ pub fn prepare(
     let cache = Cache::open(&places.packs)?;
     let sources = Sources::new(study, places);
     let clips = study.clips();
-    let mut prepared = Prepared { clips: BTreeMap::new(), warnings: Vec::new() };
+    let mut ready = BTreeMap::new();
+    let mut remarks = Remarks::default();
     for (done, clip) in clips.iter().enumerate() {
         progress(Progress { done, total: clips.len(), what: &clip.id });
-        let source = prepare_clip(study, clip, &sources, &cache, &mut prepared.warnings)?;
-        prepared.clips.insert(clip.id.clone(), source);
+        let source = prepare_clip(study, clip, &sources, &cache, &mut remarks)?;
+        ready.insert(clip.id.clone(), source);
     }
     progress(Progress { done: clips.len(), total: clips.len(), what: "packs" });
-    let mut said = std::collections::BTreeSet::new();
-    prepared.warnings.retain(|warning| said.insert(warning.clone()));
-    Ok(prepared)
+    let mut warnings = remarks.warnings;
+    let mut said = BTreeSet::new();
+    warnings.retain(|warning| said.insert(warning.clone()));
+    Ok(Prepared { clips: ready, warnings })
 }
 
 fn prepare_clip(
@@ -121,7 +127,7 @@ fn prepare_clip(
     clip: &Clip,
     sources: &Sources<'_>,
     cache: &Cache,
-    warnings: &mut Vec<(String, String)>,
+    remarks: &mut Remarks,
 ) -> Result<ClipSource, PrepareError> {
     if let Some(film) = sources.film(clip)? {
         return prepare_film(study, clip, &film, cache);
@@ -135,7 +141,11 @@ fn prepare_clip(
     let (spec, avatar_pack, operators, take, segment_pointer, repair) =
         if entry.spec.method == Method::Recorded {
             let recording = sources.recording(&clip.segment)?;
-            let take = cache.store(recorded(&recording, &avatar.avatar.shape_names, warnings)?)?;
+            let take = cache.store(recorded(
+                &recording,
+                &avatar.avatar.shape_names,
+                &mut remarks.warnings,
+            )?)?;
             // Nothing is solved: the page needs no operators, and loads the one pack once.
             (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer, None)
         } else {
@@ -153,14 +163,14 @@ fn prepare_clip(
                 performance: &performance,
                 avatar: &avatar,
             };
-            let (moved, operators, take) = to_solve(&wanted, cache, warnings)?;
+            let (moved, operators, take) = to_solve(&wanted, cache, remarks)?;
             let avatar_pack = moved.map_or_else(own_pack, Ok)?;
             let repair = performance.repair();
             (spec, avatar_pack, operators, take, performance.pointer, repair)
         };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(&method_pointer, e))?;
-    warnings.extend(solved.warnings.iter().map(|w| (segment_pointer.clone(), w.clone())));
+    remarks.warnings.extend(solved.warnings.iter().map(|w| (segment_pointer.clone(), w.clone())));
     let provenance = Provenance::new()
         .text("avatar", &avatar_pack.hash)
         .text("operators", &operators.hash)
@@ -208,113 +218,6 @@ fn prepare_film(
         look: AvatarLook::Stimulus.word().to_owned(),
         film: Some(film.media_type.to_owned()),
     })
-}
-
-/// A clip that is solved from markers.
-struct Wanted<'a> {
-    spec: &'a MethodSpec,
-    training: Option<&'a Training>,
-    method_pointer: &'a str,
-    performance: &'a Performance,
-    avatar: &'a AvatarFile,
-}
-
-impl Wanted<'_> {
-    /// An error of the set-up, at the part of the study file that it comes from.
-    fn error(&self, error: SolveError) -> PrepareError {
-        match error {
-            SolveError::Training(_)
-            | SolveError::TrainingMarkers { .. }
-            | SolveError::TrainingShapes { .. } => {
-                PrepareError::new(format!("{}/training", self.method_pointer), error)
-            }
-            SolveError::Surface(_) => PrepareError::new(self.method_pointer, error),
-            other => self.performance.error(other),
-        }
-    }
-}
-
-/// Operators and take of a clip that is solved from markers; with a surface the avatar that shows it.
-fn to_solve(
-    wanted: &Wanted<'_>,
-    cache: &Cache,
-    warnings: &mut Vec<(String, String)>,
-) -> Result<(Option<StoredPack>, StoredPack, StoredPack), PrepareError> {
-    let Wanted { spec, training, performance, avatar, .. } = *wanted;
-    let joined = performance.joined()?;
-    let said = joined.warnings().iter().cloned();
-    warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
-    if let Some(training) = training {
-        let pointer = format!("{}/training", wanted.method_pointer);
-        let said = training.warnings(&avatar.avatar.shape_names);
-        warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
-    }
-    let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
-    warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
-    let options = format!("{:?}", OperatorOptions::of(spec));
-    let markers = joined.marker_key();
-    let more = match spec.method {
-        Method::ThinShellSurface => format!("surface {:?}", spec.hold()),
-        Method::Regression => {
-            let numbers = (spec.basis_vectors(), spec.length_scale, spec.signal, spec.noise);
-            let key = training.map(Training::key).unwrap_or_default();
-            format!("{key} {:?} {numbers:?} {:?}", spec.inference(), spec.head_lowpass_hz)
-        }
-        _ => String::new(),
-    };
-    let mut key = vec!["operators", &avatar.key, &markers, &options];
-    key.extend((!more.is_empty()).then_some(more.as_str()));
-    // Both packs of a surface need it; made once, and only where one of them is not there.
-    let set_up = OnceCell::new();
-    let ready = || -> Result<&SetUp, PrepareError> {
-        if set_up.get().is_none() {
-            let made = joined.set_up(spec, training).map_err(|e| wanted.error(e))?;
-            let _ = set_up.set(made);
-        }
-        set_up.get().ok_or_else(|| PrepareError::new(wanted.method_pointer, "not set up"))
-    };
-    let operators = cache.pack(&key, || Ok(encode_operators(&ready()?.operators)))?;
-    let opened = crate::decode_operators(&operators.bytes)
-        .map_err(|e| PrepareError::new(&performance.capture_pointer, e))?;
-    let moved = if spec.method == Method::ThinShellSurface {
-        key[0] = "surface avatar";
-        Some(cache.pack(&key, || {
-            let surface = ready()?.surface.as_ref().ok_or_else(|| {
-                PrepareError::new(wanted.method_pointer, "the method moves no surface")
-            })?;
-            let bank = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
-            let most = MOST_STAGE_SHAPES / 3;
-            if bank.marker_count() > most {
-                let message = format!(
-                    "{} markers: the stage moves a surface by {most} at most; leave some out of \
-                     the map",
-                    bank.marker_count()
-                );
-                return Err(PrepareError::new(wanted.method_pointer, message));
-            }
-            let moved = surface_avatar(&avatar.avatar, avatar.skin()?, surface, &bank)
-                .map_err(|e| PrepareError::new(wanted.method_pointer, e))?;
-            Ok(encode_pack(&moved).bytes)
-        })?)
-    } else {
-        None
-    };
-    let unseen = unseen_shapes(&opened, spec);
-    warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
-    // Automatic scale factors follow from the bank between its bounds.
-    let range = if joined.scales_by_bank() {
-        format!("{:?} {:?} {}", spec.bounds, spec.locked, avatar.key)
-    } else {
-        String::new()
-    };
-    let lowpass = format!("{:?}", spec.head_lowpass_hz);
-    let take = cache.pack(&["take", &markers, &performance.key, &lowpass, &range], || {
-        let take = joined
-            .segment(&opened, spec, performance.frames.clone())
-            .map_err(|e| performance.error(e))?;
-        Ok(encode_take(&take))
-    })?;
-    Ok((moved, operators, take))
 }
 
 /// The take pack of recorded weights, in the avatar's order of shapes.

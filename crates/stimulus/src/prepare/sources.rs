@@ -2,24 +2,18 @@
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use mimique_face::Avatar;
-use mimique_face::pack::encode_pack;
 use mimique_mocap::{Capture, LengthUnit, ReadOptions};
-use mimique_solver::FrontEndError;
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
 };
 
+use super::source_files::{AvatarFile, CaptureFile, Film, Performance, Recording};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::sha256_hex;
-use crate::{
-    AvatarSkin, JoinedTake, MarkerMap, RepairSidecar, SolveError, TakeOptions, Training,
-    WeightsTable, split_shapes,
-};
+use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, WeightsTable, split_shapes};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -28,63 +22,6 @@ pub(super) struct Sources<'a> {
     avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
-}
-
-/// An avatar, and what its bytes or its making are known by.
-pub(super) struct AvatarFile {
-    pub key: String,
-    pub avatar: Avatar,
-    /// Shapes that stay at 0, as the JSON beside the file asks.
-    pub locked: Vec<String>,
-    /// The marker map of the built-in head.
-    sites: Option<MarkerMap>,
-    skin: OnceCell<AvatarSkin>,
-    pointer: String,
-}
-
-/// A capture, likewise.
-struct CaptureFile {
-    key: String,
-    capture: Capture,
-    head: Vec<String>,
-    /// What its repair is known by.
-    repair: Option<String>,
-    /// Neutral and played frames of a built-in performance.
-    known: Option<(Range<usize>, Range<usize>)>,
-}
-
-/// A segment of a capture, to be played by an avatar.
-pub(super) struct Performance {
-    /// Pointer of the segment.
-    pub pointer: String,
-    /// Pointer of its capture.
-    pub capture_pointer: String,
-    /// Frames played.
-    pub frames: Range<usize>,
-    /// Cut-off that the capture asks for, Hz.
-    pub head_lowpass_hz: Option<f64>,
-    /// What markers, head, neutral and capture are known by.
-    pub key: String,
-    avatar: Rc<AvatarFile>,
-    capture: Rc<CaptureFile>,
-    map: MarkerMap,
-    options: TakeOptions,
-}
-
-/// A film of a segment.
-pub(super) struct Film {
-    pub bytes: Vec<u8>,
-    pub media_type: &'static str,
-}
-
-/// A segment whose weights were recorded.
-pub(super) struct Recording {
-    /// Pointer of the segment.
-    pub pointer: String,
-    /// Weights in the file's own columns.
-    pub table: WeightsTable,
-    /// Frames played.
-    pub frames: Range<usize>,
 }
 
 impl<'a> Sources<'a> {
@@ -198,14 +135,14 @@ impl<'a> Sources<'a> {
                 ));
             }
         };
-        let key =
-            format!("{} {map_key} {:?} {:?} {frames:?}", file.key, options.neutral, options.head);
+        let take_key = format!("{} {map_key} {:?} {:?}", file.key, options.neutral, options.head);
         Ok(Performance {
             pointer: at,
             capture_pointer,
-            frames,
             head_lowpass_hz: entry.head_lowpass_hz,
-            key,
+            key: format!("{take_key} {frames:?}"),
+            take_key,
+            frames,
             avatar: avatar.clone(),
             capture: file,
             map,
@@ -373,56 +310,5 @@ fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareEr
         Some("cm") => Ok(Some(LengthUnit::Centimetre)),
         Some("m") => Ok(Some(LengthUnit::Metre)),
         Some(other) => Err(PrepareError::new(at, format!("unit {other:?}; write m, cm or mm"))),
-    }
-}
-
-impl AvatarFile {
-    /// The avatar pack.
-    pub fn pack(&self) -> Vec<u8> {
-        encode_pack(&self.avatar).bytes
-    }
-
-    pub fn skin(&self) -> Result<&AvatarSkin, PrepareError> {
-        if let Some(skin) = self.skin.get() {
-            return Ok(skin);
-        }
-        let skin = AvatarSkin::of(&self.avatar).map_err(|e| PrepareError::new(&self.pointer, e))?;
-        Ok(self.skin.get_or_init(|| skin))
-    }
-}
-
-impl Performance {
-    /// What the capture's repair is known by; `None` for one as it was recorded.
-    pub fn repair(&self) -> Option<String> {
-        self.capture.repair.clone()
-    }
-
-    /// Frames a second of the capture.
-    pub fn rate_hz(&self) -> f64 {
-        self.capture.capture.rate_hz
-    }
-
-    /// Avatar, map and capture brought together.
-    pub fn joined(&self) -> Result<JoinedTake<'_>, PrepareError> {
-        JoinedTake::new(self.avatar.skin()?, &self.capture.capture, &self.map, &self.options)
-            .map_err(|e| self.error(e))
-    }
-
-    /// An error of the solve, at the part of the study file that it comes from.
-    pub fn error(&self, error: SolveError) -> PrepareError {
-        let field = match &error {
-            SolveError::Map(_)
-            | SolveError::NoCommonLabel { .. }
-            | SolveError::NoScaledMarker { .. }
-            | SolveError::ScaleFrames { .. } => "/markers",
-            SolveError::NoHeadMarker { .. } => "/head",
-            SolveError::FrontEnd(FrontEndError::Head { .. }) => "/head",
-            SolveError::FrontEnd(FrontEndError::NeutralRange { .. })
-            | SolveError::NeutralUnseen(_) => "/neutral",
-            SolveError::FrontEnd(FrontEndError::Lowpass(_)) => "/headLowpassHz",
-            SolveError::Segment { .. } => return PrepareError::new(&self.pointer, error),
-            _ => "",
-        };
-        PrepareError::new(format!("{}{field}", self.capture_pointer), error)
     }
 }

@@ -1,0 +1,77 @@
+//! What `mimique solve` says.
+
+use std::io::Write as _;
+
+use mimique_stimulus::{SolveReport, SolvedCapture};
+use serde_json::{Value, json};
+
+use super::args::Args;
+
+/// A few lines of the report, or all of it but the frames as JSON.
+pub(super) fn print(
+    args: &Args,
+    solved: &SolvedCapture,
+    notes: &[String],
+    json: bool,
+) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let report = &solved.report;
+    if json {
+        let mut value = serde_json::to_value(report)?;
+        if let Value::Object(map) = &mut value {
+            // One object a frame is for --report.
+            map.remove("frames");
+            map.insert("notes".into(), json!(notes));
+            map.insert("out".into(), json!(args.out));
+        }
+        writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
+        return Ok(());
+    }
+    let SolveReport { summary, seconds, .. } = report;
+    writeln!(
+        out,
+        "{}: {} frames at {} Hz, {} shapes, {} markers, {} head markers, method {}",
+        args.out.display(),
+        summary.frames,
+        report.rate_hz,
+        report.shapes,
+        report.markers.len(),
+        report.head.len(),
+        report.method.method,
+    )?;
+    writeln!(
+        out,
+        "residual {:.3} mm rms, {:.3} mm at worst; {:.1} iterations a frame, {} at most; KKT error {:.1e} at worst",
+        summary.residual_rms_mm,
+        summary.residual_worst_mm,
+        summary.iterations_mean,
+        summary.iterations_most,
+        summary.kkt_worst,
+    )?;
+    if let Some(learnt) = &report.regression {
+        writeln!(
+            out,
+            "learnt from {} frames, {} basis vectors; length scale {:.3}, signal {:.3}, noise {:.4}; predictive deviation {:.3} at worst",
+            learnt.training_frames,
+            learnt.basis_vectors,
+            learnt.kernel.length,
+            learnt.kernel.signal,
+            learnt.kernel.noise,
+            summary.deviation_worst.unwrap_or(0.0),
+        )?;
+    }
+    writeln!(
+        out,
+        "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, check {:.3}, write {:.3}",
+        seconds.read,
+        seconds.set_up,
+        seconds.front_end,
+        seconds.solve,
+        seconds.check,
+        seconds.write
+    )?;
+    writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
+    notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))?;
+    Ok(())
+}
