@@ -35,7 +35,9 @@ impl Wanted<'_> {
             | SolveError::TrainingShapes { .. } => {
                 PrepareError::new(format!("{}/training", self.method_pointer), error)
             }
-            SolveError::Surface(_) => PrepareError::new(self.method_pointer, error),
+            SolveError::Surface(_) | SolveError::Fit(_) => {
+                PrepareError::new(self.method_pointer, error)
+            }
             other => self.performance.error(other),
         }
     }
