@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use mimique_mocap::Capture;
-use mimique_solver::{Fit, FitError, Method, MethodSpec, SurfaceResponse};
+use mimique_solver::{Fit, FitError, MarkerSite, Method, MethodSpec, SurfaceResponse};
 
 use crate::head_check::moving_skin;
 use crate::report::{
