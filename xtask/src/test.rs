@@ -62,6 +62,7 @@ pub fn run(args: &Args) -> Result<()> {
     for (name, features) in [
         ("mimique-app", None),
         ("mimique-web-solver", None),
+        ("mimique-web-studio", None),
         ("mimique-web-stage", Some("webgpu")),
         ("mimique-web-stage", Some("webgl")),
     ] {
