@@ -45,7 +45,7 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// [`GlbWriteError`]: weights that are no whole frames, no rate, too large a file.
 pub fn write_glb(avatar: &Avatar, weights: &[f32], rate_hz: f64) -> Result<Vec<u8>, GlbWriteError> {
     let shapes = avatar.shape_names.len();
-    if (shapes == 0 && !weights.is_empty()) || (shapes > 0 && weights.len() % shapes != 0) {
+    if !weights.len().is_multiple_of(shapes) {
         return Err(GlbWriteError::Weights { weights: weights.len(), shapes });
     }
     if !(rate_hz.is_finite() && rate_hz > 0.0) {
