@@ -42,7 +42,8 @@ impl<'a> Grouped<'a> {
         }
         let (k, distinct) = (group.levels.len(), ranks.values.len());
         let (mut sizes, mut doubled_sums) = (vec![0usize; k], vec![0u64; k]);
-        let counts = (k * distinct <= TABLE).then(|| {
+        // What was sorted has too many values to be counted quickly.
+        let counts = (ranks.order.is_none() && k * distinct <= TABLE).then(|| {
             let mut counts = vec![0u64; k * distinct];
             for (&code, &value) in group.codes.iter().zip(&ranks.codes) {
                 counts[code as usize * distinct + value as usize] += 1;
@@ -186,4 +187,31 @@ fn middle(values: &mut [f64]) -> f64 {
     }
     let low = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     low + 0.5 * (high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sorted, not counted: rank sums, sizes and medians are those of looking at each group alone.
+    #[test]
+    fn many_values_are_walked_in_order() {
+        let n = 3 * crate::tally::COUNTED;
+        let value = |i: usize| ((i * 7919 % 10_007) as f64).sqrt() - 40.0;
+        let response = Numbers { name: "y".to_owned(), values: (0..n).map(value).collect() };
+        let labels: Vec<String> = (0..n).map(|i| format!("g{}", i * i % 5)).collect();
+        let group = Factor::from_cells("g", labels.iter().map(|l| Some(l.as_str())), |_| None);
+        let grouped = Grouped::of(&response, &group).unwrap().ok().unwrap();
+        assert!(grouped.ranks.order.is_some() && grouped.counts.is_none());
+        let medians = grouped.medians();
+        for (code, &median) in medians.iter().enumerate() {
+            let own = || (0..n).filter(|&i| group.codes[i] as usize == code);
+            assert_eq!(grouped.sizes[code], own().count());
+            let sum: u64 = own().map(|i| grouped.ranks.doubled_rank(i)).sum();
+            assert_eq!(grouped.doubled_sums[code], sum);
+            let mut values: Vec<f64> = own().map(|i| response.values[i]).collect();
+            assert_eq!(median, middle(&mut values));
+            assert_eq!(grouped.tally(code).total() as usize, grouped.sizes[code]);
+        }
+    }
 }

@@ -35,7 +35,14 @@ pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec
             let clip = trial.clip.clone();
             log.add(EventKind::TrialStarted { step: id.clone(), clip: clip.clone(), beside: None });
             log.add(EventKind::TrialPlayed { step: id.clone(), log: play(log.now_ms) });
-            log.add(EventKind::TrialFinished { step: id, clip, answers, rt_ms: 900.5, replays: 0, timed_out: false });
+            log.add(EventKind::TrialFinished {
+                step: id,
+                clip,
+                answers,
+                rt_ms: 900.5,
+                replays: 0,
+                timed_out: false,
+            });
         } else {
             log.add(EventKind::PageFinished { step: id, answers, timed_out: false });
         }
