@@ -55,7 +55,7 @@ test("firefox: the demo from consent through two trials", { skip: unable, timeou
           // Pages and answers work; of the clips this machine's Firefox can only say why not.
           await assert.rejects(until("ready", (now) => now.phase === "ready"), /webgl2: not offered/);
           assert.deepEqual(browser.errors, [], "the console is clean");
-          if (process.env.MIMIQUE_NO_SKIP === "1") throw new Error("may not skip: Firefox has no WebGL2 here");
+          if (process.env.MIMIQUE_NO_SKIP === "1") throw new Error("may not skip: Firefox has no WebGL2 here; install Xvfb and Mesa");
           return context.skip("SKIPPED from the first clip on: Firefox has no WebGL2 here");
         }
         page = await until("ready", (now) => now.phase === "ready");

@@ -76,6 +76,12 @@ pub const FIREFOX: Package = Package {
     sign: Sign::Program("firefox-esr"),
     elsewhere: "Firefox, its path in MIMIQUE_FIREFOX",
 };
+/// A display in memory, without which Firefox draws no WebGL; and a driver on the processor.
+pub const XVFB: Package = Package {
+    name: "xvfb libegl1 libgl1-mesa-dri",
+    sign: Sign::Program("Xvfb"),
+    elsewhere: "Xvfb, or a desktop",
+};
 /// A Vulkan driver on the processor, for pictures without a graphics card.
 pub const LAVAPIPE: Package = Package {
     name: "mesa-vulkan-drivers",

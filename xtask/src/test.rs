@@ -114,6 +114,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn browser(tally: &mut Tally) -> Result<()> {
     need(&install::CHROMIUM);
     need(&install::FIREFOX);
+    need(&install::XVFB);
     let folder = root().join("tests/browser");
     if let Found::No(remedy) = install::npm(&folder)? {
         say(&format!("browser tests cannot run: {remedy}"));

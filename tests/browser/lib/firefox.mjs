@@ -9,6 +9,21 @@ import WebSocket from "ws";
 const candidates = [process.env.MIMIQUE_FIREFOX, "/usr/bin/firefox-esr", "/usr/bin/firefox"];
 export const firefox = candidates.find((path) => path && existsSync(path));
 
+/** A display in memory, `{DISPLAY, close()}`: without one Firefox draws no WebGL. None where there is
+    no Xvfb. */
+async function display() {
+  if (!existsSync("/usr/bin/Xvfb")) return null;
+  const server = spawn("/usr/bin/Xvfb", ["-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"], {
+    stdio: ["ignore", "ignore", "ignore", "pipe"],
+  });
+  const gone = new Promise((done) => server.once("exit", done));
+  const number = await new Promise((found, fail) => {
+    server.stdio[3].once("data", (text) => found(String(text).trim()));
+    gone.then(() => fail(new Error("Xvfb ended")));
+  });
+  return { DISPLAY: `:${number}`, close: async () => (server.kill("SIGTERM"), gone) };
+}
+
 /** A Firefox with a fresh profile: `{evaluate(code), goto(url), screenshot(path), errors, close()}`. */
 export async function openFirefox({ width = 1000, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "mimique-firefox-"));
@@ -16,9 +31,10 @@ export async function openFirefox({ width = 1000, height = 900 } = {}) {
   const preferences = { "webgl.force-enabled": true, "webgl.disable-fail-if-major-performance-caveat": true, "gfx.webrender.software": true };
   const lines = Object.entries(preferences).map(([name, value]) => `user_pref("${name}", ${value});`);
   writeFileSync(join(profile, "user.js"), lines.join("\n"));
-  const child = spawn(firefox, ["--headless", "--no-remote", "--profile", profile, "--remote-debugging-port", "0", `--width=${width}`, `--height=${height}`], {
+  const screen = await display();
+  const child = spawn(firefox, [...(screen ? [] : ["--headless"]), "--no-remote", "--profile", profile, "--remote-debugging-port", "0", `--width=${width}`, `--height=${height}`], {
     stdio: ["ignore", "pipe", "pipe"],
-    env: { ...process.env, MOZ_REMOTE_ALLOW_SYSTEM_ACCESS: "1" },
+    env: { ...process.env, ...(screen && { DISPLAY: screen.DISPLAY }), MOZ_REMOTE_ALLOW_SYSTEM_ACCESS: "1" },
   });
   const gone = new Promise((done) => child.on("exit", done));
   let said = "";
@@ -75,6 +91,7 @@ export async function openFirefox({ width = 1000, height = 900 } = {}) {
       const kill = setTimeout(() => child.kill("SIGKILL"), 10_000);
       await gone;
       clearTimeout(kill);
+      await screen?.close();
     },
   };
 }
