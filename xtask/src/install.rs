@@ -104,6 +104,12 @@ pub const POSTGRESQL: Package = Package {
     ]),
     elsewhere: "PostgreSQL 14 or newer",
 };
+/// The reverse proxy of the server's tests.
+pub const NGINX: Package = Package {
+    name: "nginx-light",
+    sign: Sign::File(&["/usr/sbin/nginx", "/usr/local/sbin/nginx", "/opt/homebrew/bin/nginx"]),
+    elsewhere: "nginx 1.18 or newer",
+};
 /// The statistics that the written-out R scripts are compared with.
 pub const R: Package = Package {
     name: "r-base-core",

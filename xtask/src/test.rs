@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 
 use crate::install::{self, Found, Package};
-use crate::process::{cargo, locked, root, say};
+use crate::process::{cargo, locked, output, root, say};
 use crate::tally::Tally;
 use crate::{budget, demo, web};
 
@@ -31,6 +31,7 @@ pub fn run(args: &Args) -> Result<()> {
     need(&install::C_COMPILER);
     need(&install::LAVAPIPE);
     need(&install::POSTGRESQL);
+    need(&install::NGINX);
     need(&install::R);
     let python = match install::python("python", &root().join("tests/support/requirements.txt")) {
         Ok(Ok(interpreter)) => Some(interpreter),
@@ -74,6 +75,18 @@ pub fn run(args: &Args) -> Result<()> {
         }
         let title = format!("clippy, wasm32, {name} {}", features.unwrap_or_default());
         tally.check(title.trim_end(), lint.args(["--", "-D", "warnings"]));
+    }
+
+    // Licences, sources and unwanted crates. Compiling it takes longer than all of the tests, so it is
+    // not installed here; advisories need its database from the network.
+    if output(cargo().args(["deny", "--version"])).is_some() {
+        let mut deny = cargo();
+        tally.check("cargo deny", deny.args(["deny", "check", "bans", "licenses", "sources"]));
+    } else {
+        say(
+            "cargo-deny is not installed: licences, sources and advisories of dependencies are not \
+             checked (cargo install --locked cargo-deny; cargo deny check)",
+        );
     }
 
     let mut tests = cargo();

@@ -5,7 +5,9 @@
 
 mod account;
 mod analyze;
+mod backup;
 mod check;
+mod erase;
 mod export;
 mod export_site;
 mod import;
@@ -16,6 +18,7 @@ mod output;
 mod power;
 mod preview;
 mod repair;
+mod restore;
 mod segment;
 mod serve;
 mod simulate;
@@ -64,6 +67,12 @@ enum Command {
     ExportSite(export_site::Args),
     /// Export the sessions of a study that was hosted as files
     Import(import::Args),
+    /// Save the database while the server runs
+    Backup(backup::Args),
+    /// Fill an empty database from a backup
+    Restore(restore::Args),
+    /// Delete answers or identifiers
+    Erase(erase::Args),
     /// Write an export of simulated participants
     Simulate(simulate::Args),
     /// Find the power of a study by simulation, and write its preregistration
@@ -96,6 +105,9 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),
         Command::Import(args) => import::run(args, json),
+        Command::Backup(args) => backup::run(args, json),
+        Command::Restore(args) => restore::run(args, json),
+        Command::Erase(args) => erase::run(args, json),
         Command::Simulate(args) => simulate::run(args, json),
         Command::Power(args) => power::run(args, json),
         Command::Test(args) => test_command::run(args, json),

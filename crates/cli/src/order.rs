@@ -13,8 +13,9 @@ use crate::study_file::load;
 pub struct Args {
     /// Study file (JSON, comments allowed)
     study: PathBuf,
-    /// Participant number, as in the export's column `participant`
-    #[arg(long, short = 'k')]
+    /// Place in the balance of conditions, as in the export's column `slot` (the participant's number
+    /// where nobody was replaced)
+    #[arg(long, short = 'k', visible_alias = "slot")]
     participant: u64,
     /// Seed instead of the study's own
     #[arg(long)]

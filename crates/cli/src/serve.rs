@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Stage, Storage};
+use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Settings, Stage, Storage};
 use mimique_stimulus::{Places, prepare};
 use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
@@ -46,6 +46,52 @@ pub struct Args {
     /// Mark the answers as those of a pilot
     #[arg(long)]
     pilot: bool,
+    /// Participants come by https://, through a proxy that ends TLS: browsers are told to insist on
+    /// it, cookies are marked Secure
+    #[arg(long)]
+    behind_tls: bool,
+    /// A proxy stands in front and names the caller in X-Real-IP (used to bound the rate of requests,
+    /// never stored)
+    #[arg(long)]
+    behind_proxy: bool,
+    /// Address under which browsers find packs by their hash, instead of here:
+    /// https://cdn.example.org/packs
+    #[arg(long)]
+    packs_url: Option<String>,
+    /// Token with which /metrics may be read from elsewhere than this machine; better given by the
+    /// variable MIMIQUE_METRICS_TOKEN
+    #[arg(long)]
+    metrics_token: Option<String>,
+    /// Connections at once; further ones wait
+    #[arg(long, default_value_t = Settings::default().most_connections)]
+    most_connections: usize,
+    /// Requests a second from one address in the long run; ten times as many at once
+    #[arg(long, default_value_t = Settings::default().requests_per_second)]
+    requests_per_second: u32,
+}
+
+impl Args {
+    fn settings(&self) -> anyhow::Result<Settings> {
+        let packs_address = self.packs_url.as_ref().map(|url| url.trim_end_matches('/').to_owned());
+        if let Some(url) = &packs_address {
+            let plain =
+                url.bytes().all(|byte| byte.is_ascii_graphic() && !b";,'\"<>".contains(&byte));
+            anyhow::ensure!(
+                plain && (url.starts_with("https://") || url.starts_with("http://")),
+                "--packs-url: {url}: no address of packs; write https://HOST/FOLDER"
+            );
+        }
+        let from_environment = || std::env::var("MIMIQUE_METRICS_TOKEN").ok();
+        Ok(Settings {
+            behind_tls: self.behind_tls,
+            behind_proxy: self.behind_proxy,
+            packs_address,
+            metrics_token: self.metrics_token.clone().or_else(from_environment),
+            most_connections: self.most_connections,
+            requests_per_second: self.requests_per_second,
+            ..Settings::default()
+        })
+    }
 }
 
 /// Runs the command.
@@ -55,6 +101,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .with_target(false)
         .with_max_level(tracing::Level::INFO)
         .init();
+    let settings = args.settings()?;
     let assets = match &args.web_dir {
         Some(folder) => Assets::from_folder(folder)?,
         None => Assets::embedded()?,
@@ -76,11 +123,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         }
     }
     let runtime = tokio::runtime::Runtime::new().context("the server's threads")?;
-    runtime.block_on(host(args, studies, packs, assets, json))
+    runtime.block_on(host(args, settings, studies, packs, assets, json))
 }
 
 async fn host(
     args: Args,
+    settings: Settings,
     studies: Vec<HostedStudy>,
     mut packs: PackStore,
     assets: Assets,
@@ -111,8 +159,10 @@ async fn host(
     let app = App::new(studies, packs, assets, storage)
         .await?
         .with_access(access)
-        .with_data_folder(args.data_dir.clone());
+        .with_data_folder(args.data_dir.clone())
+        .with_settings(settings);
     app.host_uploads().await?;
+    let version = |id: &str| app.registered(id).map_or(1, |facts| facts.version);
     let base = match &args.public_url {
         Some(url) => url.trim_end_matches('/').to_owned(),
         None => format!("http://{}", reachable(listener.local_addr()?)),
@@ -129,6 +179,7 @@ async fn host(
                     json!({
                         "id": id,
                         "config_hash": config_hash,
+                        "version": version(id),
                         "clips": clips,
                         "participant": format!("{base}/s/{id}/"),
                         "preview": format!("{base}/preview/{id}"),
@@ -141,7 +192,12 @@ async fn host(
             writeln!(out, "{line}")?;
         } else {
             for (id, config_hash, clips) in &addresses {
-                writeln!(out, "study {id} ({clips} clips, version {})", &config_hash[..12])?;
+                let version = version(id);
+                writeln!(
+                    out,
+                    "study {id} ({clips} clips, version {version}, {})",
+                    &config_hash[..12]
+                )?;
                 writeln!(out, "  participants  {base}/s/{id}/")?;
                 writeln!(out, "  preview       {base}/preview/{id}")?;
             }

@@ -3,15 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::accounts::Access;
 use crate::assets::Assets;
 use crate::catalogue::Catalogue;
 use crate::error::Error;
 use crate::hosted::HostedStudy;
+use crate::limits::Limits;
+use crate::metrics::Metrics;
 use crate::packs::PackStore;
 use crate::researcher::{Pulse, Reports, SessionViews};
-use crate::storage::{Storage, StorageError};
+use crate::settings::Settings;
+use crate::storage::{Registered, Storage, StorageError, StudyVersion};
 use crate::uploads::Preparations;
 use crate::{clock, secret};
 
@@ -19,6 +23,12 @@ use crate::{clock, secret};
 #[derive(Clone)]
 pub struct App {
     pub(crate) catalogue: Arc<Catalogue>,
+    pub(crate) registered: Arc<BTreeMap<String, Registered>>,
+    pub(crate) settings: Arc<Settings>,
+    pub(crate) limits: Arc<Limits>,
+    pub(crate) metrics: Arc<Metrics>,
+    /// Set when the server has been told to stop.
+    pub(crate) stopping: Arc<AtomicBool>,
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
     pub(crate) session_views: Arc<SessionViews>,
@@ -73,13 +83,19 @@ impl App {
                 return Err(AppError::StudyTwice { id: study.id().to_owned() });
             }
         }
+        let mut registered = BTreeMap::new();
         for study in &studies {
-            register(&storage, study).await?;
+            registered.insert(study.id().to_owned(), register(&storage, study).await?);
         }
         let versions = storage.study_versions().await?;
         let catalogue = Catalogue::new(studies, &versions, packs)?;
         Ok(Self {
             catalogue: Arc::new(catalogue),
+            registered: Arc::new(registered),
+            settings: Arc::default(),
+            limits: Arc::default(),
+            metrics: Arc::default(),
+            stopping: Arc::default(),
             assets: Arc::new(assets),
             session_views: Arc::default(),
             access: Arc::default(),
@@ -102,7 +118,18 @@ impl App {
 
     /// Makes this version of a study the current one.
     pub(crate) async fn register(&self, study: &HostedStudy) -> Result<(), StorageError> {
-        register(&self.storage, study).await
+        register(&self.storage, study).await?;
+        Ok(())
+    }
+
+    /// The same with other settings.
+    pub fn with_settings(self, settings: Settings) -> Self {
+        Self { settings: Arc::new(settings), ..self }
+    }
+
+    /// How the version came to be that was served of a study at the start.
+    pub fn registered(&self, study_id: &str) -> Option<&Registered> {
+        self.registered.get(study_id)
     }
 
     pub(crate) fn study(&self, id: &str) -> Result<Arc<HostedStudy>, Error> {
@@ -111,17 +138,31 @@ impl App {
 }
 
 /// Makes this version of a study the current one, and says so where it replaces another.
-async fn register(storage: &Storage, study: &HostedStudy) -> Result<(), StorageError> {
+async fn register(storage: &Storage, study: &HostedStudy) -> Result<Registered, StorageError> {
     let version = study.version();
-    if let Some(before) = storage.register_study(&version, clock::now_ms()).await? {
+    let facts = storage.register_study(&version, clock::now_ms()).await?;
+    say_what_changed(&version, &facts);
+    Ok(facts)
+}
+
+/// A live study is frozen by its hash: what is not the same is a version of its own, and said.
+fn say_what_changed(version: &StudyVersion, facts: &Registered) {
+    let (study, hash) = (&version.study_id, &version.config_hash[..12]);
+    if let Some(before) = &facts.replaces {
         tracing::warn!(
-            "study {}: the file has changed (was {}, is {}): a new version starts",
-            version.study_id,
+            "study {study}: the file has changed (was {}, is {hash}): version {} is served; {} live \
+             sessions of other versions go on with theirs",
             &before[..before.len().min(12)],
-            &version.config_hash[..12],
+            facts.version,
+            facts.running_elsewhere,
         );
     }
-    Ok(())
+    if facts.stimuli_changed {
+        tracing::warn!(
+            "study {study}: the file is the same ({hash}), but its stimuli are not; rows tell them \
+             apart by their provenance"
+        );
+    }
 }
 
 async fn key(storage: &Storage, name: &str) -> Result<Arc<[u8]>, AppError> {

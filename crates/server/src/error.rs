@@ -29,6 +29,10 @@ pub(crate) enum Error {
     TooLarge,
     #[error("the body is not JSON by its Content-Type; send application/json")]
     NotJson,
+    #[error("too many requests from one address; wait a moment and send it again")]
+    TooOften,
+    #[error("the part asked for is beyond the end; ask for less")]
+    NoSuchRange,
     #[error("the request took too long to arrive; send it again")]
     Timeout,
     #[error("{} events differ from what is stored under their sequence; reload the page", .0.len())]
@@ -53,6 +57,8 @@ pub(crate) enum Error {
     UploadTooLarge,
     #[error("there is no report: {0}")]
     NoReport(String),
+    #[error("{message}; {remedy}")]
+    CannotBegin { code: &'static str, message: &'static str, remedy: &'static str },
     #[error(transparent)]
     Storage(#[from] StorageError),
     #[error("the server failed: {0}")]
@@ -74,6 +80,8 @@ impl Error {
             Self::BadRequest { .. } => StatusCode::BAD_REQUEST,
             Self::TooLarge | Self::UploadTooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             Self::BadUpload(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            Self::TooOften => StatusCode::TOO_MANY_REQUESTS,
+            Self::NoSuchRange => StatusCode::RANGE_NOT_SATISFIABLE,
             Self::NotJson => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             Self::Timeout => StatusCode::REQUEST_TIMEOUT,
             Self::EventConflict(_) | Self::Storage(StorageError::MissingEvents { .. }) => {
@@ -83,7 +91,12 @@ impl Error {
             Self::NotAllowed
             | Self::ForeignForm
             | Self::WrongPassword
-            | Self::Storage(StorageError::WrongWithdrawalCode) => StatusCode::FORBIDDEN,
+            | Self::CannotBegin { .. }
+            | Self::Storage(
+                StorageError::WrongWithdrawalCode
+                | StorageError::AlreadyTookPart
+                | StorageError::StudyFull,
+            ) => StatusCode::FORBIDDEN,
             Self::TooManyAttempts => StatusCode::TOO_MANY_REQUESTS,
             Self::DeadLink => StatusCode::GONE,
             Self::LastOwner(_) | Self::NoReport(_) => StatusCode::CONFLICT,
@@ -106,6 +119,8 @@ impl Error {
             Self::TooLarge | Self::UploadTooLarge => "too-large",
             Self::BadUpload(_) => "bad-upload",
             Self::Timeout => "timeout",
+            Self::TooOften => "too-often",
+            Self::NoSuchRange => "no-such-range",
             Self::EventConflict(_) => "event-conflict",
             Self::LogInFirst => "log-in-first",
             Self::NotAllowed => "not-allowed",
@@ -115,6 +130,9 @@ impl Error {
             Self::DeadLink => "dead-link",
             Self::LastOwner(_) => "last-owner",
             Self::NoReport(_) => "no-report",
+            Self::CannotBegin { code, .. } => code,
+            Self::Storage(StorageError::AlreadyTookPart) => "already-took-part",
+            Self::Storage(StorageError::StudyFull) => "study-full",
             Self::Storage(StorageError::UnknownSession) => "unknown-session",
             Self::Storage(StorageError::Withdrawn) => "withdrawn",
             Self::Storage(StorageError::MissingEvents { .. }) => "missing-events",
@@ -137,7 +155,10 @@ impl Error {
         } else {
             self.to_string()
         };
-        let (message, remedy) = text.rsplit_once("; ").unwrap_or((&text, ""));
+        let (message, remedy) = match &self {
+            Self::CannotBegin { message, remedy, .. } => (*message, *remedy),
+            _ => text.rsplit_once("; ").unwrap_or((&text, "")),
+        };
         let (message, remedy) = (message.to_owned(), remedy.to_owned());
         let sequences = match self {
             Self::EventConflict(sequences) => sequences,
@@ -157,7 +178,7 @@ impl IntoResponse for Error {
         let mut response = (status, Json(self.refusal())).into_response();
         let headers = response.headers_mut();
         headers.insert(header::CACHE_CONTROL, header::HeaderValue::from_static("no-store"));
-        if status == StatusCode::SERVICE_UNAVAILABLE {
+        if matches!(status, StatusCode::SERVICE_UNAVAILABLE | StatusCode::TOO_MANY_REQUESTS) {
             headers.insert(header::RETRY_AFTER, header::HeaderValue::from_static("2"));
         }
         response

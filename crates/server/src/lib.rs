@@ -19,12 +19,16 @@ mod error;
 pub mod export;
 mod folder;
 mod hosted;
+mod limits;
+mod metrics;
 mod packs;
 mod receipt;
 mod researcher;
+mod retention;
 mod routes;
 mod secret;
 mod serve;
+mod settings;
 mod static_file;
 mod storage;
 mod studio;
@@ -35,12 +39,15 @@ pub use app::{App, AppError};
 pub use assets::{Assets, AssetsError};
 pub use hosted::{HostedStudy, Stage};
 pub use packs::{PackError, PackStore};
+pub use retention::erase_overdue;
 pub use routes::router;
 pub use serve::{ServeError, serve};
+pub use settings::Settings;
 pub use storage::{
-    Account, AccountLink, ApiToken, Appended, AuditEntry, Completed, Exclusion, LinkPurpose,
-    MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry, Role, SessionRecord, Status, Storage,
-    StorageError, StudyVersion, UploadedStudy,
+    Account, AccountLink, ApiToken, Appended, AuditEntry, BackupError, BackupFacts, Completed,
+    Deletion, Exclusion, LinkPurpose, MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry,
+    Registered, RestoreOptions, Restored, Role, SessionRecord, Status, Storage, StorageError,
+    StudyVersion, UploadedStudy, read_deletions, scrub_backup, write_deletions,
 };
 pub use studio::{StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
 

@@ -1,16 +1,37 @@
 //! Runs the server until it is told to stop; then lets requests in progress end.
+//!
+//! Connections are counted, and a request's head has to arrive within its time, so that slow callers
+//! hold no more than a place. An idle connection is closed after the same time; browsers open
+//! another one when they need it.
 
 use std::future::Future;
 use std::io;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use tokio::net::TcpListener;
+use axum::Router;
+use axum::extract::Request;
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::Service;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::GracefulShutdown;
+use hyper_util::service::TowerToHyperService;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
 
 use crate::app::App;
+use crate::limits::Peer;
+use crate::retention;
 use crate::routes::router;
 
 /// Requests in progress have this long to end after the signal.
 const LONGEST_FAREWELL: Duration = Duration::from_secs(10);
+/// A request's head in bytes at most; more is refused with 431.
+const LARGEST_HEAD: usize = 32 * 1024;
+/// Headers in a request at most.
+const MOST_HEADERS: usize = 64;
 
 /// Studies uploaded to another server on the same database are looked for this often.
 const UPLOADS_EVERY: Duration = Duration::from_secs(10);
@@ -30,27 +51,53 @@ pub async fn serve(
     listener: TcpListener,
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), ServeError> {
-    let (stopping, mut stopped) = tokio::sync::watch::channel(false);
-    let pulse = app.pulse.clone();
-    tokio::spawn(follow_uploads(app.clone()));
-    let server = axum::serve(listener, router(app.clone())).with_graceful_shutdown(async move {
-        stop.await;
-        // An open dashboard would never end by itself.
-        pulse.stop();
-        stopping.send_replace(true);
-    });
-    let overdue = async {
-        // An error says that the sender has gone: the server has ended by itself.
-        if stopped.wait_for(|stopping| *stopping).await.is_ok() {
-            tokio::time::sleep(LONGEST_FAREWELL).await;
-        } else {
-            std::future::pending::<()>().await;
+    let following = tokio::spawn(follow_uploads(app.clone()));
+    let watching = tokio::spawn(retention::watch(app.clone()));
+    let router = router(app.clone());
+    let graceful = GracefulShutdown::new();
+    let places = Arc::new(Semaphore::new(app.settings.most_connections.max(1)));
+    let mut stop = std::pin::pin!(stop);
+    let outcome = loop {
+        let next = async {
+            let place = Arc::clone(&places).acquire_owned().await;
+            (place, listener.accept().await)
+        };
+        let (place, accepted) = tokio::select! {
+            next = next => next,
+            () = &mut stop => break Ok(()),
+        };
+        match accepted {
+            Ok((stream, address)) => {
+                let peer = Peer(address.ip().to_canonical());
+                let connection = connection(&app, &router, stream, peer);
+                let connection = graceful.watch(connection);
+                let metrics = Arc::clone(&app.metrics);
+                metrics.connections.fetch_add(1, Ordering::Relaxed);
+                tokio::spawn(async move {
+                    // A connection that breaks is the caller's affair.
+                    let _ = connection.await;
+                    metrics.connections.fetch_sub(1, Ordering::Relaxed);
+                    drop(place);
+                });
+            }
+            Err(error) if is_the_callers(&error) => {}
+            // Out of file descriptors, most likely: connections that end make room.
+            Err(error) => {
+                tracing::warn!("a connection could not be taken: {error}");
+                tokio::time::sleep(Duration::from_millis(200)).await;
+            }
         }
     };
-    let outcome = tokio::select! {
-        outcome = server => outcome.map_err(ServeError::from),
-        () = overdue => Ok(()),
-    };
+    app.stopping.store(true, Ordering::Relaxed);
+    // An open dashboard would never end by itself.
+    app.pulse.stop();
+    drop(listener);
+    tokio::select! {
+        () = graceful.shutdown() => {}
+        () = tokio::time::sleep(LONGEST_FAREWELL) => {}
+    }
+    watching.abort();
+    following.abort();
     app.storage.close().await;
     outcome
 }
@@ -66,4 +113,43 @@ async fn follow_uploads(app: App) {
             () = app.pulse.stopped() => break,
         }
     }
+}
+
+fn connection(
+    app: &App,
+    router: &Router,
+    stream: TcpStream,
+    peer: Peer,
+) -> http1::Connection<TokioIo<TcpStream>, Caller> {
+    // Answers are short: they should not wait for more to send.
+    let _ = stream.set_nodelay(true);
+    let service = TowerToHyperService::new(router.clone());
+    http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(app.settings.header_timeout)
+        .max_buf_size(LARGEST_HEAD)
+        .max_headers(MOST_HEADERS)
+        .serve_connection(TokioIo::new(stream), Caller { service, peer })
+}
+
+/// The router, told who is at the other end.
+struct Caller {
+    service: TowerToHyperService<Router>,
+    peer: Peer,
+}
+
+impl Service<Request<Incoming>> for Caller {
+    type Response = <TowerToHyperService<Router> as Service<Request<Incoming>>>::Response;
+    type Error = <TowerToHyperService<Router> as Service<Request<Incoming>>>::Error;
+    type Future = <TowerToHyperService<Router> as Service<Request<Incoming>>>::Future;
+
+    fn call(&self, mut request: Request<Incoming>) -> Self::Future {
+        request.extensions_mut().insert(self.peer);
+        self.service.call(request)
+    }
+}
+
+fn is_the_callers(error: &io::Error) -> bool {
+    use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
+    matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset)
 }

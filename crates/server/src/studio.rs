@@ -112,5 +112,5 @@ async fn asset(
     Path((hash, name)): Path<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    Ok(desk.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers))
+    desk.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers)
 }

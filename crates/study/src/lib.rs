@@ -5,6 +5,7 @@ mod canonical;
 mod check;
 mod event;
 pub mod flow;
+mod instant;
 mod json_reader;
 mod order;
 pub mod responses;
@@ -20,6 +21,7 @@ pub use check::{
     CheckedStudy, FileLookup, Issue, Report, SCHEMA_ADDRESS, Severity, check, json_schema,
 };
 pub use event::{Answers, Calibrated, Client, Display, EventKind, PlayLog, ShownBeside};
+pub use instant::instant_ms;
 pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
 pub use session_file::{SessionFile, SessionFileError};
 pub use study_file::*;

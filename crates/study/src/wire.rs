@@ -19,11 +19,12 @@
 use std::collections::BTreeMap;
 
 use mimique_solver::MethodSpec;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// One study on this server.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StudySummary {
     /// Identifier used in addresses.
     pub id: String,
@@ -34,7 +35,7 @@ pub struct StudySummary {
 }
 
 /// Everything the participant's page needs: the study and where its clips are.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bundle {
     /// Identifier used in addresses.
     pub study_id: String,
@@ -47,7 +48,7 @@ pub struct Bundle {
 }
 
 /// Where a clip's parts are, and how it is solved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClipSource {
     /// Hash of the avatar pack (what the stage draws); of a film, the film itself.
     pub avatar: String,
@@ -56,6 +57,7 @@ pub struct ClipSource {
     /// Hash of the take pack (the markers of this clip, or recorded weights).
     pub take: String,
     /// The method and its parameters.
+    #[schemars(with = "Value")]
     pub method: MethodSpec,
     /// Duration as played, milliseconds.
     pub duration_ms: f64,
@@ -89,7 +91,7 @@ impl ClipSource {
 }
 
 /// A participant arrives.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartSession {
     /// Made by the page (128 random bits, hexadecimal), so that a repeated request starts one session.
     pub nonce: String,
@@ -104,14 +106,18 @@ pub struct StartSession {
 }
 
 /// The server's answer to [`StartSession`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SessionStarted {
     /// Secret token of the session, 128 bits, hexadecimal.
     pub session: String,
     /// Public participant identifier of the export, e.g. `p0007`.
     pub participant_id: String,
-    /// Participant number, never given twice within a study: decides the order.
+    /// Participant number, never given twice within a study.
     pub participant: u64,
+    /// Place in the balance of conditions: decides the order. Who drops out gives it back, so that
+    /// the next participant takes it. 0 in sessions of before there were slots: see [`Self::slot`].
+    #[serde(default)]
+    pub slot: u64,
     /// Seed of the study's random streams.
     pub seed: u64,
     /// `pilot` or `live`.
@@ -122,8 +128,15 @@ pub struct SessionStarted {
     pub withdrawal_code: String,
 }
 
+impl SessionStarted {
+    /// The place in the balance; the participant's number where none was given.
+    pub fn slot(&self) -> u64 {
+        if self.slot == 0 { self.participant } else { self.slot }
+    }
+}
+
 /// One thing that happened, numbered from 0 without gaps by the page.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Event {
     /// 0, 1, 2... within the session.
     pub sequence: u64,
@@ -134,14 +147,14 @@ pub struct Event {
 }
 
 /// Events to append.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AppendEvents {
     /// In ascending order of sequence.
     pub events: Vec<Event>,
 }
 
 /// Sent only after the events are committed to disk.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Acknowledged {
     /// Number of events stored without a gap: every sequence below it is on disk.
     pub stored: u64,
@@ -150,7 +163,7 @@ pub struct Acknowledged {
 }
 
 /// What a page needs to go on after a reload.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resume {
     /// As at the start.
     pub started: SessionStarted,
@@ -159,14 +172,14 @@ pub struct Resume {
 }
 
 /// The page says that it is at the end and has sent everything.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Complete {
     /// How many events the page has sent.
     pub events: u64,
 }
 
 /// The server has everything: only now is the completion code shown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Receipt {
     /// Keyed hash over the stored events, hexadecimal.
     pub receipt: String,
@@ -179,23 +192,23 @@ pub struct Receipt {
 }
 
 /// A participant withdraws.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Withdraw {
     /// The code given at the start.
     pub withdrawal_code: String,
 }
 
 /// The answers are deleted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Withdrawn {
     /// How many events were deleted.
     pub deleted: u64,
 }
 
 /// A refused request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Refusal {
-    /// Stable word, e.g. `unknown-session`, `study-closed`, `bad-request`.
+    /// Stable word, e.g. `unknown-session`, `study-closed`, `already-took-part`, `bad-request`.
     pub code: String,
     /// What is wrong, for a person.
     pub message: String,

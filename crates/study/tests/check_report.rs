@@ -209,6 +209,7 @@ mod changed_studies {
                 session: "s".into(),
                 participant_id: "p1".into(),
                 participant: 1,
+                slot: 1,
                 seed: study.seed,
                 stage: "live".into(),
                 config_hash: checked.config_hash().to_owned(),

@@ -202,6 +202,7 @@ fn questions_of_many_cells_become_rows_of_their_own() {
         session: "s".into(),
         participant_id: "p1".into(),
         participant: 1,
+        slot: 1,
         seed: 0,
         stage: "pilot".into(),
         config_hash: "h".into(),

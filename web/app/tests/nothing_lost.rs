@@ -330,6 +330,7 @@ fn plan() -> Plan {
         session: "s".to_owned(),
         participant_id: "p1".to_owned(),
         participant: 1,
+        slot: 1,
         seed: 5,
         stage: "live".to_owned(),
         config_hash: "h".to_owned(),

@@ -8,7 +8,7 @@ use mimique_study::wire::{ClipSource, Event, SessionStarted};
 use serde_json::Value;
 
 use super::ExportError;
-use crate::storage::{SessionRecord, Status, Storage, StorageError, StudyVersion};
+use crate::storage::{SessionRecord, Storage, StorageError, StudyVersion};
 
 /// What an export is made from: versions, sessions, identifiers. Events are read session by session.
 pub(crate) struct Sources {
@@ -297,6 +297,7 @@ pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
         session: String::new(),
         participant_id: crate::participant_id(session.participant),
         participant: session.participant,
+        slot: session.slot,
         seed: session.seed,
         stage: session.stage.clone(),
         config_hash: session.config_hash.clone(),
@@ -311,7 +312,7 @@ fn response_session<'a>(
     session: &SessionRecord,
     events: &'a [Event],
 ) -> responses::SessionRecord<'a> {
-    let status = (session.status == Status::Withdrawn).then_some("withdrawn");
+    let status = session.status.is_deleted().then(|| session.status.word());
     responses::SessionRecord { started, events, status }
 }
 

@@ -74,7 +74,7 @@ impl SessionView {
         let state = plan.as_ref().map(|plan| State::replay(plan, events));
         let flow_status = state.as_ref().map(|state| state.record.status);
         let standing = match (session.status, flow_status) {
-            (Status::Withdrawn, _) => Standing::Withdrawn,
+            (Status::Withdrawn | Status::Erased, _) => Standing::Withdrawn,
             (_, Some(FlowStatus::Declined)) => Standing::Declined,
             (Status::Completed, _) => Standing::Completed,
             (Status::Started, _) => Standing::Active,

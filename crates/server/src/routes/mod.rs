@@ -3,6 +3,8 @@
 mod accounts;
 mod for_people;
 mod inline_styles;
+mod interface;
+mod metrics;
 mod pages;
 mod researcher;
 mod sessions;
@@ -11,10 +13,11 @@ mod studies;
 mod uploads;
 
 use std::any::Any;
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use axum::extract::{DefaultBodyLimit, FromRequest, Request};
-use axum::http::{HeaderValue, StatusCode, header};
+use axum::extract::{DefaultBodyLimit, FromRequest, Request, State};
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -23,6 +26,8 @@ use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::app::App;
 use crate::error::Error;
+use crate::limits;
+use crate::settings::Settings;
 
 /// A request's body in bytes at most: some twenty trials with their frame logs.
 const LARGEST_BODY: usize = 2 * 1024 * 1024;
@@ -33,35 +38,45 @@ const LONGEST_REQUEST: Duration = Duration::from_secs(60);
 const UPLOAD: &str = "/researcher/upload";
 const LONGEST_UPLOAD: Duration = Duration::from_secs(3600);
 
-/// Scripts and styles only from here; nothing inline, nothing from elsewhere.
-const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; \
-     style-src 'self'; img-src 'self' data:; connect-src 'self'; worker-src 'self'; \
-     media-src 'self' blob:; form-action 'self'; frame-ancestors 'none'; base-uri 'none'";
+/// Scripts and styles only from here; nothing inline, nothing from elsewhere but packs, where they
+/// are named.
+fn content_security_policy(packs: Option<&str>) -> String {
+    let packs = packs.map(|packs| format!(" {}", origin(packs))).unwrap_or_default();
+    format!(
+        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
+         img-src 'self' data:; connect-src 'self'{packs}; worker-src 'self'; \
+         media-src 'self' blob:{packs}; form-action 'self'; frame-ancestors 'none'; \
+         base-uri 'none'; object-src 'none'"
+    )
+}
+
+/// Scheme, host and port of an address.
+fn origin(address: &str) -> &str {
+    let host = address.find("://").map_or(0, |at| at + 3);
+    let end =
+        address[host..].find(['/', '?', '#', ';', ',', ' ']).map_or(address.len(), |at| host + at);
+    &address[..end]
+}
 
 /// Every address of the server.
 pub fn router(app: App) -> Router {
-    Router::new()
+    interface::router()
         .route("/", get(pages::index))
         .route("/s/{study}", get(pages::participant_without_slash))
         .route("/s/{study}/", get(pages::participant))
         .route("/assets/{hash}/{*name}", get(statics::asset))
-        .route("/packs/{hash}", get(statics::pack))
-        .route("/api/studies", get(studies::list))
-        .route("/api/studies/{study}", get(studies::bundle))
-        .route("/api/studies/{study}/sessions", post(sessions::start))
-        .route("/api/sessions/{session}", get(sessions::resume))
-        .route("/api/sessions/{session}/events", post(sessions::append))
-        .route("/api/sessions/{session}/complete", post(sessions::complete))
-        .route("/api/sessions/{session}/withdraw", post(sessions::withdraw))
         .merge(researchers(&app))
         .route("/healthz", get(|| async { "ok\n" }))
         .route("/readyz", get(pages::ready))
+        .route("/metrics", get(metrics::metrics))
         .fallback(|| async { Error::NotFound })
         .method_not_allowed_fallback(|| async { Error::MethodNotAllowed })
         .layer(DefaultBodyLimit::max(LARGEST_BODY))
         .layer(middleware::from_fn(time_limit))
         .layer(CatchPanicLayer::custom(panicked))
-        .layer(middleware::from_fn(security_headers))
+        .layer(middleware::from_fn_with_state(app.clone(), limits::limit_rate))
+        .layer(middleware::from_fn_with_state(Headers::of(&app.settings), settled_headers))
+        .layer(middleware::from_fn_with_state(app.clone(), measure))
         .with_state(app)
 }
 
@@ -122,17 +137,59 @@ async fn time_limit(request: Request, next: Next) -> Response {
     }
 }
 
+async fn measure(State(app): State<App>, request: Request, next: Next) -> Response {
+    let began = Instant::now();
+    let response = next.run(request).await;
+    app.metrics.answered(response.status().as_u16(), began.elapsed());
+    response
+}
+
+/// What every answer says to browsers.
+#[derive(Clone)]
+struct Headers(Arc<[(HeaderName, HeaderValue)]>);
+
+impl Headers {
+    fn of(settings: &Settings) -> Self {
+        let policy = content_security_policy(settings.packs_address.as_deref());
+        let fixed = HeaderValue::from_static;
+        let mut headers = vec![
+            // An address with characters that no header takes is left out by falling back.
+            (
+                header::CONTENT_SECURITY_POLICY,
+                HeaderValue::from_str(&policy).unwrap_or(fixed("default-src 'none'")),
+            ),
+            (header::X_CONTENT_TYPE_OPTIONS, fixed("nosniff")),
+            (header::REFERRER_POLICY, fixed("no-referrer")),
+            (header::X_FRAME_OPTIONS, fixed("DENY")),
+            (HeaderName::from_static("cross-origin-opener-policy"), fixed("same-origin")),
+            (
+                HeaderName::from_static("permissions-policy"),
+                fixed("camera=(), microphone=(), geolocation=(), payment=(), usb=()"),
+            ),
+        ];
+        if settings.behind_tls {
+            let year = fixed("max-age=31536000; includeSubDomains");
+            headers.push((header::STRICT_TRANSPORT_SECURITY, year));
+        }
+        Self(headers.into())
+    }
+}
+
+/// The headers of a server with default settings.
 pub(crate) async fn security_headers(request: Request, next: Next) -> Response {
+    settled_headers(State(Headers::of(&Settings::default())), request, next).await
+}
+
+async fn settled_headers(
+    State(Headers(fixed)): State<Headers>,
+    request: Request,
+    next: Next,
+) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
-    for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
-        (header::X_FRAME_OPTIONS, "DENY"),
-    ] {
+    for (name, value) in fixed.iter() {
         // A page that needs another policy has said so.
-        headers.entry(name).or_insert(HeaderValue::from_static(value));
+        headers.entry(name.clone()).or_insert(value.clone());
     }
     // What is not said to be kept is not kept.
     headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));

@@ -1,5 +1,7 @@
 //! Pages: participant's, preview, the list of studies; readiness.
 
+use std::sync::atomic::Ordering;
+
 use axum::extract::{Path, RawQuery, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
@@ -8,6 +10,7 @@ use maud::{DOCTYPE, html};
 use crate::accounts::Researcher;
 use crate::app::App;
 use crate::error::Error;
+use crate::storage::StorageError;
 
 /// The list of studies, for those who may know it.
 pub(super) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
@@ -95,9 +98,14 @@ pub(super) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error
     Researcher::of(app, headers).await.map(|_| ())
 }
 
-/// Whether answers can be stored.
+/// Whether answers can be stored: the database answers, its schema is ours, we are not stopping.
 pub(super) async fn ready(State(app): State<App>) -> Result<&'static str, Error> {
-    app.storage.ping().await?;
+    if app.stopping.load(Ordering::Relaxed) {
+        return Err(StorageError::Stopping.into());
+    }
+    if !app.storage.is_current().await? {
+        return Err(Error::Internal("the database's schema is not this binary's".into()));
+    }
     Ok("ready\n")
 }
 
@@ -119,6 +127,7 @@ fn from_template(
         ("lang", language.to_owned()),
         ("title", study.title(language).to_owned()),
         ("study", study.id().to_owned()),
+        ("packs", app.settings.packs_address.clone().unwrap_or_else(|| "/packs".into())),
     ];
     let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
     let page = app.assets.page(name, &values).ok_or(Error::NotFound)?;

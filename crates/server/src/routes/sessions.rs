@@ -6,6 +6,10 @@
 
 use axum::Json;
 use axum::extract::{Path, State};
+use axum::http::{HeaderMap, HeaderValue, header};
+use axum::response::{IntoResponse, Response};
+use mimique_study::RepeatPrevention;
+use mimique_study::text::words;
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
     Withdraw, Withdrawn,
@@ -15,22 +19,27 @@ use super::Body;
 use crate::app::App;
 use crate::clock::now_ms;
 use crate::error::Error;
+use crate::hosted::{HostedStudy, Stage};
 use crate::secret;
-use crate::storage::{NewSession, SessionRecord, Status, StorageError};
+use crate::storage::{NewSession, SessionRecord, StorageError};
 
 /// Events in one session at most; a long study has some thousands.
 const MOST_EVENTS: u64 = 100_000;
 /// One event's body in bytes at most: the frame log of several minutes at 240 Hz.
 const LARGEST_EVENT: usize = 1024 * 1024;
+/// What is kept of a browser: its name, its major version, the kind of system it runs on.
+const CLIENT_KEYS: [&str; 3] = ["browser", "version", "platform"];
 /// Hexadecimal digits of 128 bits.
 const TOKEN_DIGITS: usize = 32;
 
 pub(super) async fn start(
     State(app): State<App>,
     Path(study): Path<String>,
+    headers: HeaderMap,
     Body(request): Body<StartSession>,
-) -> Result<Json<SessionStarted>, Error> {
+) -> Result<Response, Error> {
     let study = app.study(&study)?;
+    let study = study.as_ref();
     if !secret::is_hex(&request.nonce, TOKEN_DIGITS) {
         return Err(Error::bad_request(
             "the nonce is not 32 lower-case hexadecimal digits",
@@ -39,9 +48,18 @@ pub(super) async fn start(
     }
     let token = token(&app, study.id(), &request.nonce);
     let code = withdrawal_code(&app, &token);
-    let client =
-        request.client.into_iter().take(8).map(|(name, value)| (clip(&name), clip(&value)));
-    let client: std::collections::BTreeMap<_, _> = client.collect();
+    let client: std::collections::BTreeMap<_, _> = request
+        .client
+        .iter()
+        .filter(|(name, _)| CLIENT_KEYS.contains(&name.as_str()))
+        .map(|(name, value)| (name.as_str(), one_word(value)))
+        .collect();
+    let language = study.study().language_for(&request.language).to_owned();
+    let recruitment = study.kept_parameters(request.recruitment);
+    let browser_mark = browser_mark(&app, study, &token);
+    let marks = marks(&app, study, &recruitment, browser_mark.as_deref(), &headers)
+        .ok_or_else(|| cannot_begin("no-identifier", &language))?;
+    refuse_outside_hours(&app, study, &token, &language).await?;
     let session = NewSession {
         token_hash: secret::hash(&token),
         withdrawal_hash: withdrawal_hash(&code),
@@ -49,16 +67,110 @@ pub(super) async fn start(
         config_hash: study.config_hash().to_owned(),
         seed: study.study().seed,
         stage: study.stage().word().to_owned(),
-        language: study.study().language_for(&request.language).to_owned(),
+        language: language.clone(),
         client: serde_json::to_string(&client).unwrap_or_default(),
-        recruitment: study.kept_parameters(request.recruitment),
+        recruitment,
+        marks,
+        places: study.study().recruitment.participants,
+        reservation_ms: study.study().recruitment.reservation_ms(),
         now_ms: now_ms(),
     };
-    let record = app.storage.start(session).await?;
-    if record.status == Status::Withdrawn {
+    let record = app.storage.start(session).await.map_err(|error| match error {
+        StorageError::AlreadyTookPart => cannot_begin("already-took-part", &language),
+        StorageError::StudyFull => cannot_begin("study-full", &language),
+        error => error.into(),
+    })?;
+    if record.status.is_deleted() {
         return Err(StorageError::Withdrawn.into());
     }
-    Ok(Json(started(&app, token, &record)))
+    let mut response = Json(started(&app, token, &record)).into_response();
+    if let Some(mark) = browser_mark {
+        let secure = if app.settings.behind_tls { "; Secure" } else { "" };
+        let cookie = format!(
+            "{}={mark}; Path=/api/studies/{id}/; Max-Age=31536000; HttpOnly; SameSite=Strict{secure}",
+            cookie_name(study),
+            id = study.id(),
+        );
+        let cookie = HeaderValue::from_str(&cookie)
+            .map_err(|error| Error::Internal(format!("cookie: {error}")))?;
+        response.headers_mut().insert(header::SET_COOKIE, cookie);
+    }
+    Ok(response)
+}
+
+/// Before the study opens and after it closes nobody begins; who has begun goes on.
+async fn refuse_outside_hours(
+    app: &App,
+    study: &HostedStudy,
+    token: &str,
+    language: &str,
+) -> Result<(), Error> {
+    let recruitment = &study.study().recruitment;
+    let now = now_ms();
+    let code = if recruitment.opens_ms().is_some_and(|opens| now < opens) {
+        "study-not-open"
+    } else if recruitment.closes_ms().is_some_and(|closes| now >= closes) {
+        "study-closed"
+    } else {
+        return Ok(());
+    };
+    match app.storage.session(&secret::hash(token)).await {
+        Ok(_) => Ok(()),
+        Err(StorageError::UnknownSession) => Err(cannot_begin(code, language)),
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn cannot_begin(code: &'static str, language: &str) -> Error {
+    let (message, remedy) = words(language).refusal(code).unwrap_or(("", ""));
+    Error::CannotBegin { code, message, remedy }
+}
+
+/// What the browser keeps where the study takes each browser once. A pilot may be repeated.
+fn browser_mark(app: &App, study: &HostedStudy, token: &str) -> Option<String> {
+    let wanted = study.study().recruitment.repeat_prevention == RepeatPrevention::Browser
+        && study.stage() == Stage::Live;
+    wanted.then(|| secret::hex(&secret::derive(&app.token_key, &["browser", token])[..16]))
+}
+
+fn cookie_name(study: &HostedStudy) -> String {
+    format!("mimique-{}", study.id())
+}
+
+/// The keyed hashes that must not be there yet; `None` when the identifier is missing by which the
+/// study recognises people.
+fn marks(
+    app: &App,
+    study: &HostedStudy,
+    recruitment: &std::collections::BTreeMap<String, String>,
+    browser_mark: Option<&str>,
+    headers: &HeaderMap,
+) -> Option<Vec<String>> {
+    let keyed = |kind: &str, value: &str| {
+        secret::hex(&secret::derive(&app.token_key, &["mark", kind, study.id(), value]))
+    };
+    let rules = &study.study().recruitment;
+    if rules.repeat_prevention == RepeatPrevention::RecruitmentIdentifier
+        && study.stage() == Stage::Live
+    {
+        let name = rules.url_parameters.first()?;
+        let value = recruitment.get(name).map(|value| value.trim()).filter(|v| !v.is_empty())?;
+        return Some(vec![keyed("identifier", value)]);
+    }
+    let Some(own) = browser_mark else { return Some(Vec::new()) };
+    let mut marks = vec![keyed("browser", own)];
+    let name = cookie_name(study);
+    let held = headers
+        .get_all(header::COOKIE)
+        .iter()
+        .filter_map(|value| value.to_str().ok())
+        .flat_map(|value| value.split(';'))
+        .filter_map(|pair| pair.trim().split_once('='))
+        .find(|(cookie, value)| *cookie == name && secret::is_hex(value, TOKEN_DIGITS));
+    if let Some((_, value)) = held.filter(|(_, value)| *value != own) {
+        marks.push(keyed("browser", value));
+    }
+    Some(marks)
 }
 
 pub(super) async fn resume(
@@ -66,7 +178,7 @@ pub(super) async fn resume(
     Path(token): Path<String>,
 ) -> Result<Json<Resume>, Error> {
     let record = app.storage.session(&token_hash(&token)?).await?;
-    if record.status == Status::Withdrawn {
+    if record.status.is_deleted() {
         return Err(StorageError::Withdrawn.into());
     }
     let events = app.storage.events(record.key).await?;
@@ -84,7 +196,10 @@ pub(super) async fn append(
     for event in &request.events {
         check_event(event)?;
     }
+    let sent = request.events.len() as u64;
     let appended = app.storage.append(&token_hash, request.events, now_ms()).await?;
+    let kept = sent - appended.conflicts.len() as u64;
+    app.metrics.events.fetch_add(kept, std::sync::atomic::Ordering::Relaxed);
     if appended.conflicts.is_empty() {
         Ok(Json(appended.acknowledged))
     } else {
@@ -190,13 +305,14 @@ fn started(app: &App, token: String, record: &SessionRecord) -> SessionStarted {
         session: token,
         participant_id: crate::participant_id(record.participant),
         participant: record.participant,
+        slot: record.slot,
         seed: record.seed,
         stage: record.stage.clone(),
         config_hash: record.config_hash.clone(),
     }
 }
 
-/// What a browser says of itself, without control characters and no longer than it should be.
-fn clip(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(40).collect()
+/// What a browser says of itself: one short word or number, so that no user agent string fits.
+fn one_word(text: &str) -> String {
+    text.chars().take_while(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).take(24).collect()
 }

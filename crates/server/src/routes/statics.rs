@@ -12,7 +12,7 @@ pub(super) async fn asset(
     Path((hash, name)): Path<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    Ok(app.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers))
+    app.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers)
 }
 
 pub(super) async fn pack(
@@ -20,5 +20,5 @@ pub(super) async fn pack(
     Path(hash): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    Ok(app.catalogue.pack(&hash).ok_or(Error::UnknownPack)?.respond(&headers))
+    app.catalogue.pack(&hash).ok_or(Error::UnknownPack)?.respond(&headers)
 }

@@ -1,11 +1,14 @@
 //! What a change does inside the writer's transaction. A change that is refused has written nothing.
+//! Starting is in `enrol.rs`, deleting in `erase.rs`.
 
 use mimique_study::wire::{Acknowledged, Event};
 use sqlx::{AssertSqlSafe, Row};
 
-use super::super::super::records::{Appended, Completed, NewSession, SessionRecord, Status};
+use super::super::super::records::{Appended, Completed, NewSession, SessionRecord};
 use super::super::super::{MOST_SEQUENCES_REPORTED, StorageError};
 use super::super::{Connection, FOR_UPDATE};
+use super::enrol::start;
+use super::erase::withdraw;
 use super::{SESSION_COLUMNS, session_record, signed, unsigned};
 use crate::receipt::ReceiptHasher;
 use crate::secret;
@@ -20,7 +23,7 @@ pub(super) enum Change {
 
 /// What a change did.
 pub(super) enum Outcome {
-    Started(SessionRecord),
+    Started(Box<SessionRecord>),
     Appended(Appended),
     Completed(Completed),
     Withdrawn { deleted: u64 },
@@ -31,7 +34,9 @@ pub(super) async fn apply(
     change: &Change,
 ) -> Result<Outcome, StorageError> {
     match change {
-        Change::Start(session) => start(connection, session).await.map(Outcome::Started),
+        Change::Start(session) => {
+            start(connection, session).await.map(Box::new).map(Outcome::Started)
+        }
         Change::Append { token_hash, events, now_ms } => {
             append(connection, token_hash, events, *now_ms).await.map(Outcome::Appended)
         }
@@ -45,67 +50,6 @@ pub(super) async fn apply(
             Ok(Outcome::Withdrawn { deleted })
         }
     }
-}
-
-async fn start(
-    connection: &mut Connection,
-    session: &NewSession,
-) -> Result<SessionRecord, StorageError> {
-    if let Some(record) = find_session(connection, &session.token_hash).await? {
-        return Ok(record);
-    }
-    let number = sqlx::query(
-        "UPDATE studies SET next_participant = next_participant + 1 WHERE study_id = $1 \
-         RETURNING next_participant - 1 AS participant",
-    )
-    .bind(&session.study_id)
-    .fetch_one(&mut *connection)
-    .await?;
-    let participant: i64 = number.try_get("participant")?;
-    let row = sqlx::query(
-        "INSERT INTO sessions (token_hash, study_id, participant, config_hash, seed, stage, \
-         language, client, withdrawal_hash, status, started_ms, event_count, next_sequence) \
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'started', $10, 0, 0) RETURNING session_key",
-    )
-    .bind(&session.token_hash)
-    .bind(&session.study_id)
-    .bind(participant)
-    .bind(&session.config_hash)
-    .bind(session.seed.cast_signed())
-    .bind(&session.stage)
-    .bind(&session.language)
-    .bind(&session.client)
-    .bind(&session.withdrawal_hash)
-    .bind(session.now_ms)
-    .fetch_one(&mut *connection)
-    .await?;
-    let key: i64 = row.try_get("session_key")?;
-    for (name, value) in &session.recruitment {
-        sqlx::query("INSERT INTO recruitment (session_key, name, value) VALUES ($1, $2, $3)")
-            .bind(key)
-            .bind(name)
-            .bind(value)
-            .execute(&mut *connection)
-            .await?;
-    }
-    Ok(SessionRecord {
-        key,
-        study_id: session.study_id.clone(),
-        participant: unsigned("sessions", participant)?,
-        config_hash: session.config_hash.clone(),
-        seed: session.seed,
-        stage: session.stage.clone(),
-        language: session.language.clone(),
-        client: session.client.clone(),
-        withdrawal_hash: session.withdrawal_hash.clone(),
-        status: Status::Started,
-        started_ms: session.now_ms,
-        last_event_ms: None,
-        ended_ms: None,
-        event_count: 0,
-        next_sequence: 0,
-        receipt: None,
-    })
 }
 
 async fn append(
@@ -142,12 +86,13 @@ async fn append(
     let event_count = session.event_count + added;
     if added > 0 {
         sqlx::query(
-            "UPDATE sessions SET event_count = $1, next_sequence = $2, last_event_ms = $3 \
-             WHERE session_key = $4",
+            "UPDATE sessions SET event_count = $1, next_sequence = $2, last_event_ms = $3, \
+             slot_expires_ms = COALESCE($4, slot_expires_ms) WHERE session_key = $5",
         )
         .bind(signed(event_count))
         .bind(signed(next_sequence))
         .bind(now_ms)
+        .bind(renewed(&session, now_ms))
         .bind(session.key)
         .execute(&mut *connection)
         .await?;
@@ -159,6 +104,13 @@ async fn append(
     };
     let stored = gaps.first().copied().unwrap_or(next_sequence);
     Ok(Appended { acknowledged: Acknowledged { stored, gaps }, conflicts })
+}
+
+/// The end of the slot's reservation after a sign of life, where it is worth writing: in its second
+/// half. A reservation that has run out is not renewed: the slot may be somebody else's already.
+fn renewed(session: &SessionRecord, now_ms: i64) -> Option<i64> {
+    let left = session.slot_expires_ms?.saturating_sub(now_ms);
+    (left > 0 && left < session.slot_lasts_ms / 2).then(|| now_ms + session.slot_lasts_ms)
 }
 
 /// Whether exactly this event is what is stored under its sequence.
@@ -230,63 +182,44 @@ async fn complete(
     .bind(signed(events))
     .fetch_all(&mut *connection)
     .await?;
+    let mut finished = false;
     for row in &rows {
         let body: String = row.try_get("body")?;
         let sequence = unsigned("events", row.try_get("sequence")?)?;
+        finished |= is_the_end(&body);
         hasher.add(sequence, row.try_get("at_ms")?, &body);
     }
     let receipt = hasher.finish();
     sqlx::query(
         "UPDATE sessions SET status = 'completed', ended_ms = $1, receipt = $2, \
-         receipt_events = $3 WHERE session_key = $4",
+         receipt_events = $3, finished = $4, \
+         slot_expires_ms = CASE WHEN $4 = 0 AND slot_given = 0 THEN 0 ELSE NULL END \
+         WHERE session_key = $5",
     )
     .bind(now_ms)
     .bind(&receipt)
     .bind(signed(events))
+    .bind(i64::from(finished))
     .bind(session.key)
     .execute(connection)
     .await?;
     Ok(Completed { key: session.key, study_id: session.study_id, receipt, stored: events })
 }
 
-async fn withdraw(
-    connection: &mut Connection,
-    token_hash: &str,
-    withdrawal_hash: &str,
-    now_ms: i64,
-) -> Result<u64, StorageError> {
-    let session =
-        find_session(connection, token_hash).await?.ok_or(StorageError::UnknownSession)?;
-    if !secret::same(&session.withdrawal_hash, withdrawal_hash) {
-        return Err(StorageError::WrongWithdrawalCode);
+/// Whether this event says that every step is done.
+fn is_the_end(body: &str) -> bool {
+    #[derive(serde::Deserialize)]
+    struct Kind<'a> {
+        #[serde(borrow, rename = "type")]
+        kind: Option<std::borrow::Cow<'a, str>>,
     }
-    let deleted = sqlx::query("DELETE FROM events WHERE session_key = $1")
-        .bind(session.key)
-        .execute(&mut *connection)
-        .await?
-        .rows_affected();
-    for statement in [
-        "DELETE FROM event_conflicts WHERE session_key = $1",
-        "DELETE FROM recruitment WHERE session_key = $1",
-    ] {
-        sqlx::query(statement).bind(session.key).execute(&mut *connection).await?;
-    }
-    if session.status != Status::Withdrawn {
-        sqlx::query(
-            "UPDATE sessions SET status = 'withdrawn', ended_ms = $1, client = '{}', \
-             event_count = 0, next_sequence = 0, last_event_ms = NULL, receipt = NULL, \
-             receipt_events = NULL WHERE session_key = $2",
-        )
-        .bind(now_ms)
-        .bind(session.key)
-        .execute(connection)
-        .await?;
-    }
-    Ok(deleted)
+    body.contains("finished")
+        && serde_json::from_str::<Kind<'_>>(body)
+            .is_ok_and(|event| event.kind.as_deref() == Some("finished"))
 }
 
 /// The session, locked until the transaction ends.
-async fn find_session(
+pub(super) async fn find_session(
     connection: &mut Connection,
     token_hash: &str,
 ) -> Result<Option<SessionRecord>, StorageError> {
@@ -306,7 +239,7 @@ async fn open_session(
 ) -> Result<SessionRecord, StorageError> {
     match find_session(connection, token_hash).await? {
         None => Err(StorageError::UnknownSession),
-        Some(session) if session.status == Status::Withdrawn => Err(StorageError::Withdrawn),
+        Some(session) if session.status.is_deleted() => Err(StorageError::Withdrawn),
         Some(session) => Ok(session),
     }
 }

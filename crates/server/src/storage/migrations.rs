@@ -21,6 +21,11 @@ pub(super) const MIGRATIONS: &[Migration] = &[
         sqlite: include_str!("migrations/sqlite/0002_accounts.sql"),
         postgres: include_str!("migrations/postgres/0002_accounts.sql"),
     },
+    Migration {
+        version: 3,
+        sqlite: include_str!("migrations/sqlite/0003_slots.sql"),
+        postgres: include_str!("migrations/postgres/0003_slots.sql"),
+    },
 ];
 
 /// The version of today's schema.

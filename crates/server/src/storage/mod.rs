@@ -7,21 +7,27 @@
 
 mod account_calls;
 mod account_records;
+mod backup;
 mod migrations;
 mod postgres;
 mod records;
 mod sqlite;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mimique_study::wire::Event;
 
 pub use account_records::{
     Account, AccountLink, ApiToken, AuditEntry, Exclusion, LinkPurpose, Role, UploadedStudy,
 };
+pub use backup::{
+    BackupError, BackupFacts, RestoreOptions, Restored, read_deletions, scrub_backup,
+    write_deletions,
+};
 pub use records::{
-    Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
+    Appended, Completed, Deletion, NewSession, RecruitmentEntry, Registered, SessionRecord, Status,
+    StudyVersion,
 };
 
 /// Why storage did not do what it was asked.
@@ -39,6 +45,12 @@ pub enum StorageError {
         /// Their sequences, at most [`MOST_SEQUENCES_REPORTED`].
         missing: Vec<u64>,
     },
+    /// The person has taken part already, and the study takes each once.
+    #[error("this person has already taken part; everybody can take part once")]
+    AlreadyTookPart,
+    /// As many participants as the study wants have finished or are on their way.
+    #[error("the study has all the participants it wants; a place may become free later")]
+    StudyFull,
     /// The withdrawal code is not this session's.
     #[error("the withdrawal code is not the one of this session; copy it as it was shown")]
     WrongWithdrawalCode,
@@ -77,8 +89,10 @@ pub enum StorageError {
     /// The database failed.
     #[error("the database failed: {0}; see that it runs and that its disk has room")]
     Database(sqlx::Error),
-    /// The database does not answer.
-    #[error("the database does not answer; see that it runs")]
+    /// The database does not answer, or cannot write for now.
+    #[error(
+        "the database does not answer or cannot write; see that it runs and that its disk has room"
+    )]
     Unavailable,
     /// The server is stopping.
     #[error("the server is stopping; send the request again in a moment")]
@@ -91,10 +105,33 @@ impl From<sqlx::Error> for StorageError {
             sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => {
                 Self::Unavailable
             }
+            sqlx::Error::Database(error) if is_passing(error.code().as_deref()) => {
+                Self::Unavailable
+            }
             error => Self::Database(error),
         }
     }
 }
+
+/// Whether the same request can succeed later: the disk is full or read-only, the database stops or
+/// is busy.
+fn is_passing(code: Option<&str>) -> bool {
+    match code {
+        // SQLSTATE: read-only, disk full, too many connections, shut down, crash, starting up.
+        Some("25006" | "53100" | "53300" | "57P01" | "57P02" | "57P03") => true,
+        // SQLite: 5 busy, 8 read-only, 10 disk, 13 full, 14 cannot open; the low byte of extended
+        // codes.
+        Some(code) => {
+            code.len() < 5
+                && code.parse::<u32>().is_ok_and(|c| matches!(c & 255, 5 | 8 | 10 | 13 | 14))
+        }
+        None => false,
+    }
+}
+
+/// Tables with rows of a session (`session_key`) that are deleted with its answers.
+pub(crate) const PERSONAL_TABLES: [&str; 4] =
+    ["events", "event_conflicts", "recruitment", "repeat_marks"];
 
 /// How many missing sequences are listed at most.
 pub const MOST_SEQUENCES_REPORTED: usize = 1000;
@@ -129,10 +166,7 @@ impl Storage {
         } else if let Some(path) = sqlite_path(url) {
             Store::Sqlite(sqlite::open(&path).await?)
         } else {
-            return Err(StorageError::Address {
-                url: without_password(url),
-                problem: "unknown kind of database".into(),
-            });
+            return Err(unknown_kind(url));
         };
         Ok(Self { store })
     }
@@ -168,6 +202,16 @@ impl Storage {
         on_store!(self, store => store.ping().await)
     }
 
+    /// Asks the database whether its schema is the one that this binary knows.
+    pub async fn is_current(&self) -> Result<bool, StorageError> {
+        on_store!(self, store => store.is_current().await)
+    }
+
+    /// How many sessions there are, by study, stage and status.
+    pub async fn session_counts(&self) -> Result<Vec<([String; 3], u64)>, StorageError> {
+        on_store!(self, store => store.session_counts().await)
+    }
+
     /// The secret kept under this name, made by `make` at the first call.
     pub async fn server_key(
         &self,
@@ -178,13 +222,12 @@ impl Storage {
         on_store!(self, store => store.server_key(name, &fresh).await)
     }
 
-    /// Makes this version the current one of its study; returns the hash of the version that it
-    /// replaces, if it replaces another.
+    /// Makes this version the current one of its study, and says what that changes.
     pub async fn register_study(
         &self,
         version: &StudyVersion,
         now_ms: i64,
-    ) -> Result<Option<String>, StorageError> {
+    ) -> Result<Registered, StorageError> {
         on_store!(self, store => store.register_study(version, now_ms).await)
     }
 
@@ -263,6 +306,72 @@ impl Storage {
     ) -> Result<u64, StorageError> {
         on_store!(self, store => store.withdraw(token_hash, withdrawal_hash, now_ms).await)
     }
+
+    /// Deletes a participant's answers and identifiers at their wish; returns how many events.
+    pub async fn erase_participant(
+        &self,
+        study_id: &str,
+        participant: u64,
+        now_ms: i64,
+    ) -> Result<u64, StorageError> {
+        on_store!(self, store => store.erase_participant(study_id, participant, now_ms).await)
+    }
+
+    /// Deletes recruitment identifiers and repeat marks, of one participant or of all of a study;
+    /// returns how many.
+    pub async fn erase_identifiers(
+        &self,
+        study_id: &str,
+        participant: Option<u64>,
+        now_ms: i64,
+    ) -> Result<u64, StorageError> {
+        on_store!(self, store => store.erase_identifiers(study_id, participant, now_ms).await)
+    }
+
+    /// Deletes the answers of the sessions of a version that ended (or showed their last sign of
+    /// life) before `before_ms`; returns how many sessions.
+    pub async fn erase_ended_before(
+        &self,
+        study_id: &str,
+        config_hash: &str,
+        before_ms: i64,
+        now_ms: i64,
+    ) -> Result<u64, StorageError> {
+        on_store!(self, store => {
+            store.erase_ended_before(study_id, config_hash, before_ms, now_ms).await
+        })
+    }
+
+    /// Every deletion there was, in order of time: what a backup must not bring back.
+    pub async fn deletions(&self) -> Result<Vec<Deletion>, StorageError> {
+        on_store!(self, store => store.deletions().await)
+    }
+
+    /// Writes a backup, while everybody goes on.
+    pub async fn backup(&self, path: &Path, now_ms: i64) -> Result<BackupFacts, BackupError> {
+        on_store!(self, store => store.backup(path, now_ms).await)
+    }
+
+    /// Fills a new SQLite file, or an empty PostgreSQL database, from a backup of either; all or
+    /// nothing.
+    pub async fn restore(
+        url: &str,
+        path: &Path,
+        options: RestoreOptions<'_>,
+    ) -> Result<Restored, BackupError> {
+        let mut reader = backup::Reader::open(path)?;
+        if url.starts_with("postgres://") || url.starts_with("postgresql://") {
+            postgres::restore(url, &mut reader, options).await
+        } else if let Some(path) = sqlite_path(url) {
+            sqlite::restore(&path, &mut reader, options).await
+        } else {
+            Err(unknown_kind(url).into())
+        }
+    }
+}
+
+fn unknown_kind(url: &str) -> StorageError {
+    StorageError::Address { url: without_password(url), problem: "unknown kind of database".into() }
 }
 
 /// The file of a `sqlite:` address; a plain path is taken as one.

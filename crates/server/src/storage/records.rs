@@ -11,8 +11,10 @@ pub enum Status {
     Started,
     /// The page said that it is at the end and every event is stored.
     Completed,
-    /// The answers are deleted.
+    /// The answers are deleted at the participant's wish.
     Withdrawn,
+    /// The answers are deleted since their time was over.
+    Erased,
 }
 
 impl Status {
@@ -22,12 +24,20 @@ impl Status {
             Self::Started => "started",
             Self::Completed => "completed",
             Self::Withdrawn => "withdrawn",
+            Self::Erased => "erased",
         }
     }
 
     /// The status with this word.
     pub fn from_word(word: &str) -> Option<Self> {
-        [Self::Started, Self::Completed, Self::Withdrawn].into_iter().find(|s| s.word() == word)
+        [Self::Started, Self::Completed, Self::Withdrawn, Self::Erased]
+            .into_iter()
+            .find(|s| s.word() == word)
+    }
+
+    /// Whether the answers are gone and nothing more is taken.
+    pub fn is_deleted(self) -> bool {
+        matches!(self, Self::Withdrawn | Self::Erased)
     }
 }
 
@@ -65,6 +75,13 @@ pub struct NewSession {
     pub client: String,
     /// Recruitment identifiers, kept apart.
     pub recruitment: BTreeMap<String, String>,
+    /// Keyed hashes of what tells a second participation of one person; none where the study does
+    /// not ask.
+    pub marks: Vec<String>,
+    /// How many participants the study takes.
+    pub places: Option<u64>,
+    /// How long the place in the balance is kept after the last sign of life, milliseconds.
+    pub reservation_ms: i64,
     /// The server's clock.
     pub now_ms: i64,
 }
@@ -78,6 +95,15 @@ pub struct SessionRecord {
     pub study_id: String,
     /// Participant number within the study.
     pub participant: u64,
+    /// Place in the balance of conditions, from 1 in each version and stage.
+    pub slot: u64,
+    /// Until when the place is kept unless a sign of life comes; none when it is kept for good or
+    /// somebody else has it.
+    pub slot_expires_ms: Option<i64>,
+    /// How long it is kept after each sign of life.
+    pub slot_lasts_ms: i64,
+    /// Whether the participant came to the end, not merely to a refusal.
+    pub finished: bool,
     /// Version of the study.
     pub config_hash: String,
     /// Seed of the study's random streams.
@@ -126,6 +152,30 @@ pub struct Completed {
     pub receipt: String,
     /// How many events it covers.
     pub stored: u64,
+}
+
+/// How a study's version came to be served.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Registered {
+    /// Number of the version within the study, from 1 in order of first service.
+    pub version: u64,
+    /// Hash of the version that this one replaces.
+    pub replaces: Option<String>,
+    /// Live sessions that began under other versions and have not ended.
+    pub running_elsewhere: u64,
+    /// The file is as it was, but the stimuli that it names are not.
+    pub stimuli_changed: bool,
+}
+
+/// A session whose answers or identifiers were deleted: what a backup must not bring back.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Deletion {
+    /// SHA-256 of the session's token, hexadecimal.
+    pub token_hash: String,
+    /// `withdrawn`, `erased` or `identifiers`.
+    pub what: String,
+    /// When, milliseconds since 1970.
+    pub at_ms: i64,
 }
 
 /// One recruitment identifier.

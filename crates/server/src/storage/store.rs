@@ -4,6 +4,12 @@
 mod accounts;
 #[path = "changes.rs"]
 mod changes;
+#[path = "dump.rs"]
+mod dump;
+#[path = "enrol.rs"]
+mod enrol;
+#[path = "erase.rs"]
+mod erase;
 #[path = "writer.rs"]
 mod writer;
 
@@ -13,18 +19,21 @@ use mimique_study::wire::Event;
 use sqlx::{AssertSqlSafe, Pool, Row};
 
 use super::super::StorageError;
-use super::super::migrations::{LATEST, MIGRATIONS};
+use super::super::migrations::{LATEST, MIGRATIONS, Migration};
 use super::super::records::{
-    Appended, Completed, NewSession, RecruitmentEntry, SessionRecord, Status, StudyVersion,
+    Appended, Completed, NewSession, RecruitmentEntry, Registered, SessionRecord, Status,
+    StudyVersion,
 };
-use super::{BEGIN_WRITE, Db, FOR_UPDATE, LANES, LOCK_SCHEMA, migration_text};
+use super::{BEGIN_WRITE, Connection, Db, FOR_UPDATE, LANES, LOCK_SCHEMA, migration_text};
 use changes::{Change, Outcome};
+pub(in crate::storage) use dump::restore;
 use writer::Writer;
 
 /// Columns of a session, in the order in which [`session_record`] names them.
 const SESSION_COLUMNS: &str = "session_key, study_id, participant, config_hash, seed, stage, \
      language, client, withdrawal_hash, status, started_ms, last_event_ms, ended_ms, \
-     event_count, next_sequence, receipt, receipt_events";
+     event_count, next_sequence, receipt, receipt_events, slot, slot_expires_ms, slot_lasts_ms, \
+     finished";
 
 /// Readers and writer of one database.
 #[derive(Clone)]
@@ -52,6 +61,29 @@ impl Store {
         Ok(())
     }
 
+    pub async fn is_current(&self) -> Result<bool, StorageError> {
+        let row = sqlx::query("SELECT MAX(version) AS version FROM schema_migrations")
+            .fetch_one(&self.readers)
+            .await?;
+        Ok(row.try_get::<Option<i64>, _>("version")? == Some(LATEST))
+    }
+
+    pub async fn session_counts(&self) -> Result<Vec<([String; 3], u64)>, StorageError> {
+        let rows = sqlx::query(
+            "SELECT study_id, stage, status, COUNT(*) AS number FROM sessions \
+             GROUP BY study_id, stage, status ORDER BY study_id, stage, status",
+        )
+        .fetch_all(&self.readers)
+        .await?;
+        rows.iter()
+            .map(|row| {
+                let kind =
+                    [row.try_get("study_id")?, row.try_get("stage")?, row.try_get("status")?];
+                Ok((kind, unsigned("sessions", row.try_get("number")?)?))
+            })
+            .collect()
+    }
+
     pub async fn server_key(&self, name: &str, fresh: &str) -> Result<String, StorageError> {
         sqlx::query(
             "INSERT INTO server_keys (name, secret) VALUES ($1, $2) ON CONFLICT DO NOTHING",
@@ -71,7 +103,7 @@ impl Store {
         &self,
         version: &StudyVersion,
         now_ms: i64,
-    ) -> Result<Option<String>, StorageError> {
+    ) -> Result<Registered, StorageError> {
         let mut transaction = self.writers.begin_with(BEGIN_WRITE).await?;
         let before = sqlx::query(AssertSqlSafe(format!(
             "SELECT config_hash FROM studies WHERE study_id = $1{FOR_UPDATE}"
@@ -88,6 +120,14 @@ impl Store {
         .bind(&version.config_hash)
         .execute(&mut *transaction)
         .await?;
+        let known = sqlx::query(
+            "SELECT clips FROM study_versions WHERE study_id = $1 AND config_hash = $2",
+        )
+        .bind(&version.study_id)
+        .bind(&version.config_hash)
+        .fetch_optional(&mut *transaction)
+        .await?;
+        let known: Option<String> = known.map(|row| row.try_get("clips")).transpose()?;
         sqlx::query(
             "INSERT INTO study_versions (study_id, config_hash, file, clips, first_served_ms) \
              VALUES ($1, $2, $3, $4, $5) \
@@ -100,8 +140,31 @@ impl Store {
         .bind(now_ms)
         .execute(&mut *transaction)
         .await?;
+        let number = sqlx::query(
+            "SELECT COUNT(*) AS number FROM study_versions v JOIN study_versions mine \
+             ON mine.study_id = v.study_id AND mine.config_hash = $2 WHERE v.study_id = $1 \
+             AND (v.first_served_ms < mine.first_served_ms OR (v.first_served_ms = \
+             mine.first_served_ms AND v.config_hash <= mine.config_hash))",
+        )
+        .bind(&version.study_id)
+        .bind(&version.config_hash)
+        .fetch_one(&mut *transaction)
+        .await?;
+        let running = sqlx::query(
+            "SELECT COUNT(*) AS number FROM sessions WHERE study_id = $1 AND config_hash <> $2 \
+             AND stage = 'live' AND status = 'started'",
+        )
+        .bind(&version.study_id)
+        .bind(&version.config_hash)
+        .fetch_one(&mut *transaction)
+        .await?;
         transaction.commit().await?;
-        Ok(before.filter(|hash| *hash != version.config_hash))
+        Ok(Registered {
+            version: unsigned("study_versions", number.try_get("number")?)?,
+            replaces: before.filter(|hash| *hash != version.config_hash),
+            running_elsewhere: unsigned("sessions", running.try_get("number")?)?,
+            stimuli_changed: known.is_some_and(|clips| clips != version.clips),
+        })
     }
 
     pub async fn study_versions(&self) -> Result<Vec<StudyVersion>, StorageError> {
@@ -216,7 +279,7 @@ impl Store {
     pub async fn start(&self, session: NewSession) -> Result<SessionRecord, StorageError> {
         let route = session.token_hash.clone();
         match self.writer.commit(&route, Change::Start(session)).await? {
-            Outcome::Started(record) => Ok(record),
+            Outcome::Started(record) => Ok(*record),
             _ => Err(StorageError::Stopping),
         }
     }
@@ -293,13 +356,18 @@ async fn migrate(pool: &Pool<Db>) -> Result<(), StorageError> {
         return Err(StorageError::SchemaTooNew { found, known: LATEST });
     }
     for step in MIGRATIONS.iter().filter(|step| step.version > found) {
-        sqlx::raw_sql(migration_text(step)).execute(&mut *transaction).await?;
-        sqlx::query("INSERT INTO schema_migrations (version) VALUES ($1)")
-            .bind(step.version)
-            .execute(&mut *transaction)
-            .await?;
+        migrate_step(&mut transaction, step).await?;
     }
     transaction.commit().await?;
+    Ok(())
+}
+
+async fn migrate_step(connection: &mut Connection, step: &Migration) -> Result<(), StorageError> {
+    sqlx::raw_sql(migration_text(step)).execute(&mut *connection).await?;
+    sqlx::query("INSERT INTO schema_migrations (version) VALUES ($1)")
+        .bind(step.version)
+        .execute(connection)
+        .await?;
     Ok(())
 }
 
@@ -312,6 +380,10 @@ fn session_record(row: &<Db as sqlx::Database>::Row) -> Result<SessionRecord, St
         key: row.try_get("session_key")?,
         study_id: row.try_get("study_id")?,
         participant: unsigned(TABLE, row.try_get("participant")?)?,
+        slot: unsigned(TABLE, row.try_get("slot")?)?,
+        slot_expires_ms: row.try_get("slot_expires_ms")?,
+        slot_lasts_ms: row.try_get("slot_lasts_ms")?,
+        finished: row.try_get::<i64, _>("finished")? != 0,
         config_hash: row.try_get("config_hash")?,
         // The 64 bits of the seed, kept in a signed column.
         seed: row.try_get::<i64, _>("seed")?.cast_unsigned(),

@@ -101,6 +101,14 @@ impl TestServer {
         self.router.clone().oneshot(request).await.unwrap()
     }
 
+    /// This server with other settings.
+    pub fn with_settings(&self, settings: mimique_server::Settings) -> Self {
+        let app = self.app.clone().with_settings(settings);
+        let (url, storage) = (self.url.clone(), self.storage.clone());
+        let router = router(app.clone());
+        Self { url, app, storage, router, _folder: None }
+    }
+
     pub fn url(&self) -> &str {
         &self.url
     }

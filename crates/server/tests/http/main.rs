@@ -4,13 +4,17 @@
 //! cluster, each in a fresh database.
 
 mod accounts;
+mod backups;
 mod client;
+mod defences;
+mod enrolment;
 mod exports;
 mod pages;
 mod participant;
 mod people;
 mod postgres;
 mod researcher;
+mod schemas;
 mod sessions;
 mod simulated;
 mod storage;
@@ -72,6 +76,24 @@ topics! {
     sessions::unknown_sessions_and_studies_are_not_found,
     sessions::bad_requests_are_refusals,
     sessions::oversized_bodies_are_refused,
+    backups::a_backup_restores_everything,
+    backups::a_backup_fills_only_what_is_empty,
+    backups::deletions_reach_the_backups,
+    defences::browsers_are_told_what_they_may_do,
+    defences::a_part_of_a_film_is_sent,
+    defences::one_address_cannot_ask_without_end,
+    defences::metrics_are_the_operators,
+    defences::logs_hold_no_answers,
+    enrolment::the_slot_of_a_drop_out_goes_to_the_next,
+    enrolment::a_sign_of_life_keeps_the_slot,
+    enrolment::slots_are_given_one_after_the_other,
+    enrolment::the_study_closes_when_it_is_full,
+    enrolment::the_study_has_hours,
+    enrolment::an_identifier_takes_part_once,
+    enrolment::a_browser_takes_part_once,
+    enrolment::nothing_finer_than_a_browsers_name_is_kept,
+    enrolment::answers_are_deleted_when_their_time_is_over,
+    enrolment::a_clock_that_jumps_back_loses_nothing,
     storage::one_impossible_change_does_not_take_others_with_it,
     storage::what_was_accepted_before_the_end_is_committed,
     storage::a_later_schema_is_refused,

@@ -55,6 +55,48 @@ impl Cluster {
         format!("{server}/{name}")
     }
 
+    /// Changes a setting for everybody, now.
+    #[allow(dead_code, reason = "the live tests use it")]
+    pub async fn set(&self, name: &str, value: &str) {
+        let server = format!("postgres://mimique@127.0.0.1:{}/postgres", self.port);
+        let mut connection = PgConnection::connect(&server).await.unwrap();
+        for statement in [
+            // The connection itself may be under the setting that it is to change.
+            "SET default_transaction_read_only = off".to_owned(),
+            format!("ALTER SYSTEM SET {name} = {value}"),
+            "SELECT pg_reload_conf()".to_owned(),
+        ] {
+            sqlx::query(AssertSqlSafe(statement)).execute(&mut connection).await.unwrap();
+        }
+    }
+
+    /// Stops (`fast`: rolling back; `immediate`: as if killed) and starts.
+    #[allow(dead_code, reason = "the live tests use it")]
+    pub fn restart(&self, mode: &str) {
+        let log = self.folder.path().join("log");
+        self.run(&format!(
+            "pg_ctl --pgdata={} --log={} --mode={mode} --wait restart",
+            self.data(),
+            log.display()
+        ));
+    }
+
+    /// Turns on TLS with a certificate for 127.0.0.1; the certificate to trust.
+    #[allow(dead_code, reason = "the http tests use it")]
+    pub fn use_tls(&self) -> PathBuf {
+        let data = self.data();
+        self.shell(&format!(
+            "cd {data} && openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=test-ca \
+             -keyout ca.key -out ca.crt && openssl req -newkey rsa:2048 -nodes -subj /CN=127.0.0.1 \
+             -keyout server.key -out server.csr && printf 'subjectAltName=IP:127.0.0.1' > san && \
+             openssl x509 -req -in server.csr -CA ca.crt -CAkey ca.key -CAcreateserial -days 2 \
+             -extfile san -out server.crt && chmod 600 server.key && \
+             echo 'ssl = on' >> postgresql.conf && cp ca.crt .. && chmod 644 ../ca.crt"
+        ));
+        self.restart("fast");
+        self.folder.path().join("ca.crt")
+    }
+
     fn data(&self) -> String {
         self.folder.path().join("data").display().to_string()
     }
@@ -71,14 +113,22 @@ impl Cluster {
     }
 
     fn output(&self, command_line: &str) -> Output {
-        let command_line = format!("{}/{command_line}", self.binaries.display());
+        self.shell_output(&format!("{}/{command_line}", self.binaries.display()))
+    }
+
+    fn shell(&self, command_line: &str) {
+        let output = self.shell_output(command_line);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    }
+
+    fn shell_output(&self, command_line: &str) -> Output {
         let mut command = if is_root() {
             let mut command = Command::new("su");
-            command.args(["postgres", "-s", "/bin/sh", "-c", &command_line]);
+            command.args(["postgres", "-s", "/bin/sh", "-c", command_line]);
             command
         } else {
             let mut command = Command::new("sh");
-            command.args(["-c", &command_line]);
+            command.args(["-c", command_line]);
             command
         };
         // The server keeps what it inherits: a pipe would never close.

@@ -23,6 +23,8 @@ pub async fn a_simulated_export_is_the_servers(server: &TestServer) {
     let simulation = Simulation::new(&demo, &hash, &parameters, 1).unwrap();
     let people = 16;
     let sessions: Vec<_> = (1..=people).map(|n| simulation.session(n).unwrap()).collect();
+    // All begin before anybody leaves: who begins later would get a drop-out's slot.
+    let mut begun = Vec::new();
     for session in &sessions {
         let started = server.start_in("demo", session.started.participant).await;
         assert_eq!(started.participant_id, session.started.participant_id);
@@ -30,6 +32,9 @@ pub async fn a_simulated_export_is_the_servers(server: &TestServer) {
         assert_eq!(started.config_hash, session.started.config_hash);
         assert_eq!(started.seed, session.started.seed);
         assert_eq!(started.stage, session.started.stage);
+        begun.push(started);
+    }
+    for (session, started) in sessions.iter().zip(&begun) {
         if session.events.is_empty() {
             server.withdrawn(&started.session, &started.withdrawal_code).await;
             continue;

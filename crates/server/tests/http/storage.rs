@@ -6,7 +6,7 @@ use mimique_server::{NewSession, Storage, StorageError};
 
 use crate::client::{TestServer, event, events};
 
-fn session(study: &str, token_hash: String) -> NewSession {
+pub fn session(study: &str, token_hash: String) -> NewSession {
     NewSession {
         token_hash,
         withdrawal_hash: String::new(),
@@ -17,6 +17,9 @@ fn session(study: &str, token_hash: String) -> NewSession {
         language: "en".into(),
         client: "{}".into(),
         recruitment: BTreeMap::new(),
+        marks: Vec::new(),
+        places: None,
+        reservation_ms: 60_000,
         now_ms: 0,
     }
 }
@@ -77,6 +80,6 @@ pub async fn a_later_schema_is_refused(server: &TestServer) {
     server.run_sql("INSERT INTO schema_migrations (version) VALUES (1000)").await;
     let error = Storage::open(server.url()).await.err().unwrap();
     let text =
-        "the database has schema version 1000, this binary knows up to 2; use the newer binary";
+        "the database has schema version 1000, this binary knows up to 3; use the newer binary";
     assert_eq!(error.to_string(), text);
 }

@@ -72,6 +72,7 @@ pub fn assets(folder: &Path) -> Assets {
         (
             "index.html",
             "<!doctype html><html lang=\"{{lang}}\"><title>{{title}}</title>\
+             <meta content=\"packs={{packs}}\">\
              <script src=\"{{assets}}/app.js\"></script>",
         ),
         ("preview.html", "<!doctype html><p>{{assets}}</p>"),

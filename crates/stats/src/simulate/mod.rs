@@ -72,6 +72,7 @@ impl<'s> Simulation<'s> {
             session: String::new(),
             participant_id: format!("p{participant:04}"),
             participant,
+            slot: participant,
             seed: self.model.study.seed,
             stage: "live".to_owned(),
             config_hash: self.config_hash.clone(),

@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use super::Subject;
 use super::issue::{Issues, below, listed};
-use crate::study_file::{LocalText, RepeatPrevention, Section};
+use crate::instant::instant_ms;
+use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
 use crate::text;
 
 pub(super) fn examine(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
@@ -139,6 +140,7 @@ fn recruitment(subject: &Subject<'_>, issues: &mut Issues) {
         let hint = "add \"urlParameters\": [\"PROLIFIC_PID\"]";
         issues.error("/recruitment", "no-identifier", message, hint);
     }
+    enrolment(recruitment, issues);
     let Some(redirect) = &recruitment.redirect else { return };
     let pointer = "/recruitment/redirect";
     if !redirect.starts_with("https://") {
@@ -156,6 +158,32 @@ fn recruitment(subject: &Subject<'_>, issues: &mut Issues) {
     }
 }
 
+/// Who can begin, and when.
+fn enrolment(recruitment: &Recruitment, issues: &mut Issues) {
+    if recruitment.participants == Some(0) {
+        let hint = "write how many, or leave it out for any number";
+        issues.error("/recruitment/participants", "out-of-range", "nobody could take part", hint);
+    }
+    if recruitment.reservation_minutes == Some(0) {
+        let message = "a place that is kept for 0 minutes is lost at once";
+        let hint = "write the time that the study takes, in minutes";
+        issues.error("/recruitment/reservationMinutes", "out-of-range", message, hint);
+    }
+    for (key, text) in [("opens", &recruitment.opens), ("closes", &recruitment.closes)] {
+        if let Some(text) = text.as_ref().filter(|text| instant_ms(text).is_none()) {
+            let message = format!("\"{text}\" is not a time");
+            let hint = "write it with its offset: 2026-03-01T08:00:00+01:00";
+            issues.error(format!("/recruitment/{key}"), "bad-date", message, hint);
+        }
+    }
+    if let (Some(opens), Some(closes)) = (recruitment.opens_ms(), recruitment.closes_ms())
+        && closes <= opens
+    {
+        let message = "the study closes before it opens";
+        issues.error("/recruitment/closes", "out-of-range", message, "write a later time");
+    }
+}
+
 fn consent(subject: &Subject<'_>, issues: &mut Issues) {
     let Some(consent) = &subject.study.consent else {
         let message = "no consent: participants are not asked whether they agree";
@@ -169,6 +197,11 @@ fn consent(subject: &Subject<'_>, issues: &mut Issues) {
     if consent.retention.is_none() {
         let message = "no retention period: participants are not told how long answers are kept";
         issues.error("/consent", "no-retention", message, "add \"retention\": \"...\"");
+    }
+    if consent.retention_days == Some(0) {
+        let message = "answers that are kept for 0 days are deleted at once";
+        let hint = "write how many days, or leave it out to keep them";
+        issues.error("/consent/retentionDays", "out-of-range", message, hint);
     }
     if consent.version.trim().is_empty() {
         let message = "the version is empty";

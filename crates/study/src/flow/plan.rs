@@ -110,7 +110,7 @@ impl Plan {
         let draw = Draw {
             seed: started.seed,
             config_hash: &started.config_hash,
-            participant: started.participant,
+            participant: started.slot(),
         };
         let items = order(&study, draw)?;
         let mut steps = Vec::new();

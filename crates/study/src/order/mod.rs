@@ -1,4 +1,5 @@
-//! The order of trials: `(seed, configuration hash, participant number)` -> the exact order.
+//! The order of trials: `(seed, configuration hash, slot)` -> the exact order. The slot is the
+//! participant's place in the balance of conditions; who replaces a drop-out has the drop-out's.
 //!
 //! Every draw comes from a stream named by its purpose, so the order is the same natively and in
 //! the browser, today and later, and a new kind of draw never shifts an old one.
@@ -88,7 +89,7 @@ pub struct Draw<'a> {
     pub seed: u64,
     /// Hash of the canonical study file.
     pub config_hash: &'a str,
-    /// Participant number.
+    /// The participant's slot ([`crate::wire::SessionStarted::slot`]).
     pub participant: u64,
 }
 

@@ -4,15 +4,16 @@ use super::column::ColumnKind;
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 50] = {
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 51] = {
     use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
     [
         ("participant_id", Text, "", "Public identifier of the participant"),
+        ("participant", Integer, "", "Participant number, given once"),
         (
-            "participant",
+            "slot",
             Integer,
             "",
-            "Participant number; with seed and config_hash it decides the order",
+            "Place in the balance of conditions; with seed and config_hash it decides the order",
         ),
         ("trial_id", Text, "", "Identifier of the trial or page"),
         ("trial_index", Integer, "", "Place among all pages and trials of the session, from 0"),

@@ -70,6 +70,7 @@ impl<'a> Layout<'a> {
         let mut put = |name: &str, value: Value| common.insert(name.to_owned(), value);
         put("participant_id", session.started.participant_id.as_str().into());
         put("participant", session.started.participant.into());
+        put("slot", session.started.slot().into());
         put("stage", session.started.stage.as_str().into());
         put("status", status.into());
         put("seed", session.started.seed.into());

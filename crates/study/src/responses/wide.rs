@@ -11,9 +11,10 @@ use crate::study_file::Study;
 use crate::wire::ClipSource;
 
 /// Columns of the tidy form that are the same in all rows of a participant.
-const PERSONAL: [&str; 8] = [
+const PERSONAL: [&str; 9] = [
     "participant_id",
     "participant",
+    "slot",
     "stage",
     "status",
     "language",

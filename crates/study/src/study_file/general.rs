@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::LocalText;
+use crate::instant::instant_ms;
 
 /// Title, version, authors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,9 +75,21 @@ pub struct Recruitment {
     /// How a second participation of one person is recognised.
     #[serde(default)]
     pub repeat_prevention: RepeatPrevention,
-    /// How many participants the study wants.
+    /// How many participants the study wants; it takes no more once so many have finished or are
+    /// on their way. None: any number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub participants: Option<u64>,
+    /// Nobody can begin before: `2026-03-01T08:00:00+01:00`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opens: Option<String>,
+    /// Nobody can begin from then on; who has begun can finish.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closes: Option<String>,
+    /// How long a participant's place is kept after the last sign of life, in minutes (60 if not
+    /// given). Then the next participant takes it, so that conditions stay balanced over those who
+    /// finish.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reservation_minutes: Option<u32>,
 }
 
 impl Recruitment {
@@ -118,8 +131,29 @@ pub struct Consent {
     /// How long the answers are kept, and what then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retention: Option<LocalText>,
+    /// Days after the end of a session at which the server deletes its answers; for ever if not
+    /// given. It should say the same as `retention`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub retention_days: Option<u32>,
     /// The text.
     pub sections: Vec<Section>,
+}
+
+impl Recruitment {
+    /// How long a place is kept after the last sign of life, milliseconds.
+    pub fn reservation_ms(&self) -> i64 {
+        i64::from(self.reservation_minutes.unwrap_or(60)) * 60_000
+    }
+
+    /// When the study opens, milliseconds since 1970.
+    pub fn opens_ms(&self) -> Option<i64> {
+        instant_ms(self.opens.as_deref()?)
+    }
+
+    /// When the study closes, milliseconds since 1970.
+    pub fn closes_ms(&self) -> Option<i64> {
+        instant_ms(self.closes.as_deref()?)
+    }
 }
 
 /// A heading and its paragraphs.

@@ -287,6 +287,45 @@ impl Words {
         }
     }
 
+    /// Why the server does not take a participant, and what can be done: message and remedy. `None`
+    /// for refusals that are not a participant's.
+    pub fn refusal(&self, code: &str) -> Option<(&'static str, &'static str)> {
+        let french = self.language == "fr";
+        Some(match code {
+            "already-took-part" if french => (
+                "Vous avez déjà participé à cette étude.",
+                "On ne peut y participer qu’une fois. Merci ! Si c’est une erreur, écrivez au responsable de l’étude.",
+            ),
+            "already-took-part" => (
+                "You have already taken part in this study.",
+                "Everybody can take part once. Thank you! If this is a mistake, write to the investigator.",
+            ),
+            "study-full" if french => (
+                "L’étude a assez de participants pour l’instant.",
+                "Une place peut se libérer : réessayez plus tard. Merci de votre intérêt.",
+            ),
+            "study-full" => (
+                "The study has enough participants for now.",
+                "A place may become free: try again later. Thank you for your interest.",
+            ),
+            "study-not-open" if french => {
+                ("L’étude n’est pas encore ouverte.", "Revenez à la date annoncée.")
+            }
+            "study-not-open" => ("The study is not open yet.", "Come back at the announced time."),
+            "study-closed" if french => ("L’étude est terminée.", "Merci de votre intérêt."),
+            "study-closed" => ("The study is over.", "Thank you for your interest."),
+            "no-identifier" if french => (
+                "L’adresse ne dit pas qui vous êtes.",
+                "Revenez au site qui vous a adressé ici et suivez son lien.",
+            ),
+            "no-identifier" => (
+                "The address does not say who you are.",
+                "Go back to the site that sent you here and follow its link.",
+            ),
+            _ => return None,
+        })
+    }
+
     /// "Practice clip 1 of 2".
     pub fn training_of(&self, number: usize, of: usize) -> String {
         match self.language {

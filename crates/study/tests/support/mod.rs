@@ -30,6 +30,7 @@ pub fn started(text: &str, participant: u64) -> (Study, SessionStarted) {
         session: "secret".into(),
         participant_id: format!("p{participant:04}"),
         participant,
+        slot: participant,
         seed: study.seed,
         stage: "live".into(),
         config_hash: config_hash(&value),

@@ -1,0 +1,148 @@
+//! What keeps strangers out: headers, parts of files, rates, metrics; and what the logs hold.
+
+use std::io::Write;
+use std::sync::{Arc, Mutex};
+
+use axum::http::{HeaderName, StatusCode, header};
+use mimique_server::{Settings, StorageError};
+use serde_json::json;
+
+use crate::client::{TestServer, event};
+use crate::study;
+
+fn name(text: &'static str) -> HeaderName {
+    HeaderName::from_static(text)
+}
+
+pub async fn browsers_are_told_what_they_may_do(server: &TestServer) {
+    for path in ["/", "/s/faces/", "/api/studies", "/nothing", "/healthz", "/researcher"] {
+        let answer = server.get(path).await;
+        let policy = answer.header(header::CONTENT_SECURITY_POLICY).to_owned();
+        for part in ["default-src 'none'", "frame-ancestors 'none'", "base-uri 'none'"] {
+            assert!(policy.contains(part), "{path}: {policy}");
+        }
+        assert!(policy.contains("connect-src 'self';"), "{policy}");
+        assert!(!policy.contains("unsafe-inline") && !policy.contains("'unsafe-eval'"), "{policy}");
+        assert_eq!(answer.header(header::X_CONTENT_TYPE_OPTIONS), "nosniff", "{path}");
+        assert_eq!(answer.header(header::X_FRAME_OPTIONS), "DENY", "{path}");
+        assert_eq!(answer.header(name("cross-origin-opener-policy")), "same-origin", "{path}");
+        assert_eq!(answer.header(header::STRICT_TRANSPORT_SECURITY), "", "without TLS");
+    }
+    let behind = server.with_settings(Settings {
+        behind_tls: true,
+        packs_address: Some("https://cdn.example.org:8443/packs".into()),
+        ..Settings::default()
+    });
+    let page = behind.get("/s/faces/").await;
+    assert!(page.header(header::STRICT_TRANSPORT_SECURITY).starts_with("max-age=31536000"));
+    let policy = page.header(header::CONTENT_SECURITY_POLICY);
+    assert!(policy.contains("connect-src 'self' https://cdn.example.org:8443;"), "{policy}");
+    assert!(policy.contains("media-src 'self' blob: https://cdn.example.org:8443;"), "{policy}");
+    assert!(policy.contains("script-src 'self' 'wasm-unsafe-eval';"), "{policy}");
+    assert!(page.text().contains("packs=https://cdn.example.org:8443/packs"), "{}", page.text());
+    assert!(server.get("/s/faces/").await.text().contains("packs=/packs"));
+}
+
+pub async fn a_part_of_a_film_is_sent(server: &TestServer) {
+    let whole = study::pack();
+    let path = format!("/packs/{}", study::sha256(&whole));
+    let all = server.get(&path).await;
+    assert_eq!(all.header(header::ACCEPT_RANGES), "bytes");
+    let part = |range: &'static str| {
+        let headers = [(header::RANGE, range), (header::ACCEPT_ENCODING, "br, gzip")];
+        let path = &path;
+        async move { server.get_with(path, &headers).await }
+    };
+    let answer = part("bytes=2-5").await;
+    assert_eq!(answer.status, StatusCode::PARTIAL_CONTENT);
+    assert_eq!(answer.text(), whole[2..=5]);
+    let of = format!("bytes 2-5/{}", whole.len());
+    assert_eq!(answer.header(header::CONTENT_RANGE), of);
+    assert_eq!(answer.header(header::CONTENT_ENCODING), "");
+    assert_eq!(part("bytes=-7").await.text(), whole[whole.len() - 7..]);
+    let beyond = part("bytes=999999-").await;
+    beyond.refused(StatusCode::RANGE_NOT_SATISFIABLE, "no-such-range");
+    // Several parts at once are more than a film needs: the whole is the answer.
+    assert_eq!(part("bytes=0-1,4-5").await.status, StatusCode::OK);
+}
+
+pub async fn one_address_cannot_ask_without_end(server: &TestServer) {
+    let settings = Settings { behind_proxy: true, requests_per_second: 3, ..Settings::default() };
+    let server = server.with_settings(settings);
+    let ask = |address: &'static str| {
+        let server = &server;
+        async move { server.get_with("/api/studies", &[(name("x-real-ip"), address)]).await }
+    };
+    let mut served = 0;
+    for _ in 0..60 {
+        let answer = ask("192.0.2.1").await;
+        if answer.status == StatusCode::OK {
+            served += 1;
+        } else {
+            assert_eq!(answer.header(header::RETRY_AFTER), "2");
+            answer.refused(StatusCode::TOO_MANY_REQUESTS, "too-often");
+        }
+    }
+    assert!((30..50).contains(&served), "{served}");
+    assert_eq!(ask("192.0.2.2").await.status, StatusCode::OK, "others are served");
+    assert_eq!(ask("127.0.0.1").await.status, StatusCode::OK);
+}
+
+pub async fn metrics_are_the_operators(server: &TestServer) {
+    server.start(1).await;
+    server.get("/metrics").await.refused(StatusCode::NOT_FOUND, "not-found");
+    let settings = Settings { metrics_token: Some("open sesame".into()), ..Settings::default() };
+    let server = server.with_settings(settings);
+    let ask = |token: &'static str| {
+        let server = &server;
+        async move { server.get_with("/metrics", &[(header::AUTHORIZATION, token)]).await }
+    };
+    ask("Bearer open").await.refused(StatusCode::NOT_FOUND, "not-found");
+    let text = ask("Bearer open sesame").await.text();
+    let line = "mimique_sessions{study=\"faces\",stage=\"live\",status=\"started\"} 1";
+    assert!(text.contains(line), "{text}");
+    assert!(!text.contains("person 1") && !text.contains("p0001"), "{text}");
+}
+
+/// What was logged, held in memory.
+#[derive(Clone, Default)]
+struct Log(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Log {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Even at the finest level, and when the database fails, no answer or identifier is logged.
+pub async fn logs_hold_no_answers(server: &TestServer) {
+    let log = Log::default();
+    let writer = log.clone();
+    let subscriber = tracing_subscriber::fmt()
+        .with_max_level(tracing::Level::TRACE)
+        .with_writer(move || writer.clone())
+        .finish();
+    let _guard = tracing::subscriber::set_default(subscriber);
+    let started = server.start(1).await;
+    let mut secret = event(0);
+    secret.body = json!({"type": "answered", "value": "my-secret-answer"});
+    server.stored(&started.session, std::slice::from_ref(&secret)).await;
+    server.run_sql("ALTER TABLE events RENAME TO elsewhere").await;
+    secret.sequence = 1;
+    let failed = server.append(&started.session, &[secret]).await;
+    assert_eq!(failed.status, StatusCode::INTERNAL_SERVER_ERROR);
+    assert!(matches!(
+        server.storage.events(1).await.unwrap_err(),
+        StorageError::Database(_) | StorageError::Unavailable
+    ));
+    let text = String::from_utf8_lossy(&log.0.lock().unwrap()).into_owned();
+    assert!(text.contains("500 Internal Server Error"), "the failure itself is logged: {text}");
+    for private in ["my-secret-answer", "person 1", &started.session, &started.withdrawal_code] {
+        assert!(!text.contains(private), "{private} in {text}");
+    }
+}

@@ -1,0 +1,282 @@
+//! Who can begin, in which place of the balance, and how often.
+
+use axum::body::Body;
+use axum::http::{Request, StatusCode, header};
+use mimique_server::{HostedStudy, Stage, Status};
+use mimique_study::wire::{Event, Refusal, SessionStarted};
+use serde_json::{Value, json};
+
+use crate::client::{Answer, TestServer, event};
+use crate::study;
+
+const HOUR: i64 = 3_600_000;
+
+/// The small study with other recruitment keys.
+fn with(recruitment: Value) -> HostedStudy {
+    staged(recruitment, Stage::Live)
+}
+
+fn staged(recruitment: Value, stage: Stage) -> HostedStudy {
+    let mut file = study::file();
+    for (key, value) in recruitment.as_object().unwrap() {
+        file["recruitment"][key] = value.clone();
+    }
+    HostedStudy::new(file, Default::default(), stage).unwrap()
+}
+
+async fn begin(server: &TestServer, nonce: u64, language: &str, who: &str, cookie: &str) -> Answer {
+    let body = json!({
+        "nonce": format!("{nonce:032x}"), "language": language,
+        "recruitment": {"PROLIFIC_PID": who},
+    });
+    let request = Request::post("/api/studies/faces/sessions")
+        .header(header::CONTENT_TYPE, "application/json")
+        .header(header::COOKIE, cookie)
+        .body(Body::from(body.to_string()))
+        .unwrap();
+    server.send(request).await
+}
+
+/// Sends `finished` (or another last event) and completes.
+async fn end(server: &TestServer, started: &SessionStarted, kind: &str) {
+    let last = Event { body: json!({"type": kind}), ..event(1) };
+    server.stored(&started.session, &[event(0), last]).await;
+    server.receipt(&started.session, 2).await;
+}
+
+async fn slots(server: &TestServer, nonces: std::ops::Range<u64>) -> Vec<u64> {
+    let mut slots = Vec::new();
+    for nonce in nonces {
+        slots.push(server.start(nonce).await.slot);
+    }
+    slots
+}
+
+/// Lets the reservation of a participant run out.
+async fn let_expire(server: &TestServer, participant: u64) {
+    assert!(participant < 10);
+    let statement = [
+        "",
+        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 1",
+        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 2",
+        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 3",
+    ][participant as usize];
+    server.run_sql(statement).await;
+}
+
+pub async fn the_slot_of_a_drop_out_goes_to_the_next(server: &TestServer) {
+    assert_eq!(slots(server, 1..5).await, [1, 2, 3, 4]);
+    let second = server.start(2).await;
+    // The first finishes, the second's time runs out, the third withdraws, the fourth declines.
+    end(server, &server.start(1).await, "finished").await;
+    let_expire(server, 2).await;
+    let third = server.start(3).await;
+    server.withdrawn(&third.session, &third.withdrawal_code).await;
+    end(server, &server.start(4).await, "declined").await;
+    assert_eq!(slots(server, 5..10).await, [2, 3, 4, 5, 6]);
+    // Numbers are never given again.
+    assert_eq!(server.start(9).await.participant, 9);
+    // Who comes back late finds the order as it was, and finishes without taking anybody's place.
+    assert_eq!(server.start(2).await, second);
+    end(server, &second, "finished").await;
+    server.withdrawn(&second.session, &second.withdrawal_code).await;
+    assert_eq!(server.start(10).await.slot, 7, "the slot was given already");
+    // A participant who had finished takes the answers back: the slot is free again.
+    let first = server.start(1).await;
+    server.withdrawn(&first.session, &first.withdrawal_code).await;
+    assert_eq!(server.start(11).await.slot, 1);
+}
+
+pub async fn a_sign_of_life_keeps_the_slot(server: &TestServer) {
+    let started = server.start(1).await;
+    let hash = study::sha256(&started.session);
+    let before = server.storage.session(&hash).await.unwrap();
+    let began = before.started_ms;
+    assert_eq!(before.slot_expires_ms, Some(began + HOUR));
+    // Early in the reservation nothing is written; late in it, it begins anew.
+    for (sequence, minutes, expected) in [(0, 10, 60), (1, 40, 100), (2, 60, 100), (3, 99, 159)] {
+        let now = began + minutes * HOUR / 60;
+        server.storage.append(&hash, vec![event(sequence)], now).await.unwrap();
+        let record = server.storage.session(&hash).await.unwrap();
+        assert_eq!(record.slot_expires_ms, Some(began + expected * HOUR / 60), "{minutes} min");
+    }
+    // After its end it is not revived: somebody else may have it.
+    server.storage.append(&hash, vec![event(4)], began + 3 * HOUR).await.unwrap();
+    let record = server.storage.session(&hash).await.unwrap();
+    assert_eq!(record.slot_expires_ms, Some(began + 159 * HOUR / 60));
+}
+
+pub async fn slots_are_given_one_after_the_other(server: &TestServer) {
+    let starts: Vec<_> = (0..30)
+        .map(|nonce| {
+            let storage = server.storage.clone();
+            let session = crate::storage::session("faces", format!("{nonce:064}"));
+            tokio::spawn(async move { storage.start(session).await.unwrap().slot })
+        })
+        .collect();
+    let mut given = Vec::new();
+    for start in starts {
+        given.push(start.await.unwrap());
+    }
+    given.sort_unstable();
+    assert_eq!(given, (1..=30).collect::<Vec<_>>());
+}
+
+pub async fn the_study_closes_when_it_is_full(server: &TestServer) {
+    let server = server.restart_with(vec![with(json!({"participants": 2}))]).await;
+    let first = server.start(1).await;
+    let second = server.start(2).await;
+    let refused = |answer: Answer| answer.refused(StatusCode::FORBIDDEN, "study-full");
+    let english = refused(begin(&server, 3, "en", "c", "").await);
+    let french = refused(begin(&server, 3, "fr-CA", "c", "").await);
+    assert!(english.message.contains("enough participants"), "{english:?}");
+    assert!(french.message.contains("assez de participants"), "{french:?}");
+    // Who is in goes on, and finishing keeps the place.
+    assert_eq!(server.start(1).await, first);
+    end(&server, &first, "finished").await;
+    refused(begin(&server, 3, "en", "c", "").await);
+    // A drop-out's place opens the study again, once.
+    let_expire(&server, second.participant).await;
+    assert_eq!(server.start(3).await.slot, 2);
+    refused(begin(&server, 4, "en", "d", "").await);
+    // A pilot counts by itself, and a changed file goes on counting.
+    let pilot = staged(json!({"participants": 2}), Stage::Pilot);
+    let server = server.restart_with(vec![pilot]).await;
+    let tried = server.start(5).await;
+    assert_eq!((tried.slot, tried.stage.as_str()), (1, "pilot"));
+    let larger = with(json!({"participants": 3}));
+    let server = server.restart_with(vec![larger]).await;
+    assert_eq!(server.app.registered("faces").unwrap().version, 3);
+    assert_eq!(server.app.registered("faces").unwrap().running_elsewhere, 2);
+    assert_eq!(server.start(6).await.slot, 1, "the balance of a new version begins anew");
+    refused(begin(&server, 7, "en", "e", "").await);
+    server.storage.close().await;
+}
+
+pub async fn the_study_has_hours(server: &TestServer) {
+    let past = "2020-01-01T00:00:00Z";
+    let future = "2999-01-01T00:00:00Z";
+    let first = server.start(1).await;
+    for (rules, code) in [
+        (json!({"opens": future}), "study-not-open"),
+        (json!({"opens": past, "closes": past}), "study-closed"),
+    ] {
+        let server = server.restart_with(vec![with(rules)]).await;
+        let refusal = begin(&server, 2, "fr", "b", "").await.refused(StatusCode::FORBIDDEN, code);
+        assert!(refusal.message.starts_with("L’étude"), "{refusal:?}");
+        // A session that has begun goes on.
+        assert_eq!(server.start(1).await.participant, first.participant);
+        end(&server, &first, "finished").await;
+        server.storage.close().await;
+    }
+    let open = with(json!({"opens": past, "closes": future}));
+    let server = server.restart_with(vec![open]).await;
+    server.start(3).await;
+    server.storage.close().await;
+}
+
+pub async fn an_identifier_takes_part_once(server: &TestServer) {
+    let rules = json!({"repeatPrevention": "recruitmentIdentifier"});
+    let server = server.restart_with(vec![with(rules.clone())]).await;
+    let started: SessionStarted = begin(&server, 1, "en", "anna", "").await.ok();
+    assert_eq!(begin(&server, 1, "en", "anna", "").await.ok::<SessionStarted>(), started);
+    let again = begin(&server, 2, "en", " anna ", "").await;
+    let refusal = again.refused(StatusCode::FORBIDDEN, "already-took-part");
+    assert!(refusal.message.contains("already"), "{refusal:?}");
+    let _: SessionStarted = begin(&server, 3, "en", "bea", "").await.ok();
+    begin(&server, 4, "en", " ", "").await.refused(StatusCode::FORBIDDEN, "no-identifier");
+    assert_eq!(server.storage.sessions("faces").await.unwrap().len(), 2, "nothing was written");
+    // Who withdraws leaves no trace by which to be recognised.
+    server.withdrawn(&started.session, &started.withdrawal_code).await;
+    let _: SessionStarted = begin(&server, 2, "en", "anna", "").await.ok();
+    // Nor does one whose identifiers were erased; the answers stay.
+    assert_eq!(server.storage.erase_identifiers("faces", Some(2), 5).await.unwrap(), 2);
+    let _: SessionStarted = begin(&server, 5, "en", "bea", "").await.ok();
+    // A pilot may be repeated.
+    let server = server.restart_with(vec![staged(rules, Stage::Pilot)]).await;
+    for nonce in 6..8 {
+        let _: SessionStarted = begin(&server, nonce, "en", "bea", "").await.ok();
+    }
+    server.storage.close().await;
+}
+
+pub async fn a_browser_takes_part_once(server: &TestServer) {
+    let rules = json!({"repeatPrevention": "browser"});
+    let server = server.restart_with(vec![with(rules)]).await;
+    let answer = begin(&server, 1, "en", "", "").await;
+    let cookie = answer.header(header::SET_COOKIE).to_owned();
+    for part in ["mimique-faces=", "HttpOnly", "SameSite=Strict", "Path=/api/studies/faces/;"] {
+        assert!(cookie.contains(part), "{cookie}");
+    }
+    let started: SessionStarted = answer.ok();
+    let mark = format!("theme=dark; {}", cookie.split(';').next().unwrap());
+    // The answer was lost on its way: the same request has the same answer and the same mark.
+    for held in ["", &mark] {
+        let repeated = begin(&server, 1, "en", "", held).await;
+        assert_eq!(repeated.header(header::SET_COOKIE), cookie);
+        assert_eq!(repeated.ok::<SessionStarted>(), started);
+    }
+    let again = begin(&server, 2, "fr", "", &mark).await;
+    let refusal: Refusal = again.refused(StatusCode::FORBIDDEN, "already-took-part");
+    assert!(refusal.message.starts_with("Vous avez déjà"), "{refusal:?}");
+    let _: SessionStarted = begin(&server, 3, "en", "", "mimique-faces=nonsense").await.ok();
+    let _: SessionStarted = begin(&server, 4, "en", "", "").await.ok();
+    server.storage.close().await;
+}
+
+pub async fn nothing_finer_than_a_browsers_name_is_kept(server: &TestServer) {
+    let agent = "Mozilla/5.0 (X11; Linux x86_64; rv:140.0) Gecko/20100101 Firefox/140.0";
+    let body = json!({
+        "nonce": "0".repeat(32), "language": "en",
+        "client": {"browser": agent, "version": "140.0.2 (64 bit)", "platform": "Linux",
+            "userAgent": agent, "ip": "192.0.2.7"},
+    });
+    let _: SessionStarted = server.post("/api/studies/faces/sessions", body).await.ok();
+    let stored = &server.storage.sessions("faces").await.unwrap()[0];
+    let expected = json!({"browser": "Mozilla", "version": "140", "platform": "Linux"});
+    assert_eq!(serde_json::from_str::<Value>(&stored.client).unwrap(), expected);
+}
+
+pub async fn answers_are_deleted_when_their_time_is_over(server: &TestServer) {
+    let first = server.start(1).await;
+    let second = server.start(2).await;
+    end(server, &first, "finished").await;
+    server.stored(&second.session, &[event(0)]).await;
+    let hash = study::hosted().config_hash().to_owned();
+    let sessions = server.storage.sessions("faces").await.unwrap();
+    let (ended, last) = (sessions[0].ended_ms.unwrap(), sessions[1].last_event_ms.unwrap());
+    let erase =
+        async |before| server.storage.erase_ended_before("faces", &hash, before, last).await;
+    assert_eq!(erase(ended.min(last)).await.unwrap(), 0);
+    assert_eq!(erase(ended.max(last) + 1).await.unwrap(), 2);
+    assert_eq!(erase(ended.max(last) + 1).await.unwrap(), 0);
+    for (session, started) in
+        server.storage.sessions("faces").await.unwrap().iter().zip([&first, &second])
+    {
+        assert_eq!((session.status, session.event_count), (Status::Erased, 0));
+        assert!(server.storage.events(session.key).await.unwrap().is_empty());
+        let answer = server.append(&started.session, &[event(5)]).await;
+        answer.refused(StatusCode::GONE, "withdrawn");
+    }
+    assert!(server.storage.recruitment("faces").await.unwrap().is_empty());
+    assert_eq!(server.start(3).await.participant, 3);
+    // Other versions have their own period.
+    assert_eq!(server.storage.erase_ended_before("faces", "other", i64::MAX, 0).await.unwrap(), 0);
+}
+
+pub async fn a_clock_that_jumps_back_loses_nothing(server: &TestServer) {
+    let started = server.start(1).await;
+    let hash = study::sha256(&started.session);
+    let began = server.storage.session(&hash).await.unwrap().started_ms;
+    for (sequence, now) in [(0, began + 5), (1, began - 40_000_000_000), (2, -7), (3, 0)] {
+        let appended = server.storage.append(&hash, vec![event(sequence)], now).await.unwrap();
+        assert_eq!(appended.acknowledged.stored, sequence + 1);
+    }
+    let completed = server.storage.complete(&hash, 4, b"key", began - HOUR).await.unwrap();
+    assert_eq!(completed.stored, 4);
+    let mut earlier = crate::storage::session("faces", "2".repeat(64));
+    earlier.now_ms = -1_000;
+    let record = server.storage.start(earlier).await.unwrap();
+    assert_eq!(record.participant, 2);
+    assert_eq!(server.resume(&started.session).await.events, crate::client::events(0..4));
+}

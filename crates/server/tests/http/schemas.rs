@@ -1,0 +1,84 @@
+//! A database of every earlier schema is brought to today's with all that it holds.
+//!
+//! `tests/schemas/{sqlite,postgres}/000N.sql` is a database as version N left it. Whoever adds a
+//! migration adds the database of the version before it.
+
+use std::path::{Path, PathBuf};
+
+use mimique_server::{Status, Storage};
+use sqlx::{AssertSqlSafe, Connection, Executor};
+
+use crate::client::block_on;
+use crate::postgres::Cluster;
+use crate::study::sha256;
+
+/// Version that this binary writes.
+const LATEST: usize = 3;
+
+fn dump(kind: &str, version: usize) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(format!("tests/schemas/{kind}/{version:04}.sql"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn every_earlier_schema_of_sqlite_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for version in 1..=LATEST {
+        let path: PathBuf = folder.path().join(format!("{version}.sqlite"));
+        let url = format!("sqlite:{}", path.display());
+        block_on(async {
+            let address = format!("{url}?mode=rwc");
+            let mut connection = sqlx::SqliteConnection::connect(&address).await.unwrap();
+            connection.execute(AssertSqlSafe(dump("sqlite", version))).await.unwrap();
+            connection.close().await.unwrap();
+            is_all_there(&url, version).await;
+        });
+    }
+}
+
+#[test]
+fn every_earlier_schema_of_postgres_is_read() {
+    let Some(cluster) = Cluster::start("every_earlier_schema_of_postgres_is_read") else { return };
+    for version in 1..=LATEST {
+        block_on(async {
+            let url = cluster.fresh_database(&format!("schema_{version}")).await;
+            let mut connection = sqlx::PgConnection::connect(&url).await.unwrap();
+            connection.execute(AssertSqlSafe(dump("postgres", version))).await.unwrap();
+            connection.close().await.unwrap();
+            is_all_there(&url, version).await;
+        });
+    }
+}
+
+async fn is_all_there(url: &str, version: usize) {
+    let storage = Storage::open(url).await.unwrap();
+    assert!(storage.is_current().await.unwrap());
+    let sessions = storage.sessions("faces").await.unwrap();
+    let numbers: Vec<u64> = sessions.iter().map(|session| session.participant).collect();
+    assert_eq!(numbers, [1, 2, 3, 4, 5]);
+    let slots: Vec<u64> = sessions.iter().map(|session| session.slot).collect();
+    // Before version 3 the number was the place in the balance; then the third was replaced.
+    assert_eq!(slots, if version < 3 { [1, 2, 3, 4, 5] } else { [1, 2, 3, 4, 3] });
+    let finished: Vec<bool> = sessions.iter().map(|session| session.finished).collect();
+    assert_eq!(finished, [true, false, false, false, false]);
+    let standing: Vec<Status> = sessions.iter().map(|session| session.status).collect();
+    assert_eq!(standing[1..3], [Status::Started, Status::Withdrawn]);
+    assert_eq!(sessions[0].receipt, Some(("receipt-1".into(), 3)));
+    assert_eq!((sessions[0].seed, sessions[0].event_count), ((-7_i64).cast_unsigned(), 3));
+    let events = storage.events(sessions[0].key).await.unwrap();
+    let times: Vec<f64> = events.iter().map(|event| event.at_ms).collect();
+    assert_eq!(times, [1_700_000_000_123.25, 1_700_000_000_123.1, 1.0 / 3.0]);
+    assert_eq!(events[0].body["note"], "é \u{0} \"finished\"");
+    assert_eq!(storage.conflict_counts("faces").await.unwrap(), [(sessions[0].key, 1)]);
+    let identifiers = storage.recruitment("faces").await.unwrap();
+    assert_eq!((identifiers[1].participant, identifiers[1].value.as_str()), (2, "def"));
+    assert_eq!(storage.server_key("tokens", || "new".into()).await.unwrap(), "k1");
+    // Life goes on: nobody gets a number or a slot that is taken.
+    storage.append(&sha256("token12"), vec![crate::client::event(2)], 0).await.unwrap();
+    let mut next = crate::storage::session("faces", "9".repeat(64));
+    next.config_hash = "c1".into();
+    let next = storage.start(next).await.unwrap();
+    assert_eq!((next.participant, next.slot), (6, if version < 3 { 6 } else { 5 }));
+    storage.close().await;
+}
