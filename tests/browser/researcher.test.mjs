@@ -11,7 +11,7 @@ import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { serve } from "./lib/server.mjs";
-import { small, text } from "./lib/small_study.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -28,13 +28,14 @@ const study = (id) =>
           { id: "remark", type: "longText", prompt: text("Anything else?"), required: false },
         ],
       },
+      faces: trials(["joy2.box"], ["real"]),
     },
-    sequence: { order: "fixed", components: ["how"] },
-    stimuli: { avatars: {}, captures: {}, segments: [], methods: {} },
-    hypotheses: [],
+    questions: [{ id: "real", type: "likert", prompt: text("How real?"), numItems: 7, leftLabel: text("not"), rightLabel: text("very") }],
+    sequence: { order: "fixed", components: ["how", "faces"] },
+    stimuli: stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, [["head", "box"]]),
   });
 
-/** Takes part as the pages do, by the interface alone. */
+/** Takes part as the pages do, by the interface alone; the trial is left to the tests that play it. */
 async function takePart(server, id, nonce, mood, whole = true) {
   const post = async (path, body) => {
     const answer = await fetch(`${server.url}${path}`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });

@@ -81,7 +81,7 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
     await page.click("#add-panel");
     await fact(page, "B", "Residual");
     await page.locator("#scrub").fill("6000");
-    await page.locator('section[aria-label="Method B"] input[type=checkbox]').check();
+    await page.getByRole("checkbox", { name: "Difference from A" }).check();
     assert.ok((await fact(page, "B", "Difference from A")) > 0);
     await page.check("#show-markers");
     await page.waitForTimeout(1500);
