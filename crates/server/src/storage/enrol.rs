@@ -25,6 +25,10 @@ pub(super) async fn start(
     .bind(&session.study_id)
     .fetch_one(&mut *connection)
     .await?;
+    // The same request may have been answered by another server while this one waited.
+    if let Some(record) = find_session(connection, &session.token_hash).await? {
+        return Ok(record);
+    }
     let participant: i64 = study.try_get("next_participant")?;
     refuse_repeats(connection, session).await?;
     refuse_beyond_places(connection, session).await?;

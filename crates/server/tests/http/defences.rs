@@ -71,7 +71,7 @@ pub async fn one_address_cannot_ask_without_end(server: &TestServer) {
     let server = server.with_settings(settings);
     let ask = |address: &'static str| {
         let server = &server;
-        async move { server.get_with("/api/studies", &[(name("x-real-ip"), address)]).await }
+        async move { server.get_with("/api/studies/faces", &[(name("x-real-ip"), address)]).await }
     };
     let mut served = 0;
     for _ in 0..60 {
