@@ -158,12 +158,16 @@ impl Walk<'_, '_> {
                     }
                     continue;
                 }
-                StepKind::Calibration(_) => {
+                StepKind::Calibration(calibration) => {
                     self.shown(&step.id);
                     self.read(20_000.0);
-                    let device_pixel_ratio = client.device_pixel_ratio;
-                    self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
-                    self.page.send(Input::Distance(Some(60.0)));
+                    if calibration.card {
+                        let device_pixel_ratio = client.device_pixel_ratio;
+                        self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
+                    }
+                    if calibration.ask_distance {
+                        self.page.send(Input::Distance(Some(60.0)));
+                    }
                 }
             }
             self.page.send(Input::Next);
