@@ -177,8 +177,9 @@ mod tests {
             |seed: f64, count: usize| numbers(3 * count, seed).as_chunks::<3>().0.to_vec();
         let shapes = (0..shapes)
             .map(|k| {
-                let vertices: Vec<u32> =
-                    (0..count as u32).filter(|v| (*v as usize / 11 + k) % 3 != 0).collect();
+                let vertices: Vec<u32> = (0..count as u32)
+                    .filter(|v| !(*v as usize / 11 + k).is_multiple_of(3))
+                    .collect();
                 let mut deltas = triples(k as f64, vertices.len());
                 deltas.iter_mut().step_by(5).for_each(|d| d[k % 3] = 0.0);
                 SparseDeltas { vertices, deltas }

@@ -126,7 +126,7 @@ fn shares([a, b, c]: [Seen; 3], x: f32, y: f32) -> Option<[f32; 3]> {
         |p: Seen, q: Seen, x: f32, y: f32| (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
     // Counter-clockwise triangles are clockwise on a screen whose y goes down.
     let area = -cross(a, b, c.x, c.y);
-    if !(area > 0.0) {
+    if area.is_nan() || area <= 0.0 {
         return None;
     }
     let share = [-cross(b, c, x, y) / area, -cross(c, a, x, y) / area, -cross(a, b, x, y) / area];

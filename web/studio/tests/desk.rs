@@ -160,6 +160,5 @@ fn a_real_capture_is_matched_and_solved_without_help() {
     let state = desk.suggest_map().unwrap();
     assert!(state["suggestion"]["notes"].is_array());
     let facts = desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
-    println!("suggested map: {} warnings {}", facts["summary"], facts["warnings"]);
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
 }
