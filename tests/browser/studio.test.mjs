@@ -120,11 +120,11 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
 
     // Exports of a short part.
     await page.locator("#scrub").fill("1000");
-    await page.locator("#segments tr").first().locator("input[type=number]").nth(1).fill("0.7");
+    await page.locator("#segments tr").first().locator("input[type=number]").nth(1).fill("1.5");
     await page.locator("#segments tr").first().locator("input[type=number]").nth(1).press("Enter");
     await page.selectOption("#range", "0");
-    await page.selectOption("#export-rate", "25");
     await unfold(page, "exports");
+    await page.selectOption("#export-rate", "25");
     const weights = String(await download(page, () => page.click("#export-weights")));
     assert.ok(weights.startsWith("frame,time,"));
     const glb = await download(page, () => page.click("#export-glb"));
