@@ -23,7 +23,7 @@ pub fn EndPage() -> impl IntoView {
                 "completed" if !posted => vec![words.kept_here(&email)],
                 _ => end.text,
             };
-            (text, offered.then(|| words.download))
+            (text, offered.then_some(words.download))
         }
     };
     let give = move |_| {
