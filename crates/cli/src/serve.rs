@@ -36,7 +36,7 @@ pub struct Args {
     /// Folder of the pages, instead of those inside the binary
     #[arg(long)]
     web_dir: Option<PathBuf>,
-    /// Address as people type it, e.g. https://faces.example.org, where a proxy stands before the
+    /// Address as people type it, e.g. `https://faces.example.org`, where a proxy stands before the
     /// server; with https the researchers' cookies are for encrypted connections alone
     #[arg(long)]
     public_url: Option<String>,
@@ -55,7 +55,7 @@ pub struct Args {
     #[arg(long)]
     behind_proxy: bool,
     /// Address under which browsers find packs by their hash, instead of here:
-    /// https://cdn.example.org/packs
+    /// `https://cdn.example.org/packs`
     #[arg(long)]
     packs_url: Option<String>,
     /// Token with which /metrics may be read from elsewhere than this machine; better given by the
