@@ -30,7 +30,7 @@ pub enum FrontEndError {
         "face marker {marker} is not seen in any neutral frame; give other neutral frames or leave the marker out of the map"
     )]
     NeutralUnseen {
-        /// Index in [`MarkerColumns::face`].
+        /// Index in [`crate::MarkerColumns::face`].
         marker: usize,
     },
     /// The neutral cannot be laid onto the avatar.
