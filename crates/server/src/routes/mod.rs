@@ -44,7 +44,7 @@ fn content_security_policy(packs: Option<&str>) -> String {
     let packs = packs.map(|packs| format!(" {}", origin(packs))).unwrap_or_default();
     format!(
         "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
-         img-src 'self' data:; connect-src 'self'{packs}; worker-src 'self'; \
+         img-src 'self' data: blob:; connect-src 'self'{packs}; worker-src 'self'; \
          media-src 'self' blob:{packs}; form-action 'self'; frame-ancestors 'none'; \
          base-uri 'none'; object-src 'none'"
     )

@@ -116,7 +116,7 @@ impl<'m> Person<'m> {
         };
         for question in model.study.demographics.iter().flat_map(|page| &page.questions) {
             if question.is_shown(&new.about, &Answers::new())
-                && let Some(answer) = new.page_answer(&question.id)
+                && let Some(answer) = new.eligible_answer(&question.id)
             {
                 new.about.insert(question.id.clone(), answer);
             }
@@ -129,6 +129,25 @@ impl<'m> Person<'m> {
             .map(|(latent, clips)| latent.of_person(&mut person, clips, &new.about))
             .collect();
         new
+    }
+
+    /// An answer about the participant that no screening rule turns away, as recruiters look for:
+    /// drawn again while one does. A study that takes nobody gets the last draw.
+    fn eligible_answer(&mut self, question: &str) -> Option<Value> {
+        const DRAWS: usize = 1000;
+        let rules = &self.mind.model.study.screening;
+        let turned_away = |answer: Option<&Value>| {
+            let mut own = rules.iter().filter(|rule| rule.condition.question == question);
+            own.any(|rule| rule.condition.holds(answer))
+        };
+        let mut answer = self.page_answer(question);
+        for _ in 1..DRAWS {
+            if !turned_away(answer.as_ref()) {
+                break;
+            }
+            answer = self.page_answer(question);
+        }
+        answer
     }
 
     /// An answer on a page without a clip; none where the question is left out.
