@@ -48,10 +48,10 @@ fn take(c: &mut Criterion) {
     spec.alpha = Some(0.3);
     let weights = Fit::new(&operators, &spec).unwrap().solve_take(&d).unwrap().weights;
     let synthesis = Synthesis::new(&mesh);
-    let mut out = vec![0.0; 64 * synthesis.coordinates()];
+    let mut out = vec![0.0; Synthesis::FRAMES * synthesis.coordinates()];
     group.bench_function("synthesis", |b| {
         b.iter(|| {
-            for frames in weights.chunks(64 * names.len()) {
+            for frames in weights.chunks(Synthesis::FRAMES * names.len()) {
                 synthesis.pose(black_box(frames), &mut out);
                 black_box(&out);
             }

@@ -40,6 +40,11 @@ pub struct Synthesis {
 }
 
 impl Synthesis {
+    /// Frames a call of [`Synthesis::pose`] that are a good number: the shapes are read once for all of
+    /// them, and what is written for a face of 11,000 vertices, 2 MiB, stays near the processor until
+    /// somebody reads it.
+    pub const FRAMES: usize = 16;
+
     /// Prepare a mesh that passes [`SkinMesh::check`]. Single precision: what is drawn.
     pub fn new(mesh: &SkinMesh) -> Synthesis {
         let coordinates = 3 * mesh.positions.len();
@@ -87,7 +92,7 @@ impl Synthesis {
     /// neutral + sum of weight times shape, shapes in their order: `weights` is frames x N, `out`
     /// begins with frames x 3S coordinates (x, y, z of vertex 0, then of vertex 1...), metres.
     ///
-    /// The shapes are read once for all the frames of a call: some 64 are a good number.
+    /// The shapes are read once for all the frames of a call: [`Synthesis::FRAMES`] are a good number.
     ///
     /// # Panics
     /// If `weights` is not whole frames or `out` is too short for them.

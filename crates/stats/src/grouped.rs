@@ -43,33 +43,27 @@ impl<'a> Grouped<'a> {
         let (k, distinct) = (group.levels.len(), ranks.values.len());
         let (mut sizes, mut doubled_sums) = (vec![0usize; k], vec![0u64; k]);
         // What was sorted has too many values to be counted quickly.
-        let counts = (ranks.order.is_none() && k * distinct <= TABLE).then(|| {
+        let counts = (!ranks.is_sorted() && k * distinct <= TABLE).then(|| {
             let mut counts = vec![0u64; k * distinct];
-            for (&code, &value) in group.codes.iter().zip(&ranks.codes) {
+            for (&code, &value) in group.codes.iter().zip(ranks.codes()) {
                 counts[code as usize * distinct + value as usize] += 1;
             }
             counts
         });
         let mut medians = None;
-        match (&counts, &ranks.order) {
-            (Some(counts), _) => {
-                for (code, own) in counts.chunks_exact(distinct).enumerate() {
-                    sizes[code] = own.iter().sum::<u64>() as usize;
-                    doubled_sums[code] = own.iter().zip(&ranks.doubled).map(|(n, r)| n * r).sum();
-                }
+        if let Some(counts) = &counts {
+            for (code, own) in counts.chunks_exact(distinct).enumerate() {
+                sizes[code] = own.iter().sum::<u64>() as usize;
+                doubled_sums[code] = own.iter().zip(&ranks.doubled).map(|(n, r)| n * r).sum();
             }
-            (None, Some(order)) => {
-                for &code in &group.codes {
-                    sizes[code as usize] += 1;
-                }
-                let middles = in_order(&ranks, order, &group.codes, &sizes, &mut doubled_sums);
-                medians = Some(middles);
+        } else {
+            for &code in &group.codes {
+                sizes[code as usize] += 1;
             }
-            (None, None) => {
-                for (observation, &code) in group.codes.iter().enumerate() {
-                    sizes[code as usize] += 1;
-                    doubled_sums[code as usize] += ranks.doubled_rank(observation);
-                }
+            if ranks.is_sorted() {
+                medians = Some(in_order(&ranks, &group.codes, &sizes, &mut doubled_sums));
+            } else {
+                doubled_sums = ranks.doubled_sums(&group.codes, k);
             }
         }
         let dropped = rows.dropped();
@@ -122,34 +116,23 @@ impl<'a> Grouped<'a> {
 
 /// Walks the observations in ascending order: adds up the doubled ranks of each group, and meets the
 /// middle of each.
-fn in_order(
-    ranks: &Ranks,
-    order: &[u32],
-    groups: &[u32],
-    sizes: &[usize],
-    doubled_sums: &mut [u64],
-) -> Vec<f64> {
+fn in_order(ranks: &Ranks, groups: &[u32], sizes: &[usize], doubled_sums: &mut [u64]) -> Vec<f64> {
     // Observations of the group so far; how many there are at its lower and its upper middle.
     let mut walks: Vec<(usize, usize, usize)> =
         sizes.iter().map(|&n| (0, n.saturating_sub(1) / 2 + 1, n / 2 + 1)).collect();
     let mut middles = vec![(0.0, 0.0); sizes.len()];
-    let mut rest = order;
-    for ((&value, &count), &rank) in ranks.values.iter().zip(&ranks.counts).zip(&ranks.doubled) {
-        let (tied, after) = rest.split_at(count as usize);
-        rest = after;
-        for &observation in tied {
-            let group = groups[observation as usize] as usize;
-            doubled_sums[group] += rank;
-            let (met, lower, upper) = &mut walks[group];
-            *met += 1;
-            if *met == *lower {
-                middles[group].0 = value;
-            }
-            if *met == *upper {
-                middles[group].1 = value;
-            }
+    ranks.walk(|value, rank, observation| {
+        let group = groups[observation] as usize;
+        doubled_sums[group] += rank;
+        let (met, lower, upper) = &mut walks[group];
+        *met += 1;
+        if *met == *lower {
+            middles[group].0 = value;
         }
-    }
+        if *met == *upper {
+            middles[group].1 = value;
+        }
+    });
     middles.into_iter().map(|(low, high)| low + 0.5 * (high - low)).collect()
 }
 
@@ -202,7 +185,7 @@ mod tests {
         let labels: Vec<String> = (0..n).map(|i| format!("g{}", i * i % 5)).collect();
         let group = Factor::from_cells("g", labels.iter().map(|l| Some(l.as_str())), |_| None);
         let grouped = Grouped::of(&response, &group).unwrap().ok().unwrap();
-        assert!(grouped.ranks.order.is_some() && grouped.counts.is_none());
+        assert!(grouped.ranks.is_sorted() && grouped.counts.is_none());
         let medians = grouped.medians();
         for (code, &median) in medians.iter().enumerate() {
             let own = || (0..n).filter(|&i| group.codes[i] as usize == code);

@@ -2,24 +2,14 @@
 
 use crate::ranks::Ranks;
 
-/// tau-b of two rankings of the same observations, neither of them constant.
-pub(crate) fn kendall_tau_b(x: &Ranks, y: &Ranks) -> f64 {
-    if x.values.len() * y.values.len() <= TABLE { by_table(x, y) } else { by_sorting(x, y) }
+/// Whether the combinations of values are few enough to be counted.
+pub(crate) fn is_small_table(x: &Ranks, y: &Ranks) -> bool {
+    x.values.len() * y.values.len() <= TABLE
 }
 
-fn by_sorting(x: &Ranks, y: &Ranks) -> f64 {
-    // y in the order of x, and ascending where x is tied.
-    let mut starts: Vec<usize> = Vec::with_capacity(x.counts.len());
-    let mut below = 0;
-    for &count in &x.counts {
-        starts.push(below);
-        below += count as usize;
-    }
-    let mut order = vec![0u32; below];
-    for (&a, &b) in x.codes.iter().zip(&y.codes) {
-        order[starts[a as usize]] = b;
-        starts[a as usize] += 1;
-    }
+/// tau-b of two rankings of the same observations, neither of them constant; `order` is y's
+/// [`Ranks::codes_in_order_of`] x.
+pub(crate) fn by_sorting(x: &Ranks, y: &Ranks, mut order: Vec<u32>) -> f64 {
     let choose_two = |count: u64| (count as f64) * (count as f64 - 1.0) / 2.0;
     let tied = |ranks: &Ranks| ranks.counts.iter().map(|&count| choose_two(count)).sum::<f64>();
     let (tied_x, tied_y) = (tied(x), tied(y));
@@ -43,12 +33,12 @@ fn by_sorting(x: &Ranks, y: &Ranks) -> f64 {
 /// Cells of a table of counts up to which it replaces sorting.
 const TABLE: usize = 1 << 16;
 
-/// From the counts of each combination of values: a cell is concordant with all cells below and to the
+/// tau-b from the counts of each combination of values: a cell is concordant with all cells below and to the
 /// right of it, discordant with all below and to the left.
-fn by_table(x: &Ranks, y: &Ranks) -> f64 {
+pub(crate) fn by_table(x: &Ranks, y: &Ranks) -> f64 {
     let width = y.values.len();
     let mut counts = vec![0u64; x.values.len() * width];
-    for (&a, &b) in x.codes.iter().zip(&y.codes) {
+    for (&a, &b) in x.codes().iter().zip(y.codes()) {
         counts[a as usize * width + b as usize] += 1;
     }
     // Counts of each column in all rows below.
@@ -157,6 +147,7 @@ mod tests {
         }
         let direct = sum / (untied_x * untied_y).sqrt();
         assert!((by_table(&Ranks::of(&x), &Ranks::of(&y)) - direct).abs() < 1e-14);
-        assert!((by_sorting(&Ranks::of(&x), &Ranks::of(&y)) - direct).abs() < 1e-14);
+        let (x, y) = (Ranks::of(&x), Ranks::of(&y));
+        assert!((by_sorting(&x, &y, y.codes_in_order_of(&x)) - direct).abs() < 1e-14);
     }
 }

@@ -35,7 +35,7 @@ pub(crate) struct Count {
 }
 
 /// Distinct pairs that are listed at once.
-const LISTED: u64 = 1 << 16;
+const LISTED: u64 = 1 << 18;
 /// Pairs that a limit is put beside the one sought.
 const ASIDE: u64 = LISTED / 4;
 
@@ -90,8 +90,22 @@ pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
     }
     let mut listed: Vec<(f64, u64)> = Vec::new();
     pairs.between(low.value, high.value, |value, count| listed.push((value, count)));
-    listed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut below = low.count.pairs;
+    // Up to the next one: what lies above need not be in order.
+    if listed.iter().all(|(_, count)| *count == 1) {
+        let needed = (k - below + 1) as usize;
+        if needed < listed.len() {
+            listed.select_nth_unstable_by(needed, |a, b| a.0.total_cmp(&b.0));
+            listed.truncate(needed);
+        }
+        let last_two = listed.len().saturating_sub(2);
+        if last_two > 0 {
+            listed.select_nth_unstable_by(last_two, |a, b| a.0.total_cmp(&b.0));
+            below += last_two as u64;
+            listed.drain(..last_two);
+        }
+    }
+    listed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut first = None;
     for (value, count) in listed {
         below += count;

@@ -1,14 +1,20 @@
 //! The order of many doubles, in time linear in their number.
 //!
 //! A double is mapped to an integer of the same order, of which the 32 leading bits within the
-//! sample's range are packed with its place into one word. Three passes over 11 bits each (least
-//! significant first, stable) sort the words; the few that share all 32 bits are told apart afterwards
-//! by the whole value. No pass moves more than 8 bytes a value.
+//! sample's range are packed with its place into one word. The words are parted into as many ranges as
+//! there are threads; in each, three passes over 11 bits (least significant first, stable) sort them.
+//! The few that share all 32 bits are told apart afterwards by the whole value. No pass moves more than
+//! 8 bytes a value.
 
-use rayon::slice::ParallelSliceMut;
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator,
+};
+use rayon::slice::ParallelSlice;
 
 /// Below this many a comparison sort is faster.
 const FEW: usize = 1 << 14;
+/// Words of which splitters between the ranges are chosen, for each range.
+const TRIED: usize = 64;
 /// Bits of a digit.
 const DIGIT: u32 = 11;
 const BUCKETS: usize = 1 << DIGIT;
@@ -25,15 +31,14 @@ fn value(key: u64) -> f64 {
     f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
-/// Values in ascending order.
+/// Values in ascending order; -0 comes as 0.
 pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
-    let mut keys: Vec<u64> = sample.iter().map(|&value| key(value)).collect();
-    if keys.len() < FEW {
+    if sample.len() < FEW {
+        let mut keys: Vec<u64> = sample.iter().map(|&value| key(value)).collect();
         keys.sort_unstable();
-    } else {
-        keys.par_sort_unstable();
+        return keys.into_iter().map(value).collect();
     }
-    keys.into_iter().map(value).collect()
+    places(sample).par_iter().map(|&place| sample[place as usize] + 0.0).collect()
 }
 
 /// Places of the values in ascending order of value, places of equal values in ascending order. At
@@ -46,15 +51,18 @@ pub(crate) fn places(sample: &[f64]) -> Vec<u32> {
         return pairs.into_iter().map(|(_, place)| place).collect();
     }
     let (least, most) = sample
-        .iter()
-        .map(|&value| key(value))
-        .fold((u64::MAX, 0), |(least, most), key| (least.min(key), most.max(key)));
+        .par_iter()
+        .map(|&value| (key(value), key(value)))
+        .reduce(|| (u64::MAX, 0), |a, b| (a.0.min(b.0), a.1.max(b.1)));
     let shift = (u64::BITS - (most - least).leading_zeros()).saturating_sub(u64::BITS - PLACE);
     let leading = |value: f64| (key(value) - least) >> shift;
-    let mut words: Vec<u64> =
-        (0u64..).zip(sample).map(|(place, &value)| leading(value) << PLACE | place).collect();
-    sort_by_leading_bits(&mut words);
-    let mut places: Vec<u32> = words.iter().map(|&word| word as u32).collect();
+    let mut words: Vec<u64> = sample
+        .par_iter()
+        .enumerate()
+        .map(|(place, &value)| leading(value) << PLACE | place as u64)
+        .collect();
+    sort(&mut words);
+    let mut places: Vec<u32> = words.par_iter().map(|&word| word as u32).collect();
     if shift > 0 {
         let mut start = 0;
         for run in words.chunk_by(|a, b| a >> PLACE == b >> PLACE) {
@@ -68,33 +76,94 @@ pub(crate) fn places(sample: &[f64]) -> Vec<u32> {
     places
 }
 
-/// Sorts words by the bits above their place; words of equal bits stay in their order.
-fn sort_by_leading_bits(words: &mut Vec<u64>) {
+/// Sorts words that all differ: parted into ranges, which are sorted at the same time.
+fn sort(words: &mut [u64]) {
+    let ranges = rayon::current_num_threads().min(words.len() / FEW).max(1);
+    let mut other = vec![0u64; words.len()];
+    let lengths = part(words, &mut other, ranges);
+    let (mut own, mut buffers) = (Vec::with_capacity(ranges), Vec::with_capacity(ranges));
+    let (mut rest, mut rest_of_other) = (words, other.as_mut_slice());
+    for length in lengths {
+        let (range, after) = rest.split_at_mut(length);
+        let (buffer, after_in_other) = rest_of_other.split_at_mut(length);
+        own.push(range);
+        buffers.push(buffer);
+        (rest, rest_of_other) = (after, after_in_other);
+    }
+    own.into_par_iter().zip(buffers).for_each(|(to, from)| sort_by_leading_bits(from, to));
+}
+
+/// Copies words into ranges of their order, each in the order that it had; returns their lengths.
+fn part(words: &[u64], to: &mut [u64], ranges: usize) -> Vec<usize> {
+    let step = (words.len() / (TRIED * ranges)).max(1);
+    let mut tried: Vec<u64> = words.iter().step_by(step).copied().collect();
+    tried.sort_unstable();
+    let splitters: Vec<u64> =
+        (1..ranges).map(|range| tried[range * tried.len() / ranges]).collect();
+    let range_of = |word: u64| splitters.iter().filter(|&&splitter| splitter <= word).count();
+    let stretch = words.len().div_ceil(ranges);
+    let counts: Vec<Vec<usize>> = words
+        .par_chunks(stretch)
+        .map(|stretch| {
+            let mut counts = vec![0; ranges];
+            stretch.iter().for_each(|&word| counts[range_of(word)] += 1);
+            counts
+        })
+        .collect();
+    // The places of each stretch's words in each range.
+    let mut places: Vec<Vec<&mut [u64]>> = counts.iter().map(|_| Vec::new()).collect();
+    let mut rest = to;
+    for range in 0..ranges {
+        for (places, counts) in places.iter_mut().zip(&counts) {
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(counts[range]);
+            places.push(own);
+            rest = after;
+        }
+    }
+    words.par_chunks(stretch).zip(places).for_each(|(stretch, places)| {
+        let mut places: Vec<_> = places.into_iter().map(<[u64]>::iter_mut).collect();
+        for &word in stretch {
+            if let Some(place) = places[range_of(word)].next() {
+                *place = word;
+            }
+        }
+    });
+    (0..ranges).map(|range| counts.iter().map(|counts| counts[range]).sum()).collect()
+}
+
+/// Sorts words by the bits above their place, words of equal bits in their order; what `from` holds
+/// afterwards is of no use.
+fn sort_by_leading_bits<'a>(mut from: &'a mut [u64], mut to: &'a mut [u64]) {
     const PASSES: usize = (u64::BITS - PLACE).div_ceil(DIGIT) as usize;
     let digit =
         |word: u64, pass: usize| (word >> (PLACE + pass as u32 * DIGIT)) as usize & (BUCKETS - 1);
     let mut counts = [[0u32; BUCKETS]; PASSES];
-    for &word in words.iter() {
+    for &word in from.iter() {
         for (pass, counts) in counts.iter_mut().enumerate() {
             counts[digit(word, pass)] += 1;
         }
     }
-    let mut other = vec![0u64; words.len()];
+    let mut swapped = false;
     for (pass, counts) in counts.iter_mut().enumerate() {
         // A digit that all have in common moves nothing.
-        if counts.contains(&(words.len() as u32)) {
+        if counts.contains(&(from.len() as u32)) {
             continue;
         }
         let mut start = 0;
         for count in counts.iter_mut() {
             start += std::mem::replace(count, start);
         }
-        for &word in words.iter() {
+        for &word in from.iter() {
             let place = &mut counts[digit(word, pass)];
-            other[*place as usize] = word;
+            to[*place as usize] = word;
             *place += 1;
         }
-        std::mem::swap(words, &mut other);
+        std::mem::swap(&mut from, &mut to);
+        swapped = !swapped;
+    }
+    // What `from` names now is sorted; after an odd number of passes that is where it belongs.
+    if !swapped {
+        to.copy_from_slice(from);
     }
 }
 

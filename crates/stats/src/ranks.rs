@@ -2,11 +2,15 @@
 //!
 //! With few distinct values (ratings) nothing of the length of the data is sorted.
 
+use std::sync::OnceLock;
+
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
 use crate::radix;
 use crate::tally::Found;
 
 /// Midranks of a sample without missing values.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Ranks {
     /// Distinct values in ascending order.
     pub values: Vec<f64>,
@@ -14,23 +18,28 @@ pub struct Ranks {
     pub counts: Vec<u64>,
     /// Twice the midrank of each distinct value: an integer, so that sums are exact.
     pub doubled: Vec<u64>,
-    /// Distinct value of each observation.
-    pub codes: Vec<u32>,
+    n: usize,
+    /// Distinct value of each observation; of a sample that was sorted, once they are asked for.
+    codes: OnceLock<Vec<u32>>,
     /// The observations in ascending order, where they were sorted.
-    pub(crate) order: Option<Vec<u32>>,
+    order: Option<Vec<u32>>,
 }
 
 impl Ranks {
     /// Ranks finite values; -0 and 0 are one value.
     pub fn of(sample: &[f64]) -> Self {
-        let (counted, order) = match by_counting(sample) {
-            Some(counted) => (counted, None),
+        let codes = OnceLock::new();
+        let (values, counts, order) = match by_counting(sample) {
+            Some((values, counts, found)) => {
+                codes.get_or_init(|| found);
+                (values, counts, None)
+            }
             None => {
                 let order = radix::places(sample);
-                (by_order(sample, &order), Some(order))
+                let (values, counts) = in_order(sample, &order);
+                (values, counts, Some(order))
             }
         };
-        let (values, counts, codes) = counted;
         let mut below = 0;
         let doubled = counts
             .iter()
@@ -40,17 +49,86 @@ impl Ranks {
                 twice_midrank
             })
             .collect();
-        Self { values, counts, doubled, codes, order }
+        Self { values, counts, doubled, n: sample.len(), codes, order }
     }
 
     /// Number of observations.
     pub fn len(&self) -> usize {
-        self.codes.len()
+        self.n
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.codes.is_empty()
+        self.n == 0
+    }
+
+    /// Distinct value of each observation: a place in `values`.
+    pub fn codes(&self) -> &[u32] {
+        self.codes.get_or_init(|| {
+            let mut codes = vec![0; self.n];
+            for (code, tied) in (0..).zip(self.tied()) {
+                tied.iter().for_each(|&observation| codes[observation as usize] = code);
+            }
+            codes
+        })
+    }
+
+    /// Observations in ascending order, those of one value together; none where they were counted.
+    fn tied(&self) -> impl Iterator<Item = &[u32]> {
+        let mut rest = self.order.as_deref().unwrap_or_default();
+        let counts = self.order.as_ref().map_or(&[][..], |_| &self.counts);
+        counts.iter().map(move |&count| {
+            let (tied, after) = rest.split_at(count as usize);
+            rest = after;
+            tied
+        })
+    }
+
+    /// Whether the sample was sorted, since it has too many values to be counted.
+    pub(crate) fn is_sorted(&self) -> bool {
+        self.order.is_some()
+    }
+
+    /// Calls with value, doubled midrank and observation, in ascending order; not at all where the
+    /// sample was counted.
+    pub(crate) fn walk(&self, mut met: impl FnMut(f64, u64, usize)) {
+        for ((tied, &value), &rank) in self.tied().zip(&self.values).zip(&self.doubled) {
+            tied.iter().for_each(|&observation| met(value, rank, observation as usize));
+        }
+    }
+
+    /// Distinct values of the observations (as [`Ranks::codes`]) in the ascending order of `other`'s;
+    /// those that `other` ties come in their own order.
+    pub(crate) fn codes_in_order_of(&self, other: &Ranks) -> Vec<u32> {
+        let codes = self.codes();
+        if let Some(order) = &other.order {
+            return order.par_iter().map(|&observation| codes[observation as usize]).collect();
+        }
+        let mut starts: Vec<usize> = Vec::with_capacity(other.counts.len());
+        let mut below = 0;
+        for &count in &other.counts {
+            starts.push(below);
+            below += count as usize;
+        }
+        let mut in_order = vec![0; below];
+        for (&place, &code) in other.codes().iter().zip(codes) {
+            in_order[starts[place as usize]] = code;
+            starts[place as usize] += 1;
+        }
+        in_order
+    }
+
+    /// Sums of the doubled midranks a cell, `cells` being each observation's.
+    pub(crate) fn doubled_sums(&self, cells: &[u32], count: usize) -> Vec<u64> {
+        let mut sums = vec![0; count];
+        if self.is_sorted() {
+            self.walk(|_, rank, observation| sums[cells[observation] as usize] += rank);
+        } else {
+            for (&cell, &code) in cells.iter().zip(self.codes()) {
+                sums[cell as usize] += self.doubled[code as usize];
+            }
+        }
+        sums
     }
 
     /// Midrank of an observation.
@@ -60,7 +138,7 @@ impl Ranks {
 
     /// Twice the midrank of an observation.
     pub fn doubled_rank(&self, observation: usize) -> u64 {
-        self.doubled[self.codes[observation] as usize]
+        self.doubled[self.codes()[observation] as usize]
     }
 
     /// All midranks, in the sample's order.
@@ -107,22 +185,15 @@ fn by_counting(sample: &[f64]) -> Option<Counted> {
     Some((order.iter().map(|&old| found.values[old as usize]).collect(), counts, codes))
 }
 
-fn by_order(sample: &[f64], order: &[u32]) -> Counted {
-    let mut values: Vec<f64> = Vec::with_capacity(sample.len());
-    let mut counts: Vec<u64> = Vec::with_capacity(sample.len());
-    let mut codes = vec![0; sample.len()];
-    for &place in order {
-        let value = sample[place as usize] + 0.0; // -0 becomes 0
-        match counts.last_mut() {
-            Some(count) if values.last() == Some(&value) => *count += 1,
-            _ => {
-                values.push(value);
-                counts.push(1);
-            }
-        }
-        codes[place as usize] = values.len() as u32 - 1;
+/// Distinct values and how often each occurs, of a sample whose order is known.
+fn in_order(sample: &[f64], order: &[u32]) -> (Vec<f64>, Vec<u64>) {
+    // -0 becomes 0
+    let values: Vec<f64> = order.par_iter().map(|&place| sample[place as usize] + 0.0).collect();
+    if values.array_windows().all(|[a, b]| a != b) {
+        let counts = vec![1; values.len()];
+        return (values, counts);
     }
-    (values, counts, codes)
+    values.chunk_by(|a, b| a == b).map(|tied| (tied[0], tied.len() as u64)).unzip()
 }
 
 #[cfg(test)]
@@ -143,6 +214,20 @@ mod tests {
     fn counting_and_sorting_agree() {
         let sample: Vec<f64> = (0..500).map(|i| f64::from(i * 7919 % 83) - 40.0).collect();
         let order = radix::places(&sample);
-        assert_eq!(by_counting(&sample), Some(by_order(&sample, &order)));
+        let (values, counts) = in_order(&sample, &order);
+        let counted = Ranks::of(&sample);
+        assert_eq!((&counted.values, &counted.counts), (&values, &counts));
+        let sorted = Ranks {
+            values,
+            counts,
+            doubled: counted.doubled.clone(),
+            n: sample.len(),
+            codes: OnceLock::new(),
+            order: Some(order),
+        };
+        assert!(sorted.is_sorted() && !counted.is_sorted());
+        assert_eq!(sorted.codes(), counted.codes());
+        let cells: Vec<u32> = (0..500).map(|i| i * i % 7).collect();
+        assert_eq!(sorted.doubled_sums(&cells, 7), counted.doubled_sums(&cells, 7));
     }
 }

@@ -124,13 +124,15 @@ pub fn scheirer_ray_hare(
         return Ok(Outcome::undefined(equal_values(&response.name, n, ranks.values[0])));
     }
     let (a, b) = (first.levels.len(), second.levels.len());
+    let cells: Vec<u32> = first
+        .codes
+        .iter()
+        .zip(&second.codes)
+        .map(|(&row, &column)| row * b as u32 + column)
+        .collect();
     let mut counts = vec![0u64; a * b];
-    let mut doubled = vec![0u64; a * b];
-    for observation in 0..n {
-        let cell = first.codes[observation] as usize * b + second.codes[observation] as usize;
-        counts[cell] += 1;
-        doubled[cell] += ranks.doubled_rank(observation);
-    }
+    cells.iter().for_each(|&cell| counts[cell as usize] += 1);
+    let doubled = ranks.doubled_sums(&cells, a * b);
     let centre = (n as f64 + 1.0) / 2.0;
     let sums = doubled
         .iter()

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::kendall::kendall_tau_b;
+use crate::kendall;
 use crate::outcome::{Labelled, Outcome, Refusal};
 use crate::ranks::Ranks;
 use crate::sample::complete_rows;
@@ -66,14 +66,23 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
             )));
         }
     }
-    // Sum of squared differences of doubled ranks: an integer.
-    let doubled_squares: f64 = (0..n)
-        .map(|i| rank_x.doubled_rank(i).abs_diff(rank_y.doubled_rank(i)) as f64)
-        .map(|difference| difference * difference)
-        .sum();
+    let (squares, kendall_tau_b) = if kendall::is_small_table(&rank_x, &rank_y) {
+        let ranks = (0..n).map(|i| (rank_x.doubled_rank(i), rank_y.doubled_rank(i)));
+        (sum_of_squares(ranks), kendall::by_table(&rank_x, &rank_y))
+    } else {
+        // In the order of x neither ranks are looked up all over the memory.
+        let order = rank_y.codes_in_order_of(&rank_x);
+        let of_x = rank_x.doubled.iter().zip(&rank_x.counts);
+        let of_x = of_x.flat_map(|(&rank, &count)| std::iter::repeat_n(rank, count as usize));
+        let of_y = order.iter().map(|&code| match rank_y.has_ties() {
+            true => rank_y.doubled[code as usize],
+            false => 2 * (u64::from(code) + 1),
+        });
+        (sum_of_squares(of_x.zip(of_y)), kendall::by_sorting(&rank_x, &rank_y, order))
+    };
     let (ssx, ssy) = (rank_x.sum_of_squares(), rank_y.sum_of_squares());
     // Cov = (SSx + SSy - sum d^2) / 2
-    let rho = ((ssx + ssy - doubled_squares / 4.0) / 2.0 / (ssx * ssy).sqrt()).clamp(-1.0, 1.0);
+    let rho = ((ssx + ssy - squares / 4.0) / 2.0 / (ssx * ssy).sqrt()).clamp(-1.0, 1.0);
     let size = n as f64;
     let s = size * (size * size - 1.0) * (1.0 - rho) / 6.0;
 
@@ -128,9 +137,15 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
         ci95_fisher: interval(1.0),
         ci95_fieller: interval(1.06),
         ci95_bonett_wright: interval(1.0 + rho * rho / 2.0),
-        kendall_tau_b: kendall_tau_b(&rank_x, &rank_y),
+        kendall_tau_b,
         warnings,
     }))
+}
+
+/// Sum of squared differences of doubled ranks: an integer, so its order does not matter.
+fn sum_of_squares(ranks: impl Iterator<Item = (u64, u64)>) -> f64 {
+    let squares = ranks.map(|(x, y)| u128::from(x.abs_diff(y)).pow(2));
+    squares.sum::<u128>() as f64
 }
 
 /// Twice the smaller tail of S; S is an even integer without ties. `tail(q, true)` is P(S >= q), else

@@ -149,8 +149,8 @@ fn middle_of(values: &impl Pairs, pairs: u64) -> f64 {
     if pairs % 2 == 1 { low } else { 0.5 * (low + high) }
 }
 
-/// Values of a sample of which few stand for all of them.
-const STAND_INS: usize = 1 << 13;
+/// Values of a sample for each of those that stand for all of them.
+const STOOD_FOR: usize = 8;
 /// Distinct values from which on a search begins with stand-ins.
 const MANY: usize = 1 << 16;
 /// Distinct values a thread counts at a time.
@@ -158,12 +158,17 @@ const STRETCH: usize = 1 << 17;
 
 /// Values at evenly spaced ranks.
 fn stand_ins(tally: &Tally, before: &[u64]) -> Tally {
-    let step = tally.total() as f64 / STAND_INS as f64;
+    let few = tally.values.len() / STOOD_FOR;
+    let step = tally.total() as f64 / few as f64;
+    let mut place = 0;
     let at = |i: usize| {
         let rank = ((i as f64 + 0.5) * step) as u64;
-        tally.values[before.partition_point(|&b| b <= rank) - 1]
+        while before[place + 1] <= rank {
+            place += 1;
+        }
+        tally.values[place]
     };
-    let values: Vec<f64> = (0..STAND_INS).map(at).collect();
+    let values: Vec<f64> = (0..few).map(at).collect();
     let counts = vec![1; values.len()];
     Tally { values, counts }
 }
@@ -266,7 +271,7 @@ impl Pairs for WalshAverages<'_> {
 
     fn guess(&self, share: f64) -> Option<(f64, f64)> {
         let few = self.stand_ins.as_ref()?;
-        Some(around(&WalshAverages::of(few), pairs_of(few.total()), share))
+        Some(around(&WalshAverages::of(few), pairs_of(few.total()), few.values.len(), share))
     }
 }
 
@@ -307,8 +312,8 @@ impl<'a> Differences<'a> {
 /// Limits that should lie on both sides of what has this share of the pairs below it, from pairs of
 /// stand-ins. Each stands at a rank that is wrong by up to half a step; over all of them such errors
 /// leave about the root of their number.
-fn around(few: &impl Pairs, pairs: u64, share: f64) -> (f64, f64) {
-    let reach = 8.0 * (STAND_INS as f64).sqrt();
+fn around(few: &impl Pairs, pairs: u64, stand_ins: usize, share: f64) -> (f64, f64) {
+    let reach = 4.0 * (stand_ins as f64).sqrt();
     let at = |k: f64| two_from(few, (k.round().max(1.0) as u64).min(pairs)).0;
     (at(share * pairs as f64 - reach), at(share * pairs as f64 + reach))
 }
@@ -346,7 +351,8 @@ impl Pairs for Differences<'_> {
 
     fn guess(&self, share: f64) -> Option<(f64, f64)> {
         let [x, y] = self.stand_ins.as_ref()?;
-        Some(around(&Differences::of(x, y), x.total() * y.total(), share))
+        let few = x.values.len().min(y.values.len());
+        Some(around(&Differences::of(x, y), x.total() * y.total(), few, share))
     }
 }
 
@@ -413,10 +419,12 @@ mod tests {
     fn order_statistics_of_many_values_have_as_many_below() {
         let many = 3 * MANY / 2;
         let even = pseudo_random(many, 1 << 30);
+        // So many that stand-ins have stand-ins.
+        let more = pseudo_random(STOOD_FOR * MANY + 1000, 1 << 30);
         let tied: Vec<f64> = pseudo_random(2 * many, 1 << 17).iter().map(|x| x.round()).collect();
         let tied: Vec<f64> = tied.iter().chain(&even).copied().collect();
         let skewed: Vec<f64> = even.iter().map(|x| (x / 3e6).exp() * x.signum()).collect();
-        for sample in [even, tied, skewed] {
+        for sample in [even, more, tied, skewed] {
             let tally = Tally::of(&sample);
             assert!(tally.values.len() >= MANY);
             let averages = WalshAverages::of(&tally);

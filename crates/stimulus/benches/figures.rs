@@ -17,7 +17,7 @@ use std::time::Instant;
 use mimique_face::read_avatar;
 use mimique_solver::{
     Fit, FrontEnd, MarkerColumns, MarkerFrames, Method, MethodSpec, OperatorOptions, Operators,
-    SkinMesh,
+    SkinMesh, Synthesis,
 };
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, TakeOptions, encode_operators, encode_take, solve_packs,
@@ -151,11 +151,11 @@ impl Planted {
     fn synthesise(&self) -> (usize, Clock) {
         let fit = Fit::new(&self.operators, &spec("lsts")).expect("a method");
         let weights = fit.solve_take(&self.displacements).expect("solved").weights;
-        let synthesis = mimique_solver::Synthesis::new(&self.skin.mesh);
+        let synthesis = Synthesis::new(&self.skin.mesh);
         let n = self.operators.shape_count();
-        let mut out = vec![0.0; 64 * 3 * self.skin.mesh.positions.len()];
+        let mut out = vec![0.0; Synthesis::FRAMES * synthesis.coordinates()];
         let start = Clock::start();
-        for frames in weights.chunks(64 * n) {
+        for frames in weights.chunks(Synthesis::FRAMES * n) {
             synthesis.pose(frames, &mut out);
             black_box(&out);
         }

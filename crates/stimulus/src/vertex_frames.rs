@@ -6,9 +6,6 @@ use mimique_solver::Synthesis;
 
 use crate::{AvatarSkin, SolvedCapture};
 
-/// Frames that are posed together.
-const FRAMES: usize = 64;
-
 /// The moved skin of a solved take: a bank's shapes, or the surface itself.
 #[derive(Debug)]
 pub struct VertexFrames<'a> {
@@ -76,9 +73,9 @@ impl<'a> VertexFrames<'a> {
         let synthesis = Synthesis::new(&self.skin.mesh);
         let width = synthesis.coordinates();
         let shapes = self.skin.mesh.shapes.len().max(1);
-        let mut posed = vec![0.0; FRAMES * width];
+        let mut posed = vec![0.0; Synthesis::FRAMES * width];
         let mut bytes = Vec::new();
-        for weights in self.solved.table.weights.chunks(FRAMES * shapes) {
+        for weights in self.solved.table.weights.chunks(Synthesis::FRAMES * shapes) {
             synthesis.pose(weights, &mut posed);
             for frame in posed.chunks_exact(width).take(weights.len() / shapes) {
                 bytes.clear();
