@@ -84,8 +84,8 @@ pub fn run(args: &Args) -> Result<()> {
         tally.check("cargo deny", deny.args(["deny", "check", "bans", "licenses", "sources"]));
     } else {
         say(
-            "cargo-deny is not installed: licences, sources and advisories of dependencies are not \
-             checked (cargo install --locked cargo-deny; cargo deny check)",
+            "cargo-deny is not installed: licences and sources are looked at by tests/support alone, \
+             advisories not at all (cargo install --locked cargo-deny; cargo deny check)",
         );
     }
 

@@ -37,7 +37,7 @@ pub struct Args {
     #[arg(long)]
     web_dir: Option<PathBuf>,
     /// Address as people type it, e.g. `https://faces.example.org`, where a proxy stands before the
-    /// server; with https the researchers' cookies are for encrypted connections alone
+    /// server; https implies --behind-tls
     #[arg(long)]
     public_url: Option<String>,
     /// Let everybody see the previews and the list of studies, not only researchers
@@ -46,8 +46,8 @@ pub struct Args {
     /// Mark the answers as those of a pilot
     #[arg(long)]
     pilot: bool,
-    /// Participants come by https://, through a proxy that ends TLS: browsers are told to insist on
-    /// it, cookies are marked Secure
+    /// People come by https://, through a proxy that ends TLS: browsers are told to insist on it,
+    /// cookies are marked Secure, links begin with https
     #[arg(long)]
     behind_tls: bool,
     /// A proxy stands in front and names the caller in X-Real-IP (used to bound the rate of requests,
@@ -79,6 +79,16 @@ impl Args {
             anyhow::ensure!(
                 plain && (url.starts_with("https://") || url.starts_with("http://")),
                 "--packs-url: {url}: no address of packs; write https://HOST/FOLDER"
+            );
+        }
+        if let Some(url) = self.public_url.as_ref().filter(|url| !url.starts_with("https://")) {
+            anyhow::ensure!(
+                url.starts_with("http://"),
+                "--public-url: {url}: no address; write https://HOST"
+            );
+            anyhow::ensure!(
+                !self.behind_tls,
+                "--public-url: {url}: not encrypted, and --behind-tls says that it is; write https://…"
             );
         }
         let from_environment = || std::env::var("MIMIQUE_METRICS_TOKEN").ok();

@@ -2,13 +2,19 @@
 //! process of its own on the same machine.
 //!
 //! ```text
-//! cargo run --release -p mimique-server --example load -- [sqlite:FILE | postgres://…] [people] [appends/s, 0: all that go] [seconds]
+//! cargo run --release -p mimique-server --example load -- [sqlite | sqlite:FILE | postgres | postgres://…]
+//!     [people] [appends/s, 0: all that go] [seconds]
 //! cargo run --release -p mimique-server --example load -- static [connections] 0 [seconds]
 //! ```
 //!
 //! A session is a start, 60 events in a request each, and its completion; then the next one begins.
+//! `postgres` is a cluster of its own in the temporary folder, with its settings as they come: every
+//! commit is on the disk before it is answered, as SQLite's are.
 #![allow(clippy::print_stdout, reason = "it prints what it has measured")]
 
+#[path = "../tests/http/postgres.rs"]
+#[allow(dead_code)]
+mod postgres;
 #[path = "../tests/http/study.rs"]
 #[allow(dead_code)]
 mod study;
@@ -40,10 +46,17 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let kind = arguments.first().map_or("sqlite", String::as_str);
     let fresh = format!("sqlite:{}", folder.path().join("answers.sqlite").display());
-    let url = if kind == "sqlite" || kind == "static" { &fresh } else { kind };
+    let cluster = (kind == "postgres")
+        .then(|| postgres::Cluster::start_with("load", "").ok_or("PostgreSQL is not installed"))
+        .transpose()?;
+    let url = match (kind, &cluster) {
+        (_, Some(cluster)) => cluster.fresh_database("load").await,
+        ("sqlite" | "static", _) => fresh,
+        (url, _) => url.to_owned(),
+    };
     let (people, rate, seconds) = (number(1, 64)?, number(2, 0)?, number(3, 10)?);
 
-    let server = Server::start(url)?;
+    let server = Server::start(&url)?;
     let run = Arc::new(Run {
         port: server.port,
         end: AtomicBool::new(false),
@@ -53,6 +66,9 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         sessions: AtomicU64::new(0),
         // Everybody sends one event in this time.
         pause: (rate > 0).then(|| Duration::from_secs_f64(people as f64 / rate as f64)),
+        bodies: (0..EVENTS)
+            .map(|sequence| json!({"events": [event(sequence)]}).to_string())
+            .collect(),
     });
     let tasks: Vec<_> = (0..people)
         .map(|number| {
@@ -159,6 +175,8 @@ struct Run {
     failed: AtomicU64,
     sessions: AtomicU64,
     pause: Option<Duration>,
+    /// The 60 requests of a session: only their making would be the generator's own work.
+    bodies: Vec<String>,
 }
 
 impl Run {
@@ -184,6 +202,7 @@ async fn take_part(run: &Run, number: u64) -> Vec<f32> {
         }
         let body = json!({"nonce": format!("{number:016x}{round:016x}"), "language": "en",
             "client": {"browser": "Firefox", "version": "140", "platform": "Linux"}});
+        let body = body.to_string();
         let Some(started) = connection.post("/api/studies/faces/sessions", &body).await else {
             run.failed.fetch_add(1, Ordering::Relaxed);
             tokio::time::sleep(Duration::from_millis(100)).await;
@@ -191,13 +210,12 @@ async fn take_part(run: &Run, number: u64) -> Vec<f32> {
         };
         let session = started["session"].as_str().unwrap_or_default().to_owned();
         let path = format!("/api/sessions/{session}/events");
-        for sequence in 0..EVENTS {
+        for (sequence, body) in (0..EVENTS).zip(&run.bodies) {
             if run.end.load(Ordering::Relaxed) {
                 return times;
             }
-            let body = json!({"events": [event(sequence)]});
             let began = Instant::now();
-            match connection.post(&path, &body).await {
+            match connection.post(&path, body).await {
                 Some(answer) if answer["stored"] == sequence + 1 => run.count(began, &mut times),
                 _ => drop(run.failed.fetch_add(1, Ordering::Relaxed)),
             }
@@ -206,7 +224,7 @@ async fn take_part(run: &Run, number: u64) -> Vec<f32> {
             }
         }
         let path = format!("/api/sessions/{session}/complete");
-        if connection.post(&path, &json!({"events": EVENTS})).await.is_some() {
+        if connection.post(&path, &json!({"events": EVENTS}).to_string()).await.is_some() {
             run.sessions.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -230,10 +248,14 @@ async fn fetch_again_and_again(run: &Run) -> Vec<f32> {
     let page = connection.exchange("GET", "/s/faces/", "").await.unwrap_or_default();
     let page = String::from_utf8_lossy(&page).into_owned();
     let at = page.find("/assets/").unwrap_or_default();
-    let path = format!("{}/style.css", &page[at..at + "/assets/".len() + 16]);
-    while !run.end.load(Ordering::Relaxed) {
+    let style = format!("{}/style.css", &page[at..at + "/assets/".len() + 16]);
+    let pack = format!("/packs/{}", study::sha256(&study::pack()));
+    for path in [style, pack].iter().cycle() {
+        if run.end.load(Ordering::Relaxed) {
+            break;
+        }
         let began = Instant::now();
-        match connection.exchange("GET", &path, "").await {
+        match connection.exchange("GET", path, "").await {
             Some(_) => run.count(began, &mut times),
             None => drop(run.failed.fetch_add(1, Ordering::Relaxed)),
         }
@@ -249,8 +271,8 @@ struct Connection {
 }
 
 impl Connection {
-    async fn post(&mut self, path: &str, body: &Value) -> Option<Value> {
-        serde_json::from_slice(&self.exchange("POST", path, &body.to_string()).await?).ok()
+    async fn post(&mut self, path: &str, body: &str) -> Option<Value> {
+        serde_json::from_slice(&self.exchange("POST", path, body).await?).ok()
     }
 
     /// The body of a 200; a kept connection that turns out to be closed is tried once more.

@@ -127,6 +127,13 @@ impl App {
         Self { settings: Arc::new(settings), ..self }
     }
 
+    /// Whether people reach the server by encrypted connections: as the operator says, by the setting
+    /// or by an `https` address. It alone decides on HSTS, `Secure` cookies and links.
+    pub(crate) fn is_encrypted(&self) -> bool {
+        let public = self.access.public_url.as_deref();
+        self.settings.behind_tls || public.is_some_and(|url| url.starts_with("https://"))
+    }
+
     /// How the version came to be that was served of a study at the start.
     pub fn registered(&self, study_id: &str) -> Option<&Registered> {
         self.registered.get(study_id)

@@ -47,6 +47,10 @@ pub(crate) enum Error {
     WrongPassword,
     #[error("there were too many attempts; wait a quarter of an hour")]
     TooManyAttempts,
+    #[error("this account has too many dashboards open; close one")]
+    TooManyStreams,
+    #[error("the name typed is not the participant’s; type {0} to delete")]
+    NotConfirmed(String),
     #[error("the link was used, has expired or never was; ask for a new one")]
     DeadLink,
     #[error("{0}; choose another role or account first")]
@@ -97,7 +101,8 @@ impl Error {
                 | StorageError::AlreadyTookPart
                 | StorageError::StudyFull,
             ) => StatusCode::FORBIDDEN,
-            Self::TooManyAttempts => StatusCode::TOO_MANY_REQUESTS,
+            Self::NotConfirmed(_) => StatusCode::BAD_REQUEST,
+            Self::TooManyAttempts | Self::TooManyStreams => StatusCode::TOO_MANY_REQUESTS,
             Self::DeadLink => StatusCode::GONE,
             Self::LastOwner(_) | Self::NoReport(_) => StatusCode::CONFLICT,
             Self::Storage(StorageError::Withdrawn) => StatusCode::GONE,
@@ -127,6 +132,8 @@ impl Error {
             Self::ForeignForm => "foreign-form",
             Self::WrongPassword => "wrong-password",
             Self::TooManyAttempts => "too-many-attempts",
+            Self::TooManyStreams => "too-many-streams",
+            Self::NotConfirmed(_) => "not-confirmed",
             Self::DeadLink => "dead-link",
             Self::LastOwner(_) => "last-owner",
             Self::NoReport(_) => "no-report",

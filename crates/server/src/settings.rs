@@ -5,8 +5,8 @@ use std::time::Duration;
 /// What an operator can choose; the defaults suit one machine on a local network.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Participants reach the server by `https://`: it asks browsers to insist on it (HSTS) and
-    /// marks its cookies `Secure`.
+    /// People reach the server by `https://`: it asks browsers to insist on it (HSTS), marks its
+    /// cookies `Secure` and writes its links so. An `https` address in [`crate::Access`] says the same.
     pub behind_tls: bool,
     /// A reverse proxy stands in front and names the caller's address in `X-Real-IP`; it is used to
     /// bound the rate of requests and is never stored.

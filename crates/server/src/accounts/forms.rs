@@ -8,7 +8,6 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderValue, header};
 use serde::de::DeserializeOwned;
 
-use super::researcher::is_secure;
 use super::{Researcher, Visitor, cookies};
 use crate::app::App;
 use crate::error::Error;
@@ -37,7 +36,7 @@ impl FormToken {
 
     /// The token of forms before there is a session.
     pub fn of_nobody(app: &App, headers: &HeaderMap) -> Result<Self, Error> {
-        let secure = is_secure(app, headers);
+        let secure = app.is_encrypted();
         let name = cookies::name(FORM_COOKIE, secure);
         if let Some(known) = cookies::find(headers, &name) {
             return Ok(Self { value: form_token(app, known), cookie: None });

@@ -3,7 +3,7 @@
 
 use axum::http::{HeaderMap, HeaderValue};
 
-use super::researcher::{LONGEST_SESSION_S, SESSION_COOKIE, is_secure};
+use super::researcher::{LONGEST_SESSION_S, SESSION_COOKIE};
 use super::{cookies, normal_email, password};
 use crate::app::App;
 use crate::clock::now_ms;
@@ -48,7 +48,7 @@ pub(crate) async fn log_in_as(
     headers: &HeaderMap,
     account: Account,
 ) -> Result<LoggedIn, Error> {
-    let secure = is_secure(app, headers);
+    let secure = app.is_encrypted();
     let name = cookies::name(SESSION_COOKIE, secure);
     if let Some(before) = cookies::find(headers, &name) {
         app.storage.log_out(&secret::hash(before)).await?;
@@ -63,7 +63,7 @@ pub(crate) async fn log_in_as(
 
 /// Ends the session of this browser; gives the cookie that takes its own away.
 pub(crate) async fn log_out(app: &App, headers: &HeaderMap) -> Result<HeaderValue, Error> {
-    let secure = is_secure(app, headers);
+    let secure = app.is_encrypted();
     let name = cookies::name(SESSION_COOKIE, secure);
     if let Some(known) = cookies::find(headers, &name) {
         app.storage.log_out(&secret::hash(known)).await?;

@@ -38,7 +38,7 @@ impl Researcher {
             let (account, role) = found.ok_or(Error::LogInFirst)?;
             return Ok(Self { account, role, tongue, session: None });
         }
-        let name = cookies::name(SESSION_COOKIE, is_secure(app, headers));
+        let name = cookies::name(SESSION_COOKIE, app.is_encrypted());
         let secret = cookies::find(headers, &name).ok_or(Error::LogInFirst)?;
         let session = secret::hash(secret);
         let account = app.storage.logged_in(&session, now_ms(), LONGEST_IDLE_MS).await?;
@@ -82,16 +82,7 @@ impl FromRequestParts<App> for Visitor {
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Error> {
         let headers = &parts.headers;
-        Ok(Self { tongue: Tongue::of(headers), secure: is_secure(app, headers) })
-    }
-}
-
-/// Whether people reach the server by an encrypted connection: by its public address, else by what
-/// the proxy says. One who lies about it only harms their own cookie.
-pub(super) fn is_secure(app: &App, headers: &HeaderMap) -> bool {
-    match &app.access.public_url {
-        Some(url) => url.starts_with("https://"),
-        None => headers.get("x-forwarded-proto").is_some_and(|proto| proto == "https"),
+        Ok(Self { tongue: Tongue::of(headers), secure: app.is_encrypted() })
     }
 }
 

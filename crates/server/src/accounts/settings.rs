@@ -6,6 +6,6 @@ pub struct Access {
     /// Previews and the list of studies are for everybody, as in the demonstration.
     pub open_preview: bool,
     /// The address that people type, e.g. `https://faces.example.org`, where a proxy stands before
-    /// the server. With `https` the cookies are for encrypted connections alone.
+    /// the server. `https` says the same as [`crate::Settings`]' `behind_tls`.
     pub public_url: Option<String>,
 }

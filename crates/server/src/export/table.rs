@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use mimique_study::Study;
-use mimique_study::responses::{self, Column, ColumnKind, Table};
+use mimique_study::responses::{self, Column, ColumnKind, EXCLUSION_COLUMNS, Table};
 use mimique_study::wire::{ClipSource, Event, SessionStarted};
 use serde_json::Value;
 
@@ -272,11 +272,15 @@ pub(super) fn exclusion_columns() -> [Column; 2] {
     };
     [
         column(
-            "excluded",
+            EXCLUSION_COLUMNS[0],
             ColumnKind::Boolean,
             "Whether the researcher excluded the participant; every answer is kept",
         ),
-        column("exclusion_reason", ColumnKind::Text, "Why the researcher excluded the participant"),
+        column(
+            EXCLUSION_COLUMNS[1],
+            ColumnKind::Text,
+            "Why the researcher excluded the participant",
+        ),
     ]
 }
 

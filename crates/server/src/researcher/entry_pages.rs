@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use mimique_study::wire::Refusal;
 
 use super::frame::{escaped, field, open_page, role_line, role_word};
+use super::refusals::in_french;
 use crate::accounts::{SHORTEST_PASSWORD, Tongue};
 use crate::storage::{AccountLink, LinkPurpose};
 
@@ -98,32 +99,6 @@ pub(crate) fn refusal_page(assets: &str, tongue: Tongue, refusal: &Refusal) -> R
         }
     };
     open_page(assets, tongue, title, "/researcher", &body)
-}
-
-/// The refusal's words in the reader's language.
-pub(crate) fn in_french(tongue: Tongue, refusal: &Refusal) -> String {
-    let french = match refusal.code.as_str() {
-        "not-allowed" => "Votre rôle ne le permet pas ; demandez à une personne responsable.",
-        "foreign-form" => {
-            "Le formulaire ne vient pas de cette page, ou la page est trop ancienne ; rechargez-la."
-        }
-        "wrong-password" => "L’adresse ou le mot de passe est faux ; saisissez-les à nouveau.",
-        "too-many-attempts" => "Trop d’essais ; attendez un quart d’heure.",
-        "dead-link" => "Le lien a servi, a expiré ou n’a jamais existé ; demandez-en un autre.",
-        "unknown-study" => "Aucune étude ne porte ce nom sur ce serveur.",
-        "not-found" => "Il n’y a rien à cette adresse.",
-        "last-owner" => "Il resterait un serveur sans responsable.",
-        _ => "",
-    };
-    match tongue {
-        Tongue::French if !french.is_empty() => french.to_owned(),
-        _ => sentence(&format!("{}; {}.", refusal.message, refusal.remedy)),
-    }
-}
-
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 fn problem_line(problem: Option<&str>) -> Markup {

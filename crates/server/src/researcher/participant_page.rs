@@ -56,6 +56,9 @@ pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
         }
         (exclusion(frame, shown, &address))
         (timeline(frame, shown))
+        @if frame.may(Role::Owner) && !session.status.is_deleted() {
+            (deletion(frame, &name, &address))
+        }
     };
     frame.page(&title, &address, &body)
 }
@@ -104,6 +107,45 @@ fn exclusion(frame: &Frame, shown: &Shown<'_>, address: &str) -> Markup {
                                 None => { (frame.say("taken back", "annulée")) }
                             }
                         }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Deletion, for an owner who types the participant's name.
+fn deletion(frame: &Frame, name: &str, address: &str) -> Markup {
+    html! {
+        div.card {
+            h2 { (frame.say("Deletion", "Suppression")) }
+            p {
+                (frame.say(
+                    "Every answer of this participant and every recruitment identifier is deleted for good, as if they had withdrawn. The number stays taken.",
+                    "Toutes les réponses de cette personne et tous ses identifiants de recrutement sont supprimés définitivement, comme si elle s’était retirée. Le numéro reste pris.",
+                ))
+            }
+            p {
+                (frame.say("Backups still hold them until the next ", "Les sauvegardes les contiennent jusqu’au prochain "))
+                code { "mimique backup --folder" }
+                (frame.say(
+                    ", which takes them out of every backup of its folder; a backup restored before that has them deleted again from its list of deletions, if that was written since. Copies kept elsewhere are yours to mend.",
+                    ", qui les retire de toutes les sauvegardes de son dossier ; une sauvegarde restaurée avant cela les perd à nouveau d’après sa liste de suppressions, si elle a été écrite depuis. Les copies gardées ailleurs restent à votre charge.",
+                ))
+            }
+            form.stack method="post" action={ (address) "/erase" } {
+                (frame.token())
+                div.field {
+                    label for="confirmation" {
+                        (frame.say("Type ", "Saisissez ")) strong { (name) }
+                        (frame.say(" to confirm", " pour confirmer"))
+                    }
+                    input #confirmation name="confirmation" type="text" required autocomplete="off"
+                        pattern=(name);
+                }
+                div.actions {
+                    button.danger type="submit" {
+                        (frame.say("Delete the answers", "Supprimer les réponses"))
                     }
                 }
             }

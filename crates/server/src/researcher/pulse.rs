@@ -12,6 +12,9 @@ use crate::storage::Storage;
 /// How often the database is asked.
 const BEAT: Duration = Duration::from_secs(1);
 
+/// Streams of one account at once: browsers open six to one server at most.
+const MOST_STREAMS: usize = 24;
+
 /// What differs after every change, by study.
 pub(crate) type Beats = BTreeMap<String, String>;
 
@@ -21,11 +24,42 @@ pub(crate) struct Pulse {
     storage: Storage,
     sender: Arc<Mutex<Option<watch::Sender<Beats>>>>,
     stopping: Arc<watch::Sender<bool>>,
+    streams: Arc<Mutex<BTreeMap<i64, usize>>>,
+}
+
+/// A stream's place among those of its account; free again when dropped.
+pub(crate) struct Place {
+    streams: Arc<Mutex<BTreeMap<i64, usize>>>,
+    account: i64,
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let mut streams = self.streams.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(open) = streams.get_mut(&self.account) {
+            *open -= 1;
+            if *open == 0 {
+                streams.remove(&self.account);
+            }
+        }
+    }
 }
 
 impl Pulse {
     pub fn new(storage: Storage) -> Self {
-        Self { storage, sender: Arc::default(), stopping: Arc::new(watch::Sender::new(false)) }
+        let stopping = Arc::new(watch::Sender::new(false));
+        Self { storage, sender: Arc::default(), stopping, streams: Arc::default() }
+    }
+
+    /// A place for one more stream of this account, unless it has as many as it may.
+    pub fn place(&self, account: i64) -> Option<Place> {
+        let mut streams = self.streams.lock().unwrap_or_else(PoisonError::into_inner);
+        let open = streams.entry(account).or_default();
+        if *open >= MOST_STREAMS {
+            return None;
+        }
+        *open += 1;
+        Some(Place { streams: Arc::clone(&self.streams), account })
     }
 
     /// Beats from now on.

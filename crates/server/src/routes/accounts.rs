@@ -339,11 +339,7 @@ fn whole_address(app: &App, headers: &HeaderMap, path: &str) -> String {
         return format!("{}{path}", url.trim_end_matches('/'));
     }
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok()).unwrap_or_default();
-    let scheme = if headers.get("x-forwarded-proto").is_some_and(|proto| proto == "https") {
-        "https"
-    } else {
-        "http"
-    };
+    let scheme = if app.is_encrypted() { "https" } else { "http" };
     format!("{scheme}://{host}{path}")
 }
 

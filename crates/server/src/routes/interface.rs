@@ -11,17 +11,23 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
-use super::{sessions, statics, studies};
+use super::{researcher, sessions, statics, studies};
 use crate::app::App;
+use crate::export::Format;
 
-/// Every route of the interface.
+/// Every route of the participants' interface.
 pub(super) fn router() -> Router<App> {
     interface().router.route("/api/openapi.json", get(|| async { axum::Json(document()) }))
 }
 
+/// The researchers' downloads.
+pub(super) fn downloads() -> Router<App> {
+    describe_downloads(Interface::new()).router
+}
+
 /// The description, as `/api/openapi.json` gives it.
 pub(super) fn document() -> Value {
-    let mut interface = interface();
+    let mut interface = describe_downloads(interface());
     let refusal = interface.schemas.subschema_for::<Refusal>();
     let schemas = interface.schemas.take_definitions(true);
     json!({
@@ -30,12 +36,18 @@ pub(super) fn document() -> Value {
             "title": "Mimique",
             "version": env!("CARGO_PKG_VERSION"),
             "description": "What passes between a participant's page and the server. An append is \
-                idempotent: an event is known by session and sequence. Every refusal is a `Refusal`.",
+                idempotent: an event is known by session and sequence. Every refusal is a `Refusal`. \
+                Researchers' scripts export with a token, made on the page of one's account.",
             "license": {"name": "MIT OR Apache-2.0"},
         },
         "paths": interface.paths,
         "components": {
             "schemas": schemas,
+            "securitySchemes": {"token": {
+                "type": "http",
+                "scheme": "bearer",
+                "description": "A token of an analyst or owner, made at /researcher/account",
+            }},
             "responses": {"Refusal": {
                 "description": "Why the request is refused, and what to do about it",
                 "content": {"application/json": {"schema": refusal}},
@@ -87,6 +99,55 @@ fn interface() -> Interface {
         .bytes("/packs/{hash}", "A pack by its SHA-256", on(MethodFilter::GET, statics::pack))
 }
 
+/// What scripts fetch with a token.
+fn describe_downloads(interface: Interface) -> Interface {
+    const STUDY: &str = "/researcher/studies/{study}";
+    let mut words: Vec<&str> = Format::ALL.iter().map(|format| format.word()).collect();
+    words.extend(["dictionary", "study"]);
+    let export = Download {
+        summary: "Export: csv is the tidy table, wide one row a participant, json the tidy rows as JSON \
+            lines, events what is stored as JSON lines, psych-ds a folder in an archive, dictionary \
+            what every column means, study the study file",
+        words: &[("format", &words)],
+        flags: &[
+            ("with_identifiers", "Recruitment identifiers stand in columns of their own"),
+            (
+                "neutralised",
+                "Cells that a spreadsheet would take for a formula begin with an apostrophe",
+            ),
+        ],
+        types: &[
+            "text/csv; charset=utf-8",
+            "application/x-ndjson",
+            "application/json",
+            "application/zip",
+        ],
+    };
+    let report = Download {
+        summary: "The report: report.html, report.zip with everything, or one file of it by its path",
+        words: &[("language", &["en", "fr"])],
+        flags: &[],
+        types: &["text/html; charset=utf-8", "application/zip", "application/octet-stream"],
+    };
+    interface
+        .download(&format!("{STUDY}/export/{{format}}"), &export, get(researcher::export))
+        .download(
+            &format!("{STUDY}/report/{{language}}/{{*name}}"),
+            &report,
+            get(researcher::report),
+        )
+}
+
+/// A download in words.
+struct Download<'a> {
+    summary: &'a str,
+    /// What stands in the address, where it is one of some words.
+    words: &'a [(&'a str, &'a [&'a str])],
+    /// Queries that are `true` or `false`.
+    flags: &'a [(&'a str, &'a str)],
+    types: &'a [&'a str],
+}
+
 /// Routes and their description as far as they are listed.
 struct Interface {
     router: Router<App>,
@@ -134,8 +195,28 @@ impl Interface {
         self.add(path, "get", operation, route)
     }
 
+    fn download(self, path: &str, download: &Download<'_>, route: MethodRouter<App>) -> Self {
+        let content: Map<String, Value> =
+            download.types.iter().map(|kind| ((*kind).to_owned(), json!({}))).collect();
+        let mut operation = operation(path, &[], download.summary, content.into());
+        operation["security"] = json!([{"token": []}]);
+        if let Some(parameters) = operation["parameters"].as_array_mut() {
+            for parameter in &mut *parameters {
+                let known = download.words.iter().find(|(name, _)| parameter["name"] == **name);
+                if let Some((_, words)) = known {
+                    parameter["schema"]["enum"] = json!(words);
+                }
+            }
+            parameters.extend(download.flags.iter().map(|(name, description)| {
+                json!({"name": name, "in": "query", "description": description,
+                    "schema": {"type": "boolean"}})
+            }));
+        }
+        self.add(path, "get", operation, route)
+    }
+
     fn add(mut self, path: &str, method: &str, operation: Value, route: MethodRouter<App>) -> Self {
-        self.paths.insert(path.to_owned(), json!({method: operation}));
+        self.paths.insert(path.replace("{*", "{"), json!({method: operation}));
         self.router = self.router.route(path, route);
         self
     }
@@ -143,6 +224,7 @@ impl Interface {
 
 fn operation(path: &str, queries: &[&str], summary: &str, answer: Value) -> Value {
     let named = path.split('{').skip(1).filter_map(|rest| rest.split('}').next());
+    let named = named.map(|name| name.trim_start_matches('*'));
     let text = json!({"type": "string"});
     let parameters: Vec<Value> = named
         .map(|name| json!({"name": name, "in": "path", "required": true, "schema": text}))

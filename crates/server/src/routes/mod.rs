@@ -16,8 +16,10 @@ use std::any::Any;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use axum::extract::{DefaultBodyLimit, FromRequest, Request, State};
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, FromRequest, FromRequestParts, Query, Request, State};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -75,7 +77,10 @@ pub fn router(app: App) -> Router {
         .layer(middleware::from_fn(time_limit))
         .layer(CatchPanicLayer::custom(panicked))
         .layer(middleware::from_fn_with_state(app.clone(), limits::limit_rate))
-        .layer(middleware::from_fn_with_state(Headers::of(&app.settings), settled_headers))
+        .layer(middleware::from_fn_with_state(
+            Headers::of(&app.settings, app.is_encrypted()),
+            settled_headers,
+        ))
         .layer(middleware::from_fn_with_state(app.clone(), measure))
         .with_state(app)
 }
@@ -86,17 +91,16 @@ fn researchers(app: &App) -> Router<App> {
     const PERSON: &str = "/researcher/studies/{study}/participants/{number}";
     // The upload counts its own bytes while it writes them.
     let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
-    Router::new()
+    interface::downloads()
         .route("/preview/{study}", get(pages::preview))
         .route("/studio", get(pages::studio))
         .route("/researcher", get(researcher::home))
         .route(STUDY, get(researcher::study))
         .route(&format!("{STUDY}/live"), get(researcher::live))
-        .route(&format!("{STUDY}/export/{{format}}"), get(researcher::export))
-        .route(&format!("{STUDY}/report/{{language}}/{{*name}}"), get(researcher::report))
         .route(PERSON, get(researcher::participant))
         .route(&format!("{PERSON}/exclude"), post(researcher::exclude))
         .route(&format!("{PERSON}/include"), post(researcher::include))
+        .route(&format!("{PERSON}/erase"), post(researcher::erase))
         .route("/researcher/login", get(accounts::login_page).post(accounts::login))
         .route("/researcher/logout", post(accounts::logout))
         .route("/researcher/logout-everywhere", post(accounts::logout_everywhere))
@@ -124,8 +128,36 @@ impl<S: Send + Sync, T: serde::de::DeserializeOwned> FromRequest<S> for Body<T> 
     type Rejection = Error;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, Error> {
-        let Json(value) = Json::<T>::from_request(request, state).await?;
-        Ok(Self(value))
+        if !is_json(request.headers()) {
+            return Err(Error::NotJson);
+        }
+        let bytes = Bytes::from_request(request, state).await?;
+        match serde_json::from_slice(&bytes) {
+            Ok(value) => Ok(Self(value)),
+            // Read once more, with an eye on the place: that takes longer.
+            Err(_) => Ok(Self(Json::<T>::from_bytes(&bytes)?.0)),
+        }
+    }
+}
+
+fn is_json(headers: &HeaderMap) -> bool {
+    let kind = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
+    let kind = kind.and_then(|kind| kind.split(';').next()).unwrap_or_default().trim();
+    kind.eq_ignore_ascii_case("application/json")
+        || (kind.starts_with("application/") && kind.ends_with("+json"))
+}
+
+/// A query; what is wrong with it is a refusal like any other.
+pub(crate) struct Asked<T>(pub T);
+
+impl<S: Send + Sync, T: serde::de::DeserializeOwned> FromRequestParts<S> for Asked<T> {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Error> {
+        let query = Query::<T>::try_from_uri(&parts.uri).map_err(|error| {
+            Error::bad_request(format!("the query: {error}"), "see the interface's description")
+        })?;
+        Ok(Self(query.0))
     }
 }
 
@@ -149,7 +181,7 @@ async fn measure(State(app): State<App>, request: Request, next: Next) -> Respon
 struct Headers(Arc<[(HeaderName, HeaderValue)]>);
 
 impl Headers {
-    fn of(settings: &Settings) -> Self {
+    fn of(settings: &Settings, encrypted: bool) -> Self {
         let policy = content_security_policy(settings.packs_address.as_deref());
         let fixed = HeaderValue::from_static;
         let mut headers = vec![
@@ -167,7 +199,7 @@ impl Headers {
                 fixed("camera=(), microphone=(), geolocation=(), payment=(), usb=()"),
             ),
         ];
-        if settings.behind_tls {
+        if encrypted {
             let year = fixed("max-age=31536000; includeSubDomains");
             headers.push((header::STRICT_TRANSPORT_SECURITY, year));
         }
@@ -177,7 +209,7 @@ impl Headers {
 
 /// The headers of a server with default settings.
 pub(crate) async fn security_headers(request: Request, next: Next) -> Response {
-    settled_headers(State(Headers::of(&Settings::default())), request, next).await
+    settled_headers(State(Headers::of(&Settings::default(), false)), request, next).await
 }
 
 async fn settled_headers(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::time::Duration;
 
-use axum::extract::{Path, Query, State};
+use axum::extract::{Path, State};
 use axum::http::{HeaderName, HeaderValue, header};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -12,6 +12,7 @@ use serde::Deserialize;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 
+use super::Asked;
 use super::accounts::see;
 use super::inline_styles::report_policy;
 use crate::accounts::{Guarded, Researcher, Tongue, audit};
@@ -62,12 +63,14 @@ pub(super) async fn live(
     State(app): State<App>,
     Path(id): Path<String>,
     headers: axum::http::HeaderMap,
-    _who: Researcher,
+    who: Researcher,
 ) -> Result<Response, Error> {
     let study = app.study(&id)?.id().to_owned();
+    let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
     let mut beats = app.pulse.listen();
     let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
     tokio::spawn(async move {
+        let _place = place;
         let mut last = None;
         loop {
             let now = beats.borrow_and_update().get(&study).cloned().unwrap_or_default();
@@ -161,6 +164,28 @@ pub(super) async fn include(
     change_exclusion(&app, &who, &id, number, None).await
 }
 
+#[derive(Deserialize)]
+pub(super) struct Confirmation {
+    confirmation: String,
+}
+
+/// Deletes as the participant's withdrawal and `mimique erase` do.
+pub(super) async fn erase(
+    State(app): State<App>,
+    Path((id, number)): Path<(String, u64)>,
+    Guarded { who, form }: Guarded<Confirmation>,
+) -> Result<Response, Error> {
+    who.needs(Role::Owner)?;
+    let study = app.study(&id)?;
+    let name = crate::participant_id(session(&app, study.id(), number).await?.participant);
+    if !form.confirmation.trim().eq_ignore_ascii_case(&name) {
+        return Err(Error::NotConfirmed(name));
+    }
+    app.storage.erase_participant(study.id(), number, now_ms()).await?;
+    audit(&app, &who, "delete a participant’s answers", study.id(), &name).await?;
+    Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
+}
+
 async fn change_exclusion(
     app: &App,
     who: &Researcher,
@@ -196,7 +221,7 @@ pub(super) struct ExportQuery {
 pub(super) async fn export(
     State(app): State<App>,
     Path((id, word)): Path<(String, String)>,
-    Query(query): Query<ExportQuery>,
+    Asked(query): Asked<ExportQuery>,
     who: Researcher,
 ) -> Result<Response, Error> {
     who.needs(Role::Analyst)?;

@@ -21,7 +21,7 @@ use crate::clock::now_ms;
 use crate::error::Error;
 use crate::hosted::{HostedStudy, Stage};
 use crate::secret;
-use crate::storage::{NewSession, SessionRecord, StorageError};
+use crate::storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
 
 /// Events in one session at most; a long study has some thousands.
 const MOST_EVENTS: u64 = 100_000;
@@ -85,7 +85,7 @@ pub(super) async fn start(
     }
     let mut response = Json(started(&app, token, &record)).into_response();
     if let Some(mark) = browser_mark {
-        let secure = if app.settings.behind_tls { "; Secure" } else { "" };
+        let secure = if app.is_encrypted() { "; Secure" } else { "" };
         let cookie = format!(
             "{}={mark}; Path=/api/studies/{id}/; Max-Age=31536000; HttpOnly; SameSite=Strict{secure}",
             cookie_name(study),
@@ -193,11 +193,10 @@ pub(super) async fn append(
     Body(request): Body<AppendEvents>,
 ) -> Result<Json<Acknowledged>, Error> {
     let token_hash = token_hash(&token)?;
-    for event in &request.events {
-        check_event(event)?;
-    }
-    let sent = request.events.len() as u64;
-    let appended = app.storage.append(&token_hash, request.events, now_ms()).await?;
+    let events: Vec<WrittenEvent> =
+        request.events.into_iter().map(checked_event).collect::<Result<_, _>>()?;
+    let sent = events.len() as u64;
+    let appended = app.storage.append_written(&token_hash, events, now_ms()).await?;
     let kept = sent - appended.conflicts.len() as u64;
     app.metrics.events.fetch_add(kept, std::sync::atomic::Ordering::Relaxed);
     if appended.conflicts.is_empty() {
@@ -252,7 +251,7 @@ pub(super) async fn withdraw(
     Ok(Json(Withdrawn { deleted }))
 }
 
-fn check_event(event: &Event) -> Result<(), Error> {
+fn checked_event(event: Event) -> Result<WrittenEvent, Error> {
     let sequence = event.sequence;
     if sequence >= MOST_EVENTS {
         return Err(Error::bad_request(
@@ -266,13 +265,14 @@ fn check_event(event: &Event) -> Result<(), Error> {
             "send an object with its `type`",
         ));
     }
-    if event.body.to_string().len() > LARGEST_EVENT {
+    let event = WrittenEvent::from(event);
+    if event.body.len() > LARGEST_EVENT {
         return Err(Error::bad_request(
             format!("event {sequence}: the body is larger than {LARGEST_EVENT} bytes"),
             "shorten its frame log",
         ));
     }
-    Ok(())
+    Ok(event)
 }
 
 fn token(app: &App, study: &str, nonce: &str) -> String {

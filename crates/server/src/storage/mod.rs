@@ -25,6 +25,7 @@ pub use backup::{
     BackupError, BackupFacts, RestoreOptions, Restored, read_deletions, scrub_backup,
     write_deletions,
 };
+pub(crate) use records::WrittenEvent;
 pub use records::{
     Appended, Completed, Deletion, NewSession, RecruitmentEntry, Registered, SessionRecord, Status,
     StudyVersion,
@@ -279,6 +280,17 @@ impl Storage {
         &self,
         token_hash: &str,
         events: Vec<Event>,
+        now_ms: i64,
+    ) -> Result<Appended, StorageError> {
+        let events = events.into_iter().map(WrittenEvent::from).collect();
+        self.append_written(token_hash, events, now_ms).await
+    }
+
+    /// Appends events whose text is made already.
+    pub(crate) async fn append_written(
+        &self,
+        token_hash: &str,
+        events: Vec<WrittenEvent>,
         now_ms: i64,
     ) -> Result<Appended, StorageError> {
         on_store!(self, store => store.append(token_hash, events, now_ms).await)

@@ -36,12 +36,13 @@ const IDENTITIES: Option<&str> = Some(
      FROM information_schema.columns WHERE table_schema = current_schema() \
      AND is_identity = 'YES'",
 );
-/// Two requests for one session, on one server or two, wait for each other.
-const FOR_UPDATE: &str = " FOR UPDATE";
+/// Two requests for one session, on one server or two, wait for each other. No key is changed, so that
+/// rows which refer to it need not wait.
+const FOR_UPDATE: &str = " FOR NO KEY UPDATE";
 /// Two servers started at once migrate one after the other. The number spells "mimq".
 const LOCK_SCHEMA: Option<&str> = Some("SELECT pg_advisory_xact_lock(1835625841)");
 /// Sessions are spread over this many lanes, each committing on its own connection.
-const LANES: usize = 4;
+const LANES: usize = 2;
 
 fn migration_text(step: &Migration) -> &'static str {
     step.postgres

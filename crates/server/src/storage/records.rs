@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::wire::Acknowledged;
+use mimique_study::wire::{Acknowledged, Event};
 
 /// Where a session stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,6 +130,21 @@ pub struct SessionRecord {
     pub next_sequence: u64,
     /// Its receipt and how many events that covers, when completed.
     pub receipt: Option<(String, u64)>,
+}
+
+/// An event as it is stored.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct WrittenEvent {
+    pub sequence: u64,
+    pub at_ms: f64,
+    /// JSON, keys in alphabetical order: the receipt is over this text.
+    pub body: String,
+}
+
+impl From<Event> for WrittenEvent {
+    fn from(event: Event) -> Self {
+        Self { sequence: event.sequence, at_ms: event.at_ms, body: event.body.to_string() }
+    }
 }
 
 /// What an append did.

@@ -2,6 +2,8 @@
 
 #[path = "accounts.rs"]
 mod accounts;
+#[path = "appends.rs"]
+mod appends;
 #[path = "changes.rs"]
 mod changes;
 #[path = "dump.rs"]
@@ -22,9 +24,10 @@ use super::super::StorageError;
 use super::super::migrations::{LATEST, MIGRATIONS, Migration};
 use super::super::records::{
     Appended, Completed, NewSession, RecruitmentEntry, Registered, SessionRecord, Status,
-    StudyVersion,
+    StudyVersion, WrittenEvent,
 };
 use super::{BEGIN_WRITE, Connection, Db, FOR_UPDATE, LANES, LOCK_SCHEMA, migration_text};
+use appends::Append;
 use changes::{Change, Outcome};
 pub(in crate::storage) use dump::restore;
 use writer::Writer;
@@ -287,10 +290,10 @@ impl Store {
     pub async fn append(
         &self,
         token_hash: &str,
-        events: Vec<Event>,
+        events: Vec<WrittenEvent>,
         now_ms: i64,
     ) -> Result<Appended, StorageError> {
-        let change = Change::Append { token_hash: token_hash.to_owned(), events, now_ms };
+        let change = Change::Append(Append { token_hash: token_hash.to_owned(), events, now_ms });
         match self.writer.commit(token_hash, change).await? {
             Outcome::Appended(appended) => Ok(appended),
             _ => Err(StorageError::Stopping),

@@ -13,6 +13,7 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 
 use super::super::super::StorageError;
+use super::appends::{Append, append_all};
 use super::changes::{Change, Outcome, apply};
 use super::{BEGIN_WRITE, Db, LANES};
 
@@ -120,13 +121,23 @@ async fn commit_together(
 ) -> Result<Vec<Result<Outcome, StorageError>>, StorageError> {
     let mut transaction = pool.begin_with(BEGIN_WRITE).await?;
     let mut outcomes = Vec::with_capacity(jobs.len());
-    for job in jobs {
-        outcomes.push(match apply(&mut transaction, &job.change).await {
-            Err(error @ (StorageError::Database(_) | StorageError::Unavailable)) => {
-                return Err(error);
-            }
-            outcome => outcome,
-        });
+    let mut rest = jobs;
+    while let Some((first, later)) = rest.split_first() {
+        // Appends in a row go together.
+        let appends: Vec<&Append> = rest.iter().map_while(|job| job.change.append()).collect();
+        if appends.is_empty() {
+            outcomes.push(match apply(&mut transaction, &first.change).await {
+                Err(error @ (StorageError::Database(_) | StorageError::Unavailable)) => {
+                    return Err(error);
+                }
+                outcome => outcome,
+            });
+            rest = later;
+        } else {
+            let done = append_all(&mut transaction, &appends).await?;
+            rest = &rest[appends.len()..];
+            outcomes.extend(done.into_iter().map(|each| each.map(Outcome::Appended)));
+        }
     }
     transaction.commit().await?;
     Ok(outcomes)

@@ -116,6 +116,16 @@ pub async fn behind_tls_cookies_are_secure(server: &TestServer) {
         cookie.starts_with("__Host-mimique_session=") && cookie.contains("; Secure"),
         "{cookie}"
     );
+    // The address says it for everything, and so does the setting; what a caller says does not.
+    assert!(page.header(header::STRICT_TRANSPORT_SECURITY).starts_with("max-age="));
+    let settings = mimique_server::Settings { behind_tls: true, ..Default::default() };
+    let set = server.with_settings(settings);
+    let page = Browser::default().open(&set, "/researcher/login").await;
+    assert!(page.header(header::SET_COOKIE).starts_with("__Host-"), "the setting alone is enough");
+    let plain = server.with_router(router(server.app.clone()));
+    let headers = [(axum::http::HeaderName::from_static("x-forwarded-proto"), "https")];
+    let page = plain.get_with("/researcher/login", &headers).await;
+    assert!(page.header(header::SET_COOKIE).starts_with("mimique_form="));
 }
 
 pub async fn wrong_passwords_wait_and_say_nothing(server: &TestServer) {

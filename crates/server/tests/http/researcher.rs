@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use axum::body::Body;
-use axum::http::{Request, StatusCode, header};
+use axum::http::{Method, Request, StatusCode, header};
 use mimique_server::export::{Format, Options, export};
+use mimique_server::{Role, Status};
 use tokio_stream::StreamExt;
 
 use crate::client::{TestServer, events};
 use crate::participant::takes_part;
-use crate::people::{HOST, owner};
+use crate::people::{HOST, ORIGIN, encoded, invited, owner, script, token};
 use crate::study;
 
 /// A participant of the demo who completes it, or stops after some steps.
@@ -196,4 +197,151 @@ pub async fn an_exclusion_is_in_export_and_report(server: &TestServer) {
     assert!(!page.contains("excluded by the researcher"));
     let page = owner.open(server, person).await.text();
     assert!(page.contains("taken back") && page.contains("excluded: =watched"), "{page}");
+}
+
+pub async fn an_owner_deletes_a_participant_who_asks_for_it(server: &TestServer) {
+    for nonce in 1..=2 {
+        demo_participant(server, nonce, usize::MAX).await;
+    }
+    let person = "/researcher/studies/demo/participants/2";
+    let erase = format!("{person}/erase");
+    let stored = async || {
+        let sessions = server.storage.sessions("demo").await.unwrap();
+        let mut counts = Vec::new();
+        for session in &sessions {
+            counts.push(server.storage.events(session.key).await.unwrap().len());
+        }
+        counts
+    };
+    let before = stored().await;
+    assert!(before[0] > 20 && before[0] == before[1], "{before:?}");
+    let mut owner = owner(server).await;
+    let page = owner.open(server, person).await.text();
+    assert!(page.contains(&format!("action=\"{erase}\"")), "{page}");
+    assert!(page.contains("mimique backup --folder"), "what becomes of backups is said: {page}");
+    let confirmed = [("confirmation", "p0002")];
+    // An analyst has no such form, and the server does not take it.
+    let mut analyst = invited(server, &mut owner, Role::Analyst).await;
+    let page = analyst.open(server, person).await.text();
+    assert!(!page.contains(&erase), "{page}");
+    let answer = analyst.send(server, &erase, &confirmed).await;
+    answer.refused(StatusCode::FORBIDDEN, "not-allowed");
+    // Neither a forged form nor a name that is not the participant's deletes.
+    owner.open(server, person).await;
+    let forged = owner.send_from(server, &erase, &confirmed, Some(ORIGIN)).await;
+    forged.refused(StatusCode::FORBIDDEN, "foreign-form");
+    let other = owner.send(server, &erase, &[("confirmation", "p0001")]).await;
+    other.refused(StatusCode::BAD_REQUEST, "not-confirmed");
+    let nobody = owner.send(server, "/researcher/studies/demo/participants/9/erase", &confirmed);
+    assert_eq!(nobody.await.status, StatusCode::NOT_FOUND);
+    assert_eq!(stored().await, before);
+    let done = owner.send(server, &erase, &confirmed).await;
+    assert_eq!(done.header(header::LOCATION), person, "{}", done.text());
+    assert_eq!(stored().await, [before[0], 0]);
+    let sessions = server.storage.sessions("demo").await.unwrap();
+    assert_eq!(sessions[1].status, Status::Withdrawn);
+    // The next backup knows it, the log too; the page offers it no more.
+    assert_eq!(server.storage.deletions().await.unwrap().len(), 1);
+    let entries = server.storage.audit_entries(i64::MAX, 50).await.unwrap();
+    let entry = entries.iter().find(|entry| entry.action.starts_with("delete")).unwrap();
+    assert_eq!((&*entry.study_id, &*entry.subject), ("demo", "p0002"));
+    assert_eq!(entry.who, "owner@example.org");
+    let page = owner.open(server, person).await;
+    assert_eq!(page.status, StatusCode::OK);
+    assert!(!page.text().contains(&erase), "{}", page.text());
+}
+
+pub async fn one_account_has_so_many_streams_and_no_more(server: &TestServer) {
+    let mut owner = owner(server).await;
+    let other = invited(server, &mut owner, Role::Viewer).await;
+    let open = async |cookie: String| {
+        let request = Request::get("/researcher/studies/faces/live")
+            .header(header::HOST, HOST)
+            .header(header::COOKIE, cookie)
+            .body(Body::empty())
+            .unwrap();
+        server.stream(request).await
+    };
+    let mut streams = Vec::new();
+    for _ in 0..24 {
+        let stream = open(owner.cookie()).await;
+        assert_eq!(stream.status(), StatusCode::OK);
+        streams.push(stream);
+    }
+    assert_eq!(open(owner.cookie()).await.status(), StatusCode::TOO_MANY_REQUESTS);
+    assert_eq!(open(other.cookie()).await.status(), StatusCode::OK, "others are not touched");
+    // A dashboard that is closed makes room.
+    streams.clear();
+    for _ in 0..100 {
+        if open(owner.cookie()).await.status() == StatusCode::OK {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    panic!("closed streams keep their places");
+}
+
+pub async fn scripts_export_as_the_description_says(server: &TestServer) {
+    demo_participant(server, 1, usize::MAX).await;
+    let mut owner = owner(server).await;
+    let analyst = token(server, &mut owner, Role::Analyst).await;
+    let viewer = token(server, &mut owner, Role::Viewer).await;
+    let description: serde_json::Value = server.get("/api/openapi.json").await.ok();
+    assert_eq!(description["components"]["securitySchemes"]["token"]["scheme"], "bearer");
+    let export = &description["paths"]["/researcher/studies/{study}/export/{format}"]["get"];
+    let report =
+        &description["paths"]["/researcher/studies/{study}/report/{language}/{name}"]["get"];
+    for operation in [export, report] {
+        assert_eq!(operation["security"], serde_json::json!([{"token": []}]));
+    }
+    let words = export["parameters"][1]["schema"]["enum"].as_array().unwrap();
+    assert_eq!(words.len(), 7, "{words:?}");
+    let studies = "/researcher/studies/demo";
+    let kinds = |operation: &serde_json::Value| -> Vec<String> {
+        let content = operation["responses"]["200"]["content"].as_object().unwrap();
+        content.keys().cloned().collect()
+    };
+    for word in words {
+        let path = format!("{studies}/export/{}", word.as_str().unwrap());
+        let answer = script(server, Method::GET, &path, &analyst).await;
+        assert_eq!(answer.status, StatusCode::OK, "{path}");
+        let kind = answer.header(header::CONTENT_TYPE).to_owned();
+        assert!(kinds(export).contains(&kind), "{path}: {kind}");
+        let refused = script(server, Method::GET, &path, &viewer).await;
+        refused.refused(StatusCode::FORBIDDEN, "not-allowed");
+        server.get(&path).await.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+    }
+    for name in ["report.html", "report.zip"] {
+        let path = format!("{studies}/report/fr/{name}");
+        let answer = script(server, Method::GET, &path, &analyst).await;
+        let kind = answer.header(header::CONTENT_TYPE).to_owned();
+        assert!(kinds(report).contains(&kind), "{path}: {kind}");
+    }
+    let wrong = format!("{studies}/export/csv?neutralised=perhaps");
+    let answer = script(server, Method::GET, &wrong, &analyst).await;
+    answer.refused(StatusCode::BAD_REQUEST, "bad-request");
+}
+
+pub async fn refusals_are_in_the_readers_language(server: &TestServer) {
+    server.start(1).await;
+    let mut owner = owner(server).await;
+    owner.open(server, "/researcher/studies/faces/participants/1").await;
+    for (language, text) in [
+        ("fr", "Il manque la raison ; dites pourquoi la personne est exclue."),
+        ("en", "There is no reason; say why the participant is excluded."),
+    ] {
+        let fields = [("reason", ""), ("csrf", owner.csrf.as_str())];
+        let request = Request::post("/researcher/studies/faces/participants/1/exclude")
+            .header(header::HOST, HOST)
+            .header(header::ORIGIN, ORIGIN)
+            .header(header::ACCEPT, "text/html")
+            .header(header::ACCEPT_LANGUAGE, language)
+            .header(header::COOKIE, owner.cookie())
+            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+            .body(Body::from(encoded(&fields)))
+            .unwrap();
+        let answer = server.send(request).await;
+        assert_eq!(answer.status, StatusCode::BAD_REQUEST);
+        assert!(answer.text().contains(text), "{}", answer.text());
+    }
 }

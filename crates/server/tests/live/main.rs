@@ -2,6 +2,7 @@
 //! acknowledged is stored, once, as it was sent.
 
 mod child;
+mod disk;
 mod faults;
 mod fuzz;
 mod kill;

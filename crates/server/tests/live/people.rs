@@ -79,8 +79,8 @@ pub fn answer_while(people: &mut [Person], ports: &[u16], meanwhile: impl FnOnce
     });
 }
 
-/// Acknowledged against stored.
-pub async fn compare(url: &str, people: &[Person]) {
+/// Acknowledged against stored; how many events are stored.
+pub async fn compare(url: &str, people: &[Person]) -> u64 {
     let storage = Storage::open(url).await.unwrap();
     let sessions = storage.sessions("faces").await.unwrap();
     let numbers: BTreeSet<u64> = sessions.iter().map(|session| session.participant).collect();
@@ -89,6 +89,7 @@ pub async fn compare(url: &str, people: &[Person]) {
     assert_eq!(slots.len(), sessions.len(), "a slot was given twice");
     // A repeated start finds its session: there are never more sessions than people.
     assert!(sessions.len() <= people.len(), "a session was doubled");
+    let mut stored = 0;
     for person in people {
         let Some(started) = &person.started else { continue };
         let session = sessions.iter().find(|s| s.participant == started.participant).unwrap();
@@ -97,11 +98,13 @@ pub async fn compare(url: &str, people: &[Person]) {
         // At most the one that was on its way is stored beyond what was acknowledged.
         assert!(events.len() as u64 <= person.acknowledged + 1);
         assert_eq!(session.event_count, events.len() as u64);
+        stored += events.len() as u64;
         for (sequence, event) in events.iter().enumerate() {
             assert_eq!(*event, person.event(sequence as u64));
         }
     }
     storage.close().await;
+    stored
 }
 
 /// How many events were acknowledged to all of them.

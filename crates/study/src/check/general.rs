@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::Subject;
 use super::issue::{Issues, below, listed};
 use crate::instant::instant_ms;
+use crate::responses::is_reserved_column;
 use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
 use crate::text;
 
@@ -129,6 +130,13 @@ fn recruitment(subject: &Subject<'_>, issues: &mut Issues) {
             issues.error(pointer, "bad-id", message, "use letters, digits, _ and -");
         } else if taken.contains(&name.as_str()) {
             issues.error(pointer, "duplicate", format!("\"{name}\" twice"), "name it once");
+        } else if is_reserved_column(name)
+            || subject.study.questions.iter().any(|question| question.id == *name)
+            || subject.clips.iter().any(|clip| clip.factors.contains_key(name))
+        {
+            // The export with identifiers has a column for each parameter.
+            let message = format!("\"{name}\" is the name of another column of the export");
+            issues.error(pointer, "name-taken", message, "let the address name it otherwise");
         }
         taken.push(name);
     }

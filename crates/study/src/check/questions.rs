@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Subject;
 use super::issue::{Issues, below, listed};
 use super::nearest::suggestion;
-use crate::responses::FIXED_COLUMNS;
+use crate::responses::is_reserved_column;
 use crate::study_file::{Choice, Component, LocalText, Question, QuestionKind, TrialsComponent};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -76,7 +76,7 @@ fn identifier(subject: &Subject<'_>, question: &Question, place: &str, issues: &
         issues.error(pointer, "bad-id", message, "use letters, digits, _ and -");
         return;
     }
-    let is_column = FIXED_COLUMNS.iter().any(|(name, ..)| name == id);
+    let is_column = is_reserved_column(id);
     let is_factor = subject.clips.iter().any(|clip| clip.factors.contains_key(id));
     if is_column || is_factor {
         let what = if is_factor { "a factor" } else { "a column of every export" };

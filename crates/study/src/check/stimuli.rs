@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
 use super::{FileLookup, Subject, avatars};
-use crate::responses::FIXED_COLUMNS;
+use crate::responses::is_reserved_column;
 use crate::study_file::{Capture, CaptureSource, Component, QuestionKind, Sequence, SequenceItem};
 
 pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues) {
@@ -264,7 +264,7 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
                 let elsewhere = groups.iter().enumerate().find(|(other, (_, group))| {
                     *other != number && group.iter().any(|(_, each)| each.contains_key(factor))
                 });
-                let taken = FIXED_COLUMNS.iter().any(|(name, ..)| name == factor)
+                let taken = is_reserved_column(factor)
                     || ["clip", "segment", "avatar", "truth"].contains(&factor.as_str());
                 if taken {
                     let message = format!("\"{factor}\" is the name of a column of every export");

@@ -2,6 +2,14 @@
 
 use super::column::ColumnKind;
 
+/// What the researcher decides on, at the end of every row: whether the participant is excluded, why.
+pub const EXCLUSION_COLUMNS: [&str; 2] = ["excluded", "exclusion_reason"];
+
+/// Whether a column of every export is called so: nothing of a study may be.
+pub fn is_reserved_column(name: &str) -> bool {
+    EXCLUSION_COLUMNS.contains(&name) || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
+}
+
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
 pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 51] = {

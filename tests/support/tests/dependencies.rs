@@ -1,0 +1,118 @@
+//! What `deny.toml` says of licences, sources and unwanted crates, held against every dependency of
+//! this machine's build and of the wasm modules. `cargo deny check` says the same of every platform,
+//! and of advisories, where cargo-deny is installed.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use mimique_test_support::repository;
+use serde_json::Value;
+
+/// The words in quotes of the list that follows `start`.
+fn listed(text: &str, start: &str) -> BTreeSet<String> {
+    let at = text.find(start).unwrap_or_else(|| panic!("no {start} in deny.toml")) + start.len();
+    let list = &text[at..];
+    let end = list.find("\n]").or_else(|| list.find("]\n")).expect("the list's end");
+    list[..end].split('"').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// Whether an SPDX expression can be met by these licences.
+fn allowed(expression: &str, licences: &BTreeSet<String>) -> bool {
+    // Older packages write MIT/Apache-2.0.
+    let text = expression.replace('/', " OR ").replace('(', " ( ").replace(')', " ) ");
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let (met, used) = either(&words, licences);
+    assert_eq!(used, words.len(), "{expression}");
+    met
+}
+
+fn either(words: &[&str], licences: &BTreeSet<String>) -> (bool, usize) {
+    let (mut met, mut at) = both(words, licences);
+    while words.get(at) == Some(&"OR") {
+        let (other, used) = both(&words[at + 1..], licences);
+        met |= other;
+        at += used + 1;
+    }
+    (met, at)
+}
+
+fn both(words: &[&str], licences: &BTreeSet<String>) -> (bool, usize) {
+    let (mut met, mut at) = one(words, licences);
+    while words.get(at) == Some(&"AND") {
+        let (other, used) = one(&words[at + 1..], licences);
+        met &= other;
+        at += used + 1;
+    }
+    (met, at)
+}
+
+fn one(words: &[&str], licences: &BTreeSet<String>) -> (bool, usize) {
+    if words.first() == Some(&"(") {
+        let (met, used) = either(&words[1..], licences);
+        return (met, used + 2);
+    }
+    let name = words.first().copied().unwrap_or_default();
+    if words.get(1) == Some(&"WITH") {
+        return (licences.contains(&words[..3].join(" ")), 3);
+    }
+    (licences.contains(name), 1)
+}
+
+#[test]
+fn expressions_are_read() {
+    let licences = BTreeSet::from(["MIT".to_owned(), "A WITH B".to_owned()]);
+    for (expression, expected) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("MIT OR GPL-3.0", true),
+        ("GPL-3.0/MIT", true),
+        ("MIT AND GPL-3.0", false),
+        ("(MIT OR GPL-3.0) AND X", false),
+        ("(MIT OR GPL-3.0) AND MIT", true),
+        ("GPL-3.0 OR MIT AND X", false),
+        ("A WITH B", true),
+        ("A", false),
+    ] {
+        assert_eq!(allowed(expression, &licences), expected, "{expression}");
+    }
+}
+
+#[test]
+fn every_dependency_is_one_that_we_may_use() {
+    let rules = std::fs::read_to_string(repository().join("deny.toml")).expect("deny.toml");
+    let licences = listed(&rules, "allow = [");
+    let banned = listed(&rules, "deny = [");
+    assert!(licences.contains("MIT") && banned.contains("openssl"), "{licences:?} {banned:?}");
+    let rustc = Command::new("rustc").arg("-vV").output().expect("rustc");
+    let version = String::from_utf8_lossy(&rustc.stdout).into_owned();
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("the host");
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .args(["--filter-platform", host, "--filter-platform", "wasm32-unknown-unknown"])
+        .current_dir(repository())
+        .output()
+        .expect("cargo");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let packages = metadata["packages"].as_array().expect("packages");
+    let mut seen = 0;
+    let mut wrong = Vec::new();
+    for package in packages {
+        let name = package["name"].as_str().unwrap_or_default();
+        // Our own have no source.
+        let Some(source) = package["source"].as_str() else { continue };
+        seen += 1;
+        let licence = package["license"].as_str().unwrap_or_default();
+        if licence.is_empty() || !allowed(licence, &licences) {
+            wrong.push(format!("{name}: licence {licence:?}"));
+        }
+        if source != "registry+https://github.com/rust-lang/crates.io-index" {
+            wrong.push(format!("{name}: from {source}"));
+        }
+        if banned.contains(name) {
+            wrong.push(format!("{name}: banned"));
+        }
+    }
+    assert!(seen > 100, "{seen} dependencies");
+    assert!(wrong.is_empty(), "{wrong:#?}\nchange the dependency, or deny.toml with a reason");
+}
