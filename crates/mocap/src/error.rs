@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// the file's name, which the caller knows.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The file could not be opened or read to its end.
+    /// The file could not be opened.
     #[error("open: {source}; check the path ({path}) and the permissions")]
     Open {
         /// The path as given.
@@ -14,6 +14,9 @@ pub enum ReadError {
         /// What the operating system said.
         source: std::io::Error,
     },
+    /// The system could not read on in an open file.
+    #[error("read: {0}; copy the file again, or check the disk")]
+    Read(std::io::Error),
     /// No known format starts like this.
     #[error(
         "byte 0: not a capture in a known format, {found}; \
@@ -45,7 +48,7 @@ pub enum ReadError {
     #[error("byte {offset}, {section}: {what}; {remedy}")]
     Binary {
         /// Offset from the start of the file.
-        offset: usize,
+        offset: u64,
         /// Part of the file, e.g. `parameter section`.
         section: &'static str,
         /// What is wrong, with the value.
@@ -107,7 +110,7 @@ pub enum WriteError {
 impl ReadError {
     /// An error at a byte of a binary file.
     pub(crate) fn at_byte(
-        offset: usize,
+        offset: u64,
         section: &'static str,
         what: impl Into<String>,
         remedy: &'static str,

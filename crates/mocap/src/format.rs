@@ -1,6 +1,7 @@
 //! The formats this crate reads, and how each is recognised by its content.
 
-use crate::text::{self, Delimiter, Document};
+use crate::ReadError;
+use crate::text::{self, Delimiter, Lines};
 
 /// A file format of motion capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -50,15 +51,25 @@ pub(crate) fn is_c3d(bytes: &[u8]) -> bool {
     head.len() > 24 && head[1] == 0x50 && !utf16 && head.contains(&0)
 }
 
-/// The format of a file by its content; `None` when no reader knows it.
-pub fn recognise(bytes: &[u8]) -> Option<Format> {
-    if is_c3d(bytes) { Some(Format::C3d) } else { recognise_text(&Document::decode(bytes)) }
+/// Recognise a text format by its first line that is neither blank nor a comment; `None` when no
+/// reader knows it.
+///
+/// # Errors
+/// [`ReadError::Read`].
+pub(crate) fn recognise_text(mut lines: Lines<'_>) -> Result<Option<Format>, ReadError> {
+    loop {
+        match lines.next_filled() {
+            Ok(Some((_, line))) if line.starts_with('#') => {}
+            Ok(Some((_, line))) => return Ok(format_of(line)),
+            // What has no end of a line for megabytes is no text.
+            Ok(None) | Err(ReadError::Text { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        }
+    }
 }
 
-/// Recognise a text format by the first lines of the document.
-pub(crate) fn recognise_text(document: &Document<'_>) -> Option<Format> {
-    let (_, header) =
-        document.lines().find(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'))?;
+/// The format that starts with a line.
+fn format_of(header: &str) -> Option<Format> {
     let delimiter = Delimiter::of(header);
     if text::trc::is_first_line(header) {
         Some(Format::Trc)

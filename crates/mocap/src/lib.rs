@@ -1,8 +1,8 @@
 //! Marker trajectories: the capture vocabulary, readers and writers, repair and filters.
 //!
-//! A file of any known system comes in through [`read`] or [`read_bytes`]; what comes out is a
-//! [`Capture`]: labels, rate, unit and positions, a missing marker NaN in all three coordinates.
-//! The format is recognised by content; the name of a file only helps to word an error.
+//! A file of any known system comes in through [`CaptureFile`], read as a stream (or from bytes,
+//! [`read_bytes`]); what comes out is a [`Capture`]: labels, rate, unit and positions, a missing
+//! marker NaN in all three coordinates. The format is recognised by content, never by name.
 
 mod c3d;
 mod capture;
@@ -18,6 +18,7 @@ mod recording;
 mod repair;
 mod resample;
 mod rigid_fit;
+mod source;
 mod stabilise;
 mod sudden;
 mod text;
@@ -28,11 +29,11 @@ pub use c3d::{C3dOptions, C3dStorage, Processor, write_c3d};
 pub use capture::{Capture, LengthUnit};
 pub use error::{ReadError, WriteError};
 pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence};
-pub use format::{Format, recognise};
+pub use format::Format;
 pub use gaps::{FilledGap, Gap, GapFill, GapRepair, fill_gaps, gaps};
 pub use low_pass::{FilterError, LowPass};
 pub use neutral::{Stillest, stillest};
-pub use read::{ReadOptions, read, read_bytes, read_recording, read_weights};
+pub use read::{CaptureFile, ReadOptions, read, read_bytes, read_recording, read_weights, recognise};
 pub use recording::{Event, Recording};
 pub use repair::{
     ChangedFrame, MendedSwap, RepairError, RepairPlan, RepairRecord, Repaired, RepairedGap, Spike,

@@ -81,7 +81,7 @@ fn parameters_in_any_order_and_before_their_groups() {
         let mut parts = entries(&file, processor);
         assert!(parts.len() > 8);
         parts.reverse();
-        let read = read_bytes("a.c3d", &with_entries(&file, processor, &parts)).unwrap();
+        let read = read_bytes(&with_entries(&file, processor, &parts)).unwrap();
         assert_eq!(
             (read.positions, read.labels),
             (capture.positions.clone(), capture.labels.clone())
@@ -92,7 +92,7 @@ fn parameters_in_any_order_and_before_their_groups() {
         }
         let mut bytes = with_entries(&file, processor, &parts);
         bytes[516] = bytes[516].wrapping_neg();
-        assert_eq!(read_bytes("a.c3d", &bytes).unwrap().labels, capture.labels);
+        assert_eq!(read_bytes(&bytes).unwrap().labels, capture.labels);
     }
 }
 
@@ -106,10 +106,10 @@ fn labels_continued_in_labels2_and_3_and_too_few() {
         .filter(|n| n.starts_with("LABELS"))
         .collect();
     assert_eq!(names, ["LABELS", "LABELS2", "LABELS3"]);
-    assert_eq!(read_bytes("a.c3d", &file).unwrap().labels, many.labels);
+    assert_eq!(read_bytes(&file).unwrap().labels, many.labels);
     let parts: Vec<Entry> =
         entries(&file, Processor::Intel).into_iter().filter(|e| e.name != b"LABELS3").collect();
-    let read = read_bytes("a.c3d", &with_entries(&file, Processor::Intel, &parts)).unwrap();
+    let read = read_bytes(&with_entries(&file, Processor::Intel, &parts)).unwrap();
     assert_eq!(read.labels[509], "m509");
     assert_eq!(read.labels[510], "M511", "made up by its place");
     assert!(read.notes.iter().any(|n| n == "510 labels for 700 markers"), "{:?}", read.notes);
@@ -123,7 +123,7 @@ fn labels_longer_than_four_characters_and_not_of_ascii() {
         vec!["sourcil gauche intérieur".to_owned(), long.trim().to_owned(), "N".to_owned()];
     for processor in PROCESSORS {
         let options = C3dOptions { processor, storage: C3dStorage::Float };
-        let read = read_bytes("a.c3d", &write_c3d(&capture, &options).unwrap()).unwrap();
+        let read = read_bytes(&write_c3d(&capture, &options).unwrap()).unwrap();
         assert_eq!(read.labels, capture.labels);
     }
     capture.labels[1] = "x".repeat(300);
@@ -161,7 +161,7 @@ fn analog_samples_are_read_past_and_counted() {
         for (storage, bytes) in [(C3dStorage::Float, 4), (C3dStorage::Integer { scale: 0.5 }, 2)] {
             let file = write_c3d(&capture, &C3dOptions { processor, storage }).unwrap();
             let file = with_analog(&file, processor, 5, bytes);
-            let read = read_recording("a.c3d", &file, &ReadOptions::default()).unwrap();
+            let read = read_recording(&file, &ReadOptions::default()).unwrap();
             assert_eq!(read.capture.positions, capture.positions, "{processor:?}");
             assert_eq!(read.analog_channels, 6);
         }
@@ -178,7 +178,7 @@ fn residual_and_camera_mask_do_not_make_a_marker_missing_but_a_sign_does() {
         // Seven cameras and a residual of 12 in the first, all seven and the sign in the second.
         file[data + 6..data + 8].copy_from_slice(&word_bytes(processor, 0x7f0c));
         file[data + 14..data + 16].copy_from_slice(&word_bytes(processor, 0xff0c));
-        let read = read_bytes("a.c3d", &file).unwrap();
+        let read = read_bytes(&file).unwrap();
         assert_eq!(read.frame(0)[0], capture.frame(0)[0]);
         assert!(read.frame(0)[1].iter().all(|v| v.is_nan()));
         assert_eq!(read.frame(1), capture.frame(1));
@@ -191,7 +191,7 @@ fn a_coordinate_that_is_not_a_number_makes_the_marker_missing() {
     let mut file = write_c3d(&capture, &C3dOptions::default()).unwrap();
     let data = 512 * (usize::from(word(Processor::Intel, [file[16], file[17]])) - 1);
     file[data + 4..data + 8].copy_from_slice(&f32::NAN.to_le_bytes());
-    let read = read_bytes("a.c3d", &file).unwrap();
+    let read = read_bytes(&file).unwrap();
     assert!(read.frame(0)[0].iter().all(|v| v.is_nan()));
     assert_eq!(read.frame(0)[1], capture.frame(0)[1]);
     assert!(read.notes.iter().any(|n| n.contains("one or two coordinates")), "{:?}", read.notes);
@@ -206,7 +206,7 @@ fn without_parameters_the_header_serves() {
     let mut none = file.clone();
     none[0] = 0;
     for bytes in [empty, none] {
-        let read = read_bytes("a.c3d", &bytes).unwrap();
+        let read = read_bytes(&bytes).unwrap();
         assert_eq!(read.positions, capture.positions);
         assert_eq!((read.rate_hz, read.first_frame), (50.0, 1));
         assert_eq!(read.labels, ["M001", "M002", "M003"]);
@@ -221,13 +221,13 @@ fn units_are_those_of_the_file_or_of_a_face() {
     {
         let capture = Capture { unit, ..capture(3, 2) };
         let file = write_c3d(&capture, &C3dOptions::default()).unwrap();
-        assert_eq!(read_bytes("a.c3d", &file).unwrap().unit, unit, "{name}");
+        assert_eq!(read_bytes(&file).unwrap().unit, unit, "{name}");
     }
     let file = write_c3d(&capture(3, 2), &C3dOptions::default()).unwrap();
     let parts: Vec<Entry> =
         entries(&file, Processor::Intel).into_iter().filter(|e| e.name != b"UNITS").collect();
-    let read = read_bytes("a.c3d", &with_entries(&file, Processor::Intel, &parts)).unwrap();
+    let read = read_bytes(&with_entries(&file, Processor::Intel, &parts)).unwrap();
     assert!(read.notes.iter().any(|n| n.starts_with("unit not in the file")), "{:?}", read.notes);
     let asked = ReadOptions { unit: Some(LengthUnit::Centimetre), ..ReadOptions::default() };
-    assert_eq!(read_recording("a", &file, &asked).unwrap().capture.unit, LengthUnit::Centimetre);
+    assert_eq!(read_recording(&file, &asked).unwrap().capture.unit, LengthUnit::Centimetre);
 }

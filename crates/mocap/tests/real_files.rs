@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 fn recording(path: PathBuf) -> Recording {
     let bytes = std::fs::read(&path).unwrap();
-    read_recording(&path.to_string_lossy(), &bytes, &ReadOptions::default()).unwrap()
+    read_recording(&bytes, &ReadOptions::default()).unwrap()
 }
 
 /// Largest distance between the same markers of two captures, in metres; missing must match.
@@ -89,7 +89,7 @@ fn live_link_takes_are_weights_at_30_hz() {
     for name in ["alex_rom_3.csv", "facial.csv"] {
         let path = data.join("livelink").join(name);
         let bytes = std::fs::read(&path).unwrap();
-        let take = read_weights(name, &bytes).unwrap();
+        let take = read_weights(&bytes).unwrap();
         assert_eq!((take.names.len(), take.rate_hz), (61, 30.0));
         let dropped: usize = take.filled.iter().map(|(from, to)| to - from).sum();
         eprintln!("{name}: {} frames, {dropped} of them filled in", take.frames());

@@ -2,6 +2,7 @@
 
 use super::number::{Processor, Words};
 use crate::ReadError;
+use crate::source::Prefix;
 
 /// Bytes of a block: sections start at multiples of it.
 pub(crate) const BLOCK: usize = 512;
@@ -28,32 +29,38 @@ pub(crate) struct Header {
 impl Header {
     /// Read it. The processor stands in the parameter section; where that is missing, the one
     /// whose numbers make sense is taken.
-    pub(crate) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<Self, ReadError> {
-        if bytes.len() < BLOCK {
+    pub(crate) fn read(file: &mut Prefix<'_>, notes: &mut Vec<String>) -> Result<Self, ReadError> {
+        let length = file.length();
+        let Some(bytes) = file.get(0..BLOCK)?.and_then(|head| head.first_chunk::<BLOCK>()) else {
             return Err(ReadError::at_byte(
-                bytes.len(),
+                length,
                 "header",
-                format!("the file ends after {} bytes of a 512-byte header", bytes.len()),
+                format!("the file ends after {length} bytes of a 512-byte header"),
                 "copy or export the file again, it is cut short",
             ));
-        }
+        };
+        let bytes = *bytes;
         let parameters_at = usize::from(bytes[0])
             .checked_sub(1)
             .map(|block| block * BLOCK)
-            .filter(|&at| at >= BLOCK && at + 4 <= bytes.len());
-        let named = parameters_at.and_then(|at| Processor::from_code(bytes[at + 3]));
+            .filter(|&at| at >= BLOCK && at as u64 + 4 <= length);
+        let code = match parameters_at {
+            None => None,
+            Some(at) => file.get(at..at + 4)?.map(|head| head[3]),
+        };
+        let named = code.and_then(Processor::from_code);
         let processor = match named {
             Some(processor) => processor,
             None => {
                 let likely = [Processor::Intel, Processor::Mips, Processor::Dec]
                     .into_iter()
-                    .find(|&p| Self::with(bytes, p, None).is_plausible());
+                    .find(|&p| Self::with(&bytes, p, None).is_plausible());
                 let Some(processor) = likely else {
                     return Err(ReadError::at_byte(
-                        parameters_at.map_or(0, |at| at + 3),
+                        parameters_at.map_or(0, |at| at as u64 + 3),
                         "header",
-                        match parameters_at {
-                            Some(at) => format!("processor {} is not 84, 85 or 86", bytes[at + 3]),
+                        match code {
+                            Some(code) => format!("processor {code} is not 84, 85 or 86"),
                             None => format!("parameter block {} is not in the file", bytes[0]),
                         },
                         "export the file again with its parameter section",
@@ -65,11 +72,11 @@ impl Header {
                 processor
             }
         };
-        Ok(Self::with(bytes, processor, parameters_at))
+        Ok(Self::with(&bytes, processor, parameters_at))
     }
 
-    /// Decode a header of at least 512 bytes.
-    fn with(bytes: &[u8], processor: Processor, parameters_at: Option<usize>) -> Self {
+    /// Decode a header.
+    fn with(bytes: &[u8; BLOCK], processor: Processor, parameters_at: Option<usize>) -> Self {
         let words = Words { bytes, processor };
         let word = |at| words.u16(at).unwrap_or(0);
         let float = |at| words.f32(at).unwrap_or(0.0);

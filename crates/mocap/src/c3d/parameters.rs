@@ -1,9 +1,11 @@
 //! The parameter section of a C3D file: groups of named values, in any order.
 
 use super::header::{BLOCK, Header};
-use super::number::Words;
+use super::number::{Processor, Words};
 use crate::ReadError;
+use crate::source::Prefix;
 use std::collections::HashMap;
+use std::ops::Range;
 
 const SECTION: &str = "parameter section";
 const REMEDY: &str = "export the file again, its parameter section is damaged";
@@ -19,63 +21,73 @@ enum Kind {
 
 /// One parameter: type, dimensions and where its values are.
 #[derive(Debug)]
-struct Parameter<'a> {
+struct Parameter {
     kind: Kind,
     dimensions: Vec<usize>,
-    values: Words<'a>,
+    /// Bytes of the file.
+    values: Range<usize>,
 }
 
 /// All parameters, by group and name in capitals.
-#[derive(Debug, Default)]
-pub(crate) struct Parameters<'a> {
-    by_name: HashMap<(String, String), Parameter<'a>>,
+#[derive(Debug)]
+pub(crate) struct Parameters {
+    /// The file as far as the last of them.
+    bytes: Vec<u8>,
+    processor: Processor,
+    by_name: HashMap<(String, String), Parameter>,
 }
 
-impl<'a> Parameters<'a> {
+impl Parameters {
     /// Read the section; empty where the header names none.
-    pub(crate) fn read(bytes: &'a [u8], header: &Header) -> Result<Self, ReadError> {
-        let Some(start) = header.parameters_at else { return Ok(Self::default()) };
-        let words = Words { bytes, processor: header.processor };
+    pub(crate) fn read(mut file: Prefix<'_>, header: &Header) -> Result<Self, ReadError> {
+        let processor = header.processor;
+        let head = match header.parameters_at {
+            None => None,
+            Some(start) => file.get(start..start + 4)?.map(|head| (start, head[2])),
+        };
+        let Some((start, blocks)) = head else {
+            return Ok(Self { bytes: Vec::new(), processor, by_name: HashMap::new() });
+        };
         // The block count is wrong in some files: the data bound the section too.
-        let counted = start + usize::from(bytes[start + 2]) * BLOCK;
+        let counted = start + usize::from(blocks) * BLOCK;
         let end = match header.data_at {
-            data if data > start => counted.max(data),
-            _ if counted > start => counted,
-            _ => bytes.len(),
+            data if data > start => counted.max(data) as u64,
+            _ if counted > start => counted as u64,
+            _ => file.length(),
         }
-        .min(bytes.len());
+        .min(file.length());
 
         let mut groups: HashMap<u8, String> = HashMap::new();
-        let mut found: Vec<(u8, String, Parameter<'a>)> = Vec::new();
+        let mut found: Vec<(u8, String, Parameter)> = Vec::new();
         let mut at = start + 4;
-        while at + 2 <= end {
-            let name_length = usize::from((bytes[at] as i8).unsigned_abs());
-            let id = bytes[at + 1] as i8;
+        while at as u64 + 2 <= end {
+            let Some(&[name_length, id]) = file.get(at..at + 2)? else { break };
+            let (name_length, id) = (usize::from((name_length as i8).unsigned_abs()), id as i8);
             if name_length == 0 || id == 0 {
                 break;
             }
             let offset_at = at + 2 + name_length;
-            let (Some(name), Some(offset)) = (bytes.get(at + 2..offset_at), words.u16(offset_at))
-            else {
+            let Some([name @ .., a, b]) = file.get(at + 2..offset_at + 2)? else {
                 return Err(ReadError::at_byte(
-                    at,
+                    at as u64,
                     SECTION,
                     format!("a name of {name_length} characters runs past the end of the file"),
                     REMEDY,
                 ));
             };
+            let offset = processor.u16([*a, *b]);
             let name = text(name).to_ascii_uppercase();
             if id < 0 {
                 groups.entry(id.unsigned_abs()).or_insert(name);
             } else {
-                let parameter = parameter(words, offset_at + 2, &name)?;
+                let parameter = parameter(&mut file, offset_at + 2, &name)?;
                 found.push((id.unsigned_abs(), name, parameter));
             }
             match offset {
                 0 => break,
                 1 => {
                     return Err(ReadError::at_byte(
-                        offset_at,
+                        offset_at as u64,
                         SECTION,
                         "the next entry starts 1 byte on, inside this one",
                         REMEDY,
@@ -90,7 +102,7 @@ impl<'a> Parameters<'a> {
                 by_name.entry((group.clone(), name)).or_insert(parameter);
             }
         }
-        Ok(Self { by_name })
+        Ok(Self { bytes: file.into_bytes(), processor, by_name })
     }
 
     /// Whether there is none.
@@ -98,14 +110,15 @@ impl<'a> Parameters<'a> {
         self.by_name.is_empty()
     }
 
-    fn get(&self, group: &str, name: &str) -> Option<&Parameter<'a>> {
-        self.by_name.get(&(group.to_owned(), name.to_owned()))
+    fn get(&self, group: &str, name: &str) -> Option<(&Parameter, Words<'_>)> {
+        let parameter = self.by_name.get(&(group.to_owned(), name.to_owned()))?;
+        let bytes = self.bytes.get(parameter.values.clone()).unwrap_or(&[]);
+        Some((parameter, Words { bytes, processor: self.processor }))
     }
 
     /// All values as numbers; words are taken without sign, as counts are. Empty where absent.
     pub(crate) fn numbers(&self, group: &str, name: &str) -> Vec<f64> {
-        let Some(parameter) = self.get(group, name) else { return Vec::new() };
-        let values = parameter.values;
+        let Some((parameter, values)) = self.get(group, name) else { return Vec::new() };
         match parameter.kind {
             Kind::Text => Vec::new(),
             Kind::Byte => values.bytes.iter().map(|&b| f64::from(b)).collect(),
@@ -131,7 +144,7 @@ impl<'a> Parameters<'a> {
 
     /// The strings of a parameter, blanks and NULs trimmed. Empty where absent.
     pub(crate) fn strings(&self, group: &str, name: &str) -> Vec<String> {
-        let Some(parameter) = self.get(group, name) else { return Vec::new() };
+        let Some((parameter, values)) = self.get(group, name) else { return Vec::new() };
         if parameter.kind != Kind::Text {
             return Vec::new();
         }
@@ -142,7 +155,7 @@ impl<'a> Parameters<'a> {
         if length == 0 {
             return Vec::new();
         }
-        parameter.values.bytes.chunks(length).map(text).collect()
+        values.bytes.chunks(length).map(text).collect()
     }
 
     /// The strings of a parameter and of its continuations: `LABELS`, `LABELS2`, `LABELS3`...
@@ -159,11 +172,10 @@ impl<'a> Parameters<'a> {
     }
 }
 
-/// Decode a parameter's type, dimensions and values at a byte offset.
-fn parameter<'a>(words: Words<'a>, at: usize, name: &str) -> Result<Parameter<'a>, ReadError> {
-    let damaged = |what: String| ReadError::at_byte(at, SECTION, what, REMEDY);
-    let bytes: &'a [u8] = words.bytes;
-    let (Some(&kind), Some(&rank)) = (bytes.get(at), bytes.get(at + 1)) else {
+/// Decode a parameter's type and dimensions at a byte offset, and find its values.
+fn parameter(file: &mut Prefix<'_>, at: usize, name: &str) -> Result<Parameter, ReadError> {
+    let damaged = |what: String| ReadError::at_byte(at as u64, SECTION, what, REMEDY);
+    let Some(&[kind, rank]) = file.get(at..at + 2)? else {
         return Err(damaged(format!("{name} runs past the end of the file")));
     };
     let (kind, size) = match kind as i8 {
@@ -176,17 +188,18 @@ fn parameter<'a>(words: Words<'a>, at: usize, name: &str) -> Result<Parameter<'a
         }
     };
     let values_at = at + 2 + usize::from(rank);
-    let Some(dimensions) = bytes.get(at + 2..values_at) else {
+    let Some(dimensions) = file.get(at + 2..values_at)? else {
         return Err(damaged(format!("{name} has {rank} dimensions, past the end of the file")));
     };
     let dimensions: Vec<usize> = dimensions.iter().map(|&d| usize::from(d)).collect();
     let length = dimensions.iter().fold(size, |n: usize, &d| n.saturating_mul(d));
-    let Some(values) = bytes.get(values_at..values_at.saturating_add(length)) else {
+    let values = values_at..values_at.saturating_add(length);
+    if file.get(values.clone())?.is_none() {
         return Err(damaged(format!(
             "{name} holds {length} bytes of values, past the end of the file"
         )));
-    };
-    Ok(Parameter { kind, dimensions, values: Words { bytes: values, processor: words.processor } })
+    }
+    Ok(Parameter { kind, dimensions, values })
 }
 
 /// Text without trailing NULs and blanks; UTF-8, else Latin-1.

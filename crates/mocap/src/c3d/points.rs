@@ -1,12 +1,15 @@
 //! The data section of a C3D file: frames of points, each followed by its analog samples.
 
-use super::number::Words;
+use super::number::Processor;
+use crate::ReadError;
+use crate::source::{CHUNK, Source, fill};
+use std::io::SeekFrom;
 
 /// How the data section is laid out.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
     /// Byte where the data start.
-    pub(crate) start: usize,
+    pub(crate) start: u64,
     /// Points a frame.
     pub(crate) points: usize,
     /// Analog numbers a frame.
@@ -24,63 +27,89 @@ pub(crate) enum Storage {
 }
 
 impl Layout {
-    /// Bytes of a frame.
-    pub(crate) fn stride(&self) -> usize {
+    /// Bytes of a frame, at least 1.
+    fn stride(&self) -> u64 {
         let word = match self.storage {
             Storage::Float => 4,
             Storage::Integer(_) => 2,
         };
-        (4 * self.points + self.analog) * word
+        ((4 * self.points as u64 + self.analog as u64) * word).max(1)
     }
 
     /// Whole frames in the bytes from `start` on.
-    pub(crate) fn frames_present(&self, file_length: usize) -> u64 {
-        (file_length.saturating_sub(self.start) / self.stride().max(1)) as u64
+    pub(crate) fn frames_present(&self, file_length: u64) -> u64 {
+        file_length.saturating_sub(self.start) / self.stride()
     }
 
     /// Read `frames` frames of the points where `kept` is true; a missing marker is NaN. The
     /// frames must be present.
     pub(crate) fn positions(
         &self,
-        words: Words<'_>,
+        source: &mut dyn Source,
+        processor: Processor,
         frames: usize,
         kept: &[bool],
-    ) -> Vec<[f64; 3]> {
+    ) -> Result<Vec<[f64; 3]>, ReadError> {
         let markers = kept.iter().filter(|k| **k).count();
+        // Frames that are present: their bytes fit in memory's addresses.
+        let stride = self.stride() as usize;
         let mut positions = Vec::with_capacity(frames * markers);
-        let data = words.bytes.get(self.start..).unwrap_or(&[]);
-        for frame in data.chunks_exact(self.stride().max(1)).take(frames) {
-            match self.storage {
-                Storage::Float => {
-                    for (four, _) in frame.as_chunks::<16>().0.iter().zip(kept).filter(|(_, k)| **k)
-                    {
-                        positions.push(float_point(four, words));
-                    }
-                }
-                Storage::Integer(scale) => {
-                    for (four, _) in frame.as_chunks::<8>().0.iter().zip(kept).filter(|(_, k)| **k)
-                    {
-                        positions.push(integer_point(four, words, scale));
-                    }
-                }
+        let mut chunk = vec![0; stride * (CHUNK / stride).clamp(1, frames.max(1))];
+        source.seek(SeekFrom::Start(self.start)).map_err(ReadError::Read)?;
+        let mut left = frames;
+        while left > 0 {
+            let wanted = left.min(chunk.len() / stride);
+            let read = fill(source, &mut chunk[..wanted * stride])?;
+            if read < wanted * stride {
+                let frame = frames - left + read / stride;
+                return Err(ReadError::at_byte(
+                    self.start + ((frames - left) * stride + read) as u64,
+                    "data section",
+                    format!("the file ends in frame {} of {frames}", frame + 1),
+                    "copy or export the file again, it is cut short",
+                ));
+            }
+            for frame in chunk[..read].chunks_exact(stride) {
+                self.frame(frame, processor, kept, &mut positions);
+            }
+            left -= wanted;
+        }
+        Ok(positions)
+    }
+
+    /// The points of one frame.
+    fn frame(
+        &self,
+        frame: &[u8],
+        processor: Processor,
+        kept: &[bool],
+        positions: &mut Vec<[f64; 3]>,
+    ) {
+        match self.storage {
+            Storage::Float => {
+                let points = frame.as_chunks::<16>().0.iter().zip(kept).filter(|(_, k)| **k);
+                positions.extend(points.map(|(four, _)| float_point(four, processor)));
+            }
+            Storage::Integer(scale) => {
+                let points = frame.as_chunks::<8>().0.iter().zip(kept).filter(|(_, k)| **k);
+                positions.extend(points.map(|(four, _)| integer_point(four, processor, scale)));
             }
         }
-        positions
     }
 }
 
 /// x, y, z and a fourth float: camera mask and residual, negative where the point is invalid.
-fn float_point(bytes: &[u8; 16], words: Words<'_>) -> [f64; 3] {
+fn float_point(bytes: &[u8; 16], processor: Processor) -> [f64; 3] {
     let [x, y, z, residual] = std::array::from_fn(|i| {
-        words.processor.f32([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]])
+        processor.f32([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]])
     });
     if residual < 0.0 { [f64::NAN; 3] } else { [x, y, z].map(f64::from) }
 }
 
 /// Three integers to be scaled and a fourth word: camera mask and residual bytes, the sign bit set
 /// where the point is invalid.
-fn integer_point(bytes: &[u8; 8], words: Words<'_>, scale: f64) -> [f64; 3] {
+fn integer_point(bytes: &[u8; 8], processor: Processor, scale: f64) -> [f64; 3] {
     let [x, y, z, residual] =
-        std::array::from_fn(|i| words.processor.u16([bytes[2 * i], bytes[2 * i + 1]]) as i16);
+        std::array::from_fn(|i| processor.u16([bytes[2 * i], bytes[2 * i + 1]]) as i16);
     if residual < 0 { [f64::NAN; 3] } else { [x, y, z].map(|v| f64::from(v) * scale) }
 }

@@ -1,32 +1,33 @@
-//! From the bytes of a C3D file to a recording: header and parameters reconciled, points read.
+//! From the stream of a C3D file to a recording: header and parameters reconciled, points read.
 
 use super::header::{BLOCK, Header};
-use super::number::Words;
 use super::parameters::Parameters;
 use super::points::{Layout, Storage};
 use crate::plausibility::{shortened, unique_labels, whole_or_missing, zeros_to_missing};
+use crate::source::{self, Prefix, Source};
 use crate::unit::decide_unit;
 use crate::{Capture, Event, Format, LengthUnit, ReadError, ReadOptions, Recording};
 use std::collections::HashSet;
 
-/// Read a C3D file.
-pub(crate) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Recording, ReadError> {
+/// Read a C3D file: header and parameters, then the data frames by frames.
+pub(crate) fn read(file: &mut dyn Source, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut notes = Vec::new();
-    let header = Header::read(bytes, &mut notes)?;
-    let parameters = Parameters::read(bytes, &header)?;
+    let length = source::length(file)?;
+    let mut prefix = Prefix::new(file, length);
+    let header = Header::read(&mut prefix, &mut notes)?;
+    let parameters = Parameters::read(prefix, &header)?;
     if parameters.is_empty() {
         notes.push("no parameters: labels are made up, the rest is the header's".to_owned());
     }
     let rate_hz = rate(&header, &parameters, options)?;
-    let layout = layout(&header, &parameters, bytes.len())?;
-    let (first_frame, frames) = frames(&header, &parameters, &layout, bytes.len(), &mut notes)?;
+    let layout = layout(&header, &parameters, length)?;
+    let (first_frame, frames) = frames(&header, &parameters, &layout, length, &mut notes)?;
 
     let labels = point_labels(&parameters, layout.points, &mut notes);
     let kept = markers_kept(&parameters, &labels, &mut notes);
     let labels: Vec<String> =
         labels.into_iter().zip(&kept).filter(|(_, k)| **k).map(|(l, _)| l).collect();
-    let words = Words { bytes, processor: header.processor };
-    let mut positions = layout.positions(words, frames, &kept);
+    let mut positions = layout.positions(file, header.processor, frames, &kept)?;
     whole_or_missing(&mut positions, &mut notes);
 
     let named = parameters.strings("POINT", "UNITS").into_iter().find(|u| !u.is_empty());
@@ -49,7 +50,7 @@ pub(crate) fn read(bytes: &[u8], options: &ReadOptions) -> Result<Recording, Rea
 /// The rate: the caller's, POINT:RATE, else the header's.
 fn rate(
     header: &Header,
-    parameters: &Parameters<'_>,
+    parameters: &Parameters,
     options: &ReadOptions,
 ) -> Result<f64, ReadError> {
     let valid = |rate: &f64| rate.is_finite() && *rate > 0.0;
@@ -71,8 +72,8 @@ fn rate(
 /// Where the data are and how a frame is stored.
 fn layout(
     header: &Header,
-    parameters: &Parameters<'_>,
-    file_length: usize,
+    parameters: &Parameters,
+    file_length: u64,
 ) -> Result<Layout, ReadError> {
     let points = parameters.count("POINT", "USED").map_or(header.points, |n| n as usize);
     if points == 0 {
@@ -96,10 +97,10 @@ fn layout(
             "export the file again",
         ));
     }
-    let starts = |at: &usize| *at >= BLOCK && *at < file_length;
-    let named =
-        parameters.count("POINT", "DATA_START").map(|b| (b as usize).saturating_sub(1) * BLOCK);
-    let Some(start) = Some(header.data_at).filter(starts).or(named.filter(starts)) else {
+    let block = BLOCK as u64;
+    let starts = |at: &u64| *at >= block && *at < file_length;
+    let named = parameters.count("POINT", "DATA_START").map(|b| b.saturating_sub(1) * block);
+    let Some(start) = Some(header.data_at as u64).filter(starts).or(named.filter(starts)) else {
         return Err(ReadError::at_byte(
             16,
             "header",
@@ -117,9 +118,9 @@ fn layout(
 /// A count that saturated (65,535) gives way to what the file holds.
 fn frames(
     header: &Header,
-    parameters: &Parameters<'_>,
+    parameters: &Parameters,
     layout: &Layout,
-    file_length: usize,
+    file_length: u64,
     notes: &mut Vec<String>,
 ) -> Result<(u64, usize), ReadError> {
     let field = |name: &str| match parameters.numbers("TRIAL", name)[..] {
@@ -177,7 +178,7 @@ fn frames(
 
 /// One label a point, made up (empty) where the file has too few.
 fn point_labels(
-    parameters: &Parameters<'_>,
+    parameters: &Parameters,
     points: usize,
     notes: &mut Vec<String>,
 ) -> Vec<String> {
@@ -196,7 +197,7 @@ fn point_labels(
 /// Which points are markers: Vicon stores angles, forces, moments, powers and scalars as points
 /// and lists their labels in parameters of those names.
 fn markers_kept(
-    parameters: &Parameters<'_>,
+    parameters: &Parameters,
     labels: &[String],
     notes: &mut Vec<String>,
 ) -> Vec<bool> {
@@ -221,7 +222,7 @@ fn markers_kept(
 }
 
 /// The recording system, from the MANUFACTURER group.
-fn system(parameters: &Parameters<'_>) -> Option<String> {
+fn system(parameters: &Parameters) -> Option<String> {
     let text = |name| parameters.strings("MANUFACTURER", name).into_iter().find(|s| !s.is_empty());
     let version = text("VERSION_LABEL").or_else(|| {
         let numbers = parameters.numbers("MANUFACTURER", "VERSION");
@@ -241,7 +242,7 @@ fn system(parameters: &Parameters<'_>) -> Option<String> {
 }
 
 /// Events: EVENT:LABELS with EVENT:TIMES (minutes and seconds, two floats an event).
-fn events(parameters: &Parameters<'_>) -> Vec<Event> {
+fn events(parameters: &Parameters) -> Vec<Event> {
     let labels = parameters.strings_continued("EVENT", "LABELS");
     let times = parameters.numbers("EVENT", "TIMES");
     labels

@@ -3,7 +3,7 @@
 //! Joints that have channels become markers of their name; the end of a chain becomes `NAME_end`.
 //! The format has no unit: the skeleton's size decides.
 
-use super::{Delimiter, Document, Table, coordinate};
+use super::{Delimiter, Lines, Table, coordinate};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording, unit};
 
 const REMEDY: &str = "export the take again as BVH";
@@ -34,9 +34,8 @@ struct Joint {
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let mut lines = document.lines().filter(|(_, line)| !line.trim().is_empty());
-    let joints = hierarchy(&mut lines)?;
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let joints = hierarchy(lines)?;
     let mut table = Table {
         labels: joints.iter().filter(|j| j.kept).map(|j| j.name.clone()).collect(),
         ..Table::default()
@@ -45,7 +44,7 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     let mut declared = None;
     let mut values = Vec::with_capacity(channels);
     let mut poses: Vec<([[f64; 3]; 3], [f64; 3])> = Vec::with_capacity(joints.len());
-    for (line, text) in lines {
+    while let Some((line, text)) = lines.next_filled()? {
         if let Some((key, value)) = text.split_once(':') {
             let value = value.trim();
             match key.trim() {
@@ -108,13 +107,11 @@ fn rounded_rate(rate: f64) -> f64 {
 }
 
 /// Read up to the line `MOTION`.
-fn hierarchy<'d>(
-    lines: &mut impl Iterator<Item = (usize, &'d str)>,
-) -> Result<Vec<Joint>, ReadError> {
+fn hierarchy(lines: &mut Lines<'_>) -> Result<Vec<Joint>, ReadError> {
     let mut joints: Vec<Joint> = Vec::new();
     let mut open: Vec<usize> = Vec::new();
     let mut last = 1;
-    for (line, text) in lines {
+    while let Some((line, text)) = lines.next_filled()? {
         last = line;
         let words: Vec<&str> = text.split_whitespace().filter(|w| *w != "{").collect();
         let damaged = |what: String| ReadError::at_line(line, "HIERARCHY", what, REMEDY);
@@ -245,7 +242,7 @@ mod tests {
     fn the_head_turns_on_the_hips() {
         let rows =
             "Frames: 2\nFrame Time: 0.008333\n10 100 0 0 0 0 0 0 90\n10 100 0 90 0 0 0 0 0\n";
-        let capture = read_bytes("a.bvh", format!("{HEAD}{rows}").as_bytes()).unwrap();
+        let capture = read_bytes(format!("{HEAD}{rows}").as_bytes()).unwrap();
         assert_eq!(capture.labels, ["Hips", "Head", "Head_end"]);
         assert_eq!((capture.rate_hz, capture.unit), (120.0, LengthUnit::Centimetre));
         let want = [
@@ -263,7 +260,7 @@ mod tests {
     fn errors_name_the_line() {
         let rows = "Frames: 2\nFrame Time: 0.01\n10 100 0\n";
         assert_eq!(
-            read_bytes("a.bvh", format!("{HEAD}{rows}").as_bytes()).unwrap_err().to_string(),
+            read_bytes(format!("{HEAD}{rows}").as_bytes()).unwrap_err().to_string(),
             "line 19, MOTION: 3 values for 9 channels; \
              export the take again; the file may have been cut short"
         );

@@ -4,7 +4,7 @@
 //! advances by 2. Frames the phone dropped leave a jump; they are filled by the line between their
 //! neighbours and listed.
 
-use super::{Delimiter, Document, coordinate, split_fields};
+use super::{Delimiter, Lines, coordinate, split_fields};
 use crate::{ReadError, WeightTake};
 
 const REMEDY: &str = "export the take again from Live Link Face";
@@ -22,19 +22,17 @@ struct Timecode {
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>) -> Result<WeightTake, ReadError> {
-    let mut lines = document.lines().filter(|(_, line)| !line.trim().is_empty());
-    let (header_line, header) = lines.next().unwrap_or((1, ""));
-    let mut fields = Vec::new();
-    split_fields(header, Delimiter::Comma, &mut fields);
+pub(crate) fn read(lines: &mut Lines<'_>) -> Result<WeightTake, ReadError> {
+    let (header_line, header) = lines.next_filled()?.unwrap_or((1, ""));
+    let fields = split_fields(header, Delimiter::Comma);
     let names: Vec<String> = fields.iter().skip(2).map(ToString::to_string).collect();
     if names.is_empty() {
         return Err(ReadError::at_line(header_line, "header", "no column of weights", REMEDY));
     }
     let mut rows: Vec<(usize, Timecode)> = Vec::new();
     let mut values: Vec<f64> = Vec::new();
-    for (line, text) in lines {
-        split_fields(text, Delimiter::Comma, &mut fields);
+    while let Some((line, text)) = lines.next_filled()? {
+        let fields = split_fields(text, Delimiter::Comma);
         if fields.len() != names.len() + 2 {
             return Err(ReadError::at_line(
                 line,
@@ -182,7 +180,7 @@ mod tests {
             ("00:00:00:01.650", 1.25),
             ("00:00:00:03.650", 1.0),
         ]);
-        let take = read_weights("a.csv", text.as_bytes()).unwrap();
+        let take = read_weights(text.as_bytes()).unwrap();
         assert_eq!((take.rate_hz, take.frames()), (30.0, 5));
         assert_eq!(take.filled, [(2, 3)]);
         let jaw: Vec<f64> = (0..5).map(|f| take.frame(f)[0]).collect();
@@ -192,7 +190,7 @@ mod tests {
     #[test]
     fn errors_name_the_line() {
         let message = |rows: &[(&str, f64)]| {
-            read_weights("a.csv", take(rows).as_bytes()).unwrap_err().to_string()
+            read_weights(take(rows).as_bytes()).unwrap_err().to_string()
         };
         assert_eq!(
             message(&[("01:00:00:59.0", 0.0), ("01:00:00:58.0", 0.0)]),

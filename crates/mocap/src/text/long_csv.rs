@@ -1,7 +1,7 @@
 //! Long CSV, a row a marker and frame: `frame,time,marker,x,y,z`.
 
 use super::table::frame_number;
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Format, ReadError, ReadOptions, Recording};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -29,21 +29,20 @@ fn columns(names: &[Cow<'_, str>]) -> Option<Columns> {
 
 /// Whether a line is the header of such a file.
 pub(crate) fn is_header(line: &str, delimiter: Delimiter) -> bool {
-    let mut names = Vec::new();
-    split_fields(line, delimiter, &mut names);
-    columns(&names).is_some()
+    columns(&split_fields(line, delimiter)).is_some()
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut table = Table::default();
-    let mut lines =
-        document.lines().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-    let (header_line, header) = lines.next().unwrap_or((1, ""));
+    let (header_line, header) = loop {
+        match lines.next_filled()? {
+            Some((_, line)) if line.starts_with('#') => {}
+            found => break found.unwrap_or((1, "")),
+        }
+    };
     let delimiter = Delimiter::of(header);
-    let mut fields = Vec::new();
-    split_fields(header, delimiter, &mut fields);
-    let Some(columns) = columns(&fields) else {
+    let Some(columns) = columns(&split_fields(header, delimiter)) else {
         return Err(ReadError::at_line(
             header_line,
             "header",
@@ -55,8 +54,11 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     let mut frames: BTreeMap<u64, (usize, f64)> = BTreeMap::new();
     let mut markers: HashMap<String, usize> = HashMap::new();
     let mut points: Vec<(u64, usize, [f64; 3], usize)> = Vec::new();
-    for (line, text) in lines {
-        split_fields(text, delimiter, &mut fields);
+    while let Some((line, text)) = lines.next_filled()? {
+        if text.starts_with('#') {
+            continue;
+        }
+        let fields = split_fields(text, delimiter);
         let number = |index: usize| {
             let field = fields.get(index).map_or("", AsRef::as_ref);
             coordinate(field, delimiter).ok_or_else(|| {
@@ -142,17 +144,17 @@ mod tests {
     fn rows_in_any_order_become_frames() {
         let text =
             "frame,time,marker,x,y,z\n1,0.01,b,4,5,6\n0,0,a,1,2,3\n0,0,b,7,8,9\n3,0.03,a,1,1,1\n";
-        let capture = read_bytes("a.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!(capture.labels, ["b", "a"]);
         assert_eq!((capture.rate_hz, capture.frames()), (100.0, 4));
         assert_eq!(capture.frame(0), [[7.0, 8.0, 9.0], [1.0, 2.0, 3.0]]);
         assert!(capture.frame(1)[1][0].is_nan() && capture.frame(2)[0][0].is_nan());
         let by_time = "time;label;x;y;z\n0;a;1,5;2;3\n0,02;a;1;2;3\n0,04;a;1;2;3\n";
-        let capture = read_bytes("a.csv", by_time.as_bytes()).unwrap();
+        let capture = read_bytes(by_time.as_bytes()).unwrap();
         assert_eq!((capture.rate_hz, capture.frame(0)[0]), (50.0, [1.5, 2.0, 3.0]));
         let twice = "frame,time,marker,x,y,z\n0,0,a,1,2,3\n0,0,a,7,8,9\n";
         assert_eq!(
-            read_bytes("a.csv", twice.as_bytes()).unwrap_err().to_string(),
+            read_bytes(twice.as_bytes()).unwrap_err().to_string(),
             "line 3, row: marker \"a\" twice in one frame; remove one of the rows"
         );
     }

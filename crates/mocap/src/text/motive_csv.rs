@@ -2,7 +2,7 @@
 //! that name for each column its type, name, id, parent, measure (position, rotation...) and axis.
 
 use super::table::frame_number;
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording};
 use std::collections::HashMap;
 
@@ -12,11 +12,9 @@ pub(crate) fn is_first_line(line: &str) -> bool {
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let mut lines = document.lines().skip_while(|(_, line)| line.trim().is_empty());
-    let (_, settings) = lines.next().unwrap_or((1, ""));
-    let mut fields = Vec::new();
-    split_fields(settings, Delimiter::Comma, &mut fields);
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let (_, settings) = lines.next_filled()?.unwrap_or((1, ""));
+    let fields = split_fields(settings, Delimiter::Comma);
     let setting = |name: &str| {
         let key = fields.iter().step_by(2).position(|key| key.eq_ignore_ascii_case(name))?;
         fields.get(2 * key + 1).map(ToString::to_string)
@@ -34,7 +32,7 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     // Lines of the header by what stands in their second column; the measures have none.
     let mut header: HashMap<String, Vec<String>> = HashMap::new();
     let (axes_line, axes) = loop {
-        let Some((line, text)) = lines.next() else {
+        let Some((line, text)) = lines.next()? else {
             return Err(ReadError::at_line(
                 1,
                 "header",
@@ -42,7 +40,7 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
                 "export the take again from Motive with its header",
             ));
         };
-        split_fields(text, Delimiter::Comma, &mut fields);
+        let fields = split_fields(text, Delimiter::Comma);
         let owned: Vec<String> = fields.iter().map(ToString::to_string).collect();
         if owned[0].eq_ignore_ascii_case("frame") {
             break (line, owned);
@@ -66,12 +64,8 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     }
     table.labels = columns.iter().map(|(label, _)| label.clone()).collect();
 
-    let mut fields = Vec::new();
-    for (line, text) in lines {
-        if text.trim().is_empty() {
-            continue;
-        }
-        split_fields(text, Delimiter::Comma, &mut fields);
+    while let Some((line, text)) = lines.next_filled()? {
+        let fields = split_fields(text, Delimiter::Comma);
         let number = |index: usize| {
             let field = fields.get(index).map_or("", AsRef::as_ref);
             coordinate(field, Delimiter::Comma).ok_or_else(|| {
@@ -148,7 +142,7 @@ mod tests {
             10,0.000000,1,1,9,9,9,0.1,0.2,0.3,0.4,0.5,0.6\n\
             11,0.016667,1,1,9,9,9,,,,0.4,0.5,0.6\n";
         for text in [text.to_owned(), text.replace('\n', "\r\n")] {
-            let got = read_recording("a.csv", text.as_bytes(), &ReadOptions::default()).unwrap();
+            let got = read_recording(text.as_bytes(), &ReadOptions::default()).unwrap();
             assert_eq!(got.system.as_deref(), Some("OptiTrack Motive, CSV 1.23"));
             let capture = got.capture;
             assert_eq!(capture.labels, ["brow", "nose"]);

@@ -3,7 +3,7 @@
 //! Coordinates are in millimetres. A gap is blank, `NULL` or zeros.
 
 use super::table::frame_number;
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Event, Format, LengthUnit, ReadError, ReadOptions, Recording};
 
 /// Whether a line is one that only such a file starts with.
@@ -13,14 +13,13 @@ pub(crate) fn is_first_line(line: &str) -> bool {
 
 /// Whether a line is a row of numbers alone: whole triples, with or without frame and time.
 pub(crate) fn is_row(line: &str) -> bool {
-    let mut fields = Vec::new();
-    split_fields(line.trim_end(), Delimiter::Tab, &mut fields);
+    let fields = split_fields(line.trim_end(), Delimiter::Tab);
     let numbers = fields.iter().all(|f| coordinate(f, Delimiter::Tab).is_some());
     numbers && fields.len() >= 3 && fields.len() % 3 != 1 && line.contains('\t')
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut table = Table {
         system: Some("Qualisys Track Manager".to_owned()),
         declared_unit: Some(LengthUnit::Millimetre),
@@ -28,14 +27,10 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     };
     let mut events = Vec::new();
     let mut frames_declared = None;
-    let mut fields = Vec::new();
     let mut in_rows = false;
     let mut leading = None;
-    for (line, text) in document.lines() {
-        if text.trim().is_empty() {
-            continue;
-        }
-        split_fields(text, Delimiter::Tab, &mut fields);
+    while let Some((line, text)) = lines.next_filled()? {
+        let mut fields = split_fields(text, Delimiter::Tab);
         let is_number = coordinate(&fields[0], Delimiter::Tab).is_some() && !fields[0].is_empty();
         in_rows |= is_number;
         if !in_rows {
@@ -159,7 +154,7 @@ mod tests {
             (format!("{HEAD}{columns}{numbered}"), 705),
             (format!("{HEAD}{plain}"), 0),
         ] {
-            let got = read_recording("a.tsv", text.as_bytes(), &ReadOptions::default()).unwrap();
+            let got = read_recording(text.as_bytes(), &ReadOptions::default()).unwrap();
             let capture = got.capture;
             assert_eq!(capture.labels, ["left brow", "nose"]);
             assert_eq!((capture.rate_hz, capture.first_frame, capture.frames()), (200.0, first, 3));
@@ -175,11 +170,11 @@ mod tests {
     fn without_header_labels_are_made_up_and_the_rate_is_asked_for() {
         let text = "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t5\t6\n";
         let options = ReadOptions { rate_hz: Some(100.0), ..ReadOptions::default() };
-        let capture = read_recording("a.tsv", text.as_bytes(), &options).unwrap().capture;
+        let capture = read_recording(text.as_bytes(), &options).unwrap().capture;
         assert_eq!(capture.labels, ["M001", "M002"]);
         assert_eq!(capture.frame(1)[1], [4.0, 5.0, 6.0]);
         assert_eq!(
-            read_bytes("a.tsv", text.as_bytes()).unwrap_err().to_string(),
+            read_bytes(text.as_bytes()).unwrap_err().to_string(),
             "line 1, header: no rate and no time column; give the rate of the recording (--rate)"
         );
     }

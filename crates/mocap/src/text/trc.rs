@@ -5,7 +5,7 @@
 
 use super::table::frame_number;
 use super::write_csv::{check_label, push};
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Capture, Format, LengthUnit, ReadError, ReadOptions, Recording, WriteError};
 
 const REMEDY: &str = "export the take again as TRC";
@@ -16,31 +16,30 @@ pub(crate) fn is_first_line(line: &str) -> bool {
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut table = Table::default();
-    let mut lines = document.lines().skip_while(|(_, line)| line.trim().is_empty()).skip(1);
-    let mut header_line = || lines.next().unwrap_or((1, ""));
-    let (keys, values) = (header_line(), header_line());
-    let (label_line, labels) = header_line();
-    let (axes_line, axes) = header_line();
+    // The first line says that it is TRC.
+    lines.next_filled()?;
+    let [(_, keys), (values_line, values), (label_line, labels), (axes_line, axes)] =
+        lines.header(1)?;
 
     let setting = |name: &str| {
-        let keys = keys.1.split('\t').map(str::trim);
+        let keys = keys.split('\t').map(str::trim);
         let place = keys.into_iter().position(|key| key.eq_ignore_ascii_case(name))?;
-        values.1.split('\t').map(str::trim).nth(place)
+        values.split('\t').map(str::trim).nth(place)
     };
     table.declared_rate = setting("DataRate").and_then(|v| v.replace(',', ".").parse().ok());
     table.declared_unit = setting("Units").and_then(LengthUnit::from_name);
     if table.declared_rate.is_none() && options.rate_hz.is_none() {
         return Err(ReadError::at_line(
-            values.0,
+            values_line,
             "header",
             "no number under DataRate",
             "give the rate of the recording (--rate)",
         ));
     }
 
-    table.labels = labels_of(labels);
+    table.labels = labels_of(&labels);
     let triples = axes.split('\t').filter(|f| f.trim().starts_with(['X', 'x'])).count();
     if triples > table.labels.len() {
         table.notes.push(format!("{} labels for {triples} markers", table.labels.len()));
@@ -55,53 +54,56 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     }
 
     let mut ended_early = 0_usize;
-    let mut fields = Vec::new();
     // The axes line is a row of data where a writer left it out.
-    let first_row = axes.trim_start().starts_with(|c: char| c.is_ascii_digit());
-    let rows = first_row.then_some((axes_line, axes)).into_iter().chain(lines);
-    for (line, text) in rows {
-        if text.trim().is_empty() {
-            continue;
-        }
-        split_fields(text, Delimiter::Tab, &mut fields);
-        let coordinates = fields.get(2..).unwrap_or(&[]);
-        if fields.len() < 2 || coordinates.iter().skip(3 * markers).any(|f| !f.is_empty()) {
-            return Err(ReadError::at_line(
-                line,
-                "row",
-                format!("{} columns for {markers} markers ({})", fields.len(), 2 + 3 * markers),
-                "complete the labels or the row",
-            ));
-        }
-        let number = |index: usize| {
-            coordinate(&fields[index], Delimiter::Tab).ok_or_else(|| {
-                ReadError::at_line(
-                    line,
-                    format!("column {}", index + 1),
-                    format!("\"{}\" is not a number", fields[index]),
-                    "write numbers with a decimal point, a missing one as blank",
-                )
-            })
-        };
-        table.frame_numbers.push(frame_number(number(0)?, &fields[0], line)?);
-        table.times.push(number(1)?);
-        ended_early += usize::from(coordinates.len() < 3 * markers);
-        for marker in 0..markers {
-            let mut p = [f64::NAN; 3];
-            for (axis, value) in p.iter_mut().enumerate() {
-                let index = 2 + 3 * marker + axis;
-                if index < fields.len() {
-                    *value = number(index)?;
-                }
-            }
-            table.positions.push(p);
-        }
-        table.lines.push(line);
+    if axes.trim_start().starts_with(|c: char| c.is_ascii_digit()) {
+        ended_early += usize::from(row(axes_line, &axes, &mut table)?);
+    }
+    while let Some((line, text)) = lines.next_filled()? {
+        ended_early += usize::from(row(line, text, &mut table)?);
     }
     if ended_early > 0 {
         table.notes.push(format!("{ended_early} rows end early, the rest taken as missing"));
     }
     table.finish(Format::Trc, options)
+}
+
+/// Take in a row of data; whether it ends early.
+fn row(line: usize, text: &str, table: &mut Table) -> Result<bool, ReadError> {
+    let markers = table.labels.len();
+    let fields = split_fields(text, Delimiter::Tab);
+    let coordinates = fields.get(2..).unwrap_or(&[]);
+    if fields.len() < 2 || coordinates.iter().skip(3 * markers).any(|f| !f.is_empty()) {
+        return Err(ReadError::at_line(
+            line,
+            "row",
+            format!("{} columns for {markers} markers ({})", fields.len(), 2 + 3 * markers),
+            "complete the labels or the row",
+        ));
+    }
+    let number = |index: usize| {
+        coordinate(&fields[index], Delimiter::Tab).ok_or_else(|| {
+            ReadError::at_line(
+                line,
+                format!("column {}", index + 1),
+                format!("\"{}\" is not a number", fields[index]),
+                "write numbers with a decimal point, a missing one as blank",
+            )
+        })
+    };
+    table.frame_numbers.push(frame_number(number(0)?, &fields[0], line)?);
+    table.times.push(number(1)?);
+    for marker in 0..markers {
+        let mut p = [f64::NAN; 3];
+        for (axis, value) in p.iter_mut().enumerate() {
+            let index = 2 + 3 * marker + axis;
+            if index < fields.len() {
+                *value = number(index)?;
+            }
+        }
+        table.positions.push(p);
+    }
+    table.lines.push(line);
+    Ok(coordinates.len() < 3 * markers)
 }
 
 /// The labels: every third field after frame and time; where tabs are missing, all that is there.
@@ -172,7 +174,7 @@ mod tests {
             "{HEAD}Frame#\tTime\tleft brow\t\t\tnose\t\t\r\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\r\n\r\n\
              11\t0.00\t1\t2\t3\t4\t5\t6\r\n12\t0.01\t\t\t\t4\t5\t6\r\n13\t0.02\t1\t2\t3\r\n"
         );
-        let capture = read_bytes("a.trc", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!(capture.labels, ["left brow", "nose"]);
         assert_eq!((capture.rate_hz, capture.first_frame), (100.0, 11));
         assert_eq!((capture.unit, capture.frames()), (LengthUnit::Centimetre, 3));
@@ -187,7 +189,7 @@ mod tests {
     #[test]
     fn labels_without_their_empty_columns_and_without_axes_line() {
         let text = format!("{HEAD}Frame#\tTime\ta\tb\tc\r\n1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\r\n");
-        let capture = read_bytes("a.trc", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!(capture.labels, ["a", "b", "c"]);
         assert_eq!(capture.frame(0)[2], [7.0, 8.0, 9.0]);
     }
@@ -196,7 +198,7 @@ mod tests {
     fn errors_name_the_line() {
         let rows = "Frame#\tTime\ta\t\t\r\n\t\tX1\tY1\tZ1\r\n1\t0\t1\t2\t3\t4\r\n";
         assert_eq!(
-            read_bytes("a.trc", format!("{HEAD}{rows}").as_bytes()).unwrap_err().to_string(),
+            read_bytes(format!("{HEAD}{rows}").as_bytes()).unwrap_err().to_string(),
             "line 6, row: 6 columns for 1 markers (5); complete the labels or the row"
         );
     }

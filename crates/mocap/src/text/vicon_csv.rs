@@ -2,7 +2,7 @@
 //! of names, a line of axes, a line of units and rows. Separated by commas, semicolons or tabs.
 
 use super::table::frame_number;
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording};
 
 const SECTIONS: [&str; 6] =
@@ -20,33 +20,32 @@ pub(crate) fn is_first_line(line: &str) -> bool {
 }
 
 /// Read the trajectories of the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut table = Table { system: Some("Vicon Nexus".to_owned()), ..Table::default() };
-    let mut lines = document.lines().skip_while(|(_, line)| section(line) != Some("Trajectories"));
-    let Some((title_line, _)) = lines.next() else {
-        return Err(ReadError::at_line(
-            1,
-            "sections",
-            "no section Trajectories",
-            "export the trajectories from Nexus",
-        ));
+    let title_line = loop {
+        match lines.next()? {
+            Some((number, line)) if section(line) == Some("Trajectories") => break number,
+            Some(_) => {}
+            None => {
+                return Err(ReadError::at_line(
+                    1,
+                    "sections",
+                    "no section Trajectories",
+                    "export the trajectories from Nexus",
+                ));
+            }
+        }
     };
-    let mut header_line = || lines.next().unwrap_or((title_line, ""));
-    let (_, rate) = header_line();
-    let (_, names) = header_line();
-    let (axes_line, axes) = header_line();
-    let (_, units) = header_line();
-    let delimiter = Delimiter::of(axes);
+    let [(_, rate), (_, names), (axes_line, axes), (_, units)] = lines.header(title_line)?;
+    let delimiter = Delimiter::of(&axes);
     table.declared_rate = rate
         .trim_matches(|c: char| c.is_whitespace() || ";,".contains(c))
         .replace(',', ".")
         .parse()
         .ok();
 
-    let mut fields = Vec::new();
-    split_fields(names, delimiter, &mut fields);
-    let names: Vec<String> = fields.iter().map(ToString::to_string).collect();
-    split_fields(axes, delimiter, &mut fields);
+    let names = split_fields(&names, delimiter);
+    let fields = split_fields(&axes, delimiter);
     // A marker is named over its X; velocities and accelerations have axes X', X''.
     let columns: Vec<usize> = (2..fields.len().saturating_sub(2))
         .filter(|&c| fields[c] == "X" && fields[c + 1] == "Y" && fields[c + 2] == "Z")
@@ -60,16 +59,16 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
         ));
     }
     let width = columns.last().map_or(0, |last| last + 3);
-    table.labels = columns.iter().map(|&c| names.get(c).cloned().unwrap_or_default()).collect();
-    split_fields(units, delimiter, &mut fields);
-    table.declared_unit = fields.get(columns[0]).and_then(|u| LengthUnit::from_name(u));
+    table.labels = columns.iter().map(|&c| names.get(c).map_or("", AsRef::as_ref).to_owned()).collect();
+    let units = split_fields(&units, delimiter);
+    table.declared_unit = units.get(columns[0]).and_then(|u| LengthUnit::from_name(u));
 
     let mut ended_early = 0_usize;
-    for (line, text) in lines {
+    while let Some((line, text)) = lines.next()? {
         if text.trim_matches(|c: char| c.is_whitespace() || ",;".contains(c)).is_empty() {
             break;
         }
-        split_fields(text, delimiter, &mut fields);
+        let fields = split_fields(text, delimiter);
         ended_early += usize::from(fields.len() < width);
         let number = |index: usize| {
             let field = fields.get(index).map_or("", AsRef::as_ref);
@@ -105,7 +104,7 @@ mod tests {
             21,0,1.5,2,3,4,5,6\n22,0,,,,4,5,6\n23,0,1,2,3\n\nEvents\n1\n";
         let semicolons = text.replace(',', ";").replace('.', ",");
         for text in [text, &semicolons] {
-            let capture = read_bytes("a.csv", text.as_bytes()).unwrap();
+            let capture = read_bytes(text.as_bytes()).unwrap();
             assert_eq!(capture.labels, ["S:brow", "S:nose"]);
             assert_eq!((capture.rate_hz, capture.first_frame), (100.0, 21));
             assert_eq!((capture.unit, capture.frames()), (LengthUnit::Millimetre, 3));

@@ -6,7 +6,7 @@
 //! with `#` are comments; `# unit: mm` and `# rate_hz: 200` are read.
 
 use super::table::frame_number;
-use super::{Delimiter, Document, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, split_fields};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording, plausibility};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -26,20 +26,17 @@ enum Column {
 
 /// Whether a line is the header of such a file: it names at least one marker in x, y and z.
 pub(crate) fn is_header(line: &str, delimiter: Delimiter) -> bool {
-    let mut names = Vec::new();
-    split_fields(line, delimiter, &mut names);
-    columns(&names).map_or(true, |(labels, _, _)| !labels.is_empty())
+    columns(&split_fields(line, delimiter)).map_or(true, |(labels, _, _)| !labels.is_empty())
 }
 
 /// Read the document.
-pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let mut table = Table::default();
-    let mut lines = document.lines();
     let (header_line, header) = loop {
-        match lines.next() {
+        match lines.next()? {
             Some((_, line)) if line.starts_with('#') => comment(line, &mut table),
             Some((_, line)) if line.trim().is_empty() => {}
-            Some(found) => break found,
+            Some((number, line)) => break (number, line.to_owned()),
             None => {
                 return Err(ReadError::at_line(
                     1,
@@ -50,9 +47,8 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
             }
         }
     };
-    let delimiter = Delimiter::of(header);
-    let mut names = Vec::new();
-    split_fields(header, delimiter, &mut names);
+    let delimiter = Delimiter::of(&header);
+    let names = split_fields(&header, delimiter);
     let (labels, columns, unit) = columns(&names).map_err(|name| {
         ReadError::at_line(
             header_line,
@@ -74,15 +70,15 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
     }
 
     let markers = table.labels.len();
-    let mut fields = Vec::with_capacity(columns.len());
+    let length = lines.length();
     let mut values = Vec::with_capacity(columns.len());
-    for (line_number, line) in lines {
+    while let Some((line_number, line)) = lines.next()? {
         if plain_row(line, delimiter, columns.len(), &mut values) {
             let row = table.positions.len();
             if row == 0 {
                 // As many rows as the rest of the file holds at this length, in one piece.
-                let rows = document.length() / (line.len() + 1) + 1;
-                table.positions.reserve(rows * markers);
+                let rows = length / (line.len() as u64 + 1) + 1;
+                table.positions.reserve(rows as usize * markers);
             }
             table.positions.resize(row + markers, [f64::NAN; 3]);
             for (value, column) in values.iter().zip(&columns) {
@@ -107,7 +103,7 @@ pub(crate) fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Rec
         if line.trim().is_empty() || line.starts_with('#') {
             continue;
         }
-        split_fields(line, delimiter, &mut fields);
+        let fields = split_fields(line, delimiter);
         row_width(&fields, columns.len(), line_number)?;
         let row = table.positions.len();
         table.positions.resize(row + markers, [f64::NAN; 3]);
@@ -317,7 +313,7 @@ mod tests {
     fn reads_labels_rate_unit_and_missing_markers() {
         let text = "frame,time,A_x,A_y,A_z,B b.X,B b.Y,B b.Z\n\
                     7,0.000,0,0,100,50,1,2\n8,0.010,1,2,103,,,\n9,0.020,1,NaN,3,51,1,2\n";
-        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!(capture.labels, ["A", "B b"]);
         assert_eq!((capture.rate_hz, capture.first_frame, capture.frames()), (100.0, 7, 3));
         assert_eq!(capture.unit, LengthUnit::Millimetre);
@@ -329,7 +325,7 @@ mod tests {
     #[test]
     fn semicolons_decimal_commas_units_in_brackets_and_columns_in_any_order() {
         let text = "Time (ms);n_z [cm];n_x [cm];n_y [cm];quality\n0;3,5;1,5;2,5;a\n20;3;1;2;b\n";
-        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!((capture.rate_hz, capture.unit), (50.0, LengthUnit::Centimetre));
         assert_eq!(capture.positions, [[1.5, 2.5, 3.5], [1.0, 2.0, 3.0]]);
         assert_eq!(capture.notes, ["columns ignored: quality"]);
@@ -338,7 +334,7 @@ mod tests {
     #[test]
     fn dropped_rows_become_missing_frames() {
         let text = "frame,time_s,a_x,a_y,a_z\n0,0,1,2,3\n1,0.01,1,2,3\n4,0.04,1,2,4\n";
-        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!((capture.frames(), capture.rate_hz), (5, 100.0));
         assert!(capture.frame(2)[0][0].is_nan() && capture.frame(3)[0][0].is_nan());
         assert_eq!(capture.frame(4), [[1.0, 2.0, 4.0]]);
@@ -348,13 +344,13 @@ mod tests {
     #[test]
     fn every_second_frame_halves_the_rate() {
         let text = "frame,time_s,a_x,a_y,a_z\n10,0,1,2,3\n12,0.02,1,2,3\n16,0.06,1,2,4\n";
-        let capture = read_bytes("take.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert_eq!((capture.frames(), capture.rate_hz, capture.first_frame), (4, 50.0, 10));
     }
 
     #[test]
     fn errors_name_line_value_and_remedy() {
-        let message = |text: &str| read_bytes("t.csv", text.as_bytes()).unwrap_err().to_string();
+        let message = |text: &str| read_bytes(text.as_bytes()).unwrap_err().to_string();
         let head = "frame,time,a_x,a_y,a_z\n";
         assert_eq!(
             message(&format!("{head}0,0,1,2,3\n1,0.01,1,2 mm,3\n")),
@@ -389,7 +385,7 @@ mod tests {
     fn zeros_are_gaps_unless_the_marker_is_near_the_origin() {
         let text = "# unit: mm; rate_hz: 100\nframe,a_x,a_y,a_z,b_x,b_y,b_z\n\
                     0,100,2,3,1,1,1\n1,0,0,0,0,0,0\n2,100,2,3,1,0,0\n";
-        let capture = read_bytes("t.csv", text.as_bytes()).unwrap();
+        let capture = read_bytes(text.as_bytes()).unwrap();
         assert!(capture.frame(1)[0][0].is_nan());
         assert_eq!(capture.frame(1)[1], [0.0; 3]);
     }

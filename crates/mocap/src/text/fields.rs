@@ -1,49 +1,6 @@
-//! A text file as lines and fields: encodings, line ends, delimiters, quotes, decimal commas.
+//! A line as fields and numbers: delimiters, quotes, decimal commas.
 
 use std::borrow::Cow;
-
-/// A decoded text file.
-pub(crate) struct Document<'a> {
-    text: Cow<'a, str>,
-}
-
-impl<'a> Document<'a> {
-    /// Decode UTF-8, UTF-16 (with its byte order mark) or, when it is neither, Latin-1.
-    pub(crate) fn decode(bytes: &'a [u8]) -> Self {
-        let text = match bytes {
-            [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, u16::from_le_bytes)),
-            [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, u16::from_be_bytes)),
-            _ => {
-                let rest = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
-                match std::str::from_utf8(rest) {
-                    Ok(text) => Cow::Borrowed(text),
-                    Err(_) => Cow::Owned(rest.iter().map(|&b| char::from(b)).collect()),
-                }
-            }
-        };
-        Self { text }
-    }
-
-    /// Bytes of the text.
-    pub(crate) fn length(&self) -> usize {
-        self.text.len()
-    }
-
-    /// Lines with their number (1 = the first), without line ends (`\n`, `\r\n` or `\r`).
-    pub(crate) fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
-        let end = if self.text.contains('\n') { '\n' } else { '\r' };
-        self.text
-            .split(end)
-            .enumerate()
-            .map(move |(i, line)| (i + 1, line.strip_suffix('\r').unwrap_or(line)))
-    }
-}
-
-/// Decode UTF-16 code units; an odd last byte is dropped.
-fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
-    let units = bytes.as_chunks::<2>().0.iter().map(|pair| unit(*pair));
-    char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-}
 
 /// What separates fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,16 +40,14 @@ impl Delimiter {
     }
 }
 
-/// Split a line into fields, without blanks and quotes around them, into `fields`.
-pub(crate) fn split_fields<'l>(
-    line: &'l str,
-    delimiter: Delimiter,
-    fields: &mut Vec<Cow<'l, str>>,
-) {
-    fields.clear();
+/// The fields of a line, without blanks and quotes around them; at least one.
+pub(crate) fn split_fields(line: &str, delimiter: Delimiter) -> Vec<Cow<'_, str>> {
+    let separator = delimiter.char();
+    let count = line.bytes().filter(|b| char::from(*b) == separator).count();
+    let mut fields = Vec::with_capacity(count + 1);
     if !line.contains('"') {
-        fields.extend(line.split(delimiter.char()).map(|f| Cow::Borrowed(f.trim())));
-        return;
+        fields.extend(line.split(separator).map(|f| Cow::Borrowed(f.trim())));
+        return fields;
     }
     let mut field = String::new();
     let mut quoted = false;
@@ -105,7 +60,7 @@ pub(crate) fn split_fields<'l>(
             } else {
                 quoted = !quoted;
             }
-        } else if c == delimiter.char() && !quoted {
+        } else if c == separator && !quoted {
             fields.push(Cow::Owned(field.trim().to_owned()));
             field.clear();
         } else {
@@ -113,6 +68,7 @@ pub(crate) fn split_fields<'l>(
         }
     }
     fields.push(Cow::Owned(field.trim().to_owned()));
+    fields
 }
 
 /// A coordinate: NaN where the field is blank or a word for missing, `None` where it is not a
@@ -147,25 +103,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decodes_every_encoding_to_the_same_lines() {
-        let text = "a,b\r\n1,2\r\n";
-        let utf16: Vec<u8> = [0xff, 0xfe]
-            .into_iter()
-            .chain(text.encode_utf16().flat_map(u16::to_le_bytes))
-            .collect();
-        let marked: Vec<u8> = [0xef, 0xbb, 0xbf].into_iter().chain(text.bytes()).collect();
-        for bytes in [text.as_bytes(), &utf16, &marked, b"a,b\r1,2\r", b"a,b\n1,2\n"] {
-            let document = Document::decode(bytes);
-            let lines: Vec<_> = document.lines().collect();
-            assert_eq!(lines, [(1, "a,b"), (2, "1,2"), (3, "")]);
-        }
-        assert_eq!(Document::decode(b"caf\xe9").lines().next(), Some((1, "café")));
-    }
-
-    #[test]
     fn fields_keep_delimiters_inside_quotes() {
-        let mut fields = Vec::new();
-        split_fields("a, \"b, \"\"c\"\"\" ,d", Delimiter::Comma, &mut fields);
+        let fields = split_fields("a, \"b, \"\"c\"\"\" ,d", Delimiter::Comma);
         assert_eq!(fields, ["a", "b, \"c\"", "d"]);
     }
 
