@@ -1,13 +1,14 @@
 //! `mimique inspect`: what an avatar, a capture, a weight file, a marker map, a study or a pack
 //! holds, told from the file's content.
 
-use std::io::Write as _;
+use std::borrow::Cow;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use mimique_face::Avatar;
 use mimique_face::pack::{decode_pack, pack_kind};
-use mimique_mocap::{CaptureFacts, Format, ReadOptions};
+use mimique_mocap::{CaptureFacts, CaptureFile, Format, ReadOptions};
 use mimique_solver::Linking;
 use mimique_stimulus::{
     AvatarSkin, BankDiagnosis, MarkerMap, TakeContent, WeightsTable, decode_operators, decode_take,
@@ -34,14 +35,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if args.bank {
         return bank(&args, json);
     }
-    let bytes = match args.file.is_dir() {
-        true => Vec::new(),
-        false => std::fs::read(&args.file)
-            .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?,
-    };
-    let mut facts = facts(&args.file, &bytes).map_err(|e| blame(e.to_string()))?;
+    let opened = Opened::new(&args.file)
+        .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
+    let mut facts = facts(&opened).map_err(|e| blame(e.to_string()))?;
     facts["file"] = json!(args.file);
-    facts["bytes"] = json!(bytes.len());
+    facts["bytes"] = json!(opened.length);
     let mut out = std::io::stdout().lock();
     if json {
         writeln!(out, "{}", serde_json::to_string_pretty(&facts)?)?;
@@ -81,22 +79,75 @@ fn bank(args: &Args, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn facts(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
-    match pack_kind(bytes) {
-        Some("MMAV") => return Ok(avatar_facts("avatar pack", &decode_pack(bytes)?, bytes)),
-        Some("MMOP") => return operators_facts(bytes),
-        Some(_) => return take_facts(bytes),
-        None => {}
+/// The file to be inspected: what it begins with tells how much of it is read at a time.
+struct Opened<'a> {
+    file: &'a Path,
+    /// The first 512 bytes.
+    head: Vec<u8>,
+    length: u64,
+    /// All of it, where it is a pipe and can be read only once.
+    piped: Option<Vec<u8>>,
+}
+
+impl<'a> Opened<'a> {
+    fn new(file: &'a Path) -> std::io::Result<Self> {
+        let metadata = std::fs::metadata(file)?;
+        let piped = match metadata.is_file() || metadata.is_dir() {
+            true => None,
+            false => Some(std::fs::read(file)?),
+        };
+        let mut head = Vec::new();
+        match &piped {
+            Some(bytes) => head.extend(bytes.iter().take(512)),
+            None if metadata.is_dir() => {}
+            None => _ = std::fs::File::open(file)?.take(512).read_to_end(&mut head)?,
+        }
+        let length = match (&piped, metadata.is_dir()) {
+            (Some(bytes), _) => bytes.len() as u64,
+            (None, true) => 0,
+            (None, false) => metadata.len(),
+        };
+        Ok(Self { file, head, length, piped })
+    }
+
+    /// As a capture, to be read as a stream.
+    fn capture(&self) -> Result<CaptureFile<'_>, mimique_mocap::ReadError> {
+        match &self.piped {
+            Some(bytes) => CaptureFile::of_bytes(bytes),
+            None => CaptureFile::open(self.file),
+        }
+    }
+
+    /// All its bytes; none of a folder.
+    fn bytes(&self) -> anyhow::Result<Cow<'_, [u8]>> {
+        match &self.piped {
+            Some(bytes) => Ok(Cow::Borrowed(bytes)),
+            None if self.file.is_dir() => Ok(Cow::Borrowed(&[])),
+            None => Ok(Cow::Owned(std::fs::read(self.file)?)),
+        }
+    }
+}
+
+fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
+    let (file, head) = (opened.file, &opened.head);
+    if let Some(kind) = pack_kind(head) {
+        let bytes = opened.bytes()?;
+        return match kind {
+            "MMAV" => Ok(avatar_facts("avatar pack", &decode_pack(&bytes)?, &bytes)),
+            "MMOP" => operators_facts(&bytes),
+            _ => take_facts(&bytes),
+        };
     }
     let archives: [&[u8]; 3] = [b"PK\x03\x04", b"\x1f\x8b", b"\xfd7zXZ\0"];
-    let is_tar = bytes.get(257..262) == Some(b"ustar");
-    let is_archive = is_tar || archives.iter().any(|opening| bytes.starts_with(opening));
-    if file.is_dir() || is_archive || bytes.starts_with(b"glTF") {
-        return avatar_file(file, bytes);
+    let is_tar = head.get(257..262) == Some(b"ustar");
+    let is_archive = is_tar || archives.iter().any(|opening| head.starts_with(opening));
+    if file.is_dir() || is_archive || head.starts_with(b"glTF") {
+        return avatar_file(file, &opened.bytes()?);
     }
-    match mimique_mocap::recognise(bytes) {
+    let mut capture = opened.capture()?;
+    match capture.format() {
         Some(Format::LiveLinkCsv) => {
-            let take = mimique_mocap::read_weights(&file.to_string_lossy(), bytes)?;
+            let take = capture.weights()?;
             return Ok(weights_facts(
                 Format::LiveLinkCsv.name(),
                 &take.names,
@@ -106,16 +157,15 @@ fn facts(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
             ));
         }
         Some(_) => {
-            let options = ReadOptions::default();
-            let recording =
-                mimique_mocap::read_recording(&file.to_string_lossy(), bytes, &options)?;
+            let recording = capture.recording(&ReadOptions::default())?;
             let mut facts = serde_json::to_value(CaptureFacts::of(&recording))?;
             facts["kind"] = json!("capture");
             return Ok(facts);
         }
         None => {}
     }
-    let text = String::from_utf8_lossy(bytes);
+    let bytes = opened.bytes()?;
+    let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with("marker,") {
         return map_facts(text);
@@ -128,12 +178,12 @@ fn facts(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
     }
     match mimique_study::parse(text) {
         Ok(value) if value.get("meshes").is_some() && value.get("asset").is_some() => {
-            avatar_file(file, bytes)
+            avatar_file(file, &bytes)
         }
         Ok(value) if value.get("markers").is_some_and(Value::is_object) => map_facts(text),
         Ok(value) if value.get("stimuli").is_some() => study_facts(&value),
         // What is neither is best explained by the reader of captures, which names what it reads.
-        _ => match mimique_mocap::read_bytes(&file.to_string_lossy(), bytes) {
+        _ => match capture.recording(&ReadOptions::default()) {
             Err(error) => Err(error.into()),
             Ok(_) => Err(anyhow!("byte 0: not a file that Mimique knows")),
         },

@@ -6,6 +6,7 @@
 mod account;
 mod analyze;
 mod backup;
+mod capture_options;
 mod check;
 mod erase;
 mod export;

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use mimique_mocap::{
-    C3dOptions, Capture, GapFill, LowPass, ReadOptions, RepairPlan, Repaired, stillest,
+    C3dOptions, Capture, CaptureFile, GapFill, LowPass, RepairPlan, Repaired, stillest,
 };
-use mimique_stimulus::{FileHash, MarkerMap, RepairSidecar, sidecar_path};
+use mimique_stimulus::{FileHash, RepairSidecar, sidecar_path};
 use serde_json::json;
 
+use crate::capture_options::CaptureOptions;
 use crate::output;
-use crate::solve::length_unit;
 
 /// Options.
 #[derive(clap::Args)]
@@ -46,37 +46,19 @@ pub struct Args {
     /// Frames a second of what comes out
     #[arg(long, value_name = "HZ")]
     resample: Option<f64>,
-    /// Hold the head still by these markers
-    #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
-    head: Vec<String>,
-    /// Hold the head still by the head markers of this marker map
-    #[arg(long, value_name = "MAP", conflicts_with = "head")]
-    markers: Option<PathBuf>,
-    /// Unit of the capture where its file does not say: m, cm or mm
-    #[arg(long, value_name = "UNIT")]
-    mocap_unit: Option<String>,
-    /// Frames a second of the capture where its file does not say
-    #[arg(long, value_name = "HZ")]
-    mocap_rate: Option<f64>,
+    #[command(flatten)]
+    read: CaptureOptions,
 }
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let blame = |path: &Path, error: String| anyhow!("{}: {error}", path.display());
     let plan = plan(&args)?;
-    let bytes = std::fs::read(&args.capture).map_err(|e| {
-        blame(&args.capture, format!("open: {e}; check the path and its permissions"))
-    })?;
-    let options = ReadOptions {
-        unit: args.mocap_unit.as_deref().map(length_unit).transpose()?,
-        rate_hz: args.mocap_rate,
-    };
-    let name = args.capture.to_string_lossy();
-    let capture = mimique_mocap::read_recording(&name, &bytes, &options)
-        .map_err(|e| blame(&args.capture, e.to_string()))?
-        .capture;
-    let source = FileHash::of(&args.capture, &bytes);
-    drop(bytes);
+    let mut file =
+        CaptureFile::open(&args.capture).map_err(|e| blame(&args.capture, e.to_string()))?;
+    let capture = args.read.recording(&args.capture, &mut file)?.capture;
+    let source = FileHash::of_file(&args.capture)
+        .map_err(|e| blame(&args.capture, format!("read: {e}; check the disk")))?;
     let Repaired { capture, record } =
         mimique_mocap::repair(capture, &plan).map_err(|e| blame(&args.capture, e.to_string()))?;
     let out = written(&capture, &args.out)?;
@@ -171,21 +153,8 @@ fn plan(args: &Args) -> anyhow::Result<RepairPlan> {
         gaps: GapFill { spline_s: args.max_gap, rigid_s: args.max_rigid_gap },
         low_pass: low_pass.transpose()?,
         resample_hz: args.resample,
-        head: head(&args.head, args.markers.as_deref())?,
+        head: args.read.head()?,
     })
-}
-
-/// The head's markers: named, or those of a marker map.
-pub(crate) fn head(named: &[String], map: Option<&Path>) -> anyhow::Result<Vec<String>> {
-    let Some(path) = map else { return Ok(named.to_vec()) };
-    let blame = |e: String| anyhow!("{}: {e}", path.display());
-    let text =
-        std::fs::read_to_string(path).map_err(|e| blame(format!("open: {e}; check the path")))?;
-    let map = MarkerMap::from_text(&text).map_err(|e| blame(e.to_string()))?;
-    if map.head.is_empty() {
-        return Err(blame("head: no head markers; name them there, or with --head".to_owned()));
-    }
-    Ok(map.head)
 }
 
 /// The capture in the format that the file's name asks for.

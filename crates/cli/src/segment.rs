@@ -1,20 +1,21 @@
-//! `mimique segment`: the expressions of a long take, suggested, and carried between CSV and ELAN.
+//! `mimique segment`: the expressions of a long take, suggested, carried between CSV and ELAN, and
+//! told as the segments of a study file.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{anyhow, bail};
-use mimique_mocap::{Format, ReadOptions, stabilise};
+use mimique_mocap::{CaptureFile, Format, stabilise};
 use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, WeightsTable, cut,
-    read_segments, suggest, write_segments,
+    read_segments, study_segments, suggest, write_segments,
 };
 use serde_json::json;
 
+use crate::capture_options::CaptureOptions;
 use crate::output;
-use crate::repair::head;
-use crate::solve::{Span, length_unit};
+use crate::solve::Span;
 
 /// Options.
 #[derive(clap::Args)]
@@ -45,18 +46,11 @@ pub struct Args {
     /// Film that a new .eaf belongs to
     #[arg(long, value_name = "FILE")]
     media: Option<String>,
-    /// Markers that hold the head still (of a capture)
-    #[arg(long, value_name = "LABEL,LABEL,LABEL", value_delimiter = ',')]
-    head: Vec<String>,
-    /// Marker map whose head markers hold the head still (of a capture)
-    #[arg(long, value_name = "MAP", conflicts_with = "head")]
-    markers: Option<PathBuf>,
-    /// Unit of the capture where its file does not say: m, cm or mm
-    #[arg(long, value_name = "UNIT")]
-    mocap_unit: Option<String>,
-    /// Frames a second of the take where its file does not say
-    #[arg(long, value_name = "HZ")]
-    mocap_rate: Option<f64>,
+    /// Print the segments of a study file instead, as cuts of its capture of this identifier
+    #[arg(long, value_name = "CAPTURE", conflicts_with = "json")]
+    study: Option<String>,
+    #[command(flatten)]
+    read: CaptureOptions,
 }
 
 /// What is cut: channels over time.
@@ -78,6 +72,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     for (option, seconds) in [("--lead-in", args.lead_in), ("--lead-out", args.lead_out)] {
         if !(seconds >= 0.0 && seconds.is_finite()) {
             bail!("{option}: {seconds}; give seconds, 0 for none");
+        }
+    }
+    if let Some(id) = &args.study {
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if id.is_empty() || !id.chars().all(plain) {
+            bail!("--study: {id:?} is no identifier of a capture; use letters, digits, _ and -");
         }
     }
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
@@ -107,6 +107,14 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         output::write(out, text.as_bytes())?;
     }
     let mut out = std::io::stdout().lock();
+    if let Some(capture) = &args.study {
+        // Nothing but what is to be pasted.
+        let rows = study_segments(&found.segments, capture);
+        let rows: Result<Vec<_>, _> = rows.iter().map(serde_json::to_string).collect();
+        writeln!(out, "[\n  {}\n]", rows?.join(",\n  "))?;
+        take.notes.iter().for_each(|note| eprintln!("note: {note}"));
+        return Ok(());
+    }
     if json {
         writeln!(
             out,
@@ -145,25 +153,16 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 /// The take's channels: weights as they are, or the markers in a still head.
 fn take(args: &Args) -> anyhow::Result<Take> {
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
-    let bytes = std::fs::read(&args.take)
-        .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
-    let name = args.take.to_string_lossy();
-    match mimique_mocap::recognise(&bytes) {
+    let mut file = CaptureFile::open(&args.take).map_err(|e| blame(e.to_string()))?;
+    match file.format() {
         Some(Format::LiveLinkCsv) => {
-            let weights =
-                mimique_mocap::read_weights(&name, &bytes).map_err(|e| blame(e.to_string()))?;
+            let weights = file.weights().map_err(|e| blame(e.to_string()))?;
             let (count, rate_hz) = (weights.names.len(), weights.rate_hz);
             Ok(Take { values: weights.weights, count, rate_hz, notes: Vec::new() })
         }
         Some(_) => {
-            let options = ReadOptions {
-                unit: args.mocap_unit.as_deref().map(length_unit).transpose()?,
-                rate_hz: args.mocap_rate,
-            };
-            let mut capture = mimique_mocap::read_recording(&name, &bytes, &options)
-                .map_err(|e| blame(e.to_string()))?
-                .capture;
-            let head = head(&args.head, args.markers.as_deref())?;
+            let mut capture = args.read.recording(&args.take, &mut file)?.capture;
+            let head = args.read.head()?;
             let mut notes = std::mem::take(&mut capture.notes);
             if head.is_empty() {
                 notes.push(
@@ -174,14 +173,15 @@ fn take(args: &Args) -> anyhow::Result<Take> {
                 stabilise(&mut capture, &head).map_err(|e| blame(e.to_string()))?;
             }
             let count = 3 * capture.labels.len();
-            let values = capture.positions.as_flattened().to_vec();
+            let values = capture.positions.into_flattened();
             Ok(Take { values, count, rate_hz: capture.rate_hz, notes })
         }
         None => {
-            let text = String::from_utf8_lossy(&bytes);
-            let table =
-                WeightsTable::from_csv(&text, args.mocap_rate).map_err(|e| blame(e.to_string()))?;
-            let rate_hz = args.mocap_rate.or(table.rate_hz()).ok_or_else(|| {
+            let bytes = std::fs::read(&args.take)
+                .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
+            let (text, rate) = (String::from_utf8_lossy(&bytes), args.read.mocap_rate);
+            let table = WeightsTable::from_csv(&text, rate).map_err(|e| blame(e.to_string()))?;
+            let rate_hz = rate.or(table.rate_hz()).ok_or_else(|| {
                 blame("column time: no rate; give it with --mocap-rate".to_owned())
             })?;
             let count = table.shape_names.len();

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 use indicatif::ProgressBar;
-use mimique_mocap::{LengthUnit, ReadOptions};
+use mimique_mocap::{CaptureFile, LengthUnit, ReadOptions};
 use mimique_solver::{FrontEndError, Method, TrainingError};
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, RepairSidecar, ScaleRule, SolveError, TakeOptions, Training,
-    VertexFrames, WeightsTable, solve_take, split_shapes,
+    VertexFrames, WeightsTable, sha256_of_file, solve_take, split_shapes,
 };
 use serde_json::json;
 
@@ -61,7 +61,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(markers)
         .map_err(|e| blame(markers, format!("open: {e}; check the path")))?;
     let map = MarkerMap::from_text(&text).map_err(|e| blame(markers, e))?;
-    let sidecar = RepairSidecar::beside(&args.mocap, &read_bytes(&args.mocap)?)
+    let sidecar = RepairSidecar::beside(&args.mocap, || sha256_of_file(&args.mocap))
         .map_err(|e| anyhow!("{e}"))?;
     let options = TakeOptions {
         neutral: args.neutral.as_ref().map(|s| s.0.clone()),
@@ -113,16 +113,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 
 /// The capture of a file.
 fn capture(args: &Args, file: &Path) -> anyhow::Result<mimique_mocap::Recording> {
-    let bytes = read_bytes(file)?;
     let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
     let options = ReadOptions { unit, rate_hz: args.mocap_rate };
-    mimique_mocap::read_recording(&file.to_string_lossy(), &bytes, &options)
+    CaptureFile::open(file)
+        .and_then(|mut file| file.recording(&options))
         .map_err(|e| blame(file, e))
-}
-
-fn read_bytes(file: &Path) -> anyhow::Result<Vec<u8>> {
-    std::fs::read(file)
-        .map_err(|e| blame(file, format!("open: {e}; check the path and its permissions")))
 }
 
 /// What regression learns from.
@@ -132,8 +127,7 @@ fn training(args: &Args) -> anyhow::Result<Option<Training>> {
     };
     Ok(Some(Training {
         capture: capture(args, take)?.capture,
-        weights: WeightsTable::from_recording(weights, &read_bytes(weights)?)
-            .map_err(|e| blame(weights, e))?,
+        weights: WeightsTable::from_file(weights).map_err(|e| blame(weights, e))?,
         neutral: args.training_neutral.as_ref().map(|s| s.0.clone()),
         head: None,
     }))

@@ -144,6 +144,75 @@ fn segments_go_to_csv_and_elan_and_back() {
     assert!(!folder.path().join("e.csv").exists());
 }
 
+/// Three shapes that open and close, four times, at 100 Hz.
+fn weights_of_four_expressions(to: &Path) {
+    let mut csv = String::from("frame,time,a,b,c\n");
+    for frame in 0..1000_u32 {
+        let (t, which) = (f64::from(frame % 250) / 100.0, frame / 250);
+        // From 0.75 s to 1.75 s of each 2.5 s.
+        let bump = (std::f64::consts::PI * (t - 0.75).clamp(0.0, 1.0)).sin().powi(2);
+        let w: Vec<f64> = (0..3).map(|k| if k == which % 3 { bump } else { 0.0 }).collect();
+        csv.push_str(&format!("{frame},{},{},{},{}\n", f64::from(frame) / 100.0, w[0], w[1], w[2]));
+    }
+    std::fs::write(to, csv).expect("weights");
+}
+
+#[test]
+fn segments_pasted_into_a_study_file_pass_its_check() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    weights_of_four_expressions(&folder.path().join("weights.csv"));
+    let labels = ["--labels", "joy,fear,joy,dégoût"];
+    let more = ["--study", "jaw", "--out", &at("segments.csv")];
+    let printed = ok(&[&["segment", &at("weights.csv")], &labels[..], &more].concat());
+    let segments: Value = serde_json::from_str(&printed).expect("JSON and nothing else");
+    let field = |name: &str| -> Vec<&str> {
+        segments.as_array().expect("a list").iter().filter_map(|s| s[name].as_str()).collect()
+    };
+    assert_eq!(field("id"), ["joy", "fear", "joy-2", "degout"]);
+    assert_eq!(field("capture"), ["jaw"; 4]);
+    // The frames are the clips of the table, which the same run wrote.
+    let table = rows(&folder.path().join("segments.csv"));
+    for (row, segment) in table[1..].iter().zip(segments.as_array().expect("a list")) {
+        assert_eq!(row[0], segment["factors"]["expression"].as_str().expect("a label"));
+        assert_eq!(row[1], segment["first"].to_string());
+        assert_eq!(
+            row[2].parse::<u64>().expect("a frame") + 1,
+            segment["end"].as_u64().expect("one")
+        );
+    }
+
+    // Pasted into a study of the repository, in the place of its own segments.
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/animface.json");
+    let study = std::fs::read_to_string(study).expect("the study");
+    let (before, rest) = study.split_once("\"segments\": [").expect("segments");
+    let (_, after) = rest.split_once("],\n    \"methods\"").expect("methods");
+    let study = format!("{before}\"segments\": {printed},\n    \"methods\"{after}")
+        .replace("\"truth\": \"movement\"", "\"truth\": \"expression\"")
+        .replace("\"factor\": \"movement\"", "\"factor\": \"expression\"")
+        .replace("\"value\": \"jaw-open\"", "\"value\": \"joy\"")
+        .replace("\"value\": \"jaw-forward\"", "\"value\": \"fear\"")
+        .replace("\"value\": \"smile\"", "\"value\": \"dégoût\"")
+        .replace("${MIMIQUE_DATA}/", "");
+    let files =
+        ["ict-facekit/ict-facekit.glb", "animface/JawMoCap.c3d", "animface/CheeksMoCap.c3d"];
+    for file in files.into_iter().chain(["animface/markers-ict-facekit.json"]) {
+        let file = folder.path().join(file);
+        std::fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+        std::fs::write(file, "").expect("a file that is there");
+    }
+    let file = folder.path().join("study.json");
+    std::fs::write(&file, &study).expect("the study");
+    let said: Value = serde_json::from_str(&ok(&["check", &text(&file), "--json"])).expect("JSON");
+    assert_eq!((&said["ok"], &said["errors"]), (&true.into(), &0.into()), "{said}");
+    // The check does look at them: a clip without frames is an error.
+    std::fs::write(&file, study.replacen("\"end\"", "\"beyond\"", 1)).expect("the study");
+    assert_ne!(common::mimique(&["check", &text(&file)]).status.code(), Some(0));
+
+    let error = refused(&["segment", &at("weights.csv"), "--study", "two words"]);
+    assert!(error.contains("--study: \"two words\" is no identifier"), "{error}");
+}
+
 #[test]
 fn the_bank_is_held_against_the_five_rules() {
     let Some(data) = planted("the_bank_is_held_against_the_five_rules") else { return };

@@ -1,12 +1,13 @@
-//! Ten minutes of 50 markers at 200 frames a second, as C3D and as CSV: read, repaired, stabilised.
-//! Prints the seconds of each step and the peak memory: `long_take [c3d|csv] [FOLDER]`.
+//! Ten minutes of 50 markers at 200 frames a second, as C3D, CSV and TRC: read, repaired,
+//! stabilised. Prints the seconds of each step and the peak memory: `long_take [c3d|csv|trc]
+//! [FOLDER]`.
 #![allow(clippy::print_stdout)] // what it is for
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use mimique_mocap::{
-    C3dOptions, Capture, LengthUnit, RepairPlan, read, repair, write_c3d, write_csv,
+    C3dOptions, Capture, LengthUnit, RepairPlan, read, repair, write_c3d, write_csv, write_trc,
 };
 
 const MARKERS: usize = 50;
@@ -74,6 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let take = take();
         match kind.as_str() {
             "c3d" => std::fs::write(&file, write_c3d(&take, &C3dOptions::default())?)?,
+            "trc" => std::fs::write(&file, write_trc(&take, "long.trc")?)?,
             _ => std::fs::write(&file, write_csv(&take)?)?,
         }
         println!(
@@ -98,15 +100,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         total - after_read,
         processor_seconds().map_or(String::new(), |s| format!(" ({s:.2} s of one processor)"))
     );
-    let ratio = |bytes: u64| bytes as f64 / size as f64;
+    let own = (24 * frames * markers) as f64;
+    let told = |bytes: u64| {
+        let (bytes, size) = (bytes as f64, size as f64);
+        let (file, capture) = (bytes / size, bytes / own);
+        format!("{:.0} MB ({file:.2} times the file, {capture:.2} the capture)", bytes / 1e6)
+    };
     if let (Some(read), Some(all)) = (peak_read, peak_bytes()) {
-        println!(
-            "peak memory: reading {:.0} MB ({:.2} times the file), in all {:.0} MB ({:.2} times)",
-            read as f64 / 1e6,
-            ratio(read),
-            all as f64 / 1e6,
-            ratio(all)
-        );
+        println!("peak memory: reading {}, in all {}", told(read), told(all));
     }
     println!("{}", done.record.summary());
     Ok(())

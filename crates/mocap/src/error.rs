@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened.
-    #[error("open: {source}; check the path ({path}) and the permissions")]
+    #[error("open: {source}; check the path and its permissions")]
     Open {
         /// The path as given.
         path: PathBuf,

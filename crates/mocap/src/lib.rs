@@ -33,7 +33,9 @@ pub use format::Format;
 pub use gaps::{FilledGap, Gap, GapFill, GapRepair, fill_gaps, gaps};
 pub use low_pass::{FilterError, LowPass};
 pub use neutral::{Stillest, stillest};
-pub use read::{CaptureFile, ReadOptions, read, read_bytes, read_recording, read_weights, recognise};
+pub use read::{
+    CaptureFile, ReadOptions, read, read_bytes, read_recording, read_weights, recognise,
+};
 pub use recording::{Event, Recording};
 pub use repair::{
     ChangedFrame, MendedSwap, RepairError, RepairPlan, RepairRecord, Repaired, RepairedGap, Spike,

@@ -3,7 +3,7 @@
 use crate::source::{self, Source};
 use crate::text::{self, Lines, TextForm};
 use crate::{Capture, Format, LengthUnit, ReadError, Recording, WeightTake, c3d, format};
-use std::io::Cursor;
+use std::io::{BufRead, Cursor, Seek};
 use std::path::Path;
 
 /// What the caller knows better than the file.
@@ -40,9 +40,17 @@ impl<'a> CaptureFile<'a> {
     /// The bytes of a file.
     ///
     /// # Errors
-    /// None of those that a file has; the signature is that of [`CaptureFile::open`].
+    /// As [`CaptureFile::of_stream`]; bytes in memory give none.
     pub fn of_bytes(bytes: &'a [u8]) -> Result<Self, ReadError> {
-        Self::of(Box::new(Cursor::new(bytes)))
+        Self::of_stream(Cursor::new(bytes))
+    }
+
+    /// A file behind anything that reads and seeks.
+    ///
+    /// # Errors
+    /// [`ReadError::Read`].
+    pub fn of_stream(stream: impl BufRead + Seek + 'a) -> Result<Self, ReadError> {
+        Self::of(Box::new(stream))
     }
 
     fn of(mut source: Box<dyn Source + 'a>) -> Result<Self, ReadError> {

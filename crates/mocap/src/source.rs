@@ -61,7 +61,10 @@ impl<'s> Prefix<'s> {
     }
 
     /// The bytes of a range; `None` where it goes past the end of the source.
-    pub(crate) fn get(&mut self, range: std::ops::Range<usize>) -> Result<Option<&[u8]>, ReadError> {
+    pub(crate) fn get(
+        &mut self,
+        range: std::ops::Range<usize>,
+    ) -> Result<Option<&[u8]>, ReadError> {
         if range.end as u64 > self.length || range.start > range.end {
             return Ok(None);
         }

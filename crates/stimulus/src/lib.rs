@@ -77,7 +77,7 @@ pub use marker_map::{
 pub use operators_pack::{decode_operators, encode_operators};
 #[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
-pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, weights_hash};
+pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, sha256_of_file, weights_hash};
 #[cfg(feature = "prepare")]
 pub use recorded::{Driven, RecordedNames, RecordedWeights};
 #[cfg(feature = "prepare")]
@@ -89,7 +89,7 @@ pub use report::{FrameRow, FrameStatistics, RegressionSummary, StageSeconds};
 pub use segments::{
     Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
     SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment, Timeline,
-    TimelineSegment, cut, read_segments, suggest, write_segments,
+    TimelineSegment, cut, read_segments, study_segments, suggest, write_segments,
 };
 pub use skin::{AvatarSkin, lock_shapes};
 #[cfg(feature = "prepare")]

@@ -18,6 +18,23 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
+/// SHA-256 of a file's bytes, lower-case hexadecimal; the file is read as a stream.
+///
+/// # Errors
+/// What the system says.
+pub fn sha256_of_file(path: &std::path::Path) -> std::io::Result<String> {
+    let mut file = std::fs::File::open(path)?;
+    let (mut hash, mut chunk) = (Sha256::new(), vec![0; 1 << 18]);
+    loop {
+        match std::io::Read::read(&mut file, &mut chunk) {
+            Ok(0) => return Ok(hexadecimal(&hash.finalize())),
+            Ok(read) => hash.update(&chunk[..read]),
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+}
+
 /// SHA-256 of the numbers as little-endian f64, lower-case hexadecimal.
 pub fn weights_hash(weights: &[f64]) -> String {
     let mut hash = Sha256::new();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use mimique_mocap::RepairRecord;
 use serde::{Deserialize, Serialize};
 
-use crate::provenance::sha256_hex;
+use crate::provenance::{sha256_hex, sha256_of_file};
 
 /// A file and its content's hash.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,6 +21,15 @@ impl FileHash {
     pub fn of(path: &Path, bytes: &[u8]) -> Self {
         let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Self { file, sha256: sha256_hex(bytes) }
+    }
+
+    /// Of a file, read as a stream.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn of_file(path: &Path) -> std::io::Result<Self> {
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { file, sha256: sha256_of_file(path)? })
     }
 }
 
@@ -70,11 +79,15 @@ pub fn sidecar_path(capture: &Path) -> PathBuf {
 }
 
 impl RepairSidecar {
-    /// The sidecar beside a capture; `None` where there is none.
+    /// The sidecar beside a capture; `None` where there is none. The capture's SHA-256 is asked for
+    /// only where there is one.
     ///
     /// # Errors
     /// [`SidecarError`]: not readable, or of other bytes than the capture's.
-    pub fn beside(capture: &Path, bytes: &[u8]) -> Result<Option<Self>, SidecarError> {
+    pub fn beside(
+        capture: &Path,
+        sha256: impl FnOnce() -> std::io::Result<String>,
+    ) -> Result<Option<Self>, SidecarError> {
         let path = sidecar_path(capture);
         let file = path.display().to_string();
         let text = match std::fs::read_to_string(&path) {
@@ -84,7 +97,8 @@ impl RepairSidecar {
         };
         let sidecar: Self = serde_json::from_str(&text)
             .map_err(|e| SidecarError::Unreadable { file: file.clone(), what: e.to_string() })?;
-        let found = sha256_hex(bytes);
+        let found = sha256()
+            .map_err(|e| SidecarError::Unreadable { file: file.clone(), what: e.to_string() })?;
         if sidecar.result.sha256 != found {
             let expected = sidecar.result.sha256;
             return Err(SidecarError::OtherCapture { file, expected, found });
@@ -102,5 +116,122 @@ impl RepairSidecar {
     pub fn hash(&self) -> String {
         let value = serde_json::to_value(&self.repair).unwrap_or_default();
         sha256_hex(format!("{} {} {value}", self.source.sha256, self.result.sha256).as_bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mimique_mocap::{Capture, LengthUnit, RepairPlan, repair, write_csv};
+
+    /// A capture with a gap, repaired: folder, path of the result, sidecar.
+    fn repaired() -> (tempfile::TempDir, PathBuf, RepairSidecar) {
+        let positions = (0..40_u32)
+            .flat_map(|t| {
+                let x = f64::from(t);
+                let gone = [f64::NAN; 3];
+                [[x, 0.0, 0.0], if (10..13).contains(&t) { gone } else { [x, 50.0, 1.0] }]
+            })
+            .collect();
+        let raw = Capture {
+            labels: vec!["a".to_owned(), "b".to_owned()],
+            rate_hz: 100.0,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions,
+            notes: Vec::new(),
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let (source, result) = (folder.path().join("raw.csv"), folder.path().join("mended.csv"));
+        std::fs::write(&source, write_csv(&raw).unwrap()).unwrap();
+        let done = repair(raw, &RepairPlan::default()).unwrap();
+        assert_eq!(done.record.gaps.len(), 1, "the record is not empty");
+        let bytes = write_csv(&done.capture).unwrap();
+        std::fs::write(&result, &bytes).unwrap();
+        let sidecar = RepairSidecar {
+            program: "mimique test".to_owned(),
+            source: FileHash::of_file(&source).unwrap(),
+            result: FileHash::of(&result, bytes.as_bytes()),
+            repair: done.record,
+        };
+        std::fs::write(sidecar_path(&result), sidecar.to_json()).unwrap();
+        (folder, result, sidecar)
+    }
+
+    fn beside(capture: &Path) -> Result<Option<RepairSidecar>, SidecarError> {
+        RepairSidecar::beside(capture, || sha256_of_file(capture))
+    }
+
+    #[test]
+    fn what_is_written_beside_a_capture_is_read_again() {
+        let (_folder, result, sidecar) = repaired();
+        let name = sidecar_path(&result);
+        assert_eq!(name.file_name().unwrap(), "mended.csv.repair.json");
+        let read = beside(&result).unwrap().unwrap();
+        assert_eq!(read, sidecar);
+        assert_eq!(read.hash(), sidecar.hash());
+        assert_eq!(
+            (read.source.file.as_str(), read.result.file.as_str()),
+            ("raw.csv", "mended.csv")
+        );
+        assert_ne!(read.source.sha256, read.result.sha256);
+    }
+
+    #[test]
+    fn a_file_has_the_hash_of_its_bytes() {
+        let (folder, result, sidecar) = repaired();
+        assert_eq!(FileHash::of_file(&result).unwrap(), sidecar.result);
+        // Longer than what is read at a time.
+        let (long, bytes) = (folder.path().join("long"), vec![7; 600_001]);
+        std::fs::write(&long, &bytes).unwrap();
+        assert_eq!(FileHash::of_file(&long).unwrap(), FileHash::of(&long, &bytes));
+        // FIPS 180-4, "abc".
+        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(FileHash::of(Path::new("x/abc"), b"abc").sha256, abc);
+        assert!(FileHash::of_file(&folder.path().join("none")).is_err());
+    }
+
+    #[test]
+    fn without_a_sidecar_nothing_is_hashed() {
+        let folder = tempfile::tempdir().unwrap();
+        let capture = folder.path().join("raw.csv");
+        let found = RepairSidecar::beside(&capture, || Err(std::io::Error::other("asked for")));
+        assert_eq!(found, Ok(None));
+    }
+
+    #[test]
+    fn a_sidecar_of_other_bytes_or_of_none_is_refused_with_its_name() {
+        let (_folder, result, sidecar) = repaired();
+        std::fs::write(&result, "frame,time,a_x,a_y,a_z\n").unwrap();
+        let error = beside(&result).unwrap_err();
+        assert!(matches!(&error, SidecarError::OtherCapture { expected, .. }
+            if *expected == sidecar.result.sha256));
+        let text = error.to_string();
+        assert!(text.contains("mended.csv.repair.json: of a capture with SHA-256"), "{text}");
+        assert!(text.ends_with("; repair the capture again, or remove the file"), "{text}");
+
+        std::fs::write(sidecar_path(&result), "{\"program\": 3}").unwrap();
+        let text = beside(&result).unwrap_err().to_string();
+        assert!(text.contains("mended.csv.repair.json: invalid type"), "{text}");
+
+        std::fs::write(sidecar_path(&result), sidecar.to_json()).unwrap();
+        std::fs::remove_file(&result).unwrap();
+        assert!(matches!(beside(&result), Err(SidecarError::Unreadable { .. })));
+    }
+
+    #[test]
+    fn the_hash_is_of_what_was_done_and_not_of_names() {
+        let (_folder, _, sidecar) = repaired();
+        let changed = |change: &dyn Fn(&mut RepairSidecar)| {
+            let mut other = sidecar.clone();
+            change(&mut other);
+            other.hash()
+        };
+        let hash = sidecar.hash();
+        assert_eq!(changed(&|s| s.source.file = "other.c3d".to_owned()), hash);
+        assert_eq!(changed(&|s| s.program = "mimique 9".to_owned()), hash);
+        assert_ne!(changed(&|s| s.source.sha256 = sha256_hex(b"other")), hash);
+        assert_ne!(changed(&|s| s.result.sha256 = sha256_hex(b"other")), hash);
+        assert_ne!(changed(&|s| s.repair.gaps.clear()), hash);
     }
 }

@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+#[cfg(feature = "prepare")]
+use mimique_mocap::{CaptureFile, Format, ReadError};
+
 /// Blendshape weights over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WeightsTable {
@@ -25,6 +28,16 @@ pub struct WeightsFileError {
     pub what: String,
     /// What to do.
     pub remedy: &'static str,
+}
+
+/// The weights of a Live Link Face export; `None` for another file.
+#[cfg(feature = "prepare")]
+fn recorded(mut file: CaptureFile<'_>) -> Result<Option<WeightsTable>, ReadError> {
+    if file.format() != Some(Format::LiveLinkCsv) {
+        return Ok(None);
+    }
+    let take = file.weights()?;
+    Ok(Some(WeightsTable::at_rate(take.names, take.weights, 0, take.rate_hz)))
 }
 
 impl WeightsTable {
@@ -84,13 +97,29 @@ impl WeightsTable {
     /// # Errors
     /// What is wrong, with its line.
     #[cfg(feature = "prepare")]
-    pub fn from_recording(path: &std::path::Path, bytes: &[u8]) -> Result<Self, String> {
-        if mimique_mocap::recognise(bytes) == Some(mimique_mocap::Format::LiveLinkCsv) {
-            let take = mimique_mocap::read_weights(&path.to_string_lossy(), bytes)
-                .map_err(|e| e.to_string())?;
-            return Ok(Self::at_rate(take.names, take.weights, 0, take.rate_hz));
+    pub fn from_recording(bytes: &[u8]) -> Result<Self, String> {
+        match CaptureFile::of_bytes(bytes).and_then(recorded).map_err(|e| e.to_string())? {
+            Some(table) => Ok(table),
+            None => {
+                Self::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
+            }
         }
-        Self::from_csv(&String::from_utf8_lossy(bytes), None).map_err(|e| e.to_string())
+    }
+
+    /// Weights from a file as [`WeightsTable::from_recording`] takes it.
+    ///
+    /// # Errors
+    /// What is wrong, with its line.
+    #[cfg(feature = "prepare")]
+    pub fn from_file(path: &std::path::Path) -> Result<Self, String> {
+        match CaptureFile::open(path).and_then(recorded).map_err(|e| e.to_string())? {
+            Some(table) => Ok(table),
+            None => {
+                let bytes =
+                    std::fs::read(path).map_err(|e| format!("open: {e}; check the path"))?;
+                Self::from_csv(&String::from_utf8_lossy(&bytes), None).map_err(|e| e.to_string())
+            }
+        }
     }
 
     /// Reads the CSV text. A file without the column `time` gets times from `rate_hz`.

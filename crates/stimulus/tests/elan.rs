@@ -1,60 +1,13 @@
 //! ELAN documents: what ELAN 6 writes is read, tiers are written, everything else stays.
 
+#[path = "support/any_eaf.rs"]
+mod any_eaf;
+
 use mimique_stimulus::{EafAnnotation, EafDocument, TakeSegment};
 
 /// As ELAN 6.7 lays a document out: two tiers, one of them symbolic, a slot without a time, a
 /// controlled vocabulary, a comment, entities.
-const DOCUMENT: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<ANNOTATION_DOCUMENT AUTHOR="" DATE="2024-05-06T10:11:12+01:00"
-    FORMAT="3.0" VERSION="3.0"
-    xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://www.mpi.nl/tools/elan/EAFv3.0.xsd">
-    <HEADER MEDIA_FILE="" TIME_UNITS="milliseconds">
-        <MEDIA_DESCRIPTOR MEDIA_URL="file:///films/take%201.mp4"
-            MIME_TYPE="video/mp4" RELATIVE_MEDIA_URL="./take%201.mp4"/>
-        <PROPERTY NAME="URN">urn:nl-mpi-tools-elan-eaf:1f2e</PROPERTY>
-        <PROPERTY NAME="lastUsedAnnotationId">7</PROPERTY>
-    </HEADER>
-    <TIME_ORDER>
-        <TIME_SLOT TIME_SLOT_ID="ts1" TIME_VALUE="400"/>
-        <TIME_SLOT TIME_SLOT_ID="ts2"/>
-        <TIME_SLOT TIME_SLOT_ID="ts3" TIME_VALUE="1550"/>
-        <TIME_SLOT TIME_SLOT_ID="ts4" TIME_VALUE="2000"/>
-        <TIME_SLOT TIME_SLOT_ID="ts5" TIME_VALUE="3100"/>
-    </TIME_ORDER>
-    <TIER LINGUISTIC_TYPE_REF="default-lt" PARTICIPANT="S1" TIER_ID="Affect &amp; mouth">
-        <ANNOTATION>
-            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a1" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts2">
-                <ANNOTATION_VALUE>NA</ANNOTATION_VALUE>
-            </ALIGNABLE_ANNOTATION>
-        </ANNOTATION>
-        <ANNOTATION>
-            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a2" TIME_SLOT_REF1="ts2" TIME_SLOT_REF2="ts3">
-                <ANNOTATION_VALUE>col&#232;re &lt;3 &amp; more</ANNOTATION_VALUE>
-            </ALIGNABLE_ANNOTATION>
-        </ANNOTATION>
-        <ANNOTATION>
-            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a6" TIME_SLOT_REF1="ts4" TIME_SLOT_REF2="ts5">
-                <ANNOTATION_VALUE></ANNOTATION_VALUE>
-            </ALIGNABLE_ANNOTATION>
-        </ANNOTATION>
-    </TIER>
-    <TIER LINGUISTIC_TYPE_REF="comment" PARENT_REF="Affect &amp; mouth" TIER_ID="Comment">
-        <ANNOTATION>
-            <REF_ANNOTATION ANNOTATION_ID="a7" ANNOTATION_REF="a2">
-                <ANNOTATION_VALUE>seen twice</ANNOTATION_VALUE>
-            </REF_ANNOTATION>
-        </ANNOTATION>
-    </TIER>
-    <TIER LINGUISTIC_TYPE_REF="default-lt" TIER_ID="empty"/>
-    <LINGUISTIC_TYPE CONSTRAINTS="Symbolic_Association"
-        GRAPHIC_REFERENCES="false" LINGUISTIC_TYPE_ID="comment" TIME_ALIGNABLE="false"/>
-    <LINGUISTIC_TYPE GRAPHIC_REFERENCES="false"
-        LINGUISTIC_TYPE_ID="default-lt" TIME_ALIGNABLE="true"/>
-    <!-- by hand -->
-    <CONSTRAINT DESCRIPTION="1-1 association with a parent annotation" STEREOTYPE="Symbolic_Association"/>
-    <CONTROLLED_VOCABULARY CV_ID="emotions"/>
-</ANNOTATION_DOCUMENT>
-"#;
+const DOCUMENT: &str = include_str!("../../../fuzz/corpus/eaf/seed-elan");
 
 fn annotation(start_ms: u64, end_ms: u64, value: &str) -> EafAnnotation {
     EafAnnotation { start_ms, end_ms, value: value.to_owned() }
@@ -161,5 +114,29 @@ fn what_a_tier_cannot_hold_and_what_is_no_document_is_refused() {
     // Cut at any byte: an error, never a panic.
     for end in 0..DOCUMENT.len() - 30 {
         assert!(DOCUMENT.get(..end).is_none_or(|text| EafDocument::parse(text).is_err()));
+    }
+}
+
+/// Seeds and what fuzzing found are committed; each runs as it would in the fuzzer.
+#[test]
+fn the_corpus_of_the_fuzzer_is_replayed() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/eaf");
+    let mut files = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        any_eaf::read_anyhow(&std::fs::read(file.unwrap().path()).unwrap());
+        files += 1;
+    }
+    assert!(files >= 3, "{files} files in the corpus");
+}
+
+#[test]
+fn every_byte_changed_is_answered() {
+    let seed = DOCUMENT.as_bytes();
+    for at in 0..seed.len() {
+        for value in *b"<>&\"9\xff " {
+            let mut bytes = seed.to_vec();
+            bytes[at] = value;
+            any_eaf::read_anyhow(&bytes);
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, SolvedCapture, TakeOptions, WeightsTable, decode_operators,
-    encode_operators, encode_take, solve_packs, solve_segment, solve_take,
+    encode_operators, encode_take, solve_packs, solve_segment, solve_take, suggest_map,
 };
 use mimique_test_support::real_data;
 
@@ -146,5 +146,31 @@ fn real_motion_capture_moves_ict_facekit() {
             assert!(summary.residual_rms_mm < 3.0);
             assert!((0.5..=1.0).contains(&most), "the jaw opens: {most}");
         }
+    }
+}
+
+#[test]
+fn real_motion_capture_moves_the_built_in_head_by_a_suggested_map() {
+    let Some(root) = real_data("real_motion_capture_moves_the_built_in_head_by_a_suggested_map")
+    else {
+        return;
+    };
+    let head = mimique_face::build_head(&mimique_face::HeadSpec::default());
+    let skin = AvatarSkin::of(&head).unwrap();
+    for take in ["JawMoCap.c3d", "CheeksMoCap.c3d"] {
+        let capture = mimique_mocap::read(&root.join("animface").join(take)).unwrap();
+        // No label of this head is known to the capture: the places are found by their geometry.
+        let map = suggest_map(&skin, &capture, None).unwrap().to_map(&skin);
+        let options = TakeOptions::default();
+        let solved = solve_take(&skin, &capture, &map, &lsts(0.3), &options, &mut || 0.0).unwrap();
+        let summary = &solved.report.summary;
+        let jaw = solved.table.shape_names.iter().position(|n| n == "jawOpen").unwrap();
+        let most = (0..summary.frames).map(|f| solved.table.row(f)[jaw]).fold(0.0, f64::max);
+        eprintln!(
+            "{take}: {:.2} mm rms, jawOpen up to {most:.2}, {:?}",
+            summary.residual_rms_mm, solved.report.warnings
+        );
+        assert!(summary.residual_rms_mm < 3.0, "{} mm", summary.residual_rms_mm);
+        assert!(most > 0.3, "the jaw opens: {most}");
     }
 }

@@ -1,7 +1,7 @@
 //! The suggested marker map against maps made by hand, whatever way up the capture is.
 
 use mimique_face::{Clip, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take};
-use mimique_mocap::{Capture, LengthUnit, ReadOptions};
+use mimique_mocap::{Capture, LengthUnit};
 use mimique_solver::RigidMotion;
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, MarkerRole, SuggestMapError, SuggestedMap, suggest_map,
@@ -95,10 +95,7 @@ fn the_built_in_actor_s_markers_are_found_on_another_person_whatever_way_up() {
 #[test]
 fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
     let Some(data) = real_data("real_takes_are_laid_on_ict_facekit_as_by_hand") else { return };
-    let read = |path: &str| {
-        let bytes = std::fs::read(data.join(path)).unwrap();
-        mimique_mocap::read_recording(path, &bytes, &ReadOptions::default()).unwrap().capture
-    };
+    let read = |path: &str| mimique_mocap::read(&data.join(path)).unwrap();
     let skin = |path: &str| {
         AvatarSkin::of(&mimique_face::read_avatar(&data.join(path)).unwrap().avatar).unwrap()
     };

@@ -172,7 +172,7 @@ impl Desk {
             None => bytes.starts_with(b"frame,time,"),
         };
         if is_weights {
-            let table = WeightsTable::from_recording(std::path::Path::new(file), bytes)
+            let table = WeightsTable::from_recording(bytes)
                 .map_err(|e| Problem::of(file, e))?;
             return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
         }
@@ -184,7 +184,7 @@ impl Desk {
                 _ => Err(Problem::of("unit", format!("{word:?}; use m, cm or mm"))),
             })
             .transpose()?;
-        let recording = mimique_mocap::read_recording(file, bytes, &ReadOptions { unit, rate_hz })
+        let recording = mimique_mocap::read_recording(bytes, &ReadOptions { unit, rate_hz })
             .map_err(|e| Problem::of(file, e))?;
         let take = Take::Markers { name: file.to_owned(), recording, head: Vec::new() };
         Ok(self.put_take(take))

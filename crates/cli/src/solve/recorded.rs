@@ -1,28 +1,32 @@
 //! `mimique solve --method recorded`: weights of a file under the avatar's own names.
 
 use std::io::Write as _;
+use std::path::Path;
 
 use anyhow::bail;
-use mimique_stimulus::{Provenance, RecordedWeights, WeightsTable, sha256_hex, weights_hash};
+use mimique_stimulus::{Provenance, RecordedWeights, WeightsTable, sha256_of_file, weights_hash};
 use serde_json::json;
 
-use super::{Args, blame, read_bytes, write_whole};
+use super::{Args, blame, write_whole};
+
+/// SHA-256 of a file.
+fn hash_of(file: &Path) -> anyhow::Result<String> {
+    sha256_of_file(file)
+        .map_err(|e| blame(file, format!("open: {e}; check the path and its permissions")))
+}
 
 pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     if args.vertices.is_some() || args.markers.is_some() || args.training.is_some() {
         bail!("--method: recorded solves nothing; remove --markers, --vertices and --training");
     }
     let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let avatar_bytes = read_bytes(&args.avatar)?;
-    let bytes = read_bytes(&args.mocap)?;
-    let recorded =
-        WeightsTable::from_recording(&args.mocap, &bytes).map_err(|e| blame(&args.mocap, e))?;
+    let recorded = WeightsTable::from_file(&args.mocap).map_err(|e| blame(&args.mocap, e))?;
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &avatar.avatar.shape_names);
     let hash = weights_hash(&table.weights);
     let provenance = Provenance::new()
-        .text("avatar", &sha256_hex(&avatar_bytes))
-        .text("recorded", &sha256_hex(&bytes))
+        .text("avatar", &hash_of(&args.avatar)?)
+        .text("recorded", &hash_of(&args.mocap)?)
         .text("weights", &hash)
         .hash();
     let warnings = names.warnings();

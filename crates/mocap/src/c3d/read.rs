@@ -48,11 +48,7 @@ pub(crate) fn read(file: &mut dyn Source, options: &ReadOptions) -> Result<Recor
 }
 
 /// The rate: the caller's, POINT:RATE, else the header's.
-fn rate(
-    header: &Header,
-    parameters: &Parameters,
-    options: &ReadOptions,
-) -> Result<f64, ReadError> {
+fn rate(header: &Header, parameters: &Parameters, options: &ReadOptions) -> Result<f64, ReadError> {
     let valid = |rate: &f64| rate.is_finite() && *rate > 0.0;
     options
         .rate_hz
@@ -70,11 +66,7 @@ fn rate(
 }
 
 /// Where the data are and how a frame is stored.
-fn layout(
-    header: &Header,
-    parameters: &Parameters,
-    file_length: u64,
-) -> Result<Layout, ReadError> {
+fn layout(header: &Header, parameters: &Parameters, file_length: u64) -> Result<Layout, ReadError> {
     let points = parameters.count("POINT", "USED").map_or(header.points, |n| n as usize);
     if points == 0 {
         return Err(ReadError::at_byte(
@@ -177,11 +169,7 @@ fn frames(
 }
 
 /// One label a point, made up (empty) where the file has too few.
-fn point_labels(
-    parameters: &Parameters,
-    points: usize,
-    notes: &mut Vec<String>,
-) -> Vec<String> {
+fn point_labels(parameters: &Parameters, points: usize, notes: &mut Vec<String>) -> Vec<String> {
     let mut labels = parameters.strings_continued("POINT", "LABELS");
     if labels.len() > points {
         labels.truncate(points);
@@ -196,11 +184,7 @@ fn point_labels(
 
 /// Which points are markers: Vicon stores angles, forces, moments, powers and scalars as points
 /// and lists their labels in parameters of those names.
-fn markers_kept(
-    parameters: &Parameters,
-    labels: &[String],
-    notes: &mut Vec<String>,
-) -> Vec<bool> {
+fn markers_kept(parameters: &Parameters, labels: &[String], notes: &mut Vec<String>) -> Vec<bool> {
     let mut other: HashSet<String> = HashSet::new();
     for name in ["ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS"] {
         other.extend(

@@ -71,9 +71,46 @@ pub(crate) fn split_fields(line: &str, delimiter: Delimiter) -> Vec<Cow<'_, str>
     fields
 }
 
+/// A decimal number of up to 15 digits, or nothing (NaN), at the start of some bytes, and its
+/// length. Such a number is a whole one below 2^53 over a power of ten that is exact: the one
+/// division rounds correctly, as any parser must.
+pub(crate) fn plain_number(bytes: &[u8]) -> Option<(f64, usize)> {
+    const POWERS: [f64; 16] =
+        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    let negative = bytes.first() == Some(&b'-');
+    let mut at = usize::from(negative);
+    let start = at;
+    let (mut whole, mut digits, mut decimals, mut point) = (0_u64, 0_usize, 0_usize, false);
+    while let Some(&byte) = bytes.get(at) {
+        match byte {
+            b'0'..=b'9' => {
+                whole = whole * 10 + u64::from(byte - b'0');
+                digits += 1;
+                decimals += usize::from(point);
+                if digits > 15 {
+                    return None;
+                }
+            }
+            b'.' if !point => point = true,
+            _ => break,
+        }
+        at += 1;
+    }
+    if digits == 0 {
+        return (at == start && !negative).then_some((f64::NAN, 0));
+    }
+    let value = whole as f64 / POWERS[decimals];
+    Some((if negative { -value } else { value }, at))
+}
+
 /// A coordinate: NaN where the field is blank or a word for missing, `None` where it is not a
 /// number.
 pub(crate) fn coordinate(field: &str, delimiter: Delimiter) -> Option<f64> {
+    if let Some((value, length)) = plain_number(field.as_bytes())
+        && length == field.len()
+    {
+        return Some(value);
+    }
     if let Ok(value) = field.parse::<f64>() {
         return Some(if value.is_finite() { value } else { f64::NAN });
     }
@@ -115,5 +152,34 @@ mod tests {
         assert!(coordinate("NaN", Delimiter::Tab).is_some_and(f64::is_nan));
         assert!(coordinate("", Delimiter::Tab).is_some_and(f64::is_nan));
         assert_eq!(coordinate("12a", Delimiter::Tab), None);
+    }
+
+    #[test]
+    fn plain_numbers_are_those_of_the_standard_parser() {
+        for text in [
+            "0",
+            "-0",
+            "7",
+            "12.5",
+            "-0.0001",
+            "1611.3685",
+            "999999999999999",
+            ".5",
+            "5.",
+            "123456789.012345",
+            "0.1",
+            "0.3",
+            "-268.8729",
+            "4503599627370.49",
+        ] {
+            let (value, length) = plain_number(text.as_bytes()).unwrap();
+            assert_eq!(value.to_bits(), text.parse::<f64>().unwrap().to_bits(), "{text}");
+            assert_eq!(length, text.len());
+        }
+        for text in ["-", ".", "-.", "1234567890123456", "1.2.3,"] {
+            let found = plain_number(text.as_bytes());
+            assert!(found.is_none_or(|(_, length)| length < text.len()), "{text}: {found:?}");
+        }
+        assert!(plain_number(b",1").is_some_and(|(v, n)| v.is_nan() && n == 0));
     }
 }

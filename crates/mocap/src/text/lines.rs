@@ -86,7 +86,9 @@ fn scan(text: &mut dyn BufRead) -> Result<Scan, ReadError> {
         };
         found.newline = found.newline || chunk.contains(&b'\n');
         let mut rest = chunk;
-        while !cut.is_empty() && let Some((first, after)) = rest.split_first() {
+        while !cut.is_empty()
+            && let Some((first, after)) = rest.split_first()
+        {
             cut.push(*first);
             rest = after;
             match std::str::from_utf8(&cut) {

@@ -189,9 +189,8 @@ mod tests {
 
     #[test]
     fn errors_name_the_line() {
-        let message = |rows: &[(&str, f64)]| {
-            read_weights(take(rows).as_bytes()).unwrap_err().to_string()
-        };
+        let message =
+            |rows: &[(&str, f64)]| read_weights(take(rows).as_bytes()).unwrap_err().to_string();
         assert_eq!(
             message(&[("01:00:00:59.0", 0.0), ("01:00:00:58.0", 0.0)]),
             "line 3, column 1 (Timecode): the timecode stands still or goes back; \

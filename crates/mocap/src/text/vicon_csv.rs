@@ -59,7 +59,8 @@ pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recor
         ));
     }
     let width = columns.last().map_or(0, |last| last + 3);
-    table.labels = columns.iter().map(|&c| names.get(c).map_or("", AsRef::as_ref).to_owned()).collect();
+    table.labels =
+        columns.iter().map(|&c| names.get(c).map_or("", AsRef::as_ref).to_owned()).collect();
     let units = split_fields(&units, delimiter);
     table.declared_unit = units.get(columns[0]).and_then(|u| LengthUnit::from_name(u));
 

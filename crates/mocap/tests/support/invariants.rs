@@ -1,6 +1,7 @@
 //! What must hold of a reader whatever it is given; used by tests and fuzz targets.
 
-use mimique_mocap::{ReadOptions, read_recording, read_weights};
+use mimique_mocap::{CaptureFile, ReadError, ReadOptions, Recording, read_recording, read_weights};
+use std::io::{BufReader, Cursor};
 
 /// Read with and without a rate, so that the paths after it are reached; a capture that comes out
 /// is whole and not larger than its file allows.
@@ -11,7 +12,11 @@ pub fn read_anyhow(bytes: &[u8]) {
     }
     for rate_hz in [None, Some(100.0)] {
         let options = ReadOptions { rate_hz, ..ReadOptions::default() };
-        match read_recording(bytes, &options) {
+        let read = read_recording(bytes, &options);
+        if rate_hz.is_some() {
+            same_in_pieces(bytes, &options, &read);
+        }
+        match read {
             Ok(recording) => {
                 let capture = recording.capture;
                 let markers = capture.labels.len();
@@ -32,4 +37,30 @@ pub fn read_anyhow(bytes: &[u8]) {
             }
         }
     }
+}
+
+/// A stream that gives a few bytes at a time must read as the bytes at once do.
+fn same_in_pieces(bytes: &[u8], options: &ReadOptions, read: &Result<Recording, ReadError>) {
+    let stream = BufReader::with_capacity(61, Cursor::new(bytes));
+    let streamed = CaptureFile::of_stream(stream).and_then(|mut file| file.recording(options));
+    match (read, &streamed) {
+        (Ok(a), Ok(b)) => assert!(same(a, b), "a stream in pieces gives another capture"),
+        (Err(a), Err(b)) => assert_eq!(a.to_string(), b.to_string()),
+        _ => panic!("bytes: {read:?}, stream: {streamed:?}"),
+    }
+}
+
+/// Whether two recordings are the same, bit for bit.
+fn same(a: &Recording, b: &Recording) -> bool {
+    let bits = |r: &Recording| -> Vec<u64> {
+        r.capture.positions.as_flattened().iter().map(|v| v.to_bits()).collect()
+    };
+    let (c, d) = (&a.capture, &b.capture);
+    let said = |r: &Recording| {
+        format!("{:?} {:?} {} {:?}", r.format, r.system, r.analog_channels, r.events)
+    };
+    said(a) == said(b)
+        && (&c.labels, c.rate_hz.to_bits(), c.first_frame, c.unit, &c.notes)
+            == (&d.labels, d.rate_hz.to_bits(), d.first_frame, d.unit, &d.notes)
+        && bits(a) == bits(b)
 }

@@ -2,7 +2,7 @@
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use mimique_mocap::{Capture, LengthUnit, ReadOptions};
@@ -12,7 +12,7 @@ use mimique_study::{
 
 use super::source_files::{AvatarFile, CaptureFile, Film, Performance, Recording};
 use super::{Places, PrepareError, builtin, pointer};
-use crate::provenance::sha256_hex;
+use crate::provenance::{sha256_hex, sha256_of_file};
 use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, WeightsTable, split_shapes};
 
 /// Everything that a study file names.
@@ -44,8 +44,7 @@ impl<'a> Sources<'a> {
                 (builtin::avatar_key(&avatar), avatar, Some(sites), at("builtin"))
             }
             Some(AvatarSource::File(file)) => {
-                let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
-                    .map_err(|e| PrepareError::new(at("file"), e))?;
+                let path = self.path(file, &at("file"))?;
                 let read = mimique_face::read_avatar(&path).map_err(|e| {
                     PrepareError::new(at("file"), format!("{}: {e}", path.display()))
                 })?;
@@ -169,8 +168,8 @@ impl<'a> Sources<'a> {
                 let source = &self.study.stimuli.captures[id];
                 let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
                 let at = format!("{at}/weights");
-                let (path, bytes) = self.read(weights_file, &at)?;
-                let weights = WeightsTable::from_recording(&path, &bytes)
+                let path = self.path(weights_file, &at)?;
+                let weights = WeightsTable::from_file(&path)
                     .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
                 Training {
                     capture,
@@ -206,8 +205,8 @@ impl<'a> Sources<'a> {
                 return Err(PrepareError::new(pointer, message));
             }
         };
-        let (path, bytes) = self.read(file, &pointer)?;
-        let table = WeightsTable::from_recording(&path, &bytes)
+        let path = self.path(file, &pointer)?;
+        let table = WeightsTable::from_file(&path)
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
             Some(Span::Frames { first, end }) if end <= table.frames.len() => {
@@ -279,28 +278,35 @@ impl<'a> Sources<'a> {
         at: &str,
     ) -> Result<(String, Capture, Option<String>), PrepareError> {
         let at_file = format!("{at}/file");
-        let (path, bytes) = self.read(file, &at_file)?;
+        let path = self.path(file, &at_file)?;
         let options = ReadOptions { unit: unit_of(unit, &format!("{at}/unit"))?, rate_hz: None };
-        let recording = mimique_mocap::read_recording(&path.to_string_lossy(), &bytes, &options)
+        let recording = mimique_mocap::CaptureFile::open(&path)
+            .and_then(|mut file| file.recording(&options))
             .map_err(|e| PrepareError::new(&at_file, format!("{}: {e}", path.display())))?;
-        let repair = RepairSidecar::beside(&path, &bytes)
+        let hash = sha256_of_file(&path).map_err(|e| unread(&path, &e, &at_file))?;
+        let repair = RepairSidecar::beside(&path, || Ok(hash.clone()))
             .map_err(|e| PrepareError::new(&at_file, e))?
             .map(|sidecar| sidecar.hash());
-        Ok((format!("{} {unit:?}", sha256_hex(&bytes)), recording.capture, repair))
+        Ok((format!("{hash} {unit:?}"), recording.capture, repair))
+    }
+
+    /// The path of a file that the study names.
+    fn path(&self, file: &str, at: &str) -> Result<PathBuf, PrepareError> {
+        resolve_path(file, &self.places.study, self.places.data.as_deref())
+            .map_err(|e| PrepareError::new(at, e))
     }
 
     /// The file that a path of the study names.
     fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
-        let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
-            .map_err(|e| PrepareError::new(at, e))?;
-        match std::fs::read(&path) {
-            Ok(bytes) => Ok((path, bytes)),
-            Err(e) => {
-                let message = format!("{}: {e}; check the path", path.display());
-                Err(PrepareError::new(at, message))
-            }
-        }
+        let path = self.path(file, at)?;
+        let bytes = std::fs::read(&path).map_err(|e| unread(&path, &e, at))?;
+        Ok((path, bytes))
     }
+}
+
+/// A file that cannot be read.
+fn unread(path: &Path, error: &std::io::Error, at: &str) -> PrepareError {
+    PrepareError::new(at, format!("{}: {error}; check the path", path.display()))
 }
 
 fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {

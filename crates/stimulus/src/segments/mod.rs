@@ -11,6 +11,7 @@ mod activity;
 mod csv;
 mod eaf;
 mod eaf_write;
+mod study;
 mod suggest;
 
 use std::ops::Range;
@@ -18,6 +19,7 @@ use std::ops::Range;
 pub use activity::{Activity, ActivityOptions, Channels};
 pub use csv::{SegmentFileError, read_segments, write_segments};
 pub use eaf::{EafAnnotation, EafDocument, EafError, EafTier};
+pub use study::study_segments;
 pub use suggest::{SuggestError, SuggestOptions, Suggestion, Timeline, TimelineSegment, suggest};
 
 /// One expression of a take.
