@@ -47,7 +47,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     media: Option<String>,
     /// Print the segments of a study file instead, as cuts of its capture of this identifier
-    #[arg(long, value_name = "CAPTURE", conflicts_with = "json")]
+    #[arg(long, value_name = "CAPTURE")]
     study: Option<String>,
     #[command(flatten)]
     read: CaptureOptions,
