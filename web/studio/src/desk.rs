@@ -172,8 +172,7 @@ impl Desk {
             None => bytes.starts_with(b"frame,time,"),
         };
         if is_weights {
-            let table = WeightsTable::from_recording(bytes)
-                .map_err(|e| Problem::of(file, e))?;
+            let table = WeightsTable::from_recording(bytes).map_err(|e| Problem::of(file, e))?;
             return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
         }
         let unit = unit
