@@ -1,6 +1,7 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
 import { filmDuration } from "./stage-film.js";
 import { fetchPack } from "./stage-packs.js";
+import { picturesOf } from "./stage-pictures.js";
 
 const clips = new Map();
 let worker = null;
@@ -39,8 +40,9 @@ export function preparedClip(clipId) {
 }
 
 /// Keeps a clip that was solved elsewhere: {clip, avatarHash, avatarPack, weights, frames, shapes,
-/// rate_hz}.
-export function putClip(clip) {
+/// rate_hz}. Resolves when it can be shown.
+export async function putClip(clip) {
+  const pictures = await picturesOf(clip.avatarPack);
   const whole = {
     film: null,
     look: "stimulus",
@@ -50,6 +52,7 @@ export function putClip(clip) {
     solve_ms: 0,
     report: null,
     warnings: [],
+    pictures,
     ...clip,
   };
   clips.set(clip.clip, { provenance: whole.provenance, clip: whole, summary: Promise.resolve(summary(whole)) });
@@ -96,13 +99,17 @@ async function prepare(clipId, source, onProgress) {
     [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count)),
   );
   report(0.9);
-  const solved = await solve(operators, take, JSON.stringify(source.method));
+  const [solved, pictures] = await Promise.all([
+    solve(operators, take, JSON.stringify(source.method)),
+    picturesOf(avatar),
+  ]);
   const clip = {
     clip: clipId,
     film: null,
     look: source.look ?? "stimulus",
     avatarHash: source.avatar,
     avatarPack: avatar,
+    pictures,
     weights: solved.weights,
     frames: solved.frames,
     shapes: solved.shapes,

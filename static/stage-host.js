@@ -226,7 +226,12 @@ class Stage {
     this.#film.hide();
     if (clip.look !== this.#look.variant) this.setLook({ variant: clip.look });
     if (this.#gpu.hasAvatar(clip.avatarHash)) return;
-    const shapes = this.#gpu.loadAvatar(clip.avatarHash, clip.avatarPack);
+    const shapes = this.#gpu.loadAvatar(
+      clip.avatarHash,
+      clip.avatarPack,
+      clip.pictures.widths,
+      clip.pictures.pixels,
+    );
     if (shapes !== clip.shapes) {
       throw new Error(`clip ${clip.clip}: ${clip.shapes} weights a frame, its avatar has ${shapes} blendshapes`);
     }

@@ -87,7 +87,7 @@ export class Matching {
       this.#key = key;
       const pack = await desk("avatarPack");
       const shapes = this.#page.avatarShapes();
-      putClip({
+      await putClip({
         clip: CLIP, avatarHash: `${key}-bank`, avatarPack: pack, weights: new Float32Array(shapes), frames: 1, shapes,
         rate_hz: 1,
       });

@@ -190,10 +190,11 @@ export class MethodPanel {
       this.#generation += facts.own_avatar || this.#lastOwn ? 1 : 0;
       this.#lastOwn = facts.own_avatar;
       const avatarHash = `${this.#page.avatarKey()}-${facts.own_avatar ? `${this.#slot}${this.#generation}` : "bank"}`;
-      putClip({
+      await putClip({
         clip: this.#clipId(), avatarHash, avatarPack: pack, weights,
         frames: facts.frames, shapes: facts.shapes.length, rate_hz: facts.rate_hz,
       });
+      if (run !== this.#run) return;
       this.facts = facts;
       this.#opening ??= openStage(this.#canvas, LOOK);
       this.#stage = await this.#opening;

@@ -7,6 +7,7 @@ mod files;
 #[cfg(feature = "readers")]
 mod glb;
 mod glb_write;
+mod image;
 #[cfg(feature = "readers")]
 mod obj;
 pub mod pack;
@@ -29,6 +30,7 @@ pub use driven::{Driven, DrivenError};
 #[cfg(feature = "readers")]
 pub use glb::read_gltf;
 pub use glb_write::{GlbWriteError, write_glb};
+pub use image::{Image, MOST_TEXTURE_SIDE};
 #[cfg(feature = "readers")]
 pub use parts::find_eyeballs;
 #[cfg(feature = "readers")]
@@ -40,7 +42,7 @@ pub use settings::AvatarSettings;
 pub use shape_names::{ARKIT_SHAPES, ShapeMap, arkit_shapes, map_shapes};
 
 #[cfg(feature = "textures")]
-pub use texture::{Image, MOST_TEXTURE_SIDE, TextureError};
+pub use texture::TextureError;
 
 #[cfg(feature = "parametric")]
 mod parametric_head;

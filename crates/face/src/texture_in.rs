@@ -34,10 +34,31 @@ pub(crate) fn picture_of(bytes: &[u8], open: bool) -> Result<Picture, String> {
     let decoded = decode_jpeg(bytes, ColorSpace::RGB, MOST_SIDE).map_err(|e| e.0)?;
     let (width, height, rgb) = decoded;
     if width.max(height) <= MOST_TEXTURE_SIDE {
-        return Ok(Picture::Read(Texture { jpeg: bytes.to_vec(), mask_jpeg: Vec::new() }));
+        return Ok(Picture::Read(Texture { jpeg: bare(bytes), mask_jpeg: Vec::new() }));
     }
     let rgba = rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect();
     texture_of(Image { width, height, rgba }, false).map(Picture::Read)
+}
+
+/// A JPEG file without its camera's notes, thumbnails, colour profile and turn: what a browser might
+/// heed and glTF does not. Samples are kept as they are.
+fn bare(bytes: &[u8]) -> Vec<u8> {
+    let mut out = bytes[..2].to_vec();
+    let mut at = 2;
+    while let Some(&[0xff, marker, high, low]) = bytes.get(at..at + 4) {
+        let end = at + 2 + (usize::from(high) << 8 | usize::from(low));
+        // SOS: the samples follow.
+        if marker == 0xda || end > bytes.len() {
+            break;
+        }
+        // APP0 is JFIF's, APP14 says how Adobe stored the colours.
+        if !matches!(marker, 0xe1..=0xed | 0xef | 0xfe) {
+            out.extend(&bytes[at..end]);
+        }
+        at = end;
+    }
+    out.extend(&bytes[at..]);
+    out
 }
 
 /// A PNG file of any kind as 8-bit RGBA.

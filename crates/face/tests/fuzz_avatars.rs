@@ -83,7 +83,9 @@ fn consume(kind: Kind, bytes: &[u8]) {
         }
         Kind::Settings => drop(AvatarSettings::from_json("avatar.json", bytes)),
         Kind::Pack => {
-            for bytes in [bytes.to_vec(), seal_pack("MMAV", 2, bytes)] {
+            // A body as it is, in a pack without pictures.
+            let sealed = [seal_pack("MMAV", 3, bytes), vec![0; 4]].concat();
+            for bytes in [bytes.to_vec(), sealed] {
                 if let Ok(avatar) = decode_pack(&bytes) {
                     sound(&avatar);
                 }
@@ -409,7 +411,9 @@ impl Seeds {
         let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         gz.write_all(&tar).unwrap();
         let pack = encode_pack(&avatar).bytes;
-        let pack_body = open_pack("MMAV", 2, &pack).unwrap();
+        let files = avatar.textures.iter().map(|t| t.jpeg.len() + t.mask_jpeg.len() + 8);
+        let behind = files.sum::<usize>() + 4;
+        let pack_body = open_pack("MMAV", 3, &pack[..pack.len() - behind]).unwrap();
         Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), pack, pack_body }
     }
 }

@@ -328,6 +328,11 @@ fn jpeg_textures_travel_as_they_are() {
     encoder.encode(&rgb, 64, 48, jpeg_encoder::ColorType::Rgb).unwrap();
     let avatar = textured(&jpeg).read().avatar;
     assert_eq!(avatar.textures[0].jpeg, jpeg);
+    // A camera's notes, which may turn the picture, and a comment stay behind.
+    let mut noted = jpeg[..2].to_vec();
+    noted.extend(b"\xff\xe1\x00\x08Exif\x00\x00\xff\xfe\x00\x04me");
+    noted.extend(&jpeg[2..]);
+    assert_eq!(textured(&noted).read().avatar.textures[0].jpeg, jpeg);
     assert!(
         textured(&jpeg[..jpeg.len() / 2]).refusal().contains("images[0]: a JPEG picture that ends")
     );

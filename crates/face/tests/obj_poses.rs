@@ -58,6 +58,63 @@ fn a_folder_of_poses_is_a_head() {
     assert!(read.notes.iter().any(|n| n.starts_with("1 of 2 shapes")), "{:?}", read.notes);
 }
 
+/// A picture of two halves on two quads: the seam's vertices are split, the rest stays whole.
+#[test]
+fn pictures_lie_on_surfaces() {
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, 16, 16);
+    encoder.set_color(png::ColorType::Rgb);
+    let texels = (0..256).flat_map(|i| if i % 16 < 8 { [250, 30, 30] } else { [30, 30, 250] });
+    let texels: Vec<u8> = texels.collect();
+    encoder.write_header().unwrap().write_image_data(&texels).unwrap();
+    let quads = |lift: f64| {
+        pose(lift).replace(
+            "f 1 2 3 4\nf 2 5 6 3",
+            "vt 0 0\nvt 0.4 0\nvt 0.4 1\nvt 0 1\nvt 0.6 0\nvt 0.98 0\nvt 0.98 1\nvt 0.6 1\n\
+            f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8",
+        )
+    };
+    let folder = folder(&[
+        ("neutral.obj", quads(0.0)),
+        ("smile.obj", quads(3.0)),
+        (
+            "head.mtl",
+            "newmtl skin\nKd 1 1 1\nmap_Kd -s 1 1 1 maps\\Skin.PNG\n\
+            newmtl enamel\nKd 1 1 1\nmap_Kd absent.png\n"
+                .to_owned(),
+        ),
+    ]);
+    std::fs::write(folder.path().join("skin.png"), &png).unwrap();
+    let read = read_avatar(folder.path()).unwrap();
+    let [skin, teeth] = read.avatar.meshes.as_slice() else { panic!("two meshes") };
+    assert_eq!((skin.positions.len(), skin.triangles.len()), (8, 4));
+    assert_eq!((skin.textured.len(), skin.textured[0].triangles.clone()), (1, 0..4));
+    assert!(teeth.textured.is_empty() && teeth.uvs.is_empty());
+    // The lifted vertex is split in two, and both move.
+    assert_eq!(skin.shapes[0].vertices.len(), 2);
+    let image = mimique_face::Image::decode(&read.avatar.textures[0]).unwrap();
+    for t in [0, 3] {
+        let colour = image.linear_at(skin.uvs[skin.triangles[t][1] as usize]);
+        let (red, blue) = if t == 0 { (0.8, 0.1) } else { (0.1, 0.8) };
+        assert!(
+            (colour[0] > red) == (red > blue) && (colour[2] > blue) == (blue > red),
+            "{colour:?}"
+        );
+    }
+    // A picture on the foot of the sheet is on its foot: v counts from below.
+    assert_eq!(skin.uvs[skin.triangles[0][0] as usize], [0.0, 1.0]);
+    // A picture that nothing can lie on is not looked for: the teeth have no places in it.
+    assert_eq!(read.avatar.textures.len(), 1);
+    assert!(!read.notes.iter().any(|n| n.contains("absent.png")), "{:?}", read.notes);
+    std::fs::remove_file(folder.path().join("skin.png")).unwrap();
+    let bare = read_avatar(folder.path()).unwrap();
+    assert!(bare.notes.iter().any(|n| n.starts_with("Skin.PNG: no PNG")), "{:?}", bare.notes);
+    assert_eq!(bare.avatar.meshes[0].positions.len(), 6);
+    std::fs::write(folder.path().join("skin.png"), &png[..40]).unwrap();
+    let broken = read_avatar(folder.path()).unwrap_err().to_string();
+    assert!(broken.contains("skin.png: a PNG picture"), "{broken}");
+}
+
 #[test]
 fn archives_hold_the_same_head() {
     let expected = read(&files()).unwrap().avatar;

@@ -1,7 +1,7 @@
 //! An avatar on the GPU: its tables, and what one frame needs to know of its eyes and landmarks.
 
 use glam::{Mat3, Vec3};
-use mimique_face::Avatar;
+use mimique_face::{Avatar, Image};
 use wgpu::util::DeviceExt;
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Buffer, Device, Queue, TextureFormat, TextureView,
@@ -61,6 +61,7 @@ impl Head {
         pipelines: &Pipelines,
         shadow: (&TextureView, &wgpu::Sampler),
         avatar: &Avatar,
+        pictures: Vec<Image>,
     ) -> Result<Self, StageError> {
         let landmarks = Landmarks::find(avatar);
         let geometry = Geometry::new(avatar, &landmarks)?;
@@ -131,7 +132,7 @@ impl Head {
             &pipelines.shade_layout,
             &[scene, view(&positions), view(&surfaces), view(&neutral), view(&occlusions)],
         );
-        let textures = Textures::new(device, queue, avatar)?;
+        let textures = Textures::new(device, queue, pictures);
         let picture = |draw: &Draw| {
             let texture = view(textures.view(draw.texture));
             group(

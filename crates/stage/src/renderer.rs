@@ -1,7 +1,7 @@
 //! Draws one frame of a head into a texture view.
 
 use glam::Vec3;
-use mimique_face::Avatar;
+use mimique_face::{Avatar, Image};
 use wgpu::{Device, LoadOp, Operations, Queue, StoreOp, TextureFormat, TextureUsages, TextureView};
 
 use crate::framing::{Camera, View};
@@ -76,13 +76,36 @@ impl Renderer {
         }
     }
 
-    /// Puts an avatar on the GPU.
+    /// Decodes an avatar's pictures and puts it on the GPU.
     ///
     /// # Errors
     /// [`StageError`] when the avatar is malformed or too large for this machine.
+    #[cfg(feature = "native")]
     pub fn load(&self, avatar: &Avatar) -> Result<Head, StageError> {
+        let pictures = avatar.textures.iter().enumerate().map(|(index, texture)| {
+            Image::decode(texture).map_err(|e| StageError::Texture { index, what: e.to_string() })
+        });
+        self.load_with(avatar, pictures.collect::<Result<_, _>>()?)
+    }
+
+    /// Puts an avatar on the GPU, with its pictures decoded, one a texture.
+    ///
+    /// # Errors
+    /// [`StageError`] when the avatar is malformed, too large for this machine, or lacks a picture.
+    pub fn load_with(&self, avatar: &Avatar, pictures: Vec<Image>) -> Result<Head, StageError> {
+        if pictures.len() != avatar.textures.len() {
+            return Err(StageError::Texture {
+                index: pictures.len().min(avatar.textures.len()),
+                what: format!(
+                    "{} pictures were decoded, the avatar has {}; load it again",
+                    pictures.len(),
+                    avatar.textures.len()
+                ),
+            });
+        }
         let shadow = (&self.shadow, &self.shadow_sampler);
-        let head = Head::new(&self.device, &self.queue, &self.pipelines, shadow, avatar)?;
+        let (device, queue) = (&self.device, &self.queue);
+        let head = Head::new(device, queue, &self.pipelines, shadow, avatar, pictures)?;
         self.find_occlusions(&head);
         Ok(head)
     }

@@ -1,12 +1,10 @@
-//! The pictures on surfaces, on the GPU: decoded here, so that every machine has the same texels,
-//! and halved in linear light for their mipmaps.
+//! The pictures on surfaces, on the GPU, halved in linear light for their mipmaps. Whoever draws
+//! decodes them: natively this project's own decoder, in a browser the browser's.
 
-use mimique_face::{Avatar, Image};
+use mimique_face::Image;
 use wgpu::{
     Device, Extent3d, Queue, Sampler, TextureDimension, TextureFormat, TextureUsages, TextureView,
 };
-
-use crate::StageError;
 
 /// An avatar's pictures.
 pub(crate) struct Textures {
@@ -17,14 +15,9 @@ pub(crate) struct Textures {
 }
 
 impl Textures {
-    /// Decodes and uploads every picture.
-    pub fn new(device: &Device, queue: &Queue, avatar: &Avatar) -> Result<Self, StageError> {
+    /// Uploads every picture.
+    pub fn new(device: &Device, queue: &Queue, pictures: Vec<Image>) -> Self {
         let white = Image { width: 1, height: 1, rgba: vec![255; 4] };
-        let views = avatar.textures.iter().enumerate().map(|(index, texture)| {
-            let image = Image::decode(texture)
-                .map_err(|e| StageError::Texture { index, what: e.to_string() })?;
-            Ok(upload(device, queue, image))
-        });
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("picture"),
             address_mode_u: wgpu::AddressMode::Repeat,
@@ -34,11 +27,11 @@ impl Textures {
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
-        Ok(Self {
-            views: views.collect::<Result<_, StageError>>()?,
+        Self {
+            views: pictures.into_iter().map(|picture| upload(device, queue, picture)).collect(),
             white: upload(device, queue, white),
             sampler,
-        })
+        }
     }
 
     /// The picture of that index, or white.

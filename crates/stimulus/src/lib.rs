@@ -55,10 +55,13 @@ mod take_pack;
 mod take_provenance;
 #[cfg(feature = "prepare")]
 mod take_segment;
+mod tracks;
 #[cfg(feature = "prepare")]
 mod training;
 #[cfg(feature = "prepare")]
 mod vertex_frames;
+#[cfg(feature = "prepare")]
+mod weight_steps;
 mod weights_file;
 
 #[cfg(feature = "prepare")]
@@ -105,9 +108,13 @@ pub use suggest_map::{
 };
 #[cfg(feature = "prepare")]
 pub use surface_avatar::surface_avatar;
-pub use take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take, encode_take};
+pub use take_pack::{
+    SegmentMarkers, TakeContent, TakePack, decode_take, encode_take, encode_take_in_steps,
+};
 #[cfg(feature = "prepare")]
 pub use training::Training;
 #[cfg(feature = "prepare")]
 pub use vertex_frames::VertexFrames;
+#[cfg(feature = "prepare")]
+pub use weight_steps::{WeightSteps, weight_steps};
 pub use weights_file::{WeightsFileError, WeightsTable};

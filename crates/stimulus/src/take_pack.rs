@@ -3,19 +3,21 @@
 //! Markers: the columns that are needed, in metres, in steps of a hundredth of a millimetre (a
 //! sensor's noise is ten times that), with a margin of frames on both sides for filters to settle;
 //! the head's reference, the neutral face of the whole capture, scale factors and the surface that
-//! gives a flat capture its depth as f64. What is stored of each
-//! coordinate is its change from frame to frame.
+//! gives a flat capture its depth as f64. Recorded weights: in steps that keep every vertex within a
+//! hundredth of a millimetre (`weight_steps`), or 0.0001 where none are asked for. Coordinates and weights are stored by `tracks`.
 
 use std::ops::Range;
 
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
 use mimique_solver::{FanTriangle, MarkerScales, SurfaceDepth};
 
+use crate::tracks::{tracks_from, tracks_to};
+
 const KIND: &str = "MMTK";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Step of the markers' coordinates, metres.
 const STEP_M: f64 = 1e-5;
-/// Step of recorded weights.
+/// Step of weights where no other is asked for.
 const STEP_WEIGHT: f64 = 1e-4;
 
 /// What is played: a segment's markers or weights.
@@ -73,6 +75,12 @@ pub struct SegmentMarkers {
 
 /// Packs a take. Coordinates and weights are rounded to the pack's steps.
 pub fn encode_take(take: &TakePack) -> Vec<u8> {
+    encode_take_in_steps(take, &[])
+}
+
+/// The same with a step for each column of recorded weights, as `weight_steps` finds them; columns
+/// without one get 0.0001. Markers have their own.
+pub fn encode_take_in_steps(take: &TakePack, steps: &[f64]) -> Vec<u8> {
     let mut w = PackWriter::new();
     w.f64(take.rate_hz);
     w.u64(take.first_frame);
@@ -87,16 +95,19 @@ pub fn encode_take(take: &TakePack) -> Vec<u8> {
             m.head_reference.iter().chain(&m.neutral).flatten().for_each(|&x| w.f64(x));
             scales_to(&mut w, m.scales.as_ref());
             depth_to(&mut w, m.depth.as_ref());
-            tracks_to(&mut w, &m.positions, 3 * m.labels.len(), STEP_M);
+            tracks_to(&mut w, &m.positions, &vec![STEP_M; 3 * m.labels.len()]);
             w.texts(&m.driven_shapes);
             if !m.driven_shapes.is_empty() {
-                tracks_to(&mut w, &m.driven_weights, m.driven_shapes.len(), STEP_WEIGHT);
+                tracks_to(&mut w, &m.driven_weights, &vec![STEP_WEIGHT; m.driven_shapes.len()]);
             }
         }
         TakeContent::Weights { shape_names, weights } => {
             w.u8(1);
             w.texts(shape_names);
-            tracks_to(&mut w, weights, shape_names.len(), STEP_WEIGHT);
+            let step = |k| steps.get(k).copied().filter(|s| *s > 0.0).unwrap_or(STEP_WEIGHT);
+            let steps: Vec<f64> = (0..shape_names.len()).map(step).collect();
+            steps.iter().for_each(|&s| w.f64(s));
+            tracks_to(&mut w, weights, &steps);
         }
     }
     seal_pack(KIND, VERSION, &w.into_bytes())
@@ -129,12 +140,12 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             let scales = scales_from(&mut r, face.len())?;
             let depth = depth_from(&mut r, face.len())?;
             let columns = 3 * labels.len();
-            let positions = tracks_from(&mut r, columns, STEP_M)?;
+            let positions = tracks_from(&mut r, &vec![STEP_M; columns])?;
             let frames = positions.len() / columns.max(1);
             let driven_shapes = r.texts()?;
             let driven_weights = match driven_shapes.len() {
                 0 => vec![],
-                shapes => tracks_from(&mut r, shapes, STEP_WEIGHT)?,
+                shapes => tracks_from(&mut r, &vec![STEP_WEIGHT; shapes])?,
             };
             if driven_weights.len() != driven_shapes.len() * frames
                 || driven_weights.iter().any(|w| w.is_nan())
@@ -157,7 +168,11 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
         }
         1 => {
             let shape_names = r.texts()?;
-            let weights = tracks_from(&mut r, shape_names.len(), STEP_WEIGHT)?;
+            let steps: Vec<f64> = shape_names.iter().map(|_| r.f64()).collect::<Result<_, _>>()?;
+            if let Some(step) = steps.iter().find(|s| !(s.is_finite() && **s > 0.0)) {
+                return r.refuse(format!("weights in steps of {step}"));
+            }
+            let weights = tracks_from(&mut r, &steps)?;
             let frames = weights.len() / shape_names.len().max(1);
             if weights.iter().any(|w| w.is_nan()) {
                 return r.refuse("a weight is missing");
@@ -257,71 +272,4 @@ fn depth_from(r: &mut PackReader<'_>, face: usize) -> Result<Option<SurfaceDepth
         fans.push(fan);
     }
     Ok(Some(SurfaceDepth { fans }))
-}
-
-/// Frame count; then for every column the runs of missing and present frames, and the changes of
-/// what is present: low bytes, then the rest.
-fn tracks_to(w: &mut PackWriter, values: &[f64], columns: usize, step: f64) {
-    let frames = values.len() / columns.max(1);
-    w.varint(frames as u32);
-    for column in 0..columns {
-        let track = || (0..frames).map(move |f| values[f * columns + column]);
-        let mut runs = Vec::new();
-        let (mut length, mut present) = (0u32, false);
-        for value in track() {
-            if value.is_finite() != present {
-                runs.push(length);
-                (length, present) = (0, !present);
-            }
-            length += 1;
-        }
-        runs.push(length);
-        w.varint(runs.len() as u32);
-        runs.into_iter().for_each(|run| w.varint(run));
-        let mut last = 0i32;
-        let changes: Vec<u32> = track()
-            .filter(|value| value.is_finite())
-            .map(|value| {
-                let q = (value / step).round() as i32;
-                let change = q.wrapping_sub(std::mem::replace(&mut last, q));
-                ((change << 1) ^ (change >> 31)) as u32
-            })
-            .collect();
-        changes.iter().for_each(|&c| w.u8(c as u8));
-        changes.iter().for_each(|&c| w.varint(c >> 8));
-    }
-}
-
-fn tracks_from(r: &mut PackReader<'_>, columns: usize, step: f64) -> Result<Vec<f64>, PackError> {
-    let frames = r.varint()? as usize;
-    // A column takes three bytes at least, however many frames it misses.
-    let most = r.left().saturating_mul(64);
-    if columns == 0 || columns.saturating_mul(3) > r.left() || frames.saturating_mul(columns) > most
-    {
-        return r.refuse(format!("{frames} frames of {columns} columns"));
-    }
-    let mut values = vec![f64::NAN; frames * columns];
-    for column in 0..columns {
-        let runs: Vec<u32> = (0..r.count(1)?).map(|_| r.varint()).collect::<Result<_, _>>()?;
-        let mut at = 0usize;
-        let mut present = Vec::new();
-        for (i, run) in runs.into_iter().enumerate() {
-            let end = at.saturating_add(run as usize);
-            if end > frames {
-                return r.refuse(format!("a run to frame {end} of {frames}"));
-            }
-            if i % 2 == 1 {
-                present.extend(at..end);
-            }
-            at = end;
-        }
-        let low = r.raw(present.len())?;
-        let mut q = 0i32;
-        for (frame, &low) in present.into_iter().zip(low) {
-            let change = (r.varint()? << 8) | u32::from(low);
-            q = q.wrapping_add(((change >> 1) as i32) ^ -((change & 1) as i32));
-            values[frame * columns + column] = f64::from(q) * step;
-        }
-    }
-    Ok(values)
 }

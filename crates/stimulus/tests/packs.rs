@@ -139,12 +139,13 @@ proptest! {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
         let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
-            let body = open_pack(kind, 2, whole).unwrap();
+            let version = if *kind == "MMTK" { 3 } else { 2 };
+            let body = open_pack(kind, version, whole).unwrap();
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;
                 let at = at % damaged.len();
                 if cut { damaged.truncate(at) } else { damaged[at] = value }
-                let damaged = if sealed { seal_pack(kind, 2, &damaged) } else { damaged };
+                let damaged = if sealed { seal_pack(kind, version, &damaged) } else { damaged };
                 // Neither unpacking nor solving may panic, whatever comes of it.
                 let [(_, operators), (_, take)] = &packs;
                 let _ = match *kind {

@@ -8,6 +8,8 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use js_sys::Uint8Array;
+use mimique_face::{Image, MOST_TEXTURE_SIDE};
 use mimique_stage::wgpu;
 use mimique_stage::{Head, Look, Renderer, View};
 use wasm_bindgen::prelude::*;
@@ -107,13 +109,30 @@ impl Canvas {
     }
 
     /// Unpacks an avatar pack and keeps the head under `key`. Answers its number of blendshapes.
+    /// `pixels`: the pack's pictures decoded, RGBA from the top; `widths` of their rows.
     ///
     /// # Errors
-    /// When the pack is damaged or the avatar too large for this machine.
+    /// When the pack is damaged, the avatar too large for this machine, or a picture is missing.
     #[wasm_bindgen(js_name = loadAvatar)]
-    pub fn load_avatar(&mut self, key: String, pack: &[u8]) -> Result<usize, JsError> {
+    pub fn load_avatar(
+        &mut self,
+        key: String,
+        pack: &[u8],
+        widths: &[u32],
+        pixels: Vec<Uint8Array>,
+    ) -> Result<usize, JsError> {
         let avatar = mimique_face::pack::decode_pack(pack).map_err(error)?;
-        let head = self.renderer.load(&avatar).map_err(error)?;
+        let pictures = widths.iter().zip(&pixels).enumerate().map(|(index, (width, rgba))| {
+            Image::of_pixels(*width as usize, rgba.to_vec()).ok_or_else(|| {
+                JsError::new(&format!(
+                    "avatar {key}, texture {index}: {} bytes in rows of {width} pixels; make the \
+                     picture {MOST_TEXTURE_SIDE} pixels wide and high at most",
+                    rgba.length()
+                ))
+            })
+        });
+        let pictures = pictures.collect::<Result<_, JsError>>()?;
+        let head = self.renderer.load_with(&avatar, pictures).map_err(error)?;
         let count = head.shape_count();
         self.heads.insert(key, head);
         Ok(count)

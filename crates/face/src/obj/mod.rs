@@ -4,15 +4,17 @@
 //! A shape is called as its file. Vertices that lie in one place but are split (texture seams)
 //! stay split here; the solver welds them by position.
 
+mod material;
 mod parse;
 
 use std::collections::{BTreeMap, HashMap};
 
-use self::parse::{Group, Obj, parse, parse_positions};
+use self::material::{Material, NO_MATERIAL, Pictures, materials};
+use self::parse::{Corner, Group, Obj, parse, parse_positions};
 use crate::files::Files;
 use crate::parts::{PartName, assign_parts};
 use crate::settings::{AvatarSettings, fits};
-use crate::{Avatar, Mesh, Part, ReadAvatar, ReadError, SparseShape};
+use crate::{Avatar, Image, Mesh, Part, ReadAvatar, ReadError, SparseShape, Textured};
 
 /// Settings inside the folder or archive.
 const SETTINGS_FILE: &str = "avatar.json";
@@ -21,8 +23,6 @@ const NEUTRAL_WORDS: [&str; 4] = ["neutral", "rest", "base", "default"];
 /// Most vertices of one pose, and most coordinates of all poses together.
 const MOST_VERTICES: usize = 1 << 22;
 const MOST_COORDINATES: usize = 1 << 27;
-/// Colour of a surface without material.
-const NO_MATERIAL: [f32; 3] = [0.8, 0.8, 0.8];
 
 /// Reads the OBJ poses of a folder or archive. `settings` win over an `avatar.json` among them.
 pub(crate) fn read_obj_poses(
@@ -38,10 +38,10 @@ pub(crate) fn read_obj_poses(
     if identities > 0 {
         notes.push(format!("{identities} files of other identities are left out"));
     }
-    let poses = Poses::read(files, &neutral, &settings)?;
+    let poses = Poses::read(files, &neutral, &settings, &mut notes)?;
     let (shape_names, meshes) = poses.meshes(&settings)?;
-    let name = name.to_owned();
-    let avatar = Avatar { name, shape_names, meshes, ..Avatar::default() };
+    let (name, textures) = (name.to_owned(), poses.pictures.textures);
+    let avatar = Avatar { name, shape_names, meshes, textures, ..Avatar::default() };
     ReadAvatar::finish(avatar, notes, &settings)
 }
 
@@ -117,19 +117,25 @@ struct Poses {
     neutral: Obj,
     /// By name, in alphabetical order.
     posed: BTreeMap<String, Vec<[f64; 3]>>,
-    materials: HashMap<String, [f32; 3]>,
+    materials: HashMap<String, Material>,
+    pictures: Pictures,
 }
 
 impl Poses {
-    fn read(files: &Files, neutral: &str, settings: &AvatarSettings) -> Result<Self, ReadError> {
+    fn read(
+        files: &Files,
+        neutral: &str,
+        settings: &AvatarSettings,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, ReadError> {
         let mut base = Obj::default();
         let mut posed: BTreeMap<String, Vec<[f64; 3]>> = BTreeMap::new();
-        let mut materials = HashMap::new();
+        let mut all_materials: HashMap<String, Material> = HashMap::new();
         let mut coordinates = 0usize;
         files.each(&mut |file, content| {
             let Some(stem) = obj_stem(file) else {
                 if file.to_lowercase().ends_with(".mtl") {
-                    materials.extend(diffuse_colours(&content()?));
+                    all_materials.extend(materials(&content()?));
                 }
                 return Ok(());
             };
@@ -161,11 +167,16 @@ impl Poses {
                 ));
             }
         }
-        Ok(Self { neutral: base, posed, materials })
+        // Only those that a surface has, and only where it says how they lie on it.
+        let with_places = |g: &&Group| g.triangles.iter().flatten().any(|(_, uv)| uv.is_some());
+        let worn = base.groups.iter().filter(with_places);
+        let worn = worn.filter_map(|g| all_materials.get(&g.material));
+        let pictures = Pictures::read(files, worn, notes)?;
+        Ok(Self { neutral: base, posed, materials: all_materials, pictures })
     }
 
     /// One mesh a part, with the shapes of all poses.
-    fn meshes(self, settings: &AvatarSettings) -> Result<(Vec<String>, Vec<Mesh>), ReadError> {
+    fn meshes(&self, settings: &AvatarSettings) -> Result<(Vec<String>, Vec<Mesh>), ReadError> {
         let groups = self.split_groups(settings)?;
         let vertices_of = |group: &Group| -> Vec<usize> {
             let mut all: Vec<usize> =
@@ -210,7 +221,8 @@ impl Poses {
             }
         }
         let meshes = by_part.into_iter().map(|(part, name, list)| self.mesh(part, name, &list));
-        Ok((self.posed.keys().cloned().collect(), meshes.collect()))
+        let meshes = meshes.collect::<Result<_, _>>()?;
+        Ok((self.posed.keys().cloned().collect(), meshes))
     }
 
     /// The groups, those cut apart that `vertexParts` says are of several parts.
@@ -229,7 +241,7 @@ impl Poses {
             }
         }
         // A polygon over a border goes with its first corner.
-        let said = |triangle: &[parse::Corner; 3]| {
+        let said = |triangle: &[Corner; 3]| {
             let first = triangle[0].0 as usize;
             settings.vertex_parts.iter().find(|(range, _)| range.contains(&first)).map(|(_, p)| *p)
         };
@@ -247,76 +259,85 @@ impl Poses {
         Ok(out)
     }
 
-    fn mesh(&self, part: Part, name: String, groups: &[&Group]) -> Mesh {
-        let mut used: Vec<u32> =
-            groups.iter().flat_map(|g| g.triangles.iter().flatten().map(|(v, _)| *v)).collect();
+    /// One mesh of groups. A vertex that lies in several places of a picture is split, as in glTF.
+    fn mesh(&self, part: Part, name: String, groups: &[&Group]) -> Result<Mesh, ReadError> {
+        let texture = |g: &Group| self.pictures.of(self.materials.get(&g.material)?);
+        // A corner without a picture is its vertex alone.
+        let bare = |g: &Group| texture(g).is_none();
+        let corner = |c: &Corner, bare: bool| (c.0, c.1.filter(|_| !bare));
+        let corners = |g: &&Group| {
+            let bare = bare(g);
+            g.triangles.iter().flatten().map(move |c| corner(c, bare)).collect::<Vec<_>>()
+        };
+        let mut used: Vec<Corner> = groups.iter().flat_map(corners).collect();
         used.sort_unstable();
         used.dedup();
-        let local = |v: u32| used.binary_search(&v).unwrap_or_default() as u32;
-        let colour = |g: &Group| self.materials.get(&g.material).copied().unwrap_or(NO_MATERIAL);
+        let colour = |g: &Group| self.materials.get(&g.material).map_or(NO_MATERIAL, |m| m.colour);
         let base_colour = groups.first().map_or(NO_MATERIAL, |g| colour(g));
         let mut vertex_colours = vec![base_colour; used.len()];
         let mut triangles = Vec::new();
+        let mut textured: Vec<Textured> = Vec::new();
+        let mut uvs = Vec::new();
+        let place = |uv: Option<u32>| uv.map_or([0.0; 2], |uv| self.neutral.uvs[uv as usize]);
         for group in groups {
+            let (picture, first) = (texture(group), triangles.len());
+            let eye = matches!(part, Part::EyeLeft | Part::EyeRight);
+            // An eye takes its colours vertex by vertex: the stage draws iris and cornea itself.
+            let painted = match picture.filter(|_| eye) {
+                Some(index) => Some(
+                    Image::decode(&self.pictures.textures[index])
+                        .map_err(|e| ReadError::damaged(&group.material, e.to_string()))?,
+                ),
+                None => None,
+            };
             for t in &group.triangles {
-                let t = t.map(|(v, _)| local(v));
+                let t = t.map(|c| {
+                    used.binary_search(&corner(&c, picture.is_none())).unwrap_or_default() as u32
+                });
                 triangles.push(t);
-                t.iter().for_each(|&v| vertex_colours[v as usize] = colour(group));
+                for &v in &t {
+                    let plain = colour(group);
+                    let seen = painted.as_ref().map(|i| i.linear_at(place(used[v as usize].1)));
+                    let seen = seen.unwrap_or([1.0; 3]);
+                    vertex_colours[v as usize] = std::array::from_fn(|c| plain[c] * seen[c]);
+                }
             }
+            let Some(texture) = picture.filter(|_| !eye) else { continue };
+            match textured.last_mut() {
+                Some(last) if last.texture == texture && last.triangles.end == first => {
+                    last.triangles.end = triangles.len();
+                }
+                _ => textured.push(Textured { triangles: first..triangles.len(), texture }),
+            }
+        }
+        if !textured.is_empty() {
+            uvs = used.iter().map(|c| place(c.1)).collect();
         }
         if vertex_colours.iter().all(|c| *c == base_colour) {
             vertex_colours.clear();
         }
         let neutral = &self.neutral.positions;
         let shapes = self.posed.values().map(|posed| {
-            let dense: Vec<[f32; 3]> = used
-                .iter()
-                .map(|&v| {
-                    let (p, q) = (posed[v as usize], neutral[v as usize]);
-                    single([p[0] - q[0], p[1] - q[1], p[2] - q[2]])
-                })
-                .collect();
-            SparseShape::from_dense(&dense)
+            let moved = |&(v, _): &Corner| {
+                let (p, q) = (posed[v as usize], neutral[v as usize]);
+                single([p[0] - q[0], p[1] - q[1], p[2] - q[2]])
+            };
+            SparseShape::from_dense(&used.iter().map(moved).collect::<Vec<_>>())
         });
-        Mesh {
+        Ok(Mesh {
             name,
             part,
-            positions: used.iter().map(|&v| single(neutral[v as usize])).collect(),
+            positions: used.iter().map(|&(v, _)| single(neutral[v as usize])).collect(),
             triangles,
             vertex_colours,
             base_colour,
             shapes: shapes.collect(),
-            ..Mesh::default()
-        }
+            uvs,
+            textured,
+        })
     }
 }
 
 fn single(p: [f64; 3]) -> [f32; 3] {
     p.map(|x| x as f32)
-}
-
-/// Diffuse colours of an MTL file's materials, made linear. What is not understood is passed over:
-/// colours are no reason to refuse a head.
-fn diffuse_colours(bytes: &[u8]) -> Vec<(String, [f32; 3])> {
-    let mut out: Vec<(String, [f32; 3])> = Vec::new();
-    for line in String::from_utf8_lossy(bytes).lines() {
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("newmtl") => out.push((words.collect::<Vec<_>>().join(" "), NO_MATERIAL)),
-            Some("Kd") => {
-                let rgb: Vec<f32> = words.filter_map(|w| w.parse().ok()).collect();
-                if let (Some((_, colour)), [r, g, b]) = (out.last_mut(), rgb.as_slice()) {
-                    *colour = [*r, *g, *b].map(linear);
-                }
-            }
-            _ => {}
-        }
-    }
-    out
-}
-
-/// sRGB to linear light (IEC 61966-2-1); MTL says nothing, pickers and exporters mean sRGB.
-fn linear(c: f32) -> f32 {
-    let c = if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 };
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }

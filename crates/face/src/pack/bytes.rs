@@ -139,7 +139,7 @@ impl<'a> PackReader<'a> {
     /// A single-precision number, finite.
     pub fn f32(&mut self) -> Result<f32, PackError> {
         let value = f32::from_le_bytes(self.array()?);
-        if value.is_finite() { Ok(value) } else { self.refuse(format!("{value} is not finite")) }
+        if value.is_finite() { Ok(value) } else { self.refuse("a number that is not finite") }
     }
 
     /// A double-precision number, of any kind (NaN stands for a missing marker).

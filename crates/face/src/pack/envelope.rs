@@ -20,15 +20,7 @@ pub fn seal_pack(kind: &'static str, version: u32, body: &[u8]) -> Vec<u8> {
 /// # Errors
 /// [`PackError`]: another kind or version, damaged, truncated.
 pub fn open_pack(kind: &'static str, version: u32, bytes: &[u8]) -> Result<Vec<u8>, PackError> {
-    let mut header = PackReader::new(kind, bytes);
-    let letters = header.raw(4)?;
-    if letters != kind.as_bytes() {
-        return header.refuse(format!("it opens with {:?}", String::from_utf8_lossy(letters)));
-    }
-    let found = header.u32()?;
-    if found != version {
-        return header.refuse(format!("version {found}, {version} expected"));
-    }
+    let mut header = check_header(kind, version, bytes)?;
     let length = header.u32()? as usize;
     if length > LONGEST_BODY {
         return header.refuse(format!("a body of {length} bytes"));
@@ -39,6 +31,24 @@ pub fn open_pack(kind: &'static str, version: u32, bytes: &[u8]) -> Result<Vec<u
         Ok(body) => header.refuse(format!("a body of {} bytes, {length} declared", body.len())),
         Err(e) => header.refuse(format!("the body cannot be inflated: {e}")),
     }
+}
+
+/// Refuses what is not of that kind and version; otherwise reads on behind them.
+pub(super) fn check_header<'b>(
+    kind: &'static str,
+    version: u32,
+    bytes: &'b [u8],
+) -> Result<PackReader<'b>, PackError> {
+    let mut header = PackReader::new(kind, bytes);
+    let letters = header.raw(4)?;
+    if letters != kind.as_bytes() {
+        return header.refuse(format!("it opens with {:?}", String::from_utf8_lossy(letters)));
+    }
+    let found = header.u32()?;
+    if found != version {
+        return header.refuse(format!("version {found}, {version} expected"));
+    }
+    Ok(header)
 }
 
 /// The four letters that a file opens with, if it is a pack of any kind.

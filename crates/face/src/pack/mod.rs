@@ -1,31 +1,36 @@
 //! The avatar pack (`MMAV`): what the stage loads of an avatar, small enough to send to a browser.
 //!
 //! Positions and displacements are integers in steps of about a micrometre; what is stored is how
-//! far each lies from the guess of its neighbours (`predict`), and the whole is deflated. Normals
-//! are not stored: they follow from the surface.
+//! far each lies from the guess of its neighbours (`predict`), at the length that its frequency
+//! deserves (`entropy`). Normals are not stored: they follow from the surface. The pictures of
+//! surfaces lie behind all this as they are, so that a browser can decode them.
 //!
 //! | field | form |
 //! |---|---|
-//! | `MMAV`, version 2, length of the body | 4 bytes, u32, u32 |
+//! | `MMAV`, version 3, length of the body | 4 bytes, u32, u32 |
 //! | body | raw deflate |
 //! | avatar's name, shape names | texts |
 //! | error bound in metres | f32 |
-//! | meshes: name, part, base colour, V, T, colours?, triangles, positions, shapes | see `mesh_to` |
+//! | meshes: name, part, base colour, step, colours?, pictures' triangles, V, T, integers | see `mesh_to` |
 //! | eyeballs: mesh, centre, looks (shape, axis, radians) | |
-//! | textures: JPEG file and JPEG mask | length and bytes each |
+//! | after the body: JPEG file and JPEG mask of each texture | bytes |
+//! | their lengths, the number of textures | u32 each |
 
 mod bytes;
+mod entropy;
 mod envelope;
 mod predict;
 mod surface;
 
 pub use bytes::{PackError, PackReader, PackWriter};
+pub use entropy::{IntegerReader, IntegerWriter, Integers, Model};
+use envelope::check_header;
 pub use envelope::{open_pack, pack_kind, seal_pack};
 
 use crate::{Avatar, Eyeball, Look, Mesh, Texture};
 
 const KIND: &str = "MMAV";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Least bytes of a mesh, an eyeball and a look, for [`PackReader::count`].
 const LEAST: [usize; 3] = [20, 14, 17];
 
@@ -63,12 +68,12 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
             body.f32(look.radians);
         }
     }
-    body.varint(avatar.textures.len() as u32);
-    for file in avatar.textures.iter().flat_map(|t| [&t.jpeg, &t.mask_jpeg]) {
-        body.varint(file.len() as u32);
-        body.raw(file);
-    }
-    EncodedPack { bytes: seal_pack(KIND, VERSION, &body.into_bytes()), error_bound }
+    let mut bytes = seal_pack(KIND, VERSION, &body.into_bytes());
+    let files = || avatar.textures.iter().flat_map(|t| [&t.jpeg, &t.mask_jpeg]);
+    files().for_each(|file| bytes.extend(file));
+    files().for_each(|file| bytes.extend((file.len() as u32).to_le_bytes()));
+    bytes.extend((avatar.textures.len() as u32).to_le_bytes());
+    EncodedPack { bytes, error_bound }
 }
 
 /// Unpacks an avatar.
@@ -76,7 +81,10 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
 /// # Errors
 /// [`PackError`] for anything that [`encode_pack`] does not write.
 pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
-    let body = open_pack(KIND, VERSION, bytes)?;
+    // Another kind or version is said before its end is misread.
+    check_header(KIND, VERSION, bytes)?;
+    let (sealed, textures) = pictures_of(bytes)?;
+    let body = open_pack(KIND, VERSION, sealed)?;
     let mut r = PackReader::new(KIND, &body);
     let name = r.text()?;
     let shape_names = r.texts()?;
@@ -103,14 +111,6 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
         }
         eyeballs.push(Eyeball { mesh, centre, looks });
     }
-    let file = |r: &mut PackReader<'_>| -> Result<Vec<u8>, PackError> {
-        let length = r.count(1)?;
-        Ok(r.raw(length)?.to_vec())
-    };
-    let mut textures = Vec::new();
-    for _ in 0..r.count(2)? {
-        textures.push(Texture { jpeg: file(&mut r)?, mask_jpeg: file(&mut r)? });
-    }
     if let Some(used) = meshes.iter().flat_map(|m: &Mesh| &m.textured).map(|t| t.texture).max()
         && used >= textures.len()
     {
@@ -118,4 +118,33 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
     }
     r.finish()?;
     Ok(Avatar { name, shape_names, meshes, eyeballs, textures })
+}
+
+/// What is before the pictures, and the pictures.
+fn pictures_of(bytes: &[u8]) -> Result<(&[u8], Vec<Texture>), PackError> {
+    let mut front = PackReader::new(KIND, bytes);
+    let refuse = |what: &str| PackReader::new(KIND, bytes).refuse(what);
+    let word = |at: usize| {
+        let four = bytes.get(at..at + 4)?;
+        Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]) as usize)
+    };
+    let Some(count) = bytes.len().checked_sub(4).and_then(word) else {
+        return refuse("no number of pictures at its end");
+    };
+    let Some(table) = count.checked_mul(8).and_then(|size| bytes.len().checked_sub(4 + size))
+    else {
+        return refuse("more pictures than it has bytes");
+    };
+    let lengths: Vec<usize> = (0..2 * count).filter_map(|k| word(table + 4 * k)).collect();
+    let total = lengths.iter().fold(0usize, |sum, length| sum.saturating_add(*length));
+    let Some(start) = table.checked_sub(total) else {
+        return refuse("pictures longer than the pack");
+    };
+    let sealed = front.raw(start)?;
+    let mut textures = Vec::new();
+    for pair in lengths.chunks_exact(2) {
+        let (jpeg, mask_jpeg) = (front.raw(pair[0])?.to_vec(), front.raw(pair[1])?.to_vec());
+        textures.push(Texture { jpeg, mask_jpeg });
+    }
+    Ok((sealed, textures))
 }

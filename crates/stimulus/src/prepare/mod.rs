@@ -13,6 +13,7 @@ mod sources;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
+use mimique_face::Avatar;
 use mimique_solver::{Method, MethodSpec};
 use mimique_study::wire::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
@@ -141,11 +142,7 @@ fn prepare_clip(
     let (spec, avatar_pack, operators, take, segment_pointer, repair) =
         if entry.spec.method == Method::Recorded {
             let recording = sources.recording(&clip.segment)?;
-            let take = cache.store(recorded(
-                &recording,
-                &avatar.avatar.shape_names,
-                &mut remarks.warnings,
-            )?)?;
+            let take = cache.store(recorded(&recording, &avatar.avatar, &mut remarks.warnings)?)?;
             // Nothing is solved: the page needs no operators, and loads the one pack once.
             (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer, None)
         } else {
@@ -223,24 +220,24 @@ fn prepare_film(
 /// The take pack of recorded weights, in the avatar's order of shapes.
 fn recorded(
     recording: &Recording,
-    shape_names: &[String],
+    avatar: &Avatar,
     warnings: &mut Vec<(String, String)>,
 ) -> Result<Vec<u8>, PrepareError> {
+    let shape_names = &avatar.shape_names;
     let RecordedWeights { table, names } = RecordedWeights::of(&recording.table, shape_names);
     warnings.extend(names.warnings().into_iter().map(|w| (recording.pointer.clone(), w)));
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
     })?;
-    let weights = recording.frames.clone().flat_map(|frame| table.row(frame).iter().copied());
-    Ok(encode_take(&TakePack {
+    let frames = recording.frames.clone();
+    let weights: Vec<f64> = frames.flat_map(|frame| table.row(frame).iter().copied()).collect();
+    let take = TakePack {
         rate_hz,
         first_frame: table.frames[recording.frames.start],
         played: 0..recording.frames.len(),
-        content: TakeContent::Weights {
-            shape_names: shape_names.to_vec(),
-            weights: weights.collect(),
-        },
-    }))
+        content: TakeContent::Weights { shape_names: shape_names.clone(), weights },
+    };
+    Ok(encode_take(&take))
 }
 
 /// The head's low-pass of a clip: the method's own, or the capture's, or 10 Hz.
