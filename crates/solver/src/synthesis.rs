@@ -102,20 +102,28 @@ impl Synthesis {
         let out = &mut out[..weights.len() / n * self.coordinates];
         let weights: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
         let words = mask_words(n);
-        let mut active = vec![0; weights.len() / n * words];
-        for (mask, weights) in active.chunks_exact_mut(words).zip(weights.chunks_exact(n)) {
-            for (k, _) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
-                mask[k / 64] |= 1_u64 << (k % 64);
-            }
-        }
+        let active = active(&weights, n);
+        let pose = if has_wide_registers() { pose_blocks_wide } else { pose_blocks };
         for first in (0..self.neutral.len()).step_by(BLOCKS) {
             let last = (first + BLOCKS).min(self.neutral.len());
             let frames = weights.chunks(FRAMES * n).zip(active.chunks(FRAMES * words));
             for ((weights, active), out) in frames.zip(out.chunks_mut(FRAMES * self.coordinates)) {
-                pose_blocks(self, [first, last], weights, active, out);
+                pose(self, [first, last], weights, active, out);
             }
         }
     }
+}
+
+/// For each frame the set of the shapes whose weight is not 0.
+fn active(weights: &[f32], n: usize) -> Vec<u64> {
+    let words = mask_words(n);
+    let mut active = vec![0; weights.len() / n * words];
+    for (mask, weights) in active.chunks_exact_mut(words).zip(weights.chunks_exact(n)) {
+        for (k, _) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
+            mask[k / 64] |= 1_u64 << (k % 64);
+        }
+    }
+    active
 }
 
 /// Words of a set of shapes.
@@ -124,7 +132,32 @@ fn mask_words(shape_count: usize) -> usize {
 }
 
 widest! {
-    ["avx512f", "avx"]
+    ["avx512f"]
+    /// [`pose_blocks`] for the 32 wide registers of AVX-512: two frames at a time, whose shapes are
+    /// read once.
+    fn pose_blocks_wide(
+        shapes: &Synthesis,
+        blocks: [usize; 2],
+        weights: &[f32],
+        active: &[u64],
+        out: &mut [f32]
+    ) {
+        let (n, words) = (shapes.shape_count, mask_words(shapes.shape_count));
+        let frames = weights.chunks(2 * n).zip(active.chunks(2 * words));
+        for b in blocks[0]..blocks[1] {
+            let frames = frames.clone().zip(out.chunks_mut(2 * shapes.coordinates));
+            for ((weights, active), out) in frames {
+                if weights.len() == n {
+                    pose_block::<1>(shapes, b, weights, active, out);
+                } else {
+                    pose_block::<2>(shapes, b, weights, active, out);
+                }
+            }
+        }
+    }
+}
+
+widest! {
     /// Blocks first..last of some frames.
     fn pose_blocks(
         shapes: &Synthesis,
@@ -133,41 +166,69 @@ widest! {
         active: &[u64],
         out: &mut [f32]
     ) {
-        let n = shapes.shape_count;
-        let words = mask_words(n);
+        let (n, words) = (shapes.shape_count, mask_words(shapes.shape_count));
+        let frames = weights.chunks_exact(n).zip(active.chunks_exact(words));
         for b in blocks[0]..blocks[1] {
-            let moved_by = &shapes.moved_by[b * words..][..words];
-            let places = &shapes.places[b * n..][..n];
-            let deltas = &shapes.deltas[shapes.starts[b]..shapes.starts[b + 1]];
-            let start = b * BLOCK;
-            let width = BLOCK.min(shapes.coordinates - start);
-            let frames = weights.chunks_exact(n).zip(active.chunks_exact(words));
-            for ((weights, active), out) in frames.zip(out.chunks_exact_mut(shapes.coordinates)) {
-                let mut sums = shapes.neutral[b].0;
-                for (word, (moved_by, active)) in moved_by.iter().zip(active).enumerate() {
-                    let mut rest = moved_by & active;
-                    while rest != 0 {
-                        let k = 64 * word + rest.trailing_zeros() as usize;
-                        rest &= rest - 1;
-                        // Always there; without the possibility of a panic the sums stay in
-                        // registers.
-                        let (Some(weight), Some(&place)) = (weights.get(k), places.get(k)) else {
-                            continue;
-                        };
-                        let Some(Block(delta)) = deltas.get(place as usize) else { continue };
-                        for i in 0..BLOCK {
-                            sums[i] += weight * delta[i];
-                        }
-                    }
-                }
-                let out = &mut out[start..start + width];
-                match out.first_chunk_mut::<BLOCK>() {
-                    Some(out) => *out = sums,
-                    None => out.copy_from_slice(&sums[..width]),
+            let frames = frames.clone().zip(out.chunks_exact_mut(shapes.coordinates));
+            for ((weights, active), out) in frames {
+                pose_block::<1>(shapes, b, weights, active, out);
+            }
+        }
+    }
+}
+
+/// One block of G frames: the shapes that any of them has. A weight of 0 adds nothing.
+#[inline(always)]
+fn pose_block<const G: usize>(
+    shapes: &Synthesis,
+    b: usize,
+    weights: &[f32],
+    active: &[u64],
+    out: &mut [f32],
+) {
+    let n = shapes.shape_count;
+    let words = mask_words(n);
+    let moved_by = &shapes.moved_by[b * words..][..words];
+    let places = &shapes.places[b * n..][..n];
+    let deltas = &shapes.deltas[shapes.starts[b]..shapes.starts[b + 1]];
+    let start = b * BLOCK;
+    let width = BLOCK.min(shapes.coordinates - start);
+    let mut sums = [shapes.neutral[b].0; G];
+    for (word, moved_by) in moved_by.iter().enumerate() {
+        let any = active.iter().skip(word).step_by(words).fold(0, |any, active| any | active);
+        let mut rest = moved_by & any;
+        while rest != 0 {
+            let k = 64 * word + rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            // Always there; without the possibility of a panic the sums stay in registers.
+            let (Some(weights), Some(&place)) = (weights.get(k..), places.get(k)) else {
+                continue;
+            };
+            let Some(Block(delta)) = deltas.get(place as usize) else { continue };
+            let weights: [f32; G] =
+                std::array::from_fn(|g| weights.get(g * n).copied().unwrap_or_default());
+            for g in 0..G {
+                for i in 0..BLOCK {
+                    sums[g][i] += weights[g] * delta[i];
                 }
             }
         }
     }
+    for (sums, out) in sums.iter().zip(out.chunks_exact_mut(shapes.coordinates)) {
+        let out = &mut out[start..start + width];
+        match out.first_chunk_mut::<BLOCK>() {
+            Some(out) => *out = *sums,
+            None => out.copy_from_slice(&sums[..width]),
+        }
+    }
+}
+
+/// Whether two frames at a time fit into the registers.
+fn has_wide_registers() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("avx512f");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
 }
 
 #[cfg(test)]
@@ -205,6 +266,15 @@ mod tests {
             let mut out = vec![f32::NAN; frames * synthesis.coordinates() + 2];
             synthesis.pose(&weights, &mut out);
             assert!(out[frames * synthesis.coordinates()..].iter().all(|x| x.is_nan()));
+            out.truncate(frames * synthesis.coordinates());
+            // Both ways, whichever this processor is given.
+            let single: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
+            let active = active(&single, shapes);
+            for pose in [pose_blocks, pose_blocks_wide] {
+                let mut again = vec![f32::NAN; out.len()];
+                pose(&synthesis, [0, synthesis.neutral.len()], &single, &active, &mut again);
+                assert_eq!(again, out);
+            }
             for (c, out) in weights.chunks(shapes).zip(out.chunks_exact(3 * count)) {
                 let mut expected: Vec<f32> =
                     mesh.positions.as_flattened().iter().map(|&x| x as f32).collect();
