@@ -286,8 +286,13 @@ impl Export {
 
     /// Questions that were answered in trials, in the study's order, then any other.
     pub(crate) fn questions<'s>(&self, study: &'s Study) -> Vec<AskedQuestion<'s>> {
-        let asked: BTreeSet<&str> =
-            self.answers.iter().map(|answer| answer.question.as_str()).collect();
+        // Millions of answers to a few questions.
+        let mut asked: BTreeSet<&str> = BTreeSet::new();
+        for answer in &self.answers {
+            if !asked.contains(answer.question.as_str()) {
+                asked.insert(&answer.question);
+            }
+        }
         let mut found: Vec<AskedQuestion<'s>> = Vec::new();
         let mut left = asked.clone();
         for question in &study.questions {
