@@ -79,7 +79,8 @@ pub const FIREFOX: Package = Package {
 /// A display in memory, without which Firefox draws no WebGL; and a driver on the processor.
 pub const XVFB: Package = Package {
     name: "xvfb libegl1 libgl1-mesa-dri",
-    sign: Sign::Program("Xvfb"),
+    // It answers no question about its version.
+    sign: Sign::File(&["/usr/bin/Xvfb", "/usr/local/bin/Xvfb", "/opt/X11/bin/Xvfb"]),
     elsewhere: "Xvfb, or a desktop",
 };
 /// A Vulkan driver on the processor, for pictures without a graphics card.

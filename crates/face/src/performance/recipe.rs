@@ -53,30 +53,27 @@ impl Emotion {
     /// Weights at the apex of intensity 3.
     pub(super) fn recipe(self) -> &'static [Part] {
         match self {
-            // AU 4, 5, 7, 23, with 24 (lips thin) and a thrust jaw.
+            // AU 4, 5, 7, 23, with a thrust jaw.
             Emotion::Anger => &[
                 ("browDown", 1.0),
-                ("eyeWide", 0.50),
-                ("eyeSquint", 0.45),
-                ("mouthPress", 1.0),
-                ("mouthRollUpper", 0.80),
-                ("mouthRollLower", 0.75),
-                ("mouthFrown", 0.50),
-                ("noseSneer", 0.30),
-                ("jawForward", 0.50),
+                ("eyeWide", 0.40),
+                ("eyeSquint", 0.55),
+                ("mouthPress", 0.80),
+                ("mouthRollUpper", 0.25),
+                ("mouthFrown", 0.28),
+                ("noseSneer", 0.22),
+                ("jawForward", 0.40),
             ],
-            // AU 9, 15, 16, with 10 and 17, and narrow eyes under a brow that hardly frowns: a frown
-            // as strong as anger's makes it a snarl.
+            // AU 9, 15, 16, with 4 and 10.
             Emotion::Disgust => &[
                 ("noseSneer", 1.0),
-                ("mouthUpperUp", 0.50),
-                ("mouthFrown", 0.75),
-                ("mouthLowerDown", 0.15),
-                ("mouthShrugLower", 0.85),
-                ("browDown", 0.18),
-                ("eyeSquint", 1.0),
-                ("cheekSquint", 0.90),
-                ("eyeBlink", 0.10),
+                ("mouthUpperUp", 0.40),
+                ("mouthFrown", 0.55),
+                ("mouthLowerDown", 0.18),
+                ("mouthShrugLower", 0.45),
+                ("browDown", 0.40),
+                ("eyeSquint", 0.95),
+                ("cheekSquint", 0.60),
             ],
             // AU 1, 2, 4, 5, 20, 26.
             Emotion::Fear => &[

@@ -161,7 +161,15 @@ macro_rules! on_store {
 
 impl Storage {
     /// Opens `sqlite:FILE` (made when absent) or `postgres://…` and brings its schema up to date.
+    ///
+    /// Refuses what cannot be written: a server that could keep no answer must not start.
     pub async fn open(url: &str) -> Result<Self, StorageError> {
+        let storage = Self::connect(url).await?;
+        on_store!(storage, store => store.ensure_writable().await)?;
+        Ok(storage)
+    }
+
+    async fn connect(url: &str) -> Result<Self, StorageError> {
         let store = if url.starts_with("postgres://") || url.starts_with("postgresql://") {
             Store::Postgres(postgres::open(url).await?)
         } else if let Some(path) = sqlite_path(url) {
@@ -172,12 +180,13 @@ impl Storage {
         Ok(Self { store })
     }
 
-    /// Like [`Self::open`], but a SQLite file must be there already.
+    /// Like [`Self::open`], but a SQLite file must be there already, and may be one that can only be
+    /// read.
     pub async fn open_existing(url: &str) -> Result<Self, StorageError> {
         if let Some(path) = sqlite_path(url).filter(|path| !path.is_file()) {
             return Err(StorageError::NoDatabase { path: path.display().to_string() });
         }
-        Self::open(url).await
+        Self::connect(url).await
     }
 
     /// A database's address fit for a message.

@@ -59,6 +59,12 @@ impl Store {
         self.writers.close().await;
     }
 
+    /// Begins to write, and writes nothing.
+    pub async fn ensure_writable(&self) -> Result<(), StorageError> {
+        self.writers.begin_with(BEGIN_WRITE).await?.rollback().await?;
+        Ok(())
+    }
+
     pub async fn ping(&self) -> Result<(), StorageError> {
         sqlx::query("SELECT 1").execute(&self.readers).await?;
         Ok(())
