@@ -59,9 +59,14 @@ impl Store {
         self.writers.close().await;
     }
 
-    /// Begins to write, and writes nothing.
+    /// Makes a statement that would write, and writes nothing: where SQLite has opened a file for
+    /// reading only, even `BEGIN IMMEDIATE` succeeds.
     pub async fn ensure_writable(&self) -> Result<(), StorageError> {
-        self.writers.begin_with(BEGIN_WRITE).await?.rollback().await?;
+        let mut transaction = self.writers.begin_with(BEGIN_WRITE).await?;
+        sqlx::query("DELETE FROM schema_migrations WHERE version < 0")
+            .execute(&mut *transaction)
+            .await?;
+        transaction.rollback().await?;
         Ok(())
     }
 
