@@ -6,14 +6,6 @@ use crate::skin_mesh::SkinMesh;
 /// Coordinates that are summed together, in registers: four of the widest vectors there are.
 const BLOCK: usize = 64;
 
-/// Blocks whose shapes, some 11 KiB each, stay in a processor's second memory while all the frames
-/// pass.
-const BLOCKS: usize = 16;
-
-/// Frames that pass a block while its shapes are in a processor's first memory: more would be more
-/// places to write to than it follows.
-const FRAMES: usize = 8;
-
 /// 64 coordinates, where the processor's lines begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
@@ -30,7 +22,7 @@ pub struct Synthesis {
     coordinates: usize,
     /// The 3S coordinates, filled up with zeros to whole blocks.
     neutral: Vec<Block>,
-    /// For each block a bit for each shape that moves it, in [`mask_words`] words.
+    /// For each block a bit for each shape that moves it, in words of 64 shapes.
     moved_by: Vec<u64>,
     /// Deltas of block b are `starts[b]..starts[b + 1]` of `deltas`.
     starts: Vec<usize>,
@@ -49,7 +41,7 @@ impl Synthesis {
     pub fn new(mesh: &SkinMesh) -> Synthesis {
         let coordinates = 3 * mesh.positions.len();
         let shape_count = mesh.shapes.len();
-        let words = mask_words(shape_count);
+        let words = shape_count.div_ceil(64);
         let mut neutral = vec![Block([0.0; BLOCK]); coordinates.div_ceil(BLOCK)];
         for (i, &x) in mesh.positions.as_flattened().iter().enumerate() {
             neutral[i / BLOCK].0[i % BLOCK] = x as f32;
@@ -100,113 +92,84 @@ impl Synthesis {
         let n = self.shape_count;
         assert!(n > 0 && weights.len().is_multiple_of(n), "a frame has N weights");
         let out = &mut out[..weights.len() / n * self.coordinates];
-        let weights: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
-        let words = mask_words(n);
-        let active = active(&weights, n);
-        let pose = if has_wide_registers() { pose_blocks_wide } else { pose_blocks };
-        for first in (0..self.neutral.len()).step_by(BLOCKS) {
-            let last = (first + BLOCKS).min(self.neutral.len());
-            let frames = weights.chunks(FRAMES * n).zip(active.chunks(FRAMES * words));
-            for ((weights, active), out) in frames.zip(out.chunks_mut(FRAMES * self.coordinates)) {
-                pose(self, [first, last], weights, active, out);
-            }
+        let pose = if has_wide_registers() { pose_frames_wide } else { pose_frames };
+        let frames = weights.chunks(Self::FRAMES * n);
+        for (weights, out) in frames.zip(out.chunks_mut(Self::FRAMES * self.coordinates)) {
+            pose(self, weights, out);
         }
     }
-}
-
-/// For each frame the set of the shapes whose weight is not 0.
-fn active(weights: &[f32], n: usize) -> Vec<u64> {
-    let words = mask_words(n);
-    let mut active = vec![0; weights.len() / n * words];
-    for (mask, weights) in active.chunks_exact_mut(words).zip(weights.chunks_exact(n)) {
-        for (k, _) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
-            mask[k / 64] |= 1_u64 << (k % 64);
-        }
-    }
-    active
-}
-
-/// Words of a set of shapes.
-fn mask_words(shape_count: usize) -> usize {
-    shape_count.div_ceil(64)
 }
 
 widest! {
     ["avx512f"]
-    /// [`pose_blocks`] for the 32 wide registers of AVX-512: two frames at a time, whose shapes are
-    /// read once.
-    fn pose_blocks_wide(
-        shapes: &Synthesis,
-        blocks: [usize; 2],
-        weights: &[f32],
-        active: &[u64],
-        out: &mut [f32]
-    ) {
-        let (n, words) = (shapes.shape_count, mask_words(shapes.shape_count));
-        let frames = weights.chunks(2 * n).zip(active.chunks(2 * words));
-        for b in blocks[0]..blocks[1] {
-            let frames = frames.clone().zip(out.chunks_mut(2 * shapes.coordinates));
-            for ((weights, active), out) in frames {
-                if weights.len() == n {
-                    pose_block::<1>(shapes, b, weights, active, out);
-                } else {
-                    pose_block::<2>(shapes, b, weights, active, out);
-                }
-            }
-        }
+    /// [`pose_frames`] for the 32 wide registers of AVX-512: four frames at a time, for which the
+    /// shapes are read once.
+    fn pose_frames_wide(shapes: &Synthesis, weights: &[f64], out: &mut [f32]) {
+        pose_groups::<4>(shapes, weights, out);
     }
 }
 
 widest! {
-    /// Blocks first..last of some frames.
-    fn pose_blocks(
-        shapes: &Synthesis,
-        blocks: [usize; 2],
-        weights: &[f32],
-        active: &[u64],
-        out: &mut [f32]
-    ) {
-        let (n, words) = (shapes.shape_count, mask_words(shapes.shape_count));
-        let frames = weights.chunks_exact(n).zip(active.chunks_exact(words));
-        for b in blocks[0]..blocks[1] {
-            let frames = frames.clone().zip(out.chunks_exact_mut(shapes.coordinates));
-            for ((weights, active), out) in frames {
-                pose_block::<1>(shapes, b, weights, active, out);
-            }
+    /// Some frames, one at a time.
+    fn pose_frames(shapes: &Synthesis, weights: &[f64], out: &mut [f32]) {
+        pose_groups::<1>(shapes, weights, out);
+    }
+}
+
+/// The weights of G frames.
+struct Group<const G: usize> {
+    /// The shapes that any of the frames has, in words of 64 shapes.
+    any: Vec<u64>,
+    /// The weights of each shape; 0 where there are fewer frames.
+    weights: Vec<[f32; G]>,
+}
+
+impl<const G: usize> Group<G> {
+    fn of(weights: &[f64], n: usize) -> Self {
+        let weight = |g: usize, k: usize| weights.get(g * n + k).map_or(0.0, |&w| w as f32);
+        let weights: Vec<[f32; G]> =
+            (0..n).map(|k| std::array::from_fn(|g| weight(g, k))).collect();
+        let mut any = vec![0; n.div_ceil(64)];
+        for (k, _) in weights.iter().enumerate().filter(|(_, w)| **w != [0.0; G]) {
+            any[k / 64] |= 1_u64 << (k % 64);
+        }
+        Self { any, weights }
+    }
+}
+
+/// Block after block, so that its shapes stay in a processor's first memory while the frames pass.
+#[inline(always)]
+fn pose_groups<const G: usize>(shapes: &Synthesis, weights: &[f64], out: &mut [f32]) {
+    let n = shapes.shape_count;
+    let groups: Vec<Group<G>> = weights.chunks(G * n).map(|own| Group::of(own, n)).collect();
+    for b in 0..shapes.neutral.len() {
+        for (group, out) in groups.iter().zip(out.chunks_mut(G * shapes.coordinates)) {
+            pose_block(shapes, b, group, out);
         }
     }
 }
 
-/// One block of G frames: the shapes that any of them has. A weight of 0 adds nothing.
+/// One block of some frames. A weight of 0 adds nothing.
 #[inline(always)]
-fn pose_block<const G: usize>(
-    shapes: &Synthesis,
-    b: usize,
-    weights: &[f32],
-    active: &[u64],
-    out: &mut [f32],
-) {
+fn pose_block<const G: usize>(shapes: &Synthesis, b: usize, group: &Group<G>, out: &mut [f32]) {
     let n = shapes.shape_count;
-    let words = mask_words(n);
+    let words = group.any.len();
     let moved_by = &shapes.moved_by[b * words..][..words];
     let places = &shapes.places[b * n..][..n];
     let deltas = &shapes.deltas[shapes.starts[b]..shapes.starts[b + 1]];
     let start = b * BLOCK;
     let width = BLOCK.min(shapes.coordinates - start);
     let mut sums = [shapes.neutral[b].0; G];
-    for (word, moved_by) in moved_by.iter().enumerate() {
-        let any = active.iter().skip(word).step_by(words).fold(0, |any, active| any | active);
+    for (word, (moved_by, any)) in moved_by.iter().zip(&group.any).enumerate() {
         let mut rest = moved_by & any;
         while rest != 0 {
             let k = 64 * word + rest.trailing_zeros() as usize;
             rest &= rest - 1;
             // Always there; without the possibility of a panic the sums stay in registers.
-            let (Some(weights), Some(&place)) = (weights.get(k..), places.get(k)) else {
+            let (Some(weights), Some(&place)) = (group.weights.get(k), places.get(k)) else {
                 continue;
             };
             let Some(Block(delta)) = deltas.get(place as usize) else { continue };
-            let weights: [f32; G] =
-                std::array::from_fn(|g| weights.get(g * n).copied().unwrap_or_default());
             for g in 0..G {
                 for i in 0..BLOCK {
                     sums[g][i] += weights[g] * delta[i];
@@ -223,7 +186,7 @@ fn pose_block<const G: usize>(
     }
 }
 
-/// Whether two frames at a time fit into the registers.
+/// Whether four frames at a time fit into the registers.
 fn has_wide_registers() -> bool {
     #[cfg(target_arch = "x86_64")]
     return std::arch::is_x86_feature_detected!("avx512f");
@@ -268,11 +231,9 @@ mod tests {
             assert!(out[frames * synthesis.coordinates()..].iter().all(|x| x.is_nan()));
             out.truncate(frames * synthesis.coordinates());
             // Both ways, whichever this processor is given.
-            let single: Vec<f32> = weights.iter().map(|&w| w as f32).collect();
-            let active = active(&single, shapes);
-            for pose in [pose_blocks, pose_blocks_wide] {
+            for pose in [pose_frames, pose_frames_wide] {
                 let mut again = vec![f32::NAN; out.len()];
-                pose(&synthesis, [0, synthesis.neutral.len()], &single, &active, &mut again);
+                pose(&synthesis, &weights, &mut again);
                 assert_eq!(again, out);
             }
             for (c, out) in weights.chunks(shapes).zip(out.chunks_exact(3 * count)) {

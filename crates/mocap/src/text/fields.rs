@@ -74,7 +74,7 @@ pub(crate) fn split_fields(line: &str, delimiter: Delimiter) -> Vec<Cow<'_, str>
 /// A decimal number of up to 15 digits, or nothing (NaN), at the start of some bytes, and its
 /// length. Such a number is a whole one below 2^53 over a power of ten that is exact: the one
 /// division rounds correctly, as any parser must.
-pub(crate) fn plain_number(bytes: &[u8]) -> Option<(f64, usize)> {
+fn plain_number(bytes: &[u8]) -> Option<(f64, usize)> {
     const POWERS: [f64; 16] =
         [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
     let negative = bytes.first() == Some(&b'-');
@@ -101,6 +101,30 @@ pub(crate) fn plain_number(bytes: &[u8]) -> Option<(f64, usize)> {
     }
     let value = whole as f64 / POWERS[decimals];
     Some((if negative { -value } else { value }, at))
+}
+
+/// The values of a row that holds nothing but plain numbers and blanks: most rows of most files.
+/// `false` for any other, which the slow and careful way then reads or refuses.
+pub(crate) fn plain_row(
+    line: &str,
+    delimiter: Delimiter,
+    columns: usize,
+    values: &mut Vec<f64>,
+) -> bool {
+    values.clear();
+    let mut rest = line.as_bytes();
+    loop {
+        let Some((value, length)) = plain_number(rest) else { return false };
+        values.push(value);
+        match rest.get(length) {
+            None => return values.len() == columns,
+            Some(byte) if char::from(*byte) == delimiter.char() => rest = &rest[length + 1..],
+            Some(_) => return false,
+        }
+        if values.len() == columns {
+            return false;
+        }
+    }
 }
 
 /// A coordinate: NaN where the field is blank or a word for missing, `None` where it is not a

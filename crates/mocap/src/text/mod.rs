@@ -14,7 +14,7 @@ pub(crate) mod vicon_csv;
 pub(crate) mod wide_csv;
 mod write_csv;
 
-pub(crate) use fields::{Delimiter, coordinate, plain_number, split_fields};
+pub(crate) use fields::{Delimiter, coordinate, plain_row, split_fields};
 pub(crate) use lines::{Lines, TextForm};
 pub(crate) use table::Table;
 pub use trc::write_trc;

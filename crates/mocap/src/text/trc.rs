@@ -5,7 +5,7 @@
 
 use super::table::frame_number;
 use super::write_csv::{check_label, push};
-use super::{Delimiter, Lines, Table, coordinate, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, plain_row, split_fields};
 use crate::{Capture, Format, LengthUnit, ReadError, ReadOptions, Recording, WriteError};
 
 const REMEDY: &str = "export the take again as TRC";
@@ -53,13 +53,26 @@ pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recor
         table.notes.push(format!("NumMarkers is {declared}, the labels are {markers}"));
     }
 
-    let mut ended_early = 0_usize;
+    let (mut ended_early, mut values, length) = (0_usize, Vec::new(), lines.length());
     // The axes line is a row of data where a writer left it out.
     if axes.trim_start().starts_with(|c: char| c.is_ascii_digit()) {
         ended_early += usize::from(row(axes_line, &axes, &mut table)?);
     }
     while let Some((line, text)) = lines.next_filled()? {
-        ended_early += usize::from(row(line, text, &mut table)?);
+        if plain_row(text, Delimiter::Tab, 2 + 3 * markers, &mut values) {
+            if table.lines.is_empty() {
+                // As many rows as the rest of the file holds at this length, in one piece.
+                let rows = length / (text.len() as u64 + 1) + 1;
+                table.positions.reserve(rows as usize * markers);
+            }
+            let frame = frame_number(values[0], &values[0].to_string(), line)?;
+            table.frame_numbers.push(frame);
+            table.times.push(values[1]);
+            table.positions.extend(values[2..].as_chunks().0);
+            table.lines.push(line);
+        } else {
+            ended_early += usize::from(row(line, text, &mut table)?);
+        }
     }
     if ended_early > 0 {
         table.notes.push(format!("{ended_early} rows end early, the rest taken as missing"));

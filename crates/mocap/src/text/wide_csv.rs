@@ -6,7 +6,7 @@
 //! with `#` are comments; `# unit: mm` and `# rate_hz: 200` are read.
 
 use super::table::frame_number;
-use super::{Delimiter, Lines, Table, coordinate, plain_number, split_fields};
+use super::{Delimiter, Lines, Table, coordinate, plain_row, split_fields};
 use crate::{Format, LengthUnit, ReadError, ReadOptions, Recording, plausibility};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -129,25 +129,6 @@ pub(crate) fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recor
         table.lines.push(line_number);
     }
     table.finish(Format::WideCsv, options)
-}
-
-/// The values of a row that holds nothing but plain numbers and blanks: most rows of most files.
-/// `false` for any other, which the slow and careful way then reads or refuses.
-fn plain_row(line: &str, delimiter: Delimiter, columns: usize, values: &mut Vec<f64>) -> bool {
-    values.clear();
-    let mut rest = line.as_bytes();
-    loop {
-        let Some((value, length)) = plain_number(rest) else { return false };
-        values.push(value);
-        match rest.get(length) {
-            None => return values.len() == columns,
-            Some(byte) if char::from(*byte) == delimiter.char() => rest = &rest[length + 1..],
-            Some(_) => return false,
-        }
-        if values.len() == columns {
-            return false;
-        }
-    }
 }
 
 /// Refuse a row that is shorter than the header or has values beyond it.

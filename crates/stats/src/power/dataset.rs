@@ -3,6 +3,8 @@
 //! The same people answer the same questions as in [`crate::Simulation`]: a test holds both against each
 //! other. Only what the study's hypotheses and exclusions need is drawn.
 
+use std::sync::Arc;
+
 use mimique_study::{Answers, Component, Study};
 use serde_json::Value;
 
@@ -29,10 +31,10 @@ struct Data<'d> {
     export: Export,
     stages: Vec<&'static str>,
     /// Levels of each clip, in the order of the factors.
-    levels: Vec<Vec<Option<String>>>,
+    levels: Vec<Vec<Option<Arc<str>>>>,
     /// Answers and trials before the exclusions, with the quickest answer of each trial.
     trials: Vec<(usize, Trial, Option<f64>)>,
-    answers: Vec<Answer>,
+    answers: Vec<(String, Answer)>,
 }
 
 impl<'d> Data<'d> {
@@ -41,7 +43,9 @@ impl<'d> Data<'d> {
         let levels = model
             .clips
             .iter()
-            .map(|clip| factors.iter().map(|factor| clip.factor_text(factor)).collect())
+            .map(|clip| {
+                factors.iter().map(|factor| clip.factor_text(factor).map(Arc::from)).collect()
+            })
             .collect();
         let about = crate::simulate::traits(design.study)
             .into_keys()
@@ -137,7 +141,7 @@ impl<'d> Data<'d> {
         };
         let needs = &self.design.needs;
         let mut trial = Trial {
-            stimulus: self.model.clips[clip].id.clone(),
+            stimulus: self.model.clips[clip].id.as_str().into(),
             // The order of trials has no part in the study's tests.
             order: None,
             levels: self.levels[clip].clone(),
@@ -189,7 +193,7 @@ impl<'d> Data<'d> {
                 }
                 // Several hypotheses may be about one response.
                 let again =
-                    |answer: &Answer| answer.trial == number && answer.question == *response;
+                    |(to, answer): &(String, Answer)| answer.trial == number && to == response;
                 if self.answers.iter().rev().take(needs.responses.len()).any(again) {
                     continue;
                 }
@@ -210,16 +214,16 @@ impl<'d> Data<'d> {
                     }
                     _ => (text(&as_json(asked, raw.clone())), None, None),
                 };
-                self.answers.push(Answer {
+                let answer = Answer {
                     person: place,
-                    question: response.clone(),
                     number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
-                    text: answer,
+                    text: answer.into(),
                     correct,
-                    truth,
+                    truth: truth.map(Into::into),
                     rt_ms,
                     trial: number,
-                });
+                };
+                self.answers.push((response.clone(), answer));
             }
         }
         self.trials.push((place, trial, quickest));
@@ -250,11 +254,12 @@ impl<'d> Data<'d> {
             }
         }
         self.export.flow.trials_used = self.export.trials.len();
-        self.export.answers = self
-            .answers
-            .into_iter()
-            .filter_map(|answer| Some(Answer { trial: kept[answer.trial]?, ..answer }))
-            .collect();
+        for (response, answer) in self.answers {
+            if let Some(trial) = kept[answer.trial] {
+                let answers = self.export.answers.entry(response).or_default();
+                answers.push(Answer { trial, ..answer });
+            }
+        }
         self.export
     }
 }

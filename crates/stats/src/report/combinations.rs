@@ -1,6 +1,7 @@
 //! The combinations of levels that trials have: far fewer than trials.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::export::Trial;
 
@@ -17,10 +18,10 @@ impl Combinations {
     pub(crate) fn of(trials: &[Trial]) -> Self {
         // Trials of one clip have the same levels, so most of them are found by the clip alone.
         let mut by_clip: HashMap<&str, u32> = HashMap::new();
-        let mut by_levels: HashMap<&[Option<String>], u32> = HashMap::new();
+        let mut by_levels: HashMap<&[Option<Arc<str>>], u32> = HashMap::new();
         let mut found = Self::default();
         for (place, trial) in trials.iter().enumerate() {
-            let known = by_clip.get(trial.stimulus.as_str()).copied();
+            let known = by_clip.get(&*trial.stimulus).copied();
             let same = |&known: &u32| trials[found.first[known as usize]].levels == trial.levels;
             let combination = match known.filter(same) {
                 Some(known) => known,

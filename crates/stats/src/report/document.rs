@@ -1,5 +1,7 @@
 //! A report as blocks: headings, paragraphs, tables, figures. HTML, Markdown and files are made of it.
 
+use std::borrow::Cow;
+
 /// A report.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Document {
@@ -86,7 +88,7 @@ impl DataTable {
     pub(crate) fn to_csv(&self) -> String {
         let mut text = String::new();
         for row in std::iter::once(&self.full_columns()).chain(&self.rows) {
-            let cells: Vec<String> = row.iter().map(|cell| csv_cell(cell)).collect();
+            let cells: Vec<_> = row.iter().map(|cell| csv_cell(cell)).collect();
             text.push_str(&cells.join(","));
             text.push('\n');
         }
@@ -100,11 +102,11 @@ pub(crate) fn is_number(cell: &str) -> bool {
         && cell.chars().filter(|c| c.is_alphabetic() && *c != 'e').count() == 0
 }
 
-pub(crate) fn csv_cell(cell: &str) -> String {
+pub(crate) fn csv_cell(cell: &str) -> Cow<'_, str> {
     if cell.contains([',', '"', '\n', '\r', ';']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
+        Cow::Owned(format!("\"{}\"", cell.replace('"', "\"\"")))
     } else {
-        cell.to_owned()
+        Cow::Borrowed(cell)
     }
 }
 

@@ -1,13 +1,15 @@
 //! The tidy export of a study as people, trials and answers, with the study's exclusions applied.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use mimique_study::{Exclusions, Question, QuestionKind, Study};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
+use super::column::Column;
 use super::combinations::Combinations;
-use crate::number::parse_number;
+use super::trial_rows::{TrialReader, TrialRows, stretches};
 use crate::outcome::Refusal;
 use crate::table::Table;
 
@@ -26,21 +28,19 @@ pub(crate) struct Person {
     pub excluded: Option<&'static str>,
 }
 
-/// One answer in a trial that is used.
+/// One answer in a trial that is used. Millions of answers share a few texts.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Answer {
     /// Place in [`Export::people`].
     pub person: usize,
-    /// Identifier of the question.
-    pub question: String,
     /// As exported.
-    pub text: String,
+    pub text: Arc<str>,
     /// As a number, if it is one.
     pub number: Option<f64>,
     /// Whether it is right, where there is a right answer.
     pub correct: Option<bool>,
     /// The right answer.
-    pub truth: Option<String>,
+    pub truth: Option<Arc<str>>,
     /// Response time, milliseconds.
     pub rt_ms: Option<f64>,
     /// Place in [`Export::trials`].
@@ -50,11 +50,11 @@ pub(crate) struct Answer {
 /// One trial that is used: its clip, factors and frames.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
-    pub stimulus: String,
+    pub stimulus: Arc<str>,
     /// Place among the person's trials, from 1.
     pub order: Option<usize>,
     /// Value of each of [`Export::factors`].
-    pub levels: Vec<Option<String>>,
+    pub levels: Vec<Option<Arc<str>>>,
     pub frames: Option<f64>,
     pub late: Option<f64>,
     pub longest_ms: Option<f64>,
@@ -99,7 +99,8 @@ impl Flow {
 pub(crate) struct Export {
     pub people: Vec<Person>,
     pub trials: Vec<Trial>,
-    pub answers: Vec<Answer>,
+    /// Answers to each question that was answered in trials, in the order of the file.
+    pub answers: BTreeMap<String, Vec<Answer>>,
     /// Names of the factors.
     pub factors: Vec<String>,
     /// Answers about each person: column, then one cell a person.
@@ -121,12 +122,17 @@ impl Export {
         Self {
             people: Vec::new(),
             trials: Vec::new(),
-            answers: Vec::new(),
+            answers: BTreeMap::new(),
             factors,
             about,
             flow: Flow::default(),
             combinations: OnceLock::new(),
         }
+    }
+
+    /// Answers to a question, in the order of the file.
+    pub(crate) fn answers_to(&self, question: &str) -> &[Answer] {
+        self.answers.get(question).map_or(&[], Vec::as_slice)
     }
 
     /// The combinations of levels that the trials have. The trials must be complete.
@@ -150,19 +156,25 @@ impl Export {
         let mut place: HashMap<&str, usize> = HashMap::new();
         let mut person_of_row = Vec::with_capacity(table.rows());
         let mut stages: Vec<&str> = Vec::new();
+        // Rows of one person mostly follow each other.
+        let mut last: Option<(&str, usize)> = None;
         for row in 0..table.rows() {
             let id = participant.needed(row)?;
-            let person = *place.entry(id).or_insert_with(|| {
-                people.push(Person {
-                    id: id.to_owned(),
-                    status: status.text(row).unwrap_or("unknown").to_owned(),
-                    trials: 0,
-                    failed_checks: 0,
-                    excluded: None,
-                });
-                stages.push(stage.text(row).unwrap_or("live"));
-                people.len() - 1
+            let same = last.filter(|(known, _)| *known == id).map(|(_, person)| person);
+            let person = same.unwrap_or_else(|| {
+                *place.entry(id).or_insert_with(|| {
+                    people.push(Person {
+                        id: id.to_owned(),
+                        status: status.text(row).unwrap_or("unknown").to_owned(),
+                        trials: 0,
+                        failed_checks: 0,
+                        excluded: None,
+                    });
+                    stages.push(stage.text(row).unwrap_or("live"));
+                    people.len() - 1
+                })
             });
+            last = Some((id, person));
             if attention.text(row) == Some("false") {
                 people[person].failed_checks += 1;
             }
@@ -198,80 +210,28 @@ impl Export {
         study: &Study,
         person_of_row: &[usize],
     ) -> Result<(), Refusal> {
-        let rules = study.exclusions.clone().unwrap_or_default();
-        let column = |name: &str| Column::of(table, name);
-        let [kind, trial_id, rt, stimulus, order] =
-            ["trial_type", "trial_id", "rt", "stimulus", "trial_order"].map(column);
-        let [frames, late, longest] = ["frames", "frames_late", "frame_longest_ms"].map(column);
-        let [response, answer, correct, truth] =
-            ["response_id", "answer", "correct", "truth"].map(column);
-        let levels: Vec<Column<'_>> = self.factors.iter().map(|factor| column(factor)).collect();
-        // A trial is left out for its first reason; the quickest answer decides for all of it.
-        let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
-        for (row, &person) in person_of_row.iter().enumerate() {
-            if let (Some("trial"), Some(trial), Some(rt)) =
-                (kind.text(row), trial_id.text(row), rt.number(row)?)
-                && rules.shortest_rt_ms.is_some()
-            {
-                let least = quickest.entry((person, trial)).or_insert(rt);
-                *least = least.min(rt);
+        let reader = TrialReader::new(table, study, self, person_of_row);
+        let stretches = stretches(person_of_row).into_par_iter();
+        let parts: Vec<Result<TrialRows, Refusal>> =
+            stretches.map(|rows| reader.read(rows)).collect();
+        for part in parts {
+            let part = part?;
+            for person in part.person_of_trial {
+                self.people[person].trials += 1;
             }
-        }
-        let mut seen: HashMap<(usize, &str), Option<usize>> = HashMap::new();
-        for (row, &person) in person_of_row.iter().enumerate() {
-            if kind.text(row) != Some("trial") {
-                continue;
+            self.flow.trials += part.considered;
+            for (reason, count) in part.left_out {
+                *self.flow.trials_left_out.entry(reason).or_insert(0) += count;
             }
-            let id = trial_id.needed(row)?;
-            let known = seen.get(&(person, id)).copied();
-            let trial = match known {
-                Some(trial) => trial,
-                None => {
-                    self.people[person].trials += 1;
-                    let trial = Trial {
-                        stimulus: stimulus.text(row).unwrap_or_default().to_owned(),
-                        order: order.number(row)?.map(|order| order as usize),
-                        levels: levels.iter().map(|own| own.text(row).map(str::to_owned)).collect(),
-                        frames: frames.number(row)?,
-                        late: late.number(row)?,
-                        longest_ms: longest.number(row)?,
-                    };
-                    let place = if self.people[person].excluded.is_some() {
-                        None
-                    } else {
-                        self.flow.trials += 1;
-                        let reason =
-                            why_left_out(&rules, &trial, quickest.get(&(person, id)).copied());
-                        match reason {
-                            Some(reason) => {
-                                *self.flow.trials_left_out.entry(reason).or_insert(0) += 1;
-                                None
-                            }
-                            None => {
-                                self.trials.push(trial);
-                                Some(self.trials.len() - 1)
-                            }
-                        }
-                    };
-                    seen.insert((person, id), place);
-                    place
-                }
-            };
-            if let (Some(trial), Some(text)) = (trial, answer.text(row)) {
-                self.answers.push(Answer {
-                    person,
-                    question: response.needed(row)?.to_owned(),
-                    text: text.to_owned(),
-                    number: text.parse().ok().filter(|number: &f64| number.is_finite()),
-                    correct: match correct.text(row) {
-                        Some("true") => Some(true),
-                        Some("false") => Some(false),
-                        _ => None,
-                    },
-                    truth: truth.text(row).map(str::to_owned),
-                    rt_ms: rt.number(row)?,
-                    trial,
-                });
+            let before = self.trials.len();
+            self.trials.extend(part.trials);
+            for (question, answers) in part.answers {
+                let own = self.answers.entry(question).or_default();
+                own.extend(
+                    answers
+                        .into_iter()
+                        .map(|answer| Answer { trial: before + answer.trial, ..answer }),
+                );
             }
         }
         self.flow.trials_used = self.trials.len();
@@ -286,13 +246,7 @@ impl Export {
 
     /// Questions that were answered in trials, in the study's order, then any other.
     pub(crate) fn questions<'s>(&self, study: &'s Study) -> Vec<AskedQuestion<'s>> {
-        // Millions of answers to a few questions.
-        let mut asked: BTreeSet<&str> = BTreeSet::new();
-        for answer in &self.answers {
-            if !asked.contains(answer.question.as_str()) {
-                asked.insert(&answer.question);
-            }
-        }
+        let asked: BTreeSet<&str> = self.answers.keys().map(String::as_str).collect();
         let mut found: Vec<AskedQuestion<'s>> = Vec::new();
         let mut left = asked.clone();
         for question in &study.questions {
@@ -346,38 +300,6 @@ impl AskedQuestion<'_> {
             Some(QuestionKind::ValenceArousal(grid)) => Some((1, i64::from(grid.num_items))),
             _ => None,
         }
-    }
-}
-
-/// The cells of a column, if the table has it.
-struct Column<'t> {
-    table: &'t Table,
-    name: String,
-    place: Option<usize>,
-}
-
-impl<'t> Column<'t> {
-    fn of(table: &'t Table, name: &str) -> Self {
-        Self { table, name: name.to_owned(), place: table.position(name).ok() }
-    }
-
-    fn text(&self, row: usize) -> Option<&'t str> {
-        self.table.cell(row, self.place?)
-    }
-
-    fn needed(&self, row: usize) -> Result<&'t str, Refusal> {
-        self.text(row).ok_or_else(|| {
-            let problem = format!("line {}: the cell is blank", self.table.line(row));
-            Refusal::column(&self.name, problem, "export the study again")
-        })
-    }
-
-    fn number(&self, row: usize) -> Result<Option<f64>, Refusal> {
-        let Some(cell) = self.text(row) else { return Ok(None) };
-        parse_number(cell, true).map(Some).ok_or_else(|| {
-            let problem = format!("line {}: \"{cell}\" is not a number", self.table.line(row));
-            Refusal::column(&self.name, problem, "export the study again")
-        })
     }
 }
 

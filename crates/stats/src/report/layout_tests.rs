@@ -4,6 +4,7 @@
 use mimique_study::TableLayout;
 
 use super::document::DataTable;
+use super::hypothesis::HypothesisResult;
 use super::layouts::{Column, LayoutCell, Row};
 use super::measure::{Measure, MeasureKind, as_numbers};
 use super::mixed;
@@ -15,13 +16,17 @@ use super::trial_level;
 use crate::outcome::Outcome;
 
 impl Writer<'_> {
-    pub(crate) fn hypotheses_layout(&mut self, layout: &TableLayout) -> DataTable {
+    pub(crate) fn hypotheses_layout(
+        &self,
+        layout: &TableLayout,
+        hypotheses: &[HypothesisResult],
+    ) -> DataTable {
         let language = self.language();
         let thesis = thesis_heading(language);
         let recommended = recommended_heading(language);
         let first = language.pick("hypothesis", "hypothèse");
         let mut table = self.layout_table(layout, [first, "", thesis, recommended]);
-        for result in &self.results.hypotheses {
+        for result in hypotheses {
             let of_people: Vec<&Outcome<TestLine>> = if result.recommended.overall.is_empty() {
                 result.recommended.pairs.iter().map(|pair| &pair.wilcoxon).collect()
             } else {

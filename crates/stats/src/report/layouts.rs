@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::document::{Block, DataTable, slug};
 use super::export::AskedQuestion;
+use super::hypothesis::HypothesisResult;
 use super::measure::{Measure, MeasureKind};
 use super::sections::Writer;
 use super::test_line::TestLine;
@@ -41,32 +42,32 @@ pub(crate) struct Column {
 }
 
 impl<'a> Writer<'a> {
-    /// Every table that the study lays out.
-    pub(crate) fn layouts(&mut self) {
-        if self.study.tables.is_empty() {
-            return;
-        }
-        let language = self.language();
+    /// What stands above the tables that the study lays out.
+    pub(crate) fn layouts_heading(&mut self) {
         self.heading(2, "Tables of the study", "Tables de l’étude");
-        self.blocks.push(Block::Caution(super::reading::trial_level_caution(language).to_owned()));
-        for layout in &self.study.tables {
-            let table = match layout.layout {
-                Layout::Hypotheses => self.hypotheses_layout(layout),
-                Layout::Pairs => self.pairs_layout(layout),
-                Layout::Means => self.means_layout(layout),
-                Layout::Interactions => self.interactions_layout(layout),
-                Layout::Influences => self.influences_layout(layout),
-                Layout::Confusion => self.confusion_layout(layout),
-            };
-            if table.rows.is_empty() {
-                let caption = layout.caption.in_language(language.code());
-                self.blocks.push(Block::Caution(language.pick(
-                    format!("{caption}: the export has no answers for this table."),
-                    format!("{caption} : l’export n’a pas de réponses pour cette table."),
-                )));
-            } else {
-                self.blocks.push(Block::Table(table));
-            }
+        let caution = super::reading::trial_level_caution(self.language());
+        self.blocks.push(Block::Caution(caution.to_owned()));
+    }
+
+    /// A table that the study lays out; `hypotheses` are those that were tested.
+    pub(crate) fn layout(&mut self, layout: &TableLayout, hypotheses: &[HypothesisResult]) {
+        let language = self.language();
+        let table = match layout.layout {
+            Layout::Hypotheses => self.hypotheses_layout(layout, hypotheses),
+            Layout::Pairs => self.pairs_layout(layout),
+            Layout::Means => self.means_layout(layout),
+            Layout::Interactions => self.interactions_layout(layout),
+            Layout::Influences => self.influences_layout(layout),
+            Layout::Confusion => self.confusion_layout(layout),
+        };
+        if table.rows.is_empty() {
+            let caption = layout.caption.in_language(language.code());
+            self.blocks.push(Block::Caution(language.pick(
+                format!("{caption}: the export has no answers for this table."),
+                format!("{caption} : l’export n’a pas de réponses pour cette table."),
+            )));
+        } else {
+            self.blocks.push(Block::Table(table));
         }
     }
 
@@ -216,8 +217,7 @@ impl<'a> Writer<'a> {
             Some(QuestionKind::SingleChoice(choice)) => choice.truth.clone().unwrap_or_default(),
             _ => String::new(),
         };
-        let answers: Vec<_> =
-            self.export.answers.iter().filter(|answer| answer.question == row.asked.id).collect();
+        let answers = self.export.answers_to(&row.asked.id);
         let parts: Vec<Option<String>> = match layout.factors.first() {
             None => vec![None],
             Some(name) => {
@@ -247,7 +247,7 @@ impl<'a> Writer<'a> {
                 let chosen = of_part(part);
                 let shown = chosen.iter().map(|answer| answer.truth.as_deref());
                 let shown = Factor::from_cells("truth", shown, |_| None);
-                let given = chosen.iter().map(|answer| Some(answer.text.as_str()));
+                let given = chosen.iter().map(|answer| Some(&*answer.text));
                 let given = Factor::from_cells(&row.asked.id, given, |_| None);
                 Some((part, confusion(&shown, &given).ok()?))
             })

@@ -1,6 +1,6 @@
 //! A measure of the study: one number a trial, with its person and its factors.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde::Serialize;
 
@@ -34,6 +34,16 @@ pub(crate) struct Measure {
     pub values: Vec<f64>,
     pub person: Vec<usize>,
     pub trial: Vec<usize>,
+}
+
+/// Means of the people who have a value.
+pub(crate) struct OverallMeans {
+    /// Places in [`Export::people`], growing.
+    pub people: Vec<usize>,
+    /// The mean of each of them.
+    pub means: Vec<f64>,
+    /// The first value of each of them, its place in the measure.
+    pub first_rows: Vec<usize>,
 }
 
 /// Means of the people who have a value at each level of a factor.
@@ -77,7 +87,7 @@ impl Measure {
             person: Vec::new(),
             trial: Vec::new(),
         };
-        for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
+        for answer in export.answers_to(&asked.id) {
             let value = if recognition {
                 answer.correct.map(|correct| f64::from(u8::from(correct)))
             } else {
@@ -108,7 +118,7 @@ impl Measure {
             person: Vec::new(),
             trial: Vec::new(),
         };
-        for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
+        for answer in export.answers_to(&asked.id) {
             if let Some(rt) = answer.rt_ms {
                 measure.values.push(rt / 1000.0);
                 measure.person.push(answer.person);
@@ -170,28 +180,24 @@ impl Measure {
     }
 
     /// One more than the last person's place.
-    fn people(&self) -> usize {
+    pub(crate) fn people(&self) -> usize {
         self.person.iter().max().map_or(0, |last| last + 1)
     }
 
     /// Mean of each person over all trials.
-    pub(crate) fn overall_person_means(&self) -> BTreeMap<usize, f64> {
-        let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-        for (&person, &value) in self.person.iter().zip(&self.values) {
-            let cell = sums.entry(person).or_insert((0.0, 0.0));
-            cell.0 += value;
-            cell.1 += 1.0;
+    pub(crate) fn overall_person_means(&self) -> OverallMeans {
+        let mut sums = Sums::new(self.people(), 1);
+        let mut first_of = vec![usize::MAX; self.people()];
+        for (row, (&person, &value)) in self.person.iter().zip(&self.values).enumerate() {
+            sums.add(person, 0, value);
+            first_of[person] = first_of[person].min(row);
         }
-        sums.into_iter().map(|(person, (sum, count))| (person, sum / count)).collect()
-    }
-
-    /// The first value of each person.
-    pub(crate) fn first_rows(&self) -> BTreeMap<usize, usize> {
-        let mut first = BTreeMap::new();
-        for (row, &person) in self.person.iter().enumerate() {
-            first.entry(person).or_insert(row);
+        let (people, means): (Vec<usize>, Vec<Vec<f64>>) = sums.complete().unzip();
+        OverallMeans {
+            means: means.into_iter().flatten().collect(),
+            first_rows: people.iter().map(|&person| first_of[person]).collect(),
+            people,
         }
-        first
     }
 
     /// Trials of one person that differ in the tested factor only, as blocks: the pairs of trial-level

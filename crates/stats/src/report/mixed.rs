@@ -74,11 +74,9 @@ pub(crate) fn interaction(
 /// Scheirer-Ray-Hare on one mean a person.
 fn of_people(measure: &Measure, factors: [&Factor; 2]) -> PersonLevel {
     let means = measure.overall_person_means();
-    let first_rows = measure.first_rows();
-    let rows: Vec<usize> =
-        means.keys().filter_map(|person| first_rows.get(person).copied()).collect();
-    let [first, second] = factors.map(|factor| factor.rows(&rows));
-    let values = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
+    let people = means.people.len();
+    let [first, second] = factors.map(|factor| factor.rows(&means.first_rows));
+    let values = Numbers { name: measure.id.clone(), values: means.means };
     let overall = TestLine::scheirer_ray_hare(&values, [&first, &second], "person means");
-    PersonLevel { people: means.len(), incomplete: 0, overall, pairs: Vec::new() }
+    PersonLevel { people, incomplete: 0, overall, pairs: Vec::new() }
 }

@@ -5,6 +5,7 @@
 //! observations) and as recommended (one value a person).
 
 mod call;
+mod column;
 mod combinations;
 mod comparison;
 mod document;
@@ -38,6 +39,7 @@ mod svg;
 mod tables;
 mod test_line;
 mod trial_level;
+mod trial_rows;
 
 use mimique_study::Study;
 

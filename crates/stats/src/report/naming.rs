@@ -5,6 +5,7 @@ use mimique_study::{QuestionKind, Study};
 use super::language::Language;
 
 /// Names of factors and levels in the report's language, from the study file.
+#[derive(Clone, Copy)]
 pub(crate) struct Naming<'s> {
     pub language: Language,
     pub study: &'s Study,

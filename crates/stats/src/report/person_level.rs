@@ -1,7 +1,6 @@
 //! Tests as recommended: every person counts once.
 
-use std::collections::BTreeMap;
-
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 use super::call::Call;
@@ -153,9 +152,12 @@ pub(crate) fn differences_by_trait(
     about: &Factor,
 ) -> Vec<Outcome<TestLine>> {
     let means = measure.person_means_by_place(within);
-    let first_rows = measure.first_rows();
-    let rows: Vec<usize> =
-        means.people.iter().filter_map(|person| first_rows.get(person).copied()).collect();
+    let overall = measure.overall_person_means();
+    let rows: Vec<usize> = means
+        .people
+        .iter()
+        .filter_map(|person| Some(overall.first_rows[overall.people.binary_search(person).ok()?]))
+        .collect();
     let about = about.rows(&rows);
     let blocks = means.blocks(export, within);
     blocks
@@ -184,28 +186,26 @@ pub(crate) fn differences_by_trait(
 /// One value a person against something about the person.
 pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
     let means = measure.overall_person_means();
-    let first_rows = measure.first_rows();
-    let first_row: Vec<usize> =
-        means.keys().filter_map(|person| first_rows.get(person).copied()).collect();
-    let factor = factor.rows(&first_row);
-    let values = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
+    let people = means.people.len();
+    let factor = factor.rows(&means.first_rows);
+    let values = Numbers { name: measure.id.clone(), values: means.means };
     let overall = TestLine::of_groups(&values, &factor, "person means");
-    PersonLevel { people: means.len(), incomplete: 0, overall: vec![overall], pairs: Vec::new() }
+    PersonLevel { people, incomplete: 0, overall: vec![overall], pairs: Vec::new() }
 }
 
 /// Each person's own rho, then a signed rank test of them against zero.
 pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> Outcome<TestLine> {
     let name = x.name.clone();
-    let mut by_person: BTreeMap<usize, (Vec<f64>, Vec<f64>)> = BTreeMap::new();
+    let mut by_person: Vec<(Vec<f64>, Vec<f64>)> = vec![Default::default(); measure.people()];
     for (i, &person) in measure.person.iter().enumerate() {
         if x.values[i].is_finite() {
-            let cell = by_person.entry(person).or_default();
-            cell.0.push(x.values[i]);
-            cell.1.push(measure.values[i]);
+            by_person[person].0.push(x.values[i]);
+            by_person[person].1.push(measure.values[i]);
         }
     }
     let rhos: Vec<f64> = by_person
-        .into_values()
+        .into_par_iter()
+        .filter(|(x, _)| !x.is_empty())
         .filter_map(|(x, y)| {
             let column = |values| Numbers { name: String::new(), values };
             Some(spearman(&column(x), &column(y)).ok()?.ok()?.rho)
@@ -226,15 +226,11 @@ pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> Outco
 /// Something about each person, as numbers a value, against the person's mean.
 pub(crate) fn correlation(x: &Numbers, measure: &Measure) -> PersonLevel {
     let means = measure.overall_person_means();
-    let first_row = measure.first_rows();
     let of_people = Numbers {
         name: x.name.clone(),
-        values: means
-            .keys()
-            .map(|person| first_row.get(person).map_or(f64::NAN, |&row| x.values[row]))
-            .collect(),
+        values: means.first_rows.iter().map(|&row| x.values[row]).collect(),
     };
-    let means = Numbers { name: measure.id.clone(), values: means.values().copied().collect() };
+    let means = Numbers { name: measure.id.clone(), values: means.means };
     PersonLevel {
         people: means.values.len(),
         incomplete: 0,

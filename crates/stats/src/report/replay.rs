@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
 use super::ReportFile;
 use super::call::{Argument, Call};
 use super::comparison::Comparison;
@@ -307,74 +309,93 @@ fn numbers(checks: &[Check], families: &[Family]) -> String {
     text
 }
 
+/// A column of the trials' file.
+enum Cells<'e> {
+    Texts(Vec<&'e str>),
+    Numbers(Vec<Option<f64>>),
+}
+
+impl Cells<'_> {
+    fn write(&self, row: usize, text: &mut String) {
+        match self {
+            Self::Texts(cells) => text.push_str(&csv_cell(cells[row])),
+            Self::Numbers(cells) => {
+                if let Some(number) = cells[row] {
+                    let _ = write!(text, "{number}");
+                }
+            }
+        }
+    }
+}
+
 /// One line a trial in the analysis: person, clip, factors, answers about the person, every measure.
 fn trials(writer: &Writer<'_>) -> String {
     let export: &Export = writer.export;
     let rows = export.trials.len();
-    let mut columns: Vec<(String, Vec<String>)> = Vec::new();
     let mut person = vec![0; rows];
-    for answer in &export.answers {
+    for answer in export.answers.values().flatten() {
         person[answer.trial] = answer.person;
     }
-    let blank = || vec![String::new(); rows];
-    columns.push((
-        "participant_id".to_owned(),
-        person.iter().map(|&person| export.people[person].id.clone()).collect(),
-    ));
-    columns.push((
-        "stimulus".to_owned(),
-        export.trials.iter().map(|trial| trial.stimulus.clone()).collect(),
-    ));
-    let orders = export.trials.iter().map(|trial| trial.order);
-    columns.push((
-        "trial_order".to_owned(),
-        orders.map(|order| order.map_or_else(String::new, |order| order.to_string())).collect(),
-    ));
+    let ids = person.iter().map(|&person| export.people[person].id.as_str());
+    let clips = export.trials.iter().map(|trial| &*trial.stimulus);
+    let orders = export.trials.iter().map(|trial| trial.order.map(|order| order as f64));
+    let mut columns: Vec<(String, Cells<'_>)> = vec![
+        ("participant_id".to_owned(), Cells::Texts(ids.collect())),
+        ("stimulus".to_owned(), Cells::Texts(clips.collect())),
+        ("trial_order".to_owned(), Cells::Numbers(orders.collect())),
+    ];
     for (place, factor) in export.factors.iter().enumerate() {
-        let cells = export.trials.iter().map(|trial| trial.levels[place].clone());
-        columns.push((factor.clone(), cells.map(Option::unwrap_or_default).collect()));
+        let levels = export.trials.iter().map(|trial| trial.levels[place].as_deref());
+        columns
+            .push((factor.clone(), Cells::Texts(levels.map(Option::unwrap_or_default).collect())));
     }
     for (name, cells) in &export.about {
-        let cells = person.iter().map(|&person| cells[person].clone().unwrap_or_default());
-        columns.push((name.clone(), cells.collect()));
+        let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());
+        columns.push((name.clone(), Cells::Texts(texts.collect())));
     }
     let mut measures: Vec<Measure> = Vec::new();
     for asked in export.questions(writer.study) {
         let measure = Measure::of_question(export, &asked, Language::English);
         if measure.as_ref().is_some_and(|measure| measure.kind == MeasureKind::Recognition) {
-            let (mut truth, mut given) = (blank(), blank());
-            for answer in export.answers.iter().filter(|answer| answer.question == asked.id) {
-                truth[answer.trial] = answer.truth.clone().unwrap_or_default();
-                given[answer.trial].clone_from(&answer.text);
+            let (mut truth, mut given) = (vec![""; rows], vec![""; rows]);
+            for answer in export.answers_to(&asked.id) {
+                truth[answer.trial] = answer.truth.as_deref().unwrap_or_default();
+                given[answer.trial] = &answer.text;
             }
-            columns.push((format!("{}.truth", asked.id), truth));
-            columns.push((format!("{}.answer", asked.id), given));
+            columns.push((format!("{}.truth", asked.id), Cells::Texts(truth)));
+            columns.push((format!("{}.answer", asked.id), Cells::Texts(given)));
         }
         measures.extend(measure);
         measures.extend(Measure::response_time(export, &asked, Language::English));
     }
     for measure in measures {
-        let mut cells = blank();
+        let mut cells = vec![None; rows];
         for (value, &trial) in measure.values.iter().zip(&measure.trial) {
-            cells[trial] = value.to_string();
+            cells[trial] = Some(*value);
         }
-        columns.push((measure.id, cells));
+        columns.push((measure.id, Cells::Numbers(cells)));
     }
-    let mut text = String::new();
-    let names: Vec<String> = columns.iter().map(|(name, _)| csv_cell(name)).collect();
-    text.push_str(&names.join(","));
-    text.push('\n');
-    for row in 0..rows {
-        for (place, (_, cells)) in columns.iter().enumerate() {
-            if place > 0 {
-                text.push(',');
+    let names: Vec<_> = columns.iter().map(|(name, _)| csv_cell(name)).collect();
+    let lines = |first: usize| {
+        let mut text = String::new();
+        for row in first..(first + ROWS).min(rows) {
+            for (place, (_, cells)) in columns.iter().enumerate() {
+                if place > 0 {
+                    text.push(',');
+                }
+                cells.write(row, &mut text);
             }
-            text.push_str(&csv_cell(&cells[row]));
+            text.push('\n');
         }
-        text.push('\n');
-    }
-    text
+        text
+    };
+    let starts: Vec<usize> = (0..rows).step_by(ROWS).collect();
+    let pieces: Vec<String> = starts.into_par_iter().map(lines).collect();
+    format!("{}\n{}", names.join(","), pieces.concat())
 }
+
+/// Lines of the trials' file that are written together.
+const ROWS: usize = 4096;
 
 /// Mixed models of each rating and each recognition on the first two factors.
 fn models(writer: &Writer<'_>) -> String {

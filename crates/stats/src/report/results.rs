@@ -33,6 +33,20 @@ pub(crate) struct Results<'a> {
     pub late_frames: Vec<LateFrames>,
 }
 
+impl Results<'_> {
+    /// What a part of the report has computed, behind what is there.
+    pub(crate) fn append(&mut self, part: Self) {
+        self.about_people.extend(part.about_people);
+        self.hypotheses.extend(part.hypotheses);
+        self.confusion.extend(part.confusion);
+        self.comparisons.extend(part.comparisons);
+        self.two_way.extend(part.two_way);
+        self.course.extend(part.course);
+        self.layouts.extend(part.layouts);
+        self.late_frames.extend(part.late_frames);
+    }
+}
+
 /// Answers about people.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -55,14 +55,15 @@ impl Writer<'_> {
     /// Right answers of each person.
     pub(crate) fn person_shares(&mut self, measure: &Measure, chance: Option<f64>) {
         let language = self.language();
-        let mut counts: std::collections::BTreeMap<usize, (u64, u64)> = Default::default();
+        let mut counts = vec![(0_u64, 0_u64); measure.people()];
         for (&person, &value) in measure.person.iter().zip(&measure.values) {
-            let cell = counts.entry(person).or_default();
-            cell.0 += u64::from(value > 0.5);
-            cell.1 += 1;
+            counts[person].0 += u64::from(value > 0.5);
+            counts[person].1 += 1;
         }
         let people: Vec<_> = counts
             .into_iter()
+            .enumerate()
+            .filter(|(_, (_, all))| *all > 0)
             .map(|(person, (right, all))| {
                 (self.export.people[person].id.clone(), proportion(right, all))
             })
@@ -147,15 +148,16 @@ fn parts(measure: &Measure, places: &[f64], last: usize) -> Vec<Part> {
     (0..count)
         .filter_map(|part| {
             let (first, last) = (border(part) + 1, border(part + 1));
-            let mut sums: std::collections::BTreeMap<usize, (f64, f64)> = Default::default();
+            let mut sums = vec![(0.0, 0.0); measure.people()];
             for (i, &place) in places.iter().enumerate() {
                 if place >= first as f64 && place <= last as f64 {
-                    let cell = sums.entry(measure.person[i]).or_default();
+                    let cell = &mut sums[measure.person[i]];
                     cell.0 += measure.values[i];
                     cell.1 += 1.0;
                 }
             }
-            let means: Vec<f64> = sums.values().map(|(sum, n)| sum / n).collect();
+            let met = sums.iter().filter(|(_, n)| *n > 0.0);
+            let means: Vec<f64> = met.map(|(sum, n)| sum / n).collect();
             let described = describe(&means).ok()?;
             let mean = described.mean;
             let interval = described.mean_ci_t.unwrap_or([mean, mean]);

@@ -1,5 +1,7 @@
 //! The hypotheses of the study file: in short, and one by one.
 
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
 use super::document::{Block, DataTable, slug};
 use super::hypothesis::{HypothesisResult, test_hypothesis};
 use super::reading;
@@ -12,7 +14,7 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
     let mut results: Vec<HypothesisResult> = writer
         .study
         .hypotheses
-        .iter()
+        .par_iter()
         .map(|hypothesis| test_hypothesis(&writer.naming, writer.export, writer.study, hypothesis))
         .collect();
     let p: Vec<Option<f64>> = results.iter().map(|result| result.p).collect();

@@ -75,8 +75,7 @@ impl Writer<'_> {
 
     fn confusion_matrices(&mut self, asked: &AskedQuestion<'_>, truth: &str) {
         let language = self.language();
-        let answers: Vec<_> =
-            self.export.answers.iter().filter(|answer| answer.question == asked.id).collect();
+        let answers = self.export.answers_to(&asked.id);
         let group = self.factors.iter().find(|name| *name != truth).cloned();
         let levels: Vec<Option<String>> = match &group {
             None => vec![None],
@@ -105,9 +104,7 @@ impl Writer<'_> {
                 |_| None,
             );
             let answered =
-                Factor::from_cells(&asked.id, chosen.iter().map(|a| Some(a.text.as_str())), |_| {
-                    None
-                });
+                Factor::from_cells(&asked.id, chosen.iter().map(|a| Some(&*a.text)), |_| None);
             let Ok(result) = confusion(&shown, &answered) else { continue };
             let of = match (&group, &level) {
                 (Some(name), Some(level)) => self.naming.level(name, level),

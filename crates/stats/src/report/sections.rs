@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_study::Study;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use super::ReportFile;
 use super::document::{Block, Document, Figure, escape};
@@ -25,6 +26,9 @@ pub(crate) struct Sections {
     pub readings: Vec<(String, String)>,
     pub replay: Vec<ReportFile>,
 }
+
+/// Writes one part of a report.
+type Part<'p> = Box<dyn FnOnce(&mut Writer<'_>) + Send + 'p>;
 
 /// Collects blocks and results.
 pub(crate) struct Writer<'a> {
@@ -67,20 +71,40 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
     writer.participants();
     writer.hypotheses(&hypotheses);
     let readings = hypotheses.iter().map(|h| (h.id.clone(), h.reading.clone())).collect();
-    writer.results.hypotheses = hypotheses;
-    for (asked, measure) in measures.iter().filter(|(asked, _)| asked.is_recognition()) {
-        writer.recognition(asked, measure);
-    }
-    for (asked, measure) in measures.iter().filter(|(asked, _)| !asked.is_recognition()) {
-        writer.rating(asked, measure);
-    }
-    writer.layouts();
+    let (recognised, rated): (Vec<_>, Vec<_>) =
+        measures.iter().partition(|(asked, _)| asked.is_recognition());
     let mut over_time: Vec<&Measure> = measures.iter().map(|(_, measure)| measure).collect();
     let time =
         measures.first().and_then(|(asked, _)| Measure::response_time(export, asked, language));
     over_time.extend(&time);
-    writer.course_of_the_session(&over_time);
-    writer.timing();
+    // Each part is written by itself, at the same time as the others, and takes its place.
+    let mut parts: Vec<Part<'_>> = Vec::new();
+    for (asked, measure) in recognised {
+        parts.push(Box::new(|part| part.recognition(asked, measure)));
+    }
+    for (asked, measure) in rated {
+        parts.push(Box::new(|part| part.rating(asked, measure)));
+    }
+    if !study.tables.is_empty() {
+        parts.push(Box::new(|part| part.layouts_heading()));
+    }
+    for layout in &study.tables {
+        parts.push(Box::new(|part| part.layout(layout, &hypotheses)));
+    }
+    parts.push(Box::new(|part| part.course_of_the_session(&over_time)));
+    parts.push(Box::new(|part| part.timing()));
+    let parts: Vec<Writer<'_>> = parts
+        .into_par_iter()
+        .map(|write| {
+            let mut part = writer.part();
+            write(&mut part);
+            part
+        })
+        .collect();
+    for part in parts {
+        writer.append(part);
+    }
+    writer.results.hypotheses = hypotheses;
     writer.notes();
 
     let title = study.study_metadata.title.in_language(language.code()).to_owned();
@@ -158,6 +182,25 @@ fn factors_in_use(export: &Export, study: &Study) -> Vec<String> {
         }
     }
     kept.into_iter().map(|place| export.factors[place].clone()).collect()
+}
+
+impl<'a> Writer<'a> {
+    /// A writer of the same study that has written nothing.
+    fn part(&self) -> Self {
+        Self {
+            naming: self.naming,
+            blocks: Vec::new(),
+            results: Results::default(),
+            factors: self.factors.clone(),
+            ..*self
+        }
+    }
+
+    /// What a part has written, behind what is there.
+    fn append(&mut self, part: Self) {
+        self.blocks.extend(part.blocks);
+        self.results.append(part.results);
+    }
 }
 
 impl Writer<'_> {

@@ -42,8 +42,9 @@ impl Parameters {
         let scales: BTreeMap<String, Scale> = all_scales(study).into_iter().collect();
         for (response, rating) in &mut parameters.ratings {
             let Some(scale) = scales.get(response) else { continue };
-            let points: Vec<(usize, &Answer)> = data
-                .answers(response)
+            let points: Vec<(usize, &Answer)> = export
+                .answers_to(response)
+                .iter()
                 .filter_map(|answer| {
                     let point = ((answer.number? - scale.start) / scale.step).round();
                     let inside = point >= 0.0 && point < scale.points as f64;
@@ -77,14 +78,14 @@ impl Parameters {
             let Some(truth) = asked.and_then(truth_of) else { continue };
             let mut rows: BTreeMap<(String, String), ByLevel> = BTreeMap::new();
             let mut points: Vec<(usize, &Answer)> = Vec::new();
-            for answer in data.answers(question) {
+            for answer in export.answers_to(question) {
                 let (Some(right), Some(clip)) = (&answer.truth, data.clip(answer)) else {
                     continue;
                 };
                 let level =
                     clips[clip].factor_text(&recognition.by).unwrap_or_else(|| "*".to_owned());
-                let row = rows.entry((right.clone(), level)).or_default();
-                *row.entry(answer.text.clone()).or_insert(0.0) += 1.0;
+                let row = rows.entry((right.to_string(), level)).or_default();
+                *row.entry(answer.text.to_string()).or_insert(0.0) += 1.0;
                 points.push((usize::from(answer.text == *right), answer));
             }
             for (right, levels) in &mut recognition.confusion {
@@ -165,13 +166,8 @@ impl<'e> Data<'e> {
         Self { export, study, clips, places, segments, levels, traits: traits(study) }
     }
 
-    fn answers(&self, response: &str) -> impl Iterator<Item = &'e Answer> {
-        let response = response.to_owned();
-        self.export.answers.iter().filter(move |answer| answer.question == response)
-    }
-
     fn clip(&self, answer: &Answer) -> Option<usize> {
-        self.places.get(self.export.trials[answer.trial].stimulus.as_str()).copied()
+        self.places.get(&*self.export.trials[answer.trial].stimulus).copied()
     }
 
     /// Factors that hypotheses of one factor name for this response.
