@@ -55,8 +55,7 @@ const MODULES: [Module; 5] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
-        // Views without a type each: smaller, and as quick as people are.
-        rustflags: Some("--cfg=erase_components"),
+        rustflags: None,
     },
     Module {
         name: "solver",

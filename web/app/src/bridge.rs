@@ -22,7 +22,7 @@ extern "C" {
 
     /// Puts a stage on the canvas of a place: `clip`, or `beside` it.
     #[wasm_bindgen(js_name = attachStage)]
-    pub fn attach_stage(place: &str, canvas: &web_sys::HtmlCanvasElement, look: &str);
+    pub fn attach_stage(place: &str, canvas: &JsValue, look: &str);
 
     /// Takes the stage off the canvas of a place.
     #[wasm_bindgen(js_name = detachStage)]

@@ -3,13 +3,12 @@
 //! One writer puts events into IndexedDB, one sender sends them; both go on in order, one thing at
 //! a time, whatever the pages do meanwhile.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, Ref, RefCell};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 
-use gloo::timers::future::TimeoutFuture;
-use leptos::prelude::*;
 use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_study::text::Words;
 use mimique_study::wire::{Event, Refusal};
 use mimique_study::{Display, PlayLog};
 use serde_json::Value;
@@ -20,7 +19,7 @@ use wasm_bindgen_futures::spawn_local;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Failure};
 use crate::outbox::{Outbox, back_off};
-use crate::{bridge, focus};
+use crate::{bridge, page, screen};
 
 /// What the header has to say about the connection.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,9 +37,9 @@ pub struct Engine {
     /// What this participant goes through.
     pub plan: Plan,
     /// Where the session is; pages read it through `flow::view`.
-    pub state: RwSignal<State>,
+    state: RefCell<State>,
     /// What the header says.
-    pub connection: RwSignal<Connection>,
+    connection: RefCell<Connection>,
     clips: BTreeMap<String, Value>,
     keep: Keep,
     to_keep: RefCell<VecDeque<Event>>,
@@ -54,12 +53,6 @@ pub struct Engine {
     prepared: RefCell<BTreeSet<String>>,
     /// False until the first page stands: a page that was just loaded is read from its top.
     open: Cell<bool>,
-}
-
-/// The page's clock: milliseconds since 1970, never running backwards within one load.
-pub fn now_ms() -> f64 {
-    let performance = window().performance();
-    performance.map_or_else(js_sys::Date::now, |clock| clock.time_origin() + clock.now())
 }
 
 impl Engine {
@@ -77,8 +70,8 @@ impl Engine {
         let connection = Connection { fleeting: !keep.is_lasting(), ..Connection::default() };
         Rc::new(Self {
             plan,
-            state: RwSignal::new(state),
-            connection: RwSignal::new(connection),
+            state: RefCell::new(state),
+            connection: RefCell::new(connection),
             clips,
             keep,
             to_keep: RefCell::default(),
@@ -95,12 +88,39 @@ impl Engine {
 
     /// One input: the state moves on, the effects are carried out.
     pub fn dispatch(self: &Rc<Self>, input: Input) {
-        let before = self.state.get_untracked();
-        let (after, effects) = update(&self.plan, before, input, now_ms());
-        self.state.set(after);
+        let before = self.state.take();
+        let (after, effects) = update(&self.plan, before, input, page::now());
+        self.state.replace(after);
+        screen::changed();
         for effect in effects {
             self.carry_out(effect);
         }
+    }
+
+    /// Reads where the session is.
+    pub fn state(&self) -> Ref<'_, State> {
+        self.state.borrow()
+    }
+
+    /// What the header says.
+    pub fn connection(&self) -> Ref<'_, Connection> {
+        self.connection.borrow()
+    }
+
+    /// The language of the moment.
+    pub fn language(&self) -> String {
+        self.state.borrow().record.language.clone()
+    }
+
+    /// The fixed texts in the language of the moment.
+    pub fn words(&self) -> &'static Words {
+        self.plan.words(&self.state.borrow().record.language)
+    }
+
+    /// The header says something else.
+    fn connection_is(&self, change: impl FnOnce(&mut Connection)) {
+        change(&mut self.connection.borrow_mut());
+        screen::changed();
     }
 
     fn carry_out(self: &Rc<Self>, effect: Effect) {
@@ -125,7 +145,7 @@ impl Engine {
             Effect::LeaveFullscreen => bridge::leave_fullscreen(),
             Effect::Complete { events } => self.complete(events),
             Effect::Withdraw => self.withdraw(),
-            Effect::FocusHeading if self.open.get() => focus::heading(),
+            Effect::FocusHeading if self.open.get() => page::focus_heading(),
             Effect::FocusHeading => {}
             // An effect of a later version of the flow: the page is older than the study.
             _ => {}
@@ -149,11 +169,12 @@ impl Engine {
 
     /// The window has another size: the device gate looks again.
     pub fn resized(self: &Rc<Self>) {
-        let known = self.state.with_untracked(|state| {
+        let known = {
+            let state = self.state();
             let step = self.plan.step(state.record.step);
-            let gate = step.is_some_and(|step| step.kind == StepKind::Device);
+            let gate = step.is_some_and(|step| matches!(step.kind, StepKind::Device));
             state.record.display.clone().filter(|_| gate)
-        });
+        };
         if let Some(display) = known {
             let now = crate::start::client();
             let (viewport, device_pixel_ratio) = (now.viewport, now.device_pixel_ratio);
@@ -183,7 +204,7 @@ impl Engine {
                 let next = engine.to_keep.borrow_mut().pop_front();
                 let Some(event) = next else { break };
                 if engine.keep.put(&event).await.is_err() {
-                    engine.connection.update(|connection| connection.fleeting = true);
+                    engine.connection_is(|connection| connection.fleeting = true);
                 }
                 engine.outbox.borrow_mut().push(event);
                 engine.send();
@@ -217,13 +238,13 @@ impl Engine {
                         engine.dispatch(Input::Acknowledged { stored });
                         if gone.is_empty() {
                             // The server took nothing of what was sent: do not run in circles.
-                            TimeoutFuture::new(1_000).await;
+                            page::sleep(1_000.0).await;
                         }
                     }
                     Err(Failure::Unreachable(_)) => {
                         failures += 1;
                         if failures > 1 {
-                            engine.connection.update(|connection| connection.offline = true);
+                            engine.connection_is(|connection| connection.offline = true);
                         }
                         engine.wait(failures).await;
                     }
@@ -231,7 +252,7 @@ impl Engine {
                     Err(Failure::Refused(_)) if engine.is_withdrawing() => break,
                     Err(Failure::Refused(refusal)) => {
                         // The events stay in IndexedDB; a reload or a retry sends them again.
-                        engine.connection.update(|connection| connection.refused = Some(refusal));
+                        engine.connection_is(|connection| connection.refused = Some(refusal));
                         break;
                     }
                 }
@@ -241,15 +262,16 @@ impl Engine {
     }
 
     fn is_withdrawing(&self) -> bool {
-        self.state.with_untracked(|state| state.live.withdrawing)
+        self.state.borrow().live.withdrawing
     }
 
     fn connected(&self) {
-        let well = self
-            .connection
-            .with_untracked(|connection| !connection.offline && connection.refused.is_none());
-        if !well {
-            self.connection.update(|connection| {
+        let troubled = {
+            let connection = self.connection();
+            connection.offline || connection.refused.is_some()
+        };
+        if troubled {
+            self.connection_is(|connection| {
                 connection.offline = false;
                 connection.refused = None;
             });
@@ -259,10 +281,10 @@ impl Engine {
     /// Waits before the next try; `flush` ends the wait.
     async fn wait(&self, failures: u32) {
         self.wake.set(false);
-        let mut left = back_off(failures, js_sys::Math::random()).as_millis() as u32;
+        let mut left = back_off(failures, page::random()).as_millis() as u32;
         while left > 0 && !self.wake.get() {
             let slice = left.min(200);
-            TimeoutFuture::new(slice).await;
+            page::sleep(f64::from(slice)).await;
             left -= slice;
         }
     }
@@ -340,7 +362,7 @@ impl Engine {
             loop {
                 // After a reload at the end something may still be on its way.
                 while engine.sending.get() {
-                    TimeoutFuture::new(100).await;
+                    page::sleep(100.0).await;
                 }
                 match network::complete(&engine.plan.started.session, events).await {
                     Ok(receipt) => {
@@ -350,7 +372,7 @@ impl Engine {
                     }
                     Err(failure) => {
                         failures += 1;
-                        engine.connection.update(|connection| match failure {
+                        engine.connection_is(|connection| match failure {
                             Failure::Unreachable(_) => connection.offline = true,
                             Failure::Refused(refusal) => connection.refused = Some(refusal),
                         });
@@ -374,7 +396,7 @@ impl Engine {
                     Ok(_) | Err(Failure::Refused(_)) => break,
                     Err(Failure::Unreachable(_)) => {
                         failures += 1;
-                        engine.connection.update(|connection| connection.offline = true);
+                        engine.connection_is(|connection| connection.offline = true);
                         engine.wait(failures).await;
                     }
                 }

@@ -18,9 +18,9 @@ mod bridge;
 #[cfg(target_arch = "wasm32")]
 mod controls;
 #[cfg(target_arch = "wasm32")]
-mod engine;
+mod dom;
 #[cfg(target_arch = "wasm32")]
-mod focus;
+mod engine;
 #[cfg(target_arch = "wasm32")]
 mod json;
 #[cfg(target_arch = "wasm32")]
@@ -28,11 +28,12 @@ mod memory;
 #[cfg(target_arch = "wasm32")]
 mod network;
 #[cfg(target_arch = "wasm32")]
+mod page;
+#[cfg(target_arch = "wasm32")]
 mod pages;
 #[cfg(target_arch = "wasm32")]
-mod session;
+mod screen;
 #[cfg(target_arch = "wasm32")]
 mod site;
-
 #[cfg(target_arch = "wasm32")]
 mod start;

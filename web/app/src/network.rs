@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gloo::net::http::{Request, Response};
+use js_sys::Array;
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Refusal, Resume, SessionStarted,
     StartSession, Withdraw, Withdrawn,
@@ -11,7 +11,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{json, site};
+use wasm_bindgen::JsValue;
+
+use crate::{bridge, json, page, site};
 
 /// Why a request brought nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +41,7 @@ pub async fn bundle(study: &str, config_hash: Option<&str>) -> Result<Bundle, Fa
         return site::bundle().await;
     }
     let version = config_hash.map(|hash| format!("?config_hash={hash}")).unwrap_or_default();
-    read(Request::get(&format!("/api/studies/{study}{version}")).send().await).await
+    get(&format!("/api/studies/{study}{version}")).await
 }
 
 /// `POST /api/studies/{study}/sessions`
@@ -55,7 +57,7 @@ pub async fn resume(session: &str) -> Result<Resume, Failure> {
     if site::is_site() {
         return site::resume(session).await;
     }
-    read(Request::get(&format!("/api/sessions/{session}")).send().await).await
+    get(&format!("/api/sessions/{session}")).await
 }
 
 /// `POST /api/sessions/{session}/events`
@@ -84,25 +86,57 @@ pub async fn withdraw(session: &str, withdrawal_code: String) -> Result<Withdraw
 
 async fn post<T: DeserializeOwned>(address: &str, body: &impl Serialize) -> Result<T, Failure> {
     let body = serde_json::to_string(body).map_err(|e| Failure::Unreachable(e.to_string()))?;
-    let request = Request::post(address).header("content-type", "application/json").body(body);
-    match request {
-        Ok(request) => read(request.send().await).await,
-        Err(error) => Err(Failure::Unreachable(error.to_string())),
+    read(&send("POST", address, "application/json", Some(body)).await?)
+}
+
+/// `GET`
+pub async fn get<T: DeserializeOwned>(address: &str) -> Result<T, Failure> {
+    read(&send("GET", address, "", None).await?)
+}
+
+/// An answer's status and text.
+pub struct Answer {
+    /// 200 and so on.
+    pub status: u16,
+    text: String,
+}
+
+impl Answer {
+    /// Whether the request was carried out.
+    pub fn ok(&self) -> bool {
+        (200..300).contains(&self.status)
     }
 }
 
-pub async fn read<T: DeserializeOwned>(
-    answer: Result<Response, gloo::net::Error>,
-) -> Result<T, Failure> {
-    let answer = answer.map_err(|error| Failure::Unreachable(error.to_string()))?;
-    let (ok, status) = (answer.ok(), answer.status());
-    let text = answer.text().await.map_err(|error| Failure::Unreachable(error.to_string()))?;
-    if ok {
-        return json::read(&text).map_err(|error| Failure::Unreachable(error.to_string()));
+/// A request; a failure where no answer comes.
+pub async fn send(
+    method: &str,
+    address: &str,
+    content_type: &str,
+    body: Option<String>,
+) -> Result<Answer, Failure> {
+    let answer = page::request(method, address, content_type, body).await;
+    let answer: Array = match answer {
+        Ok(answer) => Array::from(&answer),
+        Err(thrown) => return Err(unreachable(&thrown)),
+    };
+    let status = answer.get(0).as_f64().unwrap_or(0.0) as u16;
+    Ok(Answer { status, text: answer.get(1).as_string().unwrap_or_default() })
+}
+
+/// No answer came: what was thrown says why.
+pub fn unreachable(thrown: &JsValue) -> Failure {
+    Failure::Unreachable(bridge::reason(thrown))
+}
+
+fn read<T: DeserializeOwned>(answer: &Answer) -> Result<T, Failure> {
+    let status = answer.status;
+    if answer.ok() {
+        return json::read(&answer.text).map_err(|error| Failure::Unreachable(error.to_string()));
     }
     // Too early, too many, too late: the server wants us to come back.
     let later = status >= 500 || matches!(status, 408 | 425 | 429);
-    match json::read::<Refusal>(&text) {
+    match json::read::<Refusal>(&answer.text) {
         Ok(refusal) if !later => Err(Failure::Refused(refusal)),
         _ if later => Err(Failure::Unreachable(format!("HTTP {status}"))),
         _ => Err(Failure::Refused(Refusal {

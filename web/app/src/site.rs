@@ -6,8 +6,6 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 
-use gloo::net::http::Request;
-use leptos::prelude::document;
 use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
@@ -18,7 +16,8 @@ use serde_json::json;
 
 use crate::json;
 use crate::memory::{ANSWERS, Identity, Keep};
-use crate::network::{self, Bundle, Failure};
+use crate::network::{self, Bundle, Failure, unreachable};
+use crate::page;
 
 /// What `mimique export-site` writes beside the pages.
 #[derive(Debug, Clone, Deserialize)]
@@ -50,8 +49,8 @@ thread_local! {
 fn address() -> Option<(String, String)> {
     ADDRESS.with(|address| {
         let read = || {
-            let meta = document().query_selector("meta[name=mimique-site]").ok()??;
-            Some((meta.get_attribute("content")?, meta.get_attribute("data-study")?))
+            let place = page::place();
+            Some((place.get(3).as_string()?, place.get(4).as_string()?))
         };
         address.get_or_init(read).clone()
     })
@@ -70,7 +69,7 @@ pub fn study() -> Option<String> {
 /// The study, from the site's file.
 pub async fn bundle() -> Result<Bundle, Failure> {
     let (file, _) = address().ok_or_else(|| Failure::Unreachable("no site".to_owned()))?;
-    let site: SiteFile = network::read(Request::get(&file).send().await).await?;
+    let site: SiteFile = network::get(&file).await?;
     let bundle = site.bundle.clone();
     FILE.with(|here| *here.borrow_mut() = Some(site));
     Ok(bundle)
@@ -137,7 +136,7 @@ pub async fn append(events: Vec<Event>) -> Result<Acknowledged, Failure> {
             continue;
         }
         if let Err(error) = answers.keep.put(&event).await {
-            failed = Some(error.to_string());
+            failed = Some(error);
             break;
         }
         answers.events.insert(event.sequence, event);
@@ -145,7 +144,7 @@ pub async fn append(events: Vec<Event>) -> Result<Acknowledged, Failure> {
     let stored = (0..).take_while(|n| answers.events.contains_key(n)).count() as u64;
     ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(answers));
     match failed {
-        Some(reason) => Err(Failure::Unreachable(reason)),
+        Some(thrown) => Err(unreachable(&thrown)),
         None => Ok(Acknowledged { stored, gaps: Vec::new() }),
     }
 }
@@ -181,14 +180,10 @@ pub async fn complete(events: u64) -> Result<Receipt, Failure> {
     if let Some(address) = &site.hosting.post {
         let address = address.replace("{session}", &session);
         // Plain text asks the other site for nothing but to be taken.
-        let request = Request::post(&address)
-            .header("content-type", "text/plain;charset=UTF-8")
-            .body(text)
-            .map_err(|error| Failure::Unreachable(error.to_string()))?;
         let answer =
-            request.send().await.map_err(|error| Failure::Unreachable(error.to_string()))?;
+            network::send("POST", &address, "text/plain;charset=UTF-8", Some(text)).await?;
         if !answer.ok() {
-            return Err(Failure::Unreachable(format!("HTTP {}", answer.status())));
+            return Err(Failure::Unreachable(format!("HTTP {}", answer.status)));
         }
     }
     let code = site.codes.get(status).cloned();
@@ -203,7 +198,7 @@ pub async fn withdraw() -> Result<Withdrawn, Failure> {
     let deleted = answers.events.len() as u64;
     match answers.keep.clear().await {
         Ok(()) => Ok(Withdrawn { deleted }),
-        Err(error) => Err(Failure::Unreachable(error.to_string())),
+        Err(thrown) => Err(unreachable(&thrown)),
     }
 }
 
@@ -219,9 +214,9 @@ pub fn ending() -> Option<(bool, bool, String)> {
 
 /// The way back, with the code and the arrival's parameters.
 fn filled(address: &str, code: Option<&str>) -> String {
-    let query = leptos::prelude::window().location().search().unwrap_or_default();
+    let query = page::place().get(1).as_string().unwrap_or_default();
     let arrival = crate::address::Address::of_study("", &query);
-    let encoded = |text: &str| String::from(js_sys::encode_uri_component(text));
+    let encoded = page::encode;
     let mut filled = address.replace("{code}", &encoded(code.unwrap_or_default()));
     for (name, value) in &arrival.recruitment {
         filled = filled.replace(&format!("{{{name}}}"), &encoded(value));

@@ -3,14 +3,12 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use gloo::timers::future::TimeoutFuture;
-use leptos::prelude::*;
 use mimique_study::flow::{Input, Plan, State};
 use mimique_study::wire::{Event, SessionStarted, StartSession};
 use mimique_study::{Client, Study};
+use wasm_bindgen::JsCast as _;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 
 use crate::address::Address;
@@ -18,78 +16,44 @@ use crate::engine::Engine;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Bundle, Failure};
 use crate::outbox::back_off;
-use crate::pages::Pages;
-use crate::pages::failure::{Trouble, TroublePage};
-use crate::session::Session;
-use crate::{bridge, pages, site};
+use crate::pages::failure::Trouble;
+use crate::screen::{self, Boot};
+use crate::{bridge, page, site};
 
 /// The module's entry.
 #[wasm_bindgen(start)]
 pub fn start() {
-    console_error_panic_hook::set_once();
-    let root = pages::element("app");
-    root.set_inner_html("");
-    mount_to(root, || view! { <Root/> }).forget();
-}
-
-/// Where the start is.
-#[derive(Clone)]
-enum Boot {
-    Opening,
-    Trouble(Trouble),
-    Running(Session),
-}
-
-#[component]
-fn Root() -> impl IntoView {
-    let boot = RwSignal::new_local(Boot::Opening);
-    let owner = Owner::current();
-    let begin_again = move || {
-        boot.set(Boot::Opening);
-        let owner = owner.clone();
-        spawn_local(async move {
-            let next = match begin().await {
-                Ok(engine) => {
-                    let make = || Session::new(Rc::clone(&engine));
-                    let session = owner.as_ref().map_or_else(make, |owner| owner.with(make));
-                    listen(session);
-                    Boot::Running(session)
-                }
-                Err(trouble) => Boot::Trouble(trouble),
-            };
-            boot.set(next);
-        });
-    };
+    std::panic::set_hook(Box::new(|panic| page::report(&panic.to_string())));
+    screen::open();
+    screen::boot(Boot::Opening);
     begin_again();
-    let retry = StoredValue::new_local(begin_again);
-    move || {
-        match boot.get() {
-        Boot::Opening => view! {
-            <main class="page" data-view="opening"><div class="card"><p class="soft">"…"</p></div></main>
+}
+
+/// Fetches the study and goes on where the session is.
+pub fn begin_again() {
+    spawn_local(async move {
+        match begin().await {
+            Ok(engine) => {
+                screen::boot(Boot::Running(engine));
+                listen();
+            }
+            Err(trouble) => screen::boot(Boot::Trouble(trouble)),
         }
-        .into_any(),
-        Boot::Trouble(trouble) => view! {
-            <TroublePage trouble retry=move || retry.with_value(|again| again())/>
-        }
-        .into_any(),
-        Boot::Running(session) => {
-            provide_context(session);
-            view! { <Pages/> }.into_any()
-        }
-    }
-    }
+    });
 }
 
 /// Everything before the first page.
 async fn begin() -> Result<Rc<Engine>, Trouble> {
-    let location = window().location();
-    let path = location.pathname().unwrap_or_default();
-    let query = location.search().unwrap_or_default();
+    let place = page::place();
+    let place = |part: u32| place.get(part).as_string().unwrap_or_default();
+    let (path, query) = (place(0), place(1));
     let address = match site::study() {
         Some(study) => Address::of_study(&study, &query),
         None => Address::parse(&path, &query).ok_or(Trouble::NoStudy)?,
     };
-    let wanted = wanted_languages(&address);
+    // The address's language first, then the browser's.
+    let languages = place(2);
+    let wanted: Vec<&str> = address.language.as_deref().into_iter().chain(languages.split(' ')).collect();
 
     let bundle = bundle(&address.study).await?;
     let study =
@@ -101,8 +65,7 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
             || study.default_language().to_owned(),
             |each| study.language_for(each).to_owned(),
         );
-    pages::set_language(&language);
-    document().set_title(study.study_metadata.title.in_language(&language));
+    page::describe(&language, study.study_metadata.title.in_language(&language));
 
     if !bridge::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab(language));
@@ -175,7 +138,7 @@ async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)
 async fn begin_session(address: &Address, language: &str) -> Result<SessionStarted, Trouble> {
     let mut identity = Identity::load(&address.study)
         .filter(|identity| identity.started.is_none())
-        .unwrap_or_else(|| Identity { nonce: nonce(), started: None });
+        .unwrap_or_else(|| Identity { nonce: page::nonce(16), started: None });
     // Kept before it is sent: a reload in between starts the same session again, not a second one.
     identity.save(&address.study);
     let body = StartSession {
@@ -206,35 +169,10 @@ where
                 if failures >= TRIES {
                     return Err(Trouble::Unreachable(reason));
                 }
-                let wait = back_off(failures, js_sys::Math::random()).as_millis();
-                TimeoutFuture::new(u32::try_from(wait).unwrap_or(1_000)).await;
+                page::sleep(back_off(failures, page::random()).as_millis() as f64).await;
             }
         }
     }
-}
-
-/// 128 random bits, hexadecimal.
-fn nonce() -> String {
-    let mut bytes = [0_u8; 16];
-    if getrandom::fill(&mut bytes).is_err() {
-        // Without a random source the clock still tells two participants apart.
-        bytes[..8].copy_from_slice(&js_sys::Date::now().to_le_bytes());
-        bytes[8..].copy_from_slice(&js_sys::Math::random().to_le_bytes());
-    }
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// The address's language first, then the browser's.
-fn wanted_languages(address: &Address) -> Vec<String> {
-    let browser = js_sys::Reflect::get(&window().navigator(), &JsValue::from_str("languages"))
-        .map(|list| js_sys::Array::from(&list))
-        .unwrap_or_default();
-    address
-        .language
-        .iter()
-        .cloned()
-        .chain(browser.iter().filter_map(|each| each.as_string()))
-        .collect()
 }
 
 fn about() -> BTreeMap<String, String> {
@@ -243,34 +181,33 @@ fn about() -> BTreeMap<String, String> {
 
 /// The display and the page, as events record them.
 pub fn client() -> Client {
-    let window = window();
-    let size = |value: Result<JsValue, JsValue>| {
-        value.ok().and_then(|value| value.as_f64()).unwrap_or(0.0) as u32
-    };
+    let viewport = page::viewport();
+    let number = |part: u32| viewport.get(part).as_f64().unwrap_or(0.0);
     Client {
-        viewport: [size(window.inner_width()), size(window.inner_height())],
-        device_pixel_ratio: window.device_pixel_ratio(),
+        viewport: [number(0) as u32, number(1) as u32],
+        device_pixel_ratio: number(2),
         about: about(),
     }
 }
 
 /// What the window reports: focus, visibility, connection, time.
-fn listen(session: Session) {
-    use leptos::ev;
-    let on = move |input: fn() -> Input| move || session.send(input());
-    let (lost, gained) = (on(|| Input::FocusLost), on(|| Input::FocusGained));
-    window_event_listener(ev::blur, move |_| lost());
-    window_event_listener(ev::focus, move |_| gained());
-    window_event_listener(ev::resize, move |_| session.engine().resized());
-    let root = document();
-    let filled =
-        Closure::<dyn Fn()>::new(move || session.send(Input::Fullscreen(bridge::is_fullscreen())));
-    let _ =
-        root.add_event_listener_with_callback("fullscreenchange", filled.as_ref().unchecked_ref());
+fn listen() {
+    let happens = Closure::<dyn Fn(String)>::new(|what: String| match what.as_str() {
+        "blur" => screen::send(Input::FocusLost),
+        "focus" => screen::send(Input::FocusGained),
+        "fullscreenchange" => screen::send(Input::Fullscreen(bridge::is_fullscreen())),
+        "tick" => screen::send(Input::Tick),
+        other => {
+            let Some(engine) = screen::engine() else { return };
+            match other {
+                "resize" => engine.resized(),
+                // Online again; or hidden, and a hidden page may never come back: what waits goes
+                // out now.
+                _ => engine.flush(),
+            }
+        }
+    });
+    page::watch(happens.as_ref().unchecked_ref());
     // It lives as long as the page.
-    filled.forget();
-    window_event_listener(ev::online, move |_| session.engine().flush());
-    // A hidden page may never come back: what waits goes out now.
-    window_event_listener(ev::pagehide, move |_| session.engine().flush());
-    gloo::timers::callback::Interval::new(1_000, move || session.send(Input::Tick)).forget();
+    happens.forget();
 }

@@ -390,7 +390,7 @@ impl Record {
     }
 
     /// The draft of a question, if there is one.
-    pub(super) fn draft(&self, question: &str) -> Option<&Value> {
+    pub fn draft(&self, question: &str) -> Option<&Value> {
         self.drafts.get(question)
     }
 }

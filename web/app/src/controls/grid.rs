@@ -1,38 +1,32 @@
 //! A point on a grid of valence and arousal: radio buttons in rows, the four edges named.
 
-use leptos::prelude::*;
 use serde_json::json;
 
-use super::Answering;
+use super::{Answering, ends};
+use crate::dom::{Element, el, words};
 
 /// A square grid; `edges` are left, right, bottom, top. Cells count from 1, left to right and
 /// bottom to top.
-pub fn grid(answering: Answering, num_items: u32, edges: [String; 4]) -> impl IntoView {
-    let name = answering.element("cell");
+pub fn grid(answering: &Answering, num_items: u32, edges: [&String; 4]) -> Vec<Element> {
     let [left, right, bottom, top] = edges;
-    let cells =
-        (1..=num_items).rev().flat_map(|arousal| (1..=num_items).map(move |v| (v, arousal)));
-    let cells = cells
-        .map(|(valence, arousal)| {
-            let (read, give) = (answering.clone(), answering.clone());
+    let mut cells = el("div", "likert grid").set("--points", &num_items.to_string());
+    for arousal in (1..=num_items).rev() {
+        for valence in 1..=num_items {
+            let give = answering.give.clone();
             let answer = json!({ "valence": valence, "arousal": arousal });
-            let given = answer.clone();
             let spoken = format!("{left}–{right}: {valence}, {bottom}–{top}: {arousal}");
-            view! {
-                <label class="point">
-                    <input type="radio" name=name.clone() value=format!("{valence},{arousal}") aria-label=spoken
-                        prop:checked=move || read.value().as_ref() == Some(&answer)
-                        on:change=move |_| give.give(given.clone())/>
-                </label>
-            }
-        })
-        .collect_view();
-    view! {
-        <div class="affect">
-            <p class="soft top" aria-hidden="true">{top}</p>
-            <div class="likert grid" style=("--points", num_items.to_string())>{cells}</div>
-            <p class="soft bottom" aria-hidden="true">{bottom}</p>
-            <div class="likert-ends" aria-hidden="true"><span>{left}</span><span>{right}</span></div>
-        </div>
+            let chosen = answering.value() == Some(&answer);
+            let field = answering
+                .radio("cell", &format!("{valence},{arousal}"), chosen)
+                .set("aria-label", &spoken)
+                .on("change", move |_| give.give(answer.clone()));
+            cells = cells.with(el("label", "point").with(field));
+        }
     }
+    let affect = el("div", "affect")
+        .with(words("p", "soft top", top).set("aria-hidden", "true"))
+        .with(cells)
+        .with(words("p", "soft bottom", bottom).set("aria-hidden", "true"))
+        .with(ends(left, right));
+    vec![affect]
 }

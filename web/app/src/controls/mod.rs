@@ -9,61 +9,85 @@ mod media;
 mod ranking;
 mod slider;
 
-use leptos::prelude::*;
+use std::rc::Rc;
+
 use mimique_study::flow::{Input, QuestionKindView, QuestionView};
 use serde_json::Value;
 
-use crate::session::Session;
+use crate::dom::{Element, el, words};
+use crate::engine::Engine;
+use crate::screen;
 
 /// What every kind of control needs: how to read and to give the answer.
-#[derive(Clone)]
-struct Answering {
-    /// Distinguishes the fields of the page: names and identifiers are made of it.
+struct Answering<'a> {
+    /// Begins the names and identifiers of the fields.
     name: String,
-    id: String,
-    now: Memo<Option<QuestionView>>,
-    session: Session,
-    help: bool,
+    question: &'a QuestionView,
+    /// How the answer is given.
+    give: Give,
 }
 
-impl Answering {
-    /// The answer so far (tracked).
-    fn value(&self) -> Option<Value> {
-        self.now.with(|now| now.as_ref().and_then(|question| question.value.clone()))
-    }
+/// Gives the answer to a question; null takes it back.
+#[derive(Clone)]
+struct Give(Rc<str>);
 
-    /// Gives an answer; null takes it back.
+impl Give {
     fn give(&self, value: Value) {
-        self.session.send(Input::Answer { question: self.id.clone(), value });
+        screen::send(Input::Answer { question: self.0.to_string(), value });
     }
 
-    /// Whether the answer so far is this text (tracked).
+    /// The answer of this moment, which the screen may not show yet.
+    fn now(&self) -> Option<Value> {
+        screen::engine()?.state().record.draft(&self.0).cloned()
+    }
+}
+
+impl Answering<'_> {
+    /// The answer so far.
+    fn value(&self) -> Option<&Value> {
+        self.question.value.as_ref()
+    }
+
+    /// Whether the answer so far is this text.
     fn is(&self, wanted: &str) -> bool {
-        self.value().is_some_and(|value| value.as_str() == Some(wanted))
+        self.value().and_then(Value::as_str) == Some(wanted)
     }
 
-    /// What is wrong with the answer (tracked).
-    fn problem(&self) -> Option<String> {
-        self.now.with(|now| now.as_ref().and_then(|question| question.problem.clone()))
+    /// What is wrong with the answer.
+    fn problem(&self) -> Option<&str> {
+        self.question.problem.as_deref()
     }
 
-    /// The identifiers of help and problem, as `aria-describedby` wants them (tracked).
+    /// The identifiers of help and problem, as `aria-describedby` wants them.
     fn described(&self) -> Option<String> {
-        let help = self.help.then(|| self.element("help"));
-        let ids: Vec<String> =
-            help.into_iter().chain(self.problem().map(|_| self.element("problem"))).collect();
-        (!ids.is_empty()).then(|| ids.join(" "))
-    }
-
-    /// `aria-invalid` (tracked).
-    fn invalid(&self) -> Option<&'static str> {
-        self.problem().map(|_| "true")
+        let help = self.question.help.as_ref().map(|_| self.element("help"));
+        let problem = self.problem().map(|_| self.element("problem"));
+        match (help, problem) {
+            (Some(help), Some(problem)) => Some([help, problem].join(" ")),
+            (help, problem) => help.or(problem),
+        }
     }
 
     /// An identifier for an element of this question.
     fn element(&self, part: &str) -> String {
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        format!("q-{}-{part}", self.name.chars().map(plain).collect::<String>())
+        [self.name.as_str(), part].concat()
+    }
+
+    /// A field that says itself what is asked and what is wrong with it.
+    fn spoken(&self, field: Element) -> Element {
+        field
+            .set("aria-label", &self.question.prompt)
+            .maybe("aria-describedby", self.described().as_deref())
+            .flag("aria-invalid", self.problem().is_some())
+    }
+
+    /// A button of a group, one of which is chosen.
+    fn radio(&self, part: &str, value: &str, checked: bool) -> Element {
+        el("input", "")
+            .set("type", "radio")
+            .set("name", &self.element(part))
+            .set("value", value)
+            .checked(checked)
     }
 }
 
@@ -76,74 +100,79 @@ fn plain(number: f64) -> Value {
     }
 }
 
-/// A question: legend, help, control, problem.
-#[component]
-pub fn QuestionField(
-    /// Distinguishes the fields of the page.
-    name: String,
-    /// The question as it is first shown.
-    first: QuestionView,
-    /// The question as it is now.
-    now: Memo<Option<QuestionView>>,
-) -> impl IntoView {
-    let session = Session::here();
-    let answering =
-        Answering { name, id: first.id.clone(), now, session, help: first.help.is_some() };
-    let (help_id, problem_id) = (answering.element("help"), answering.element("problem"));
+/// A question: legend, help, control, problem. `name` distinguishes the fields of the page.
+pub fn question(engine: &Engine, name: &str, question: &QuestionView) -> Element {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+    let fields: String = "q-".chars().chain(name.chars().map(plain)).chain(['-']).collect();
+    let give = Give(Rc::from(question.id.as_str()));
+    let answering = Answering { name: fields, question, give };
     // One answer out of several is one widget; elsewhere the fields say themselves what is wrong.
     let radios = matches!(
-        first.kind,
+        question.kind,
         QuestionKindView::SingleChoice { .. }
             | QuestionKindView::Likert { .. }
             | QuestionKindView::ValenceArousal { .. }
     );
-    let required = (radios && first.required).then_some("true");
-    let (of, wrong, tell) = (answering.clone(), answering.clone(), answering.clone());
-    let invalid = Signal::derive_local(move || wrong.invalid());
-    let control = match first.kind {
-        QuestionKindView::SingleChoice { options } => choice::single(answering, options).into_any(),
+    let wrong = answering.problem();
+    let mut legend = el("legend", "").text(&question.prompt);
+    if let Some(mark) = &question.optional_mark {
+        let mark = el("span", "optional").text(" (").text(mark).text(")");
+        legend = legend.with(mark);
+    }
+    let mut set = el("fieldset", "question")
+        .key(name)
+        .set("data-question", &question.id)
+        .maybe("aria-describedby", answering.described().as_deref())
+        .flag("aria-invalid", radios && wrong.is_some())
+        .flag("aria-required", radios && question.required)
+        .maybe("data-invalid", wrong.map(|_| "true"))
+        .with(legend);
+    if radios {
+        set = set.set("role", "radiogroup");
+    }
+    if let Some(path) = &question.video {
+        set = set.with(media::signed_video(path, &question.prompt, "prompt"));
+    }
+    if let Some(text) = &question.help {
+        set = set.with(words("p", "hint", text).key("help").set("id", &answering.element("help")));
+    }
+    let problem = wrong.map(|text| {
+        words("p", "problem", text).key("problem").set("id", &answering.element("problem"))
+    });
+    set.all(control(engine, &answering)).option(problem)
+}
+
+fn control(engine: &Engine, answering: &Answering) -> Vec<Element> {
+    match &answering.question.kind {
+        QuestionKindView::SingleChoice { options } => choice::single(answering, options),
         QuestionKindView::MultipleChoice { options, maximum } => {
-            choice::multiple(answering, options, maximum).into_any()
+            choice::multiple(answering, options, *maximum)
         }
         QuestionKindView::Likert { points, left, right } => {
-            likert::likert(answering, points, left, right).into_any()
+            likert::likert(answering, points, left, right)
         }
         QuestionKindView::Slider { minimum, maximum, step, left, right } => {
-            slider::slider(answering, minimum, maximum, step, left, right).into_any()
+            slider::slider(answering, [*minimum, *maximum, *step], left, right)
         }
         QuestionKindView::Number { minimum, maximum, integer, unit } => {
-            field::number(answering, minimum, maximum, integer, unit).into_any()
+            field::number(answering, *minimum, *maximum, *integer, unit.as_deref())
         }
-        QuestionKindView::Text { long, max_length } => {
-            field::text(answering, long, max_length).into_any()
-        }
-        QuestionKindView::Matrix { rows, options } => {
-            matrix::matrix(answering, rows, options).into_any()
-        }
-        QuestionKindView::Ranking { options } => ranking::ranking(answering, options).into_any(),
+        QuestionKindView::Text { long, max_length } => field::text(answering, *long, *max_length),
+        QuestionKindView::Matrix { rows, options } => matrix::matrix(answering, rows, options),
+        QuestionKindView::Ranking { options } => ranking::ranking(engine, answering, options),
         QuestionKindView::ValenceArousal { num_items, left, right, bottom, top } => {
-            grid::grid(answering, num_items, [left, right, bottom, top]).into_any()
+            grid::grid(answering, *num_items, [left, right, bottom, top])
         }
         // A kind of a later version of the study file: the page is older than the server.
-        _ => view! { <p class="notice bad">"?"</p> }.into_any(),
-    };
-    let prompt = first.prompt.clone();
-    view! {
-        <fieldset class="question" data-question=first.id role=radios.then_some("radiogroup")
-            aria-required=required aria-describedby=move || of.described()
-            aria-invalid=move || invalid.get().filter(|_| radios) data-invalid=invalid>
-            <legend>
-                {first.prompt}
-                {first.optional_mark.map(|mark| view! { <span class="optional">" ("{mark}")"</span> })}
-            </legend>
-            {first.video.map(|path| view! {
-                <media::SignedVideo path label=prompt class="prompt"/>
-            })}
-            {first.help.map(|text| view! { <p class="hint" id=help_id.clone()>{text}</p> })}
-            {control}
-            {move || tell.problem().map(|text| view! {
-                <p class="problem" id=problem_id.clone()>{text}</p>
-            })}
-        </fieldset>
+        _ => vec![words("p", "notice bad", "?").key("unknown")],
     }
+}
+
+/// The names of the ends of a scale, above it.
+fn ends(left: &str, right: &str) -> Element {
+    el("div", "likert-ends")
+        .key("ends")
+        .set("aria-hidden", "true")
+        .with(words("span", "", left))
+        .with(words("span", "", right))
 }

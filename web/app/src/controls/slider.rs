@@ -1,38 +1,38 @@
 //! A number on a line. Until it is touched it has no value, and shows none.
 
-use leptos::prelude::*;
+use serde_json::Value;
 
-use super::{Answering, plain};
+use super::{Answering, ends, plain};
+use crate::dom::{Element, Given, el, words};
 
-/// The line, its ends named above it.
+/// The line from minimum to maximum by steps, its ends named above it.
 pub fn slider(
-    answering: Answering,
-    minimum: f64,
-    maximum: f64,
-    step: f64,
-    left: String,
-    right: String,
-) -> impl IntoView {
-    let label = answering.now.with_untracked(|now| now.as_ref().map(|q| q.prompt.clone()));
-    let (read, shown, said) = (answering.clone(), answering.clone(), answering.clone());
-    let (of, wrong, give) = (answering.clone(), answering.clone(), answering);
+    answering: &Answering,
+    [minimum, maximum, step]: [f64; 3],
+    left: &str,
+    right: &str,
+) -> Vec<Element> {
+    let value = answering.value();
     let middle = (minimum + maximum) / 2.0;
-    let touch = move |text: String| {
-        if let Ok(number) = text.parse::<f64>() {
+    let give = answering.give.clone();
+    let touch = move |given: Given| {
+        if let Ok(number) = given.value.parse::<f64>() {
             give.give(plain(number));
         }
     };
-    let touched = touch.clone();
-    view! {
-        <div class="likert-ends" aria-hidden="true"><span>{left}</span><span>{right}</span></div>
-        <input type="range" aria-label=label min=minimum.to_string() max=maximum.to_string()
-            step=step.to_string() class:untouched=move || read.value().is_none()
-            aria-describedby=move || of.described() aria-invalid=move || wrong.invalid()
-            prop:value=move || shown.value().and_then(|v| v.as_f64()).unwrap_or(middle).to_string()
-            on:change=move |event| touch(event_target_value(&event))
-            on:click=move |event| touched(event_target_value(&event))/>
-        <p class="slider-value number" aria-hidden="true">
-            {move || said.value().map_or_else(|| "\u{2013}".to_owned(), |value| value.to_string())}
-        </p>
-    }
+    let field = el("input", if value.is_none() { "untouched" } else { "" })
+        .key("line")
+        .set("type", "range")
+        .set("min", &minimum.to_string())
+        .set("max", &maximum.to_string())
+        .set("step", &step.to_string())
+        .set(".value", &value.and_then(Value::as_f64).unwrap_or(middle).to_string())
+        .on("change", touch.clone())
+        .on("click", touch);
+    let shown = value.map_or_else(|| "\u{2013}".to_owned(), Value::to_string);
+    vec![
+        ends(left, right),
+        answering.spoken(field),
+        words("p", "slider-value number", &shown).key("value").set("aria-hidden", "true"),
+    ]
 }

@@ -1,115 +1,101 @@
 //! The size of the screen: a card drawn to be made as large as a real one, and the distance.
 
-use leptos::prelude::*;
-use mimique_study::flow::{CalibrationView, CardView, Input, View};
+use mimique_study::flow::{CalibrationView, CardView, DistanceView, Input};
 
-use super::ProgressLine;
-use crate::focus;
-use crate::session::Session;
+use super::{button, form, heading, main, problem, progress_line, submit};
+use crate::dom::{Element, el, words};
+use crate::{page, screen};
 
 /// Widths that the slider reaches, CSS pixels: from a phone held far out of scale to a wall.
 const WIDTHS: (f64, f64) = (150.0, 900.0);
 
 /// The size of the screen.
-#[component]
-pub fn CalibrationPage() -> impl IntoView {
-    let session = Session::here();
-    let View::Calibration(first) = session.view.get_untracked() else {
-        return ().into_any();
-    };
-    let shown: Memo<CalibrationView> = {
-        let first = first.clone();
-        Memo::new(move |last: Option<&CalibrationView>| {
-            session.view.with(|view| match view {
-                View::Calibration(shown) => (**shown).clone(),
-                _ => last.cloned().unwrap_or_else(|| (*first).clone()),
-            })
-        })
-    };
-    let CalibrationView { step, heading, text, card, distance, progress, .. } = *first;
-    view! {
-        <main class="page wide-card" data-view="calibration" data-step=step>
-            <ProgressLine done=progress.done total=progress.total/>
-            <form class="card" novalidate
-                on:submit=move |event| {
-                    event.prevent_default();
-                    session.send(Input::Next);
-                    focus::problem();
-                }>
-                <h1 tabindex="-1">{heading}</h1>
-                {text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}
-                {card.map(|card| view! { <Card first=card shown/> })}
-                {distance.map(|distance| {
-                    let problem = move || shown.with(|all| all.distance.as_ref().and_then(|d| d.problem.clone()));
-                    view! {
-                        <fieldset class="question" data-question="distance" data-invalid=move || problem().map(|_| "true")>
-                            <legend><label for="distance">{distance.label}</label></legend>
-                            <input id="distance" type="number" inputmode="numeric" min="15" max="300" step="1"
-                                value=distance.value.map(|cm| cm.to_string())
-                                aria-invalid=move || problem().map(|_| "true")
-                                aria-describedby=move || problem().map(|_| "distance-problem")
-                                on:change=move |event| session.send(Input::Distance(event_target_value(&event).parse().ok()))/>
-                            " "{distance.unit}
-                            {move || problem().map(|text| view! { <p class="problem" id="distance-problem">{text}</p> })}
-                        </fieldset>
-                    }
-                })}
-                <div class="actions">
-                    <button type="submit" class="primary" data-action="next">
-                        {move || shown.with(|all| all.button.label.clone())}
-                    </button>
-                </div>
-            </form>
-        </main>
-    }
-    .into_any()
+pub fn calibration(shown: &CalibrationView) -> Element {
+    let form = form()
+        .with(heading(&shown.heading))
+        .paragraphs(&shown.text)
+        .option(shown.card.as_ref().map(card))
+        .option(shown.distance.as_ref().map(distance))
+        .with(submit(&shown.button.label));
+    main("page wide-card", "calibration")
+        .set("data-step", &shown.step)
+        .with(progress_line(shown.progress))
+        .with(form)
+}
+
+/// The distance of the eyes.
+fn distance(shown: &DistanceView) -> Element {
+    let wrong = shown.problem.as_deref();
+    let label = words("label", "", &shown.label).set("for", "distance");
+    let field = el("input", "")
+        .set("id", "distance")
+        .set("type", "number")
+        .set("inputmode", "numeric")
+        .set("min", "15")
+        .set("max", "300")
+        .set("step", "1")
+        .maybe("value", shown.value.map(|cm| cm.to_string()).as_deref())
+        .flag("aria-invalid", wrong.is_some())
+        .maybe("aria-describedby", wrong.map(|_| "distance-problem"))
+        .on("change", |given| screen::send(Input::Distance(given.value.parse().ok())));
+    fieldset("distance", wrong)
+        .with(el("legend", "").with(label))
+        .with(field)
+        .text(" ")
+        .text(&shown.unit)
+        .option(problem(wrong, "distance-problem"))
+}
+
+fn fieldset(question: &str, wrong: Option<&str>) -> Element {
+    el("fieldset", "question")
+        .key(question)
+        .set("data-question", question)
+        .maybe("data-invalid", wrong.map(|_| "true"))
 }
 
 /// The picture of the card, its slider, and the way around it.
-#[component]
-fn Card(first: CardView, shown: Memo<CalibrationView>) -> impl IntoView {
-    let session = Session::here();
-    let card = move |read: fn(&CardView) -> f64| {
-        move || shown.with(|all| all.card.as_ref().map_or(0.0, read))
-    };
-    let (width, height) = (card(|card| card.width_px), card(|card| card.height_px));
-    let problem = move || shown.with(|all| all.card.as_ref().and_then(|card| card.problem.clone()));
-    let set = move |px: f64| {
-        let device_pixel_ratio = window().device_pixel_ratio();
-        session.send(Input::CardWidth { px: px.clamp(WIDTHS.0, WIDTHS.1), device_pixel_ratio });
-    };
-    let skipped = move || {
-        shown.with(|all| {
-            all.card.as_ref().is_some_and(|it| it.no_card.as_ref().is_some_and(|n| n.1))
-        })
-    };
-    let (smaller, larger) = first.steps;
-    view! {
-        <fieldset class="question" data-question="card" data-invalid=move || problem().map(|_| "true")>
-            <legend>{first.label.clone()}</legend>
-            <p class="hint" id="card-hint">{first.instruction}</p>
-            <div class="bank-card-frame">
-                <div class="bank-card" aria-hidden="true"
-                    style=("--card-long", move || format!("{:.2}px", width()))
-                    style=("--card-short", move || format!("{:.2}px", height()))>
-                    <span class="chip"></span>
-                </div>
-            </div>
-            <input type="range" aria-label=first.label min=WIDTHS.0.to_string() max=WIDTHS.1.to_string() step="0.5"
-                aria-describedby=move || if problem().is_some() { "card-hint card-problem" } else { "card-hint" }
-                aria-invalid=move || problem().map(|_| "true")
-                prop:value=move || width().to_string()
-                on:input=move |event| if let Ok(px) = event_target_value(&event).parse() { set(px) }/>
-            <div class="row">
-                <button type="button" data-action="smaller" on:click=move |_| set(width() - 1.0)>{smaller}</button>
-                <button type="button" data-action="larger" on:click=move |_| set(width() + 1.0)>{larger}</button>
-                {first.no_card.map(|(label, _)| view! {
-                    <button type="button" data-action="no-card"
-                        aria-pressed=move || if skipped() { "true" } else { "false" }
-                        on:click=move |_| session.send(Input::NoCard)>{label}</button>
-                })}
-            </div>
-            {move || problem().map(|text| view! { <p class="problem" id="card-problem">{text}</p> })}
-        </fieldset>
-    }
+fn card(shown: &CardView) -> Element {
+    let wrong = shown.problem.as_deref();
+    let width = shown.width_px;
+    let picture = el("div", "bank-card")
+        .set("aria-hidden", "true")
+        .set("--card-long", &format!("{width:.2}px"))
+        .set("--card-short", &format!("{:.2}px", shown.height_px))
+        .with(el("span", "chip"));
+    let slider = el("input", "")
+        .set("type", "range")
+        .set("aria-label", &shown.label)
+        .set("min", &WIDTHS.0.to_string())
+        .set("max", &WIDTHS.1.to_string())
+        .set("step", "0.5")
+        .set("aria-describedby", if wrong.is_some() { "card-hint card-problem" } else { "card-hint" })
+        .flag("aria-invalid", wrong.is_some())
+        .set(".value", &width.to_string())
+        .on("input", |given| {
+            if let Ok(px) = given.value.parse() {
+                set(px);
+            }
+        });
+    let (smaller, larger) = &shown.steps;
+    let no_card = shown.no_card.as_ref().map(|(label, skipped)| {
+        button("", "no-card", label)
+            .set("aria-pressed", if *skipped { "true" } else { "false" })
+            .on("click", super::sends(|| Input::NoCard))
+    });
+    let row = el("div", "row")
+        .with(button("", "smaller", smaller).on("click", move |_| set(width - 1.0)))
+        .with(button("", "larger", larger).on("click", move |_| set(width + 1.0)))
+        .option(no_card);
+    fieldset("card", wrong)
+        .with(words("legend", "", &shown.label))
+        .with(words("p", "hint", &shown.instruction).key("hint").set("id", "card-hint"))
+        .with(el("div", "bank-card-frame").with(picture))
+        .with(slider)
+        .with(row)
+        .option(problem(wrong, "card-problem"))
+}
+
+fn set(px: f64) {
+    let device_pixel_ratio = page::pixel_ratio();
+    screen::send(Input::CardWidth { px: px.clamp(WIDTHS.0, WIDTHS.1), device_pixel_ratio });
 }

@@ -1,72 +1,67 @@
 //! The agreement.
 
-use leptos::prelude::*;
-use mimique_study::flow::{Input, View};
+use mimique_study::flow::{ContactView, Input, View};
 
-use crate::focus;
-use crate::session::Session;
+use super::{button, heading, main, sends};
+use crate::dom::{Element, el, words};
+use crate::engine::Engine;
+use crate::{page, screen};
 
 /// The agreement, with the choice of language.
-#[component]
-pub fn ConsentPage() -> impl IntoView {
-    let session = Session::here();
+pub fn consent(engine: &Engine, view: &View) -> Element {
     let View::Consent { step, title, description, sections, contacts, languages, agree, decline } =
-        session.view.get_untracked()
+        view
     else {
-        return ().into_any();
+        return super::opening();
     };
-    let words = untrack(|| session.words());
-    let current = untrack(|| session.language());
-    let several = !languages.is_empty();
-    view! {
-        <main class="page" data-view="consent" data-step=step>
-            <div class="card">
-                <Show when=move || several>
-                    <nav class="row end languages" aria-label=words.choose_language>
-                        {languages.clone().into_iter().map(|(code, name)| {
-                            let chosen = code == current;
-                            let wanted = code.clone();
-                            view! {
-                                <button type="button" class="quiet" lang=code
-                                    aria-pressed=if chosen { "true" } else { "false" }
-                                    on:click=move |_| {
-                                        session.send(Input::ChooseLanguage(wanted.clone()));
-                                        focus::later(&[".languages [aria-pressed=true]"]);
-                                    }>
-                                    {name}
-                                </button>
-                            }
-                        }).collect_view()}
-                    </nav>
-                </Show>
-                <h1 tabindex="-1">{title}</h1>
-                <p>{description}</p>
-                {sections.into_iter().map(|section| view! {
-                    <section>
-                        <h2>{section.heading}</h2>
-                        {section.text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}
-                    </section>
-                }).collect_view()}
-                <section>
-                    <h2>{words.contact}</h2>
-                    {contacts.into_iter().map(|contact| view! {
-                        <p>
-                            <strong>{contact.role}</strong>
-                            <br/>
-                            {contact.name}", "
-                            <a href=format!("mailto:{}", contact.email)>{contact.email.clone()}</a>
-                            {contact.reference.map(|reference| format!(" ({reference})"))}
-                        </p>
-                    }).collect_view()}
-                </section>
-                <div class="actions">
-                    <button type="button" class="primary" data-action="agree"
-                        on:click=move |_| session.send(Input::Consent)>{agree}</button>
-                    <button type="button" data-action="decline"
-                        on:click=move |_| session.send(Input::Decline)>{decline}</button>
-                </div>
-            </div>
-        </main>
+    let fixed = engine.words();
+    let mut card = el("div", "card");
+    if !languages.is_empty() {
+        let current = engine.language();
+        let buttons = languages.iter().map(|(code, name)| language(code, name, *code == current));
+        card = card.with(
+            el("nav", "row end languages")
+                .set("aria-label", fixed.choose_language)
+                .all(buttons.collect()),
+        );
     }
-    .into_any()
+    card = card.with(heading(title)).with(words("p", "", description));
+    for section in sections {
+        let section =
+            el("section", "").with(words("h2", "", &section.heading)).paragraphs(&section.text);
+        card = card.with(section);
+    }
+    let people = el("section", "")
+        .with(words("h2", "", fixed.contact))
+        .all(contacts.iter().map(contact).collect());
+    let actions = el("div", "actions")
+        .with(button("primary", "agree", agree).on("click", sends(|| Input::Consent)))
+        .with(button("", "decline", decline).on("click", sends(|| Input::Decline)));
+    main("page", "consent").set("data-step", step).with(card.with(people).with(actions))
+}
+
+fn language(code: &str, name: &str, chosen: bool) -> Element {
+    let wanted = code.to_owned();
+    words("button", "quiet", name)
+        .set("type", "button")
+        .set("lang", code)
+        .set("aria-pressed", if chosen { "true" } else { "false" })
+        .on("click", move |_| {
+            screen::send(Input::ChooseLanguage(wanted.clone()));
+            page::focus_later(".languages [aria-pressed=true]");
+        })
+}
+
+fn contact(contact: &ContactView) -> Element {
+    let address = ["mailto:", contact.email.as_str()].concat();
+    let line = el("p", "")
+        .with(words("strong", "", &contact.role))
+        .with(el("br", ""))
+        .text(&contact.name)
+        .text(", ")
+        .with(words("a", "", &contact.email).set("href", &address));
+    match &contact.reference {
+        Some(reference) => line.text(" (").text(reference).text(")"),
+        None => line,
+    }
 }

@@ -1,61 +1,50 @@
 //! The last page: everything has arrived, and only now the code.
 
-use leptos::prelude::*;
-use mimique_study::flow::View;
+use mimique_study::flow::EndView;
 
-use super::message::AnotherPerson;
-use crate::session::Session;
+use super::message::another_person;
+use super::{button, heading, main};
+use crate::dom::{Element, el, words};
+use crate::engine::Engine;
 use crate::{bridge, site};
 
 /// Thanks, completion code, receipt, withdrawal code.
-#[component]
-pub fn EndPage() -> impl IntoView {
-    let View::End(end) = Session::here().view.get_untracked() else {
-        return ().into_any();
-    };
-    let end = *end;
-    let words = untrack(|| Session::here().words());
-    let (text, file) = match site::ending() {
-        None => (end.text, None),
+pub fn end(engine: &Engine, end: &EndView) -> Element {
+    let fixed = engine.words();
+    let mut card = el("div", "card").with(heading(&end.heading));
+    let ending = site::ending();
+    card = match &ending {
         // Without a server nothing has arrived unless it was posted.
-        Some((posted, offered, email)) => {
-            let text = match end.outcome {
-                "completed" if !posted => vec![words.kept_here(&email)],
-                _ => end.text,
-            };
-            (text, offered.then_some(words.download))
+        Some((false, _, email)) if end.outcome == "completed" => {
+            card.with(words("p", "", &fixed.kept_here(email)))
         }
+        _ => card.paragraphs(&end.text),
     };
-    let give = move |_| {
-        if let Some((name, text, _)) = site::file() {
-            bridge::download(&name, &text);
-        }
-    };
-    view! {
-        <main class="page" data-view="end" data-outcome=end.outcome>
-            <div class="card">
-                <h1 tabindex="-1">{end.heading}</h1>
-                {text.into_iter().map(|text| view! { <p>{text}</p> }).collect_view()}
-                {file.map(|label| view! {
-                    <div class="actions">
-                        <button type="button" class="primary" data-action="download" on:click=give>{label}</button>
-                    </div>
-                })}
-                {end.completion_code.map(|(label, code)| view! {
-                    <h2>{label}</h2>
-                    <p><span class="code-block" data-code="completion">{code}</span></p>
-                })}
-                {end.redirect.map(|(label, address)| view! {
-                    <p><a class="button primary" href=address>{label}</a></p>
-                })}
-                <h2>{end.receipt.0}</h2>
-                <p><span class="code-block small" data-code="receipt">{end.receipt.1}</span></p>
-                <h2>{end.withdrawal_code.0}</h2>
-                <p><span class="code-block" data-code="withdrawal">{end.withdrawal_code.1}</span></p>
-                <p class="soft">{end.withdrawal_code.2}</p>
-                <AnotherPerson/>
-            </div>
-        </main>
+    if ending.is_some_and(|(_, offered, _)| offered) {
+        let download = button("primary", "download", fixed.download).on("click", |_| {
+            if let Some((name, text, _)) = site::file() {
+                bridge::download(&name, &text);
+            }
+        });
+        card = card.with(el("div", "actions").key("download").with(download));
     }
-    .into_any()
+    let code = |class: &str, what: &str, code: &str| {
+        el("p", "").with(words("span", class, code).set("data-code", what))
+    };
+    if let Some((label, completion)) = &end.completion_code {
+        card = card.with(words("h2", "", label)).with(code("code-block", "completion", completion));
+    }
+    if let Some((label, address)) = &end.redirect {
+        let back = words("a", "button primary", label).set("href", address);
+        card = card.with(el("p", "").with(back));
+    }
+    let (label, receipt) = &end.receipt;
+    card = card.with(words("h2", "", label)).with(code("code-block small", "receipt", receipt));
+    let (label, withdrawal, meaning) = &end.withdrawal_code;
+    card = card
+        .with(words("h2", "", label))
+        .with(code("code-block", "withdrawal", withdrawal))
+        .with(words("p", "soft", meaning))
+        .option(another_person(engine));
+    main("page", "end").set("data-outcome", end.outcome).with(card)
 }

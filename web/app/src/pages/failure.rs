@@ -1,11 +1,14 @@
 //! The page cannot begin, and why.
 
-use leptos::prelude::*;
-use mimique_study::text::words;
+use mimique_study::text::words as words_of;
 use mimique_study::wire::Refusal;
 
+use super::{heading, main};
+use crate::dom::{Element, el, words};
+use crate::{page, screen};
+
 /// What keeps the page from beginning.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub enum Trouble {
     /// The address names no study.
     NoStudy,
@@ -20,32 +23,25 @@ pub enum Trouble {
 }
 
 /// What is wrong, and a button to try again.
-#[component]
-pub fn TroublePage(trouble: Trouble, retry: impl Fn() + 'static) -> impl IntoView {
-    let language = document()
-        .document_element()
-        .and_then(|root| root.get_attribute("lang"))
-        .unwrap_or_default();
-    let words = words(match &trouble {
+pub fn trouble(trouble: &Trouble) -> Element {
+    let language = page::language();
+    let fixed = words_of(match trouble {
         Trouble::OtherTab(language) => language,
         _ => &language,
     });
-    let (heading, detail) = match trouble {
-        Trouble::NoStudy => (words.no_study, String::new()),
-        Trouble::Unreachable(reason) => (words.unreachable, reason),
-        Trouble::Refused(refusal) => (words.cannot_begin, words.refused(&refusal)),
-        Trouble::Unreadable(reason) => (words.cannot_run, reason),
-        Trouble::OtherTab(_) => (words.other_tab, words.other_tab_text.to_owned()),
+    let (title, detail) = match trouble {
+        Trouble::NoStudy => (fixed.no_study, String::new()),
+        Trouble::Unreachable(reason) => (fixed.unreachable, reason.clone()),
+        Trouble::Refused(refusal) => (fixed.cannot_begin, fixed.refused(refusal)),
+        Trouble::Unreadable(reason) => (fixed.cannot_run, reason.clone()),
+        Trouble::OtherTab(_) => (fixed.other_tab, fixed.other_tab_text.to_owned()),
     };
-    view! {
-        <main class="page" data-view="failure">
-            <div class="card">
-                <h1 tabindex="-1">{heading}</h1>
-                <p>{detail}</p>
-                <div class="actions">
-                    <button type="button" class="primary" on:click=move |_| retry()>{words.retry}</button>
-                </div>
-            </div>
-        </main>
-    }
+    let retry = words("button", "primary", fixed.retry)
+        .set("type", "button")
+        .on("click", |_| screen::retry());
+    let card = el("div", "card")
+        .with(heading(title))
+        .with(words("p", "", &detail))
+        .with(el("div", "actions").with(retry));
+    main("page", "failure").key("failure").with(card)
 }

@@ -1,42 +1,28 @@
 //! After a practice clip: which answers were right.
 
-use leptos::prelude::*;
-use mimique_study::flow::{Input, View};
+use mimique_study::flow::FeedbackView;
 
-use super::ProgressLine;
-use crate::session::Session;
+use super::{heading, main, next, progress_line};
+use crate::dom::{Element, el, words};
 
 /// Which answers were right.
-#[component]
-pub fn FeedbackPage() -> impl IntoView {
-    let session = Session::here();
-    let View::Feedback(feedback) = session.view.get_untracked() else {
-        return ().into_any();
-    };
-    let feedback = *feedback;
-    let progress = feedback.progress;
-    view! {
-        <main class="page" data-view="feedback" data-step=feedback.step data-correct=feedback.correct.to_string()>
-            <ProgressLine done=progress.done total=progress.total/>
-            <div class="card">
-                <h1 tabindex="-1">{feedback.heading}</h1>
-                {feedback.items.into_iter().map(|item| {
-                    let wrong = item.right.is_some();
-                    view! {
-                        <div class="notice" class:good=!wrong class:warn=wrong>
-                            <p><strong>{item.prompt}</strong></p>
-                            <p>{if wrong { "✗ " } else { "✓ " }}{item.given}</p>
-                            {item.right.map(|right| view! { <p>{right}</p> })}
-                        </div>
-                    }
-                }).collect_view()}
-                {feedback.text.map(|text| view! { <p>{text}</p> })}
-                <div class="actions">
-                    <button type="button" class="primary" data-action="next"
-                        on:click=move |_| session.send(Input::Next)>{feedback.button.label}</button>
-                </div>
-            </div>
-        </main>
+pub fn feedback(feedback: &FeedbackView) -> Element {
+    let mut card = el("div", "card").with(heading(&feedback.heading));
+    for item in &feedback.items {
+        let wrong = item.right.is_some();
+        let given = el("p", "").text(if wrong { "✗ " } else { "✓ " }).text(&item.given);
+        let notice = el("div", if wrong { "notice warn" } else { "notice good" })
+            .with(el("p", "").with(words("strong", "", &item.prompt)))
+            .with(given)
+            .option(item.right.as_ref().map(|right| words("p", "", right)));
+        card = card.with(notice);
     }
-    .into_any()
+    let card = card
+        .option(feedback.text.as_ref().map(|text| words("p", "", text)))
+        .with(el("div", "actions").with(next(&feedback.button.label)));
+    main("page", "feedback")
+        .set("data-step", &feedback.step)
+        .set("data-correct", if feedback.correct { "true" } else { "false" })
+        .with(progress_line(feedback.progress))
+        .with(card)
 }

@@ -13,46 +13,31 @@ mod questions;
 mod read;
 mod trial;
 
-use leptos::prelude::*;
-use mimique_study::flow::{Input, View};
-use wasm_bindgen::JsCast as _;
+use mimique_study::flow::{Input, ProgressView, View};
 
-use crate::focus;
-use crate::session::Session;
+use crate::dom::{Element, Given, el, words};
+use crate::engine::Engine;
+use crate::{page, screen};
 
-/// What has to be built anew when it changes; everything else changes in place.
-#[derive(Debug, Clone, PartialEq)]
-enum Shape {
-    Consent,
-    Questions(String),
-    Page(String),
-    Device,
-    Calibration,
-    Feedback(String),
-    /// The canvas stays from one trial to the next.
-    Trial,
-    ReceiptPending,
-    End,
-    Declined,
-    Withdrawn,
-}
+pub use trial::{Seen, phase_word};
 
-impl Shape {
-    fn of(view: &View) -> Self {
-        match view {
-            View::Consent { .. } => Self::Consent,
-            View::Questions { step, .. } => Self::Questions(step.clone()),
-            View::Page { step, .. } => Self::Page(step.clone()),
-            View::Device(_) => Self::Device,
-            View::Calibration(_) => Self::Calibration,
-            View::Feedback(feedback) => Self::Feedback(feedback.step.clone()),
-            View::Trial(_) => Self::Trial,
-            View::ReceiptPending { .. } => Self::ReceiptPending,
-            View::End(_) => Self::End,
-            View::Declined { .. } => Self::Declined,
-            View::Withdrawn { .. } => Self::Withdrawn,
-        }
-    }
+/// What has to be built anew when it changes; everything else changes in place. The canvas stays from
+/// one trial to the next.
+pub fn shape(view: &View, language: &str) -> String {
+    let (page, step) = match view {
+        View::Consent { .. } => ("consent", ""),
+        View::Questions { step, .. } => ("questions", step.as_str()),
+        View::Page { step, .. } => ("page", step.as_str()),
+        View::Device(_) => ("device", ""),
+        View::Calibration(_) => ("calibration", ""),
+        View::Feedback(feedback) => ("feedback", feedback.step.as_str()),
+        View::Trial(_) => ("trial", ""),
+        View::ReceiptPending { .. } => ("receipt", ""),
+        View::End(_) => ("end", ""),
+        View::Declined { .. } => ("declined", ""),
+        View::Withdrawn { .. } => ("withdrawn", ""),
+    };
+    [page, step, language].join(" ")
 }
 
 /// The step of a view that has one.
@@ -70,79 +55,85 @@ pub fn step_of(view: &View) -> Option<&str> {
 }
 
 /// Header and page.
-#[component]
-pub fn Pages() -> impl IntoView {
-    let session = Session::here();
-    let shape = Memo::new(move |_| (session.view.with(Shape::of), session.language()));
-    let step = Memo::new(move |_| session.view.with(|view| step_of(view).map(str::to_owned)));
-    Effect::new(move |_| {
-        if let Some(step) = step.get() {
-            // After the first paint of the page.
-            request_animation_frame(move || {
-                request_animation_frame(move || {
-                    let here = session.view.with_untracked(|view| step_of(view) == Some(&step));
-                    if here {
-                        session.send(Input::Shown { step });
-                    }
-                });
-            });
+pub fn pages(engine: &Engine, view: &View, shape: &str, seen: &Seen) -> Vec<Element> {
+    let main = match view {
+        View::Consent { .. } => consent::consent(engine, view),
+        View::Questions { .. } => questions::questions(engine, view),
+        View::Page { .. } => read::read(view),
+        View::Device(gate) => device::device(gate),
+        View::Calibration(shown) => calibration::calibration(shown),
+        View::Feedback(feedback) => feedback::feedback(feedback),
+        View::Trial(trial) => trial::trial(engine, trial, seen),
+        View::ReceiptPending { heading, text, stored, total } => {
+            message::receipt_pending(heading, text, *stored, *total)
         }
-    });
-    Effect::new(move |_| {
-        let language = session.language();
-        set_language(&language);
-        let title = &session.engine().plan.study.study_metadata.title;
-        document().set_title(title.in_language(&language));
-    });
-    Effect::new(move |before: Option<()>| {
-        shape.track();
-        if before.is_some() {
-            focus::rescue(&["main h1"]);
+        View::End(end) => end::end(engine, end),
+        View::Declined { heading, text } => message::declined(engine, heading, text),
+        View::Withdrawn { heading, text, confirmed } => {
+            message::withdrawn(heading, text, *confirmed)
         }
-    });
-    view! {
-        <header::Header/>
-        {move || match shape.get().0 {
-            Shape::Consent => view! { <consent::ConsentPage/> }.into_any(),
-            Shape::Questions(_) => view! { <questions::QuestionsPage/> }.into_any(),
-            Shape::Page(_) => view! { <read::ReadPage/> }.into_any(),
-            Shape::Device => view! { <device::DevicePage/> }.into_any(),
-            Shape::Calibration => view! { <calibration::CalibrationPage/> }.into_any(),
-            Shape::Feedback(_) => view! { <feedback::FeedbackPage/> }.into_any(),
-            Shape::Trial => view! { <trial::TrialPage/> }.into_any(),
-            Shape::ReceiptPending => view! { <message::ReceiptPendingPage/> }.into_any(),
-            Shape::End => view! { <end::EndPage/> }.into_any(),
-            Shape::Declined => view! { <message::DeclinedPage/> }.into_any(),
-            Shape::Withdrawn => view! { <message::WithdrawnPage/> }.into_any(),
-        }}
-    }
+    };
+    let mut all = header::header(engine, view);
+    all.push(main.key(shape));
+    all
+}
+
+/// Before there is anything to show.
+pub fn opening() -> Element {
+    let card = el("div", "card").with(words("p", "soft", "…"));
+    main("page", "opening").key("opening").with(card)
+}
+
+/// The frame of a page.
+fn main(class: &str, view: &str) -> Element {
+    el("main", class).set("data-view", view)
+}
+
+/// Its heading, which takes the focus when the page is new.
+fn heading(text: &str) -> Element {
+    words("h1", "", text).set("tabindex", "-1")
+}
+
+/// A button; what it does is its key.
+fn button(class: &str, action: &str, label: &str) -> Element {
+    words("button", class, label).key(action).set("type", "button").set("data-action", action)
+}
+
+/// What a button does that hands in an input.
+fn sends(input: fn() -> Input) -> impl Fn(Given) {
+    move |_| screen::send(input())
+}
+
+/// The button that leads on.
+fn next(label: &str) -> Element {
+    button("primary", "next", label).on("click", sends(|| Input::Next))
+}
+
+/// A form that leads on when it is sent; what has to be mended then gets the focus.
+fn form() -> Element {
+    el("form", "card").set("novalidate", "").on("submit", |_| {
+        screen::send(Input::Next);
+        page::focus_later(
+            "main [data-invalid] :is(input, textarea, button):checked|main [data-invalid] :is(input, textarea, button):not(:disabled)",
+        );
+    })
+}
+
+/// The button of a form.
+fn submit(label: &str) -> Element {
+    let button = words("button", "primary", label).set("type", "submit");
+    el("div", "actions").with(button.set("data-action", "next"))
+}
+
+/// What has to be mended, below a field.
+fn problem(text: Option<&str>, id: &str) -> Option<Element> {
+    text.map(|text| words("p", "problem", text).key("problem").set("id", id))
 }
 
 /// How far the session is, as a bar and in words for those who do not see it.
-#[component]
-fn ProgressLine(
-    #[prop(into)] done: Signal<usize>,
-    #[prop(into)] total: Signal<usize>,
-) -> impl IntoView {
-    view! {
-        <div class="progress-line">
-            <progress max=move || total.get().to_string() value=move || done.get().to_string()
-                aria-label=move || format!("{} / {}", done.get(), total.get())></progress>
-        </div>
-    }
-}
-
-/// Tells browser and screen reader the language of the page.
-pub fn set_language(language: &str) {
-    if let Some(root) = document().document_element() {
-        let _ = root.set_attribute("lang", language);
-    }
-}
-
-/// The element of that identifier, or the body.
-pub fn element(id: &str) -> web_sys::HtmlElement {
-    document()
-        .get_element_by_id(id)
-        .and_then(|element| element.dyn_into().ok())
-        .unwrap_or_else(|| document().body().expect("a page has a body"))
+fn progress_line(progress: ProgressView) -> Element {
+    let (done, total) = (progress.done.to_string(), progress.total.to_string());
+    let label = [done.as_str(), total.as_str()].join(" / ");
+    let bar = el("progress", "").set("max", &total).set("value", &done).set("aria-label", &label);
+    el("div", "progress-line").key("progress").with(bar)
 }
