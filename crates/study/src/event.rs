@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::tagged::tagged_by_type;
+use crate::from_json::FromJson;
 
 /// Answers by question identifier.
 pub type Answers = BTreeMap<String, Value>;
 
 /// What happened, tagged by `type`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EventKind {
@@ -166,7 +167,7 @@ fn is_false(value: &bool) -> bool {
 impl EventKind {
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
-        crate::json_reader::read_value(body.clone()).ok()
+        Self::from_json(body).ok()
     }
 
     /// The body of a [`crate::wire::Event`].
@@ -176,7 +177,7 @@ impl EventKind {
 }
 
 /// What is played in step beside a clip.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
 pub struct ShownBeside {
     /// Which clip.
     pub clip: String,
@@ -185,7 +186,7 @@ pub struct ShownBeside {
 }
 
 /// The display and the page, no finer than the analysis needs.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
 pub struct Client {
     /// Width and height of the window, CSS pixels.
     #[serde(default)]
@@ -199,7 +200,7 @@ pub struct Client {
 }
 
 /// What the browser and its display can do.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
 #[serde(default)]
 pub struct Display {
     /// Width and height of the window, CSS pixels.
@@ -217,7 +218,7 @@ pub struct Display {
 }
 
 /// The size of a CSS pixel and the distance of the eyes, as the participant set them.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
 #[serde(default)]
 pub struct Calibrated {
     /// CSS pixels per millimetre; none if it was left out.
@@ -238,7 +239,7 @@ impl Calibrated {
 
 /// What the stage measured while a clip was played once (`static/stage-host.js`, `stage.play`).
 /// Fields that this version does not know are left out, those that are missing are zero.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
 #[serde(default)]
 pub struct PlayLog {
     /// `webgpu` or `webgl2`.

@@ -212,7 +212,9 @@ mod tests {
         ] {
             let value = crate::parse(study).unwrap();
             let read: Study = read_value(value.clone()).unwrap();
-            assert_eq!(read, serde_json::from_value::<Study>(value).unwrap());
+            assert_eq!(read, serde_json::from_value::<Study>(value.clone()).unwrap());
+            // And as the page's reader does.
+            assert_eq!(read, Study::from_value(&value).unwrap());
             // And what is written is read again.
             assert_eq!(read, read_value::<Study>(serde_json::to_value(&read).unwrap()).unwrap());
         }

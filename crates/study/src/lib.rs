@@ -1,10 +1,14 @@
 #![doc = include_str!("../README.md")]
 
+// The derived readers name this crate.
+extern crate self as mimique_study;
+
 mod answer;
 mod canonical;
 mod check;
 mod event;
 pub mod flow;
+pub mod from_json;
 mod instant;
 mod json_reader;
 mod order;

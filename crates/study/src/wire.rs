@@ -23,6 +23,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::from_json::FromJson;
+
 /// One study on this server.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StudySummary {
@@ -106,7 +108,7 @@ pub struct StartSession {
 }
 
 /// The server's answer to [`StartSession`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct SessionStarted {
     /// Secret token of the session, 128 bits, hexadecimal.
     pub session: String,
@@ -136,7 +138,7 @@ impl SessionStarted {
 }
 
 /// One thing that happened, numbered from 0 without gaps by the page.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Event {
     /// 0, 1, 2... within the session.
     pub sequence: u64,
@@ -154,7 +156,7 @@ pub struct AppendEvents {
 }
 
 /// Sent only after the events are committed to disk.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Acknowledged {
     /// Number of events stored without a gap: every sequence below it is on disk.
     pub stored: u64,
@@ -163,7 +165,7 @@ pub struct Acknowledged {
 }
 
 /// What a page needs to go on after a reload.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Resume {
     /// As at the start.
     pub started: SessionStarted,
@@ -179,7 +181,7 @@ pub struct Complete {
 }
 
 /// The server has everything: only now is the completion code shown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Receipt {
     /// Keyed hash over the stored events, hexadecimal.
     pub receipt: String,
@@ -199,14 +201,14 @@ pub struct Withdraw {
 }
 
 /// The answers are deleted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Withdrawn {
     /// How many events were deleted.
     pub deleted: u64,
 }
 
 /// A refused request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 pub struct Refusal {
     /// Stable word, e.g. `unknown-session`, `study-closed`, `already-took-part`, `bad-request`.
     pub code: String,

@@ -1,14 +1,15 @@
 //! What survives a reload: who we are (localStorage) and what is not acknowledged (IndexedDB).
 
 use js_sys::Array;
+use mimique_study::from_json::FromJson;
 use mimique_study::wire::{Event, SessionStarted};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use wasm_bindgen::JsValue;
 
 use crate::{json, page};
 
 /// Who we are in a study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, FromJson)]
 pub struct Identity {
     /// Made here; a repeated start with it gives the same session.
     pub nonce: String,

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use js_sys::Array;
+use mimique_study::from_json::FromJson;
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Refusal, Resume, SessionStarted,
     StartSession, Withdraw, Withdrawn,
 };
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::Value;
 
 use wasm_bindgen::JsValue;
@@ -25,7 +25,7 @@ pub enum Failure {
 }
 
 /// What the pages need of `wire::Bundle`: the clips go through to the stage as they came.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, FromJson)]
 pub struct Bundle {
     /// SHA-256 of the canonical study file, hexadecimal.
     pub config_hash: String,
@@ -84,13 +84,13 @@ pub async fn withdraw(session: &str, withdrawal_code: String) -> Result<Withdraw
     post(&format!("/api/sessions/{session}/withdraw"), &Withdraw { withdrawal_code }).await
 }
 
-async fn post<T: DeserializeOwned>(address: &str, body: &impl Serialize) -> Result<T, Failure> {
+async fn post<T: FromJson>(address: &str, body: &impl Serialize) -> Result<T, Failure> {
     let body = serde_json::to_string(body).map_err(|e| Failure::Unreachable(e.to_string()))?;
     read(&send("POST", address, "application/json", Some(body)).await?)
 }
 
 /// `GET`
-pub async fn get<T: DeserializeOwned>(address: &str) -> Result<T, Failure> {
+pub async fn get<T: FromJson>(address: &str) -> Result<T, Failure> {
     read(&send("GET", address, "", None).await?)
 }
 
@@ -129,7 +129,7 @@ pub fn unreachable(thrown: &JsValue) -> Failure {
     Failure::Unreachable(bridge::reason(thrown))
 }
 
-fn read<T: DeserializeOwned>(answer: &Answer) -> Result<T, Failure> {
+fn read<T: FromJson>(answer: &Answer) -> Result<T, Failure> {
     let status = answer.status;
     if answer.ok() {
         return json::read(&answer.text).map_err(|error| Failure::Unreachable(error.to_string()));

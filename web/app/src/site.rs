@@ -6,12 +6,12 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 
+use mimique_study::from_json::FromJson;
 use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
 };
 use mimique_study::{SessionFile, StaticHosting};
-use serde::Deserialize;
 use serde_json::json;
 
 use crate::json;
@@ -20,7 +20,7 @@ use crate::network::{self, Bundle, Failure, unreachable};
 use crate::page;
 
 /// What `mimique export-site` writes beside the pages.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, FromJson)]
 struct SiteFile {
     bundle: Bundle,
     stage: String,

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::{ClipEntry, Study};
 use crate::tagged;
+use crate::from_json::{FromJson, Mistake};
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = BTreeMap<String, FactorValue>;
@@ -38,6 +39,17 @@ impl<'de> Deserialize<'de> for FactorValue {
     }
 }
 
+impl FromJson for FactorValue {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        match (value, value.as_f64()) {
+            (Value::Bool(truth), _) => Ok(Self::Truth(*truth)),
+            (Value::String(text), _) => Ok(Self::Text(text.clone())),
+            (_, Some(number)) => Ok(Self::Number(number)),
+            _ => Err(Mistake::new("a factor is a word, a number, true or false")),
+        }
+    }
+}
+
 impl FactorValue {
     /// As the export writes it: whole numbers without a point.
     pub fn to_value(&self) -> Value {
@@ -64,7 +76,7 @@ impl std::fmt::Display for FactorValue {
 
 /// The emotions of the built-in performances.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, FromJson, JsonSchema,
 )]
 #[serde(rename_all = "camelCase")]
 pub enum BuiltinExpression {

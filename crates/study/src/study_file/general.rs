@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::LocalText;
 use crate::instant::instant_ms;
+use crate::from_json::FromJson;
 
 /// Title, version, authors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Metadata {
     /// Title as participants see it.
@@ -29,7 +30,7 @@ pub struct Metadata {
 }
 
 /// Whom a participant can write to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Contact {
     /// Who leads the study.
@@ -40,7 +41,7 @@ pub struct Contact {
 }
 
 /// A person or a board with an address.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ContactPerson {
     /// Name.
@@ -53,7 +54,7 @@ pub struct ContactPerson {
 }
 
 /// Where participants come from and go back to.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Recruitment {
     /// Shown at the end, once every answer is stored.
@@ -107,7 +108,7 @@ impl Recruitment {
 }
 
 /// How a second participation of one person is recognised.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum RepeatPrevention {
     /// Anybody may take part again.
@@ -120,7 +121,7 @@ pub enum RepeatPrevention {
 }
 
 /// What a participant agrees to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Consent {
     /// Version of the text; in every row of the export.
@@ -157,7 +158,7 @@ impl Recruitment {
 }
 
 /// A heading and its paragraphs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Section {
     /// Heading.

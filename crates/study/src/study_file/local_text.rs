@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::tagged;
+use crate::from_json::{FromJson, Mistake};
 
 /// A string for every language, or one string a language.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -24,6 +25,15 @@ impl<'de> Deserialize<'de> for LocalText {
             Value::String(text) => Ok(Self::Plain(text)),
             other => tagged::from(other).map(Self::Languages),
         })
+    }
+}
+
+impl FromJson for LocalText {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        match value {
+            Value::String(text) => Ok(Self::Plain(text.clone())),
+            other => BTreeMap::from_json(other).map(Self::Languages),
+        }
     }
 }
 

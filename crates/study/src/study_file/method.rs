@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::{Factors, LocalText};
 use crate::json_reader::read_value;
+use crate::from_json::{self, FromJson, Mistake};
 
 /// A method, its parameters, and what the analysis calls it.
 ///
@@ -26,7 +27,7 @@ pub struct MethodEntry {
 }
 
 /// A range-of-motion take with known weights.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct MethodTraining {
     /// Key of `stimuli.captures`: a file, or a built-in actor, who then shows the whole range of
@@ -44,6 +45,22 @@ impl MethodEntry {
             Ok(Value::String(word)) => word,
             _ => String::new(),
         }
+    }
+}
+
+impl FromJson for MethodEntry {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        let map = from_json::object(value)?;
+        let mut spec = map.clone();
+        for key in ["factors", "label", "training"] {
+            spec.remove(key);
+        }
+        Ok(Self {
+            spec: MethodSpec::from_json(&Value::Object(spec))?,
+            factors: from_json::or_else(map, "factors", Factors::default)?,
+            label: from_json::required(map, "label")?,
+            training: from_json::required(map, "training")?,
+        })
     }
 }
 

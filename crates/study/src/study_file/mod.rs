@@ -22,6 +22,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use crate::from_json::FromJson;
 
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
 pub use conduct::{
@@ -52,7 +53,7 @@ pub use stimuli::{
 pub use tables::{Layout, TableLayout};
 
 /// A whole study file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 #[schemars(title = "Mimique study")]
 pub struct Study {
@@ -143,7 +144,7 @@ pub enum StudyFileError {
 impl Study {
     /// Reads a study from a JSON value, stopping at the first mistake.
     pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
-        crate::json_reader::read_value(value.clone())
+        Self::from_json(value)
             .map_err(|error| StudyFileError::Shape(error.to_string()))
     }
 

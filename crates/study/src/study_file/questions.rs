@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use super::LocalText;
 use crate::tagged::{self, tagged_by_type};
+use crate::from_json::{FromJson, Mistake};
 
 /// One question.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -46,7 +47,7 @@ fn yes() -> bool {
 }
 
 /// What questions of every type have.
-#[derive(Deserialize)]
+#[derive(Deserialize, FromJson)]
 #[serde(rename_all = "camelCase")]
 struct Common {
     id: String,
@@ -63,19 +64,31 @@ struct Common {
     attention_check: Option<AttentionCheck>,
 }
 
+impl Common {
+    fn with(self, kind: QuestionKind) -> Question {
+        let Self { id, prompt, help, video, required, show_if, attention_check } = self;
+        Question { id, prompt, help, video, required, show_if, attention_check, kind }
+    }
+}
+
+impl FromJson for Question {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        Ok(Common::from_json(value)?.with(QuestionKind::from_json(value)?))
+    }
+}
+
 impl<'de> Deserialize<'de> for Question {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         tagged::read(deserializer, |value| {
             let kind = tagged::from(value.clone())?;
             let common: Common = tagged::from(value)?;
-            let Common { id, prompt, help, video, required, show_if, attention_check } = common;
-            Ok(Self { id, prompt, help, video, required, show_if, attention_check, kind })
+            Ok(common.with(kind))
         })
     }
 }
 
 /// An earlier answer that opens a question. Every condition given must hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Condition {
     /// Which question: of this page, or of an earlier one.
@@ -95,7 +108,7 @@ pub struct Condition {
 }
 
 /// A question that checks attention.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct AttentionCheck {
     /// The answer that passes.
@@ -103,7 +116,7 @@ pub struct AttentionCheck {
 }
 
 /// What kind of answer is asked for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(remote = "Self", rename_all = "camelCase")]
 #[schemars(tag = "type")]
 #[non_exhaustive]
@@ -165,7 +178,7 @@ impl QuestionKind {
 }
 
 /// One option.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Choice {
     /// What the export says.
@@ -181,7 +194,7 @@ pub struct Choice {
 }
 
 /// In which order options are shown.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum OptionOrder {
     /// As in the file.
@@ -192,7 +205,7 @@ pub enum OptionOrder {
 }
 
 /// One of several.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct SingleChoice {
     /// The options, two at least.
@@ -207,7 +220,7 @@ pub struct SingleChoice {
 }
 
 /// Any of several.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct MultipleChoice {
     /// The options.
@@ -224,7 +237,7 @@ pub struct MultipleChoice {
 }
 
 /// A rating scale: `numItems` points from `start`, coded as shown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Likert {
     /// Number of points.
@@ -255,7 +268,7 @@ impl Likert {
 }
 
 /// A number on a line.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Slider {
     /// Lowest value.
@@ -278,7 +291,7 @@ fn unit_step() -> f64 {
 }
 
 /// A number typed.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct NumberField {
     /// Lowest value.
@@ -296,7 +309,7 @@ pub struct NumberField {
 }
 
 /// Text typed.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct TextField {
     /// Most characters; 200 for a line and 5,000 for several if not given.
@@ -305,7 +318,7 @@ pub struct TextField {
 }
 
 /// One choice in each of several rows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Matrix {
     /// The rows.
@@ -315,7 +328,7 @@ pub struct Matrix {
 }
 
 /// Options put in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Ranking {
     /// What is ranked.
@@ -326,7 +339,7 @@ pub struct Ranking {
 }
 
 /// A point on a grid of valence (across) and arousal (up).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Grid {
     /// Cells across and up; an odd number has a middle. Coded 1 to `numItems` from left and below.
@@ -344,7 +357,7 @@ pub struct Grid {
 
 /// Which of the two clips that are shown side by side. The export names the clip that was chosen in
 /// its column `chosen`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Comparison {
     /// Whether "no difference" can be answered.

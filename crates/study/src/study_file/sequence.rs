@@ -8,9 +8,10 @@ use serde_json::Value;
 
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
 use crate::tagged::{self, tagged_by_type};
+use crate::from_json::{FromJson, Mistake};
 
 /// A part of the study that a sequence names.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(remote = "Self", rename_all = "camelCase")]
 #[schemars(tag = "type")]
 #[non_exhaustive]
@@ -29,7 +30,7 @@ tagged_by_type!(Component);
 
 /// A block of trials, one a clip. In a sequence it stands for its trials: they take their places
 /// by that sequence's order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct TrialsComponent {
     /// Which clips; all of them if not given.
@@ -56,7 +57,7 @@ pub struct TrialsComponent {
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
 /// method, or of another avatar.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Beside {
     /// Key of `stimuli.methods`.
@@ -76,7 +77,7 @@ pub struct Beside {
 }
 
 /// On which side of the clip its companion stands. On a narrow screen left is above.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum Side {
     /// Always left.
@@ -93,7 +94,7 @@ fn once() -> u32 {
 }
 
 /// Which clips a block shows. With both parts, a clip must be in the list and have the factors.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipSelection {
     /// Clip identifiers.
@@ -105,7 +106,7 @@ pub struct ClipSelection {
 }
 
 /// A page of questions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Questionnaire {
     /// Heading.
@@ -122,7 +123,7 @@ pub struct Questionnaire {
 }
 
 /// A page to read.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct PageComponent {
     /// Heading.
@@ -135,7 +136,7 @@ pub struct PageComponent {
 }
 
 /// A rest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BreakComponent {
     /// Heading.
@@ -148,7 +149,7 @@ pub struct BreakComponent {
 }
 
 /// Trials for practice, shown in this order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Training {
     /// Clip identifiers.
@@ -174,7 +175,7 @@ pub struct Training {
 }
 
 /// Components, or further sequences, in an order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Sequence {
     /// Name of a nested sequence, for the export's column `condition`.
@@ -206,6 +207,15 @@ pub enum SequenceItem {
     Sequence(Box<Sequence>),
 }
 
+impl FromJson for SequenceItem {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        match value {
+            Value::String(name) => Ok(Self::Component(name.clone())),
+            other => Box::from_json(other).map(Self::Sequence),
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for SequenceItem {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         tagged::read(deserializer, |value| match value {
@@ -216,7 +226,7 @@ impl<'de> Deserialize<'de> for SequenceItem {
 }
 
 /// How the parts of a sequence are ordered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum OrderRule {
     /// As in the file.
@@ -229,7 +239,7 @@ pub enum OrderRule {
 }
 
 /// A component put in after every so many trials.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Interruption {
     /// Name of a component: a break, a page or a questionnaire.
@@ -242,7 +252,7 @@ pub struct Interruption {
 }
 
 /// What a random order must keep to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Constraint {
     /// A factor; `segment`, `avatar` and `clip` can be named too.

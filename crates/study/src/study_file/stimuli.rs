@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
+use crate::from_json::FromJson;
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -13,7 +14,7 @@ use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
 pub const DATA_PREFIX: &str = "${MIMIQUE_DATA}/";
 
 /// What is shown, and what it is made of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Stimuli {
     /// Heads, by identifier.
@@ -33,7 +34,7 @@ pub struct Stimuli {
 }
 
 /// Who is seen: exactly one of `builtin`, `file` and `videos`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Avatar {
     /// A person of the built-in head.
@@ -61,7 +62,7 @@ pub struct Avatar {
 }
 
 /// A person of the built-in head.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BuiltinAvatar {
     /// Which person: the same seed is the same face.
@@ -78,7 +79,7 @@ pub struct BuiltinAvatar {
 }
 
 /// How a head is drawn: camera and light are the same.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum AvatarLook {
     /// Skin, eyes and hair.
@@ -136,7 +137,7 @@ pub fn film_type(path: &str) -> Option<&'static str> {
 }
 
 /// A performance as markers: exactly one of `builtin` and `file`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Capture {
     /// A built-in actor's performances.
@@ -163,7 +164,7 @@ pub struct Capture {
 }
 
 /// A built-in actor.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BuiltinCapture {
     /// Which actor: seed of the identity and of the performance's small differences.
@@ -195,7 +196,7 @@ impl Capture {
 }
 
 /// A cut of a capture: `first` and `end` of a file, or `performance` of a built-in actor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Segment {
     /// Identifier: `joy2`.
@@ -217,7 +218,7 @@ pub struct Segment {
 }
 
 /// What a built-in actor performs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Performance {
     /// Which emotion.
@@ -252,7 +253,7 @@ impl Segment {
 }
 
 /// Which clips there are.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipRules {
     /// Every combination of these; all avatars, segments and methods where a part is not given.
@@ -264,7 +265,7 @@ pub struct ClipRules {
 }
 
 /// Every combination.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipCross {
     /// Avatars; all if not given.
@@ -279,7 +280,7 @@ pub struct ClipCross {
 }
 
 /// One clip of a list.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipEntry {
     /// Which avatar.
@@ -291,7 +292,7 @@ pub struct ClipEntry {
 }
 
 /// The same look for every clip.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Look {
     /// Background, `#rrggbb`.
