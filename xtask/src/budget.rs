@@ -21,7 +21,15 @@ struct Budget {
 const BUDGETS: [Budget; 4] = [
     Budget {
         name: "the page with its first question",
-        files: &["index.html", "style.css", "boot.js", "bridge.js", "page.js", "app.js", "app_bg.wasm"],
+        files: &[
+            "index.html",
+            "style.css",
+            "boot.js",
+            "bridge.js",
+            "page.js",
+            "app.js",
+            "app_bg.wasm",
+        ],
         kilobytes: 530.0,
         target: 150.0,
     },

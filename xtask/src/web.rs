@@ -40,12 +40,7 @@ struct Module {
     features: Option<&'static str>,
     profile: &'static str,
     opt_level: &'static str,
-    /// For the compiler, of this module and all that it is made of.
-    rustflags: Option<&'static str>,
 }
-
-/// The flags of `.cargo/config.toml` for wasm32.
-const CONFIGURED_FLAGS: &str = "-Ctarget-feature=+simd128 --cfg=getrandom_backend=\"wasm_js\"";
 
 const MODULES: [Module; 5] = [
     Module {
@@ -55,7 +50,6 @@ const MODULES: [Module; 5] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
-        rustflags: None,
     },
     Module {
         name: "solver",
@@ -64,7 +58,6 @@ const MODULES: [Module; 5] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
-        rustflags: None,
     },
     Module {
         name: "desk",
@@ -73,7 +66,6 @@ const MODULES: [Module; 5] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
-        rustflags: None,
     },
     Module {
         name: "stage_webgpu",
@@ -82,7 +74,6 @@ const MODULES: [Module; 5] = [
         features: Some("webgpu"),
         profile: "web",
         opt_level: "-Oz",
-        rustflags: None,
     },
     Module {
         name: "stage_webgl",
@@ -91,7 +82,6 @@ const MODULES: [Module; 5] = [
         features: Some("webgl"),
         profile: "web",
         opt_level: "-Oz",
-        rustflags: None,
     },
 ];
 
@@ -152,11 +142,6 @@ impl Module {
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
         }
-        if let Some(flags) = self.rustflags {
-            // The variable stands in place of what `.cargo/config.toml` says.
-            let flags = format!("{CONFIGURED_FLAGS} {flags}");
-            command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", flags);
-        }
         run_program(&mut command)?;
         let raw = target()
             .join("wasm32-unknown-unknown")
@@ -186,7 +171,8 @@ impl Module {
             run_program(
                 Command::new("node")
                     .arg(script)
-                    .arg(self.opt_level)
+                    // Twice: the second pass finds what the first has uncovered.
+                    .args([self.opt_level, self.opt_level])
                     .args(["--all-features", "--disable-gc", "--disable-custom-descriptors"])
                     // No browser reads them yet.
                     .args(["--disable-compact-imports"])

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::tagged::tagged_by_type;
 use crate::from_json::FromJson;
+use crate::tagged::tagged_by_type;
 
 /// Answers by question identifier.
 pub type Answers = BTreeMap<String, Value>;

@@ -5,7 +5,9 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use mimique_solver::MethodSpec;
+use mimique_solver::{Association, Hold, Inference, LaplacianKind, Method, MethodSpec, Unit};
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, IntoDeserializer as _};
 use serde_json::{Map, Value};
 
 pub use mimique_study_derive::FromJson;
@@ -83,11 +85,7 @@ pub fn or_else<T: FromJson>(
 }
 
 /// The value of a key; `absent` where it is not there.
-pub fn or<T: FromJson>(
-    map: &Map<String, Value>,
-    key: &str,
-    absent: T,
-) -> Result<T, Mistake> {
+pub fn or<T: FromJson>(map: &Map<String, Value>, key: &str, absent: T) -> Result<T, Mistake> {
     match map.get(key) {
         Some(value) => T::from_json(value).map_err(|mistake| mistake.below(key)),
         None => Ok(absent),
@@ -218,9 +216,107 @@ impl<T: FromJson> FromJson for BTreeMap<String, T> {
     }
 }
 
-impl FromJson for MethodSpec {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        crate::json_reader::read_value(value.clone())
-            .map_err(|error| Mistake(error.to_string().into()))
+/// A word of an enum that serde reads.
+fn listed<T: DeserializeOwned>(value: &Value) -> Result<T, Mistake> {
+    let text = word(Some(value))?;
+    let reader: StrDeserializer<'_, NoWord> = text.into_deserializer();
+    T::deserialize(reader).map_err(|_| unknown_word(text))
+}
+
+/// The error of [`listed`]: the word itself says more.
+#[derive(Debug)]
+struct NoWord;
+
+impl fmt::Display for NoWord {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an unknown word")
+    }
+}
+
+impl std::error::Error for NoWord {}
+
+impl serde::de::Error for NoWord {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self
+    }
+
+    fn unknown_variant(_: &str, _: &'static [&'static str]) -> Self {
+        Self
+    }
+}
+
+macro_rules! listed_words {
+    ($($name:ty),*) => {$(
+        impl FromJson for $name {
+            fn from_json(value: &Value) -> Result<Self, Mistake> {
+                listed(value)
+            }
+        }
+    )*};
+}
+
+listed_words!(Method, LaplacianKind, Association, Unit, Hold, Inference);
+
+/// The solver's own type, which it reads by serde: here by the same keys.
+macro_rules! method_spec {
+    ($($field:ident $key:literal)* ; $($many:ident $many_key:literal)*) => {
+        impl FromJson for MethodSpec {
+            fn from_json(value: &Value) -> Result<Self, Mistake> {
+                let map = object(value)?;
+                only(map, &[$($key,)* $($many_key,)*])?;
+                Ok(Self {
+                    $($field: required(map, $key)?,)*
+                    $($many: or_else(map, $many_key, Default::default)?,)*
+                })
+            }
+        }
+    };
+}
+
+method_spec! {
+    method "method" alpha "alpha" kappa "kappa" k_s "kS" k_b "kB" laplacian "laplacian"
+    soft_bounds "softBounds" s "s" eps "eps" association "association" sigma "sigma"
+    bounds_weight "boundsWeight" unit "unit" stiffness "stiffness" hold "hold"
+    inference "inference" basis_vectors "basisVectors" length_scale "lengthScale"
+    signal "signal" noise "noise" head_lowpass_hz "headLowpassHz" ;
+    locked "locked" importance "importance" bounds "bounds"
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_method_is_read_as_the_solver_reads_it() {
+        for spec in [
+            json!({ "method": "lsts" }),
+            json!({
+                "method": "lsts-norm", "alpha": 0.3, "kappa": 1, "kS": 2.0, "kB": 0.5, "laplacian": "cotan-clamped",
+                "softBounds": [-0.1, 1.1], "s": 0.1, "eps": 0, "association": "triangles", "sigma": 0.01,
+                "boundsWeight": 0.001, "unit": "cm", "stiffness": 0, "hold": "nothing", "inference": "exact",
+                "basisVectors": 7, "lengthScale": 1.5, "signal": 1.0, "noise": 0.1, "locked": ["a"],
+                "importance": { "m": 2.0 }, "bounds": { "b": [0, 2] }, "headLowpassHz": 6.0,
+            }),
+            json!({ "method": "box", "alpha": null }),
+            json!({ "method": "boxx" }),
+            json!({ "method": "box", "alfa": 1 }),
+            json!({ "alpha": 1 }),
+            json!({ "method": "box", "alpha": "1" }),
+            json!({ "method": "box", "softBounds": [1] }),
+            json!({ "method": "box", "basisVectors": -1 }),
+            json!({ "method": "box", "locked": null }),
+            json!(["box"]),
+        ] {
+            let theirs = crate::json_reader::read_value::<MethodSpec>(spec.clone()).ok();
+            assert_eq!(MethodSpec::from_json(&spec).ok(), theirs, "{spec}");
+        }
+        // Every key that the solver knows is known here.
+        for key in crate::method_keys() {
+            let spec = json!({ "method": "box", key.clone(): {} });
+            let mistake = MethodSpec::from_json(&spec).err().map(|mistake| mistake.to_string());
+            assert!(!mistake.unwrap_or_default().starts_with("unknown field"), "{key}");
+        }
     }
 }

@@ -11,6 +11,7 @@ pub mod flow;
 pub mod from_json;
 mod instant;
 mod json_reader;
+pub mod json_text;
 mod order;
 pub mod responses;
 mod session_file;

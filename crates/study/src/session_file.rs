@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
+use crate::json_text;
 use crate::wire::{Event, SessionStarted};
 
 /// The version of the format that this reads and writes.
@@ -61,14 +62,15 @@ impl SessionFile {
     pub fn write(&self) -> (String, String) {
         let head =
             json!({ "mimique_session": VERSION, "study": self.study, "started": self.started });
-        let mut text = head.to_string();
+        let mut text = json_text::write(&head);
         text.push('\n');
         for event in &self.events {
-            text.push_str(&serde_json::to_string(event).unwrap_or_default());
+            text.push_str(&json_text::write(&event.to_value()));
             text.push('\n');
         }
         let hash = sha256(&text);
-        text.push_str(&json!({ "events": self.events.len(), "sha256": hash }).to_string());
+        let end = json!({ "events": self.events.len(), "sha256": hash });
+        text.push_str(&json_text::write(&end));
         text.push('\n');
         (text, hash)
     }

@@ -32,8 +32,8 @@ pub(crate) fn inside_from_outside(value: Value) -> Value {
         },
         other => return other,
     };
-    let mut map = Map::from_iter([("type".to_owned(), Value::String(word))]);
-    map.extend(rest);
+    let mut map = rest;
+    map.insert("type".to_owned(), Value::String(word));
     Value::Object(map)
 }
 

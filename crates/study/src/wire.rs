@@ -148,6 +148,13 @@ pub struct Event {
     pub body: Value,
 }
 
+impl Event {
+    /// As JSON.
+    pub fn to_value(&self) -> Value {
+        serde_json::json!({ "sequence": self.sequence, "at_ms": self.at_ms, "body": self.body })
+    }
+}
+
 /// Events to append.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AppendEvents {

@@ -5,8 +5,8 @@
 
 use std::rc::Rc;
 
-use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen::closure::Closure;
+use wasm_bindgen::{JsCast as _, JsValue};
 
 use crate::page;
 

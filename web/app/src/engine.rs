@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 
 use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_study::json_text;
 use mimique_study::text::Words;
 use mimique_study::wire::{Event, Refusal};
 use mimique_study::{Display, PlayLog};
@@ -309,7 +310,7 @@ impl Engine {
             return self.dispatch(Input::ClipPrepared { clip });
         }
         let source = match self.clips.get(&clip) {
-            Some(source) => source.to_string(),
+            Some(source) => json_text::write(source),
             None => {
                 let message = "the server has no such clip".to_owned();
                 return self.dispatch(Input::ClipFailed { clip, message });

@@ -29,7 +29,7 @@ impl Identity {
 
     /// Keeps it; false where the browser keeps nothing.
     pub fn save(&self, study: &str) -> bool {
-        let text = serde_json::to_string(self).unwrap_or_default();
+        let text = json::write(self);
         page::save(&Self::key(study), Some(text))
     }
 
@@ -80,7 +80,7 @@ impl Keep {
     /// Puts an event; done when IndexedDB says that it is written.
     pub async fn put(&self, event: &Event) -> Result<(), JsValue> {
         if self.lasting {
-            let text = serde_json::to_string(event).unwrap_or_default();
+            let text = json::write(event);
             page::put(self.store, &self.key(event.sequence), &text).await?;
         }
         Ok(())

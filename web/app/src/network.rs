@@ -85,8 +85,7 @@ pub async fn withdraw(session: &str, withdrawal_code: String) -> Result<Withdraw
 }
 
 async fn post<T: FromJson>(address: &str, body: &impl Serialize) -> Result<T, Failure> {
-    let body = serde_json::to_string(body).map_err(|e| Failure::Unreachable(e.to_string()))?;
-    read(&send("POST", address, "application/json", Some(body)).await?)
+    read(&send("POST", address, "application/json", Some(json::write(body))).await?)
 }
 
 /// `GET`

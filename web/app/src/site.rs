@@ -14,7 +14,6 @@ use mimique_study::wire::{
 use mimique_study::{SessionFile, StaticHosting};
 use serde_json::json;
 
-use crate::json;
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
 use crate::page;
@@ -98,7 +97,7 @@ pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
         })
     });
     let started = started.unwrap_or_default();
-    json::read(&started.to_string()).map_err(|error| Failure::Unreachable(error.to_string()))
+    SessionStarted::from_json(&started).map_err(|error| Failure::Unreachable(error.to_string()))
 }
 
 /// The session that this browser is in the middle of.
@@ -115,7 +114,10 @@ pub async fn resume(session: &str) -> Result<Resume, Failure> {
 async fn open(started: SessionStarted) -> Vec<Event> {
     let keep = Keep::open_store(ANSWERS, &started.session).await;
     let events = keep.all().await.unwrap_or_default();
-    let map = events.iter().map(|event| (event.sequence, event.clone())).collect();
+    let mut map = BTreeMap::new();
+    for event in &events {
+        map.insert(event.sequence, event.clone());
+    }
     ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(Answers { keep, started, events: map }));
     events
 }

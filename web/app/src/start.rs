@@ -53,7 +53,8 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     };
     // The address's language first, then the browser's.
     let languages = place(2);
-    let wanted: Vec<&str> = address.language.as_deref().into_iter().chain(languages.split(' ')).collect();
+    let wanted: Vec<&str> =
+        address.language.as_deref().into_iter().chain(languages.split(' ')).collect();
 
     let bundle = bundle(&address.study).await?;
     let study =

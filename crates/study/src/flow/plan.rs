@@ -244,14 +244,15 @@ impl Sides {
             matches!(component, Component::Trials(block)
                 if block.beside.as_ref().is_some_and(|beside| beside.side == Side::Random))
         });
-        let sides = drawn.map(|(name, _)| {
+        let mut sides = BTreeMap::new();
+        for (name, _) in drawn {
             let of = |item: &&OrderedItem| matches!(item, OrderedItem::Trial { component, .. } if component == name);
             let count = items.iter().filter(of).count();
             let mut left: Vec<bool> = (0..count).map(|trial| trial % 2 == 0).collect();
             draw.stream(&format!("sides/{name}")).shuffle(&mut left);
-            (name.clone(), left.into_iter())
-        });
-        Self(sides.collect())
+            sides.insert(name.clone(), left.into_iter());
+        }
+        Self(sides)
     }
 
     /// Whether the next companion of this component stands left, where that is drawn.
@@ -364,7 +365,13 @@ pub(crate) fn right_answers(
             _ => None,
         }
     };
-    questions.iter().filter_map(|each| Some((each.id.clone(), of(each)?))).collect()
+    let mut right = Answers::new();
+    for question in questions {
+        if let Some(answer) = of(question) {
+            right.insert(question.id.clone(), answer);
+        }
+    }
+    right
 }
 
 fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
@@ -374,20 +381,18 @@ fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
 }
 
 fn option_orders(study: &Study, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
-    study
-        .all_questions()
-        .filter(|question| {
-            let order = match &question.kind {
-                QuestionKind::SingleChoice(choice) => choice.option_order,
-                QuestionKind::MultipleChoice(choice) => choice.option_order,
-                QuestionKind::Ranking(ranking) => ranking.option_order,
-                _ => OptionOrder::Fixed,
-            };
-            order == OptionOrder::Random
-        })
-        .map(|question| {
+    let mut orders = BTreeMap::new();
+    for question in study.all_questions() {
+        let order = match &question.kind {
+            QuestionKind::SingleChoice(choice) => choice.option_order,
+            QuestionKind::MultipleChoice(choice) => choice.option_order,
+            QuestionKind::Ranking(ranking) => ranking.option_order,
+            _ => OptionOrder::Fixed,
+        };
+        if order == OptionOrder::Random {
             let count = question.kind.options().len();
-            (question.id.clone(), option_order(draw, &question.id, count))
-        })
-        .collect()
+            orders.insert(question.id.clone(), option_order(draw, &question.id, count));
+        }
+    }
+    orders
 }

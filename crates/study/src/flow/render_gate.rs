@@ -156,7 +156,7 @@ impl Screen<'_> {
                 let words = items.iter().map(|each| each.as_str().map_or(String::new(), label));
                 words.collect::<Vec<_>>().join(", ")
             }
-            (other, _) => other.to_string(),
+            (other, _) => crate::json_text::write(other),
         }
     }
 

@@ -108,7 +108,7 @@ impl<'a> Draw<'a> {
 /// The order that a participant gets.
 pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
     let clips = study.clips();
-    let by_id = clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
+    let by_id = by_id(&clips);
     let context = Context { study, clips: &clips, by_id, draw, prove: false };
     context.sequence(&study.sequence, "/sequence", None)
 }
@@ -118,12 +118,21 @@ pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderErr
 pub(crate) fn prove(study: &Study, draw: Draw<'_>) -> Result<(), OrderError> {
     let clips = study.clips();
     for participant in 0..sample_period(study).min(MOST_SAMPLES) {
-        let by_id = clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
+        let by_id = by_id(&clips);
         let draw = Draw { participant, ..draw };
         let context = Context { study, clips: &clips, by_id, draw, prove: true };
         context.sequence(&study.sequence, "/sequence", None)?;
     }
     Ok(())
+}
+
+fn by_id(clips: &[Clip]) -> BTreeMap<&str, &Clip> {
+    // One by one: to collect would bring a sort of its own into the page.
+    let mut known = BTreeMap::new();
+    for clip in clips {
+        known.insert(clip.id.as_str(), clip);
+    }
+    known
 }
 
 /// Most samples that are tried out; nested samples could have more, by their product.

@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::{ClipEntry, Study};
-use crate::tagged;
 use crate::from_json::{FromJson, Mistake};
+use crate::tagged;
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = BTreeMap<String, FactorValue>;
@@ -171,8 +171,8 @@ impl Study {
             }
         }
         entries.extend(rules.list.iter().cloned());
-        let avatars: BTreeSet<&str> = entries.iter().map(|entry| entry.avatar.as_str()).collect();
-        let several_avatars = avatars.len() > 1;
+        let several_avatars =
+            entries.first().is_some_and(|one| entries.iter().any(|each| each.avatar != one.avatar));
         let mut seen = BTreeSet::new();
         entries
             .iter()

@@ -36,7 +36,9 @@ pub struct DeviceRules {
 }
 
 /// Which kind of device.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum DeviceKind {
     /// Any.
@@ -47,7 +49,9 @@ pub enum DeviceKind {
 }
 
 /// What the browser must draw with.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum BackendRule {
     /// WebGPU or WebGL 2.
@@ -58,7 +62,9 @@ pub enum BackendRule {
 }
 
 /// Whether the pages fill the screen.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum FullscreenRule {
     /// Nobody asks.
@@ -129,7 +135,9 @@ pub struct Criterion {
 }
 
 /// What happens after the last round of practice without success.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum AfterTraining {
     /// The study goes on.
@@ -154,7 +162,9 @@ pub struct AttentionRule {
 }
 
 /// When a session with too many failed attention checks ends.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum AttentionEnd {
     /// After the last page, like any other.

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::LocalText;
-use crate::instant::instant_ms;
 use crate::from_json::FromJson;
+use crate::instant::instant_ms;
 
 /// Title, version, authors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
@@ -108,7 +108,9 @@ impl Recruitment {
 }
 
 /// How a second participation of one person is recognised.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum RepeatPrevention {
     /// Anybody may take part again.

@@ -51,7 +51,9 @@ pub enum TestName {
 }
 
 /// What of a response is tested.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum Measure {
     /// The answer itself.

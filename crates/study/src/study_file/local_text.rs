@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use crate::tagged;
 use crate::from_json::{FromJson, Mistake};
+use crate::tagged;
 
 /// A string for every language, or one string a language.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]

@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use super::{Factors, LocalText};
-use crate::json_reader::read_value;
 use crate::from_json::{self, FromJson, Mistake};
+use crate::json_reader::read_value;
 
 /// A method, its parameters, and what the analysis calls it.
 ///

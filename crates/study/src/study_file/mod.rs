@@ -20,9 +20,9 @@ mod tables;
 
 use std::collections::BTreeMap;
 
+use crate::from_json::FromJson;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::from_json::FromJson;
 
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
 pub use conduct::{
@@ -144,8 +144,7 @@ pub enum StudyFileError {
 impl Study {
     /// Reads a study from a JSON value, stopping at the first mistake.
     pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
-        Self::from_json(value)
-            .map_err(|error| StudyFileError::Shape(error.to_string()))
+        Self::from_json(value).map_err(|error| StudyFileError::Shape(error.to_string()))
     }
 
     /// Reads a study from text: JSON, comments allowed. Stops at the first mistake.

@@ -10,8 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::LocalText;
-use crate::tagged::{self, tagged_by_type};
 use crate::from_json::{FromJson, Mistake};
+use crate::tagged::{self, tagged_by_type};
 
 /// One question.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -194,7 +194,9 @@ pub struct Choice {
 }
 
 /// In which order options are shown.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum OptionOrder {
     /// As in the file.

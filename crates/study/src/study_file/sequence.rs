@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
-use crate::tagged::{self, tagged_by_type};
 use crate::from_json::{FromJson, Mistake};
+use crate::tagged::{self, tagged_by_type};
 
 /// A part of the study that a sequence names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
@@ -77,7 +77,9 @@ pub struct Beside {
 }
 
 /// On which side of the clip its companion stands. On a narrow screen left is above.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum Side {
     /// Always left.

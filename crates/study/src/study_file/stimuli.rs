@@ -79,7 +79,9 @@ pub struct BuiltinAvatar {
 }
 
 /// How a head is drawn: camera and light are the same.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
+)]
 #[serde(rename_all = "camelCase")]
 pub enum AvatarLook {
     /// Skin, eyes and hair.

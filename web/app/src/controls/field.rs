@@ -1,5 +1,6 @@
 //! A number or a text that is typed. The answer is given when the field is left, not at every key.
 
+use mimique_study::json_text;
 use serde_json::{Value, json};
 
 use super::{Answering, plain};
@@ -14,7 +15,7 @@ pub fn number(
     unit: Option<&str>,
 ) -> Vec<Element> {
     let shown = match answering.value() {
-        Some(Value::Number(number)) => number.to_string(),
+        Some(number @ Value::Number(_)) => json_text::write(number),
         Some(Value::String(text)) => text.clone(),
         _ => String::new(),
     };

@@ -8,11 +8,7 @@ use super::choice::{tile, video_of};
 use crate::dom::{Element, el, words};
 
 /// The rows, each a group of radio buttons. The answer is an object from row to option.
-pub fn matrix(
-    answering: &Answering,
-    rows: &[ChoiceView],
-    options: &[ChoiceView],
-) -> Vec<Element> {
+pub fn matrix(answering: &Answering, rows: &[ChoiceView], options: &[ChoiceView]) -> Vec<Element> {
     let now = rows_of(answering.value());
     let row = |row: &ChoiceView| {
         let chosen = now.get(&row.value).and_then(Value::as_str);

@@ -1,5 +1,6 @@
 //! A number on a line. Until it is touched it has no value, and shows none.
 
+use mimique_study::json_text;
 use serde_json::Value;
 
 use super::{Answering, ends, plain};
@@ -29,7 +30,7 @@ pub fn slider(
         .set(".value", &value.and_then(Value::as_f64).unwrap_or(middle).to_string())
         .on("change", touch.clone())
         .on("click", touch);
-    let shown = value.map_or_else(|| "\u{2013}".to_owned(), Value::to_string);
+    let shown = value.map_or_else(|| "\u{2013}".to_owned(), json_text::write);
     vec![
         ends(left, right),
         answering.spoken(field),

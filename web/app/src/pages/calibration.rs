@@ -2,7 +2,7 @@
 
 use mimique_study::flow::{CalibrationView, CardView, DistanceView, Input};
 
-use super::{button, form, heading, main, problem, progress_line, submit};
+use super::{button, form, heading, main, problem, progress_line, px, submit};
 use crate::dom::{Element, el, words};
 use crate::{page, screen};
 
@@ -59,8 +59,8 @@ fn card(shown: &CardView) -> Element {
     let width = shown.width_px;
     let picture = el("div", "bank-card")
         .set("aria-hidden", "true")
-        .set("--card-long", &format!("{width:.2}px"))
-        .set("--card-short", &format!("{:.2}px", shown.height_px))
+        .set("--card-long", &px(width))
+        .set("--card-short", &px(shown.height_px))
         .with(el("span", "chip"));
     let slider = el("input", "")
         .set("type", "range")
@@ -68,7 +68,10 @@ fn card(shown: &CardView) -> Element {
         .set("min", &WIDTHS.0.to_string())
         .set("max", &WIDTHS.1.to_string())
         .set("step", "0.5")
-        .set("aria-describedby", if wrong.is_some() { "card-hint card-problem" } else { "card-hint" })
+        .set(
+            "aria-describedby",
+            if wrong.is_some() { "card-hint card-problem" } else { "card-hint" },
+        )
         .flag("aria-invalid", wrong.is_some())
         .set(".value", &width.to_string())
         .on("input", |given| {

@@ -11,8 +11,11 @@ use crate::{page, screen};
 pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
     let fixed = engine.words();
     let title = &engine.plan.study.study_metadata.title;
-    let mut header = el("header", "site-header narrow")
-        .with(words("span", "title", title.in_language(&engine.language())));
+    let mut header = el("header", "site-header narrow").with(words(
+        "span",
+        "title",
+        title.in_language(&engine.language()),
+    ));
     // Before the agreement there is nothing to withdraw, and at the end the code serves.
     let can_withdraw = matches!(
         view,

@@ -130,6 +130,16 @@ fn problem(text: Option<&str>, id: &str) -> Option<Element> {
     text.map(|text| words("p", "problem", text).key("problem").set("id", id))
 }
 
+/// A length in CSS pixels.
+fn px(length: f64) -> String {
+    [hundredth(length).as_str(), "px"].concat()
+}
+
+/// A number to its second decimal.
+fn hundredth(number: f64) -> String {
+    ((number * 100.0).round() / 100.0).to_string()
+}
+
 /// How far the session is, as a bar and in words for those who do not see it.
 fn progress_line(progress: ProgressView) -> Element {
     let (done, total) = (progress.done.to_string(), progress.total.to_string());

@@ -4,10 +4,10 @@ use mimique_study::flow::{BesideView, Input, Phase, TrialView, View};
 
 use super::clock::clock;
 use super::questions::question_list;
-use super::{button, form, heading, main, progress_line, sends, submit};
+use super::{button, form, heading, hundredth, main, progress_line, px, sends, submit};
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::{bridge, page};
+use crate::{bridge, json, page};
 
 /// Which trial's clip has been seen: its questions appear then, and stay while it is played again.
 #[derive(Default)]
@@ -77,7 +77,7 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
     let now = page::pixel_ratio();
     let scale = size.device_pixel_ratio.filter(|_| now > 0.0).map_or(1.0, |then| then / now);
     let (width, height) = (size.width * scale, size.height * scale);
-    let look = serde_json::to_string(&engine.plan.study.stimuli.look).unwrap_or_default();
+    let look = json::write(&engine.plan.study.stimuli.look);
     let beside = trial.beside.as_ref();
     let mut place = el("div", "stage").with(canvas(&trial.heading, &look, false));
     if let Phase::Loading { fraction } = trial.phase {
@@ -94,8 +94,8 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
         .option(caption.map(|text| words("figcaption", "", text)));
     el("div", if beside.is_some() { "stage-frame pair" } else { "stage-frame" })
         .key("stage")
-        .set("--stage-width", &format!("{width:.2}px"))
-        .set("--stage-aspect", &format!("{width:.2} / {height:.2}"))
+        .set("--stage-width", &px(width))
+        .set("--stage-aspect", &[hundredth(width).as_str(), &hundredth(height)].join(" / "))
         .with(figure)
         .option(beside.map(|beside| companion(beside, &look)))
 }
