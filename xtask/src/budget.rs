@@ -30,7 +30,7 @@ const BUDGETS: [Budget; 4] = [
             "app.js",
             "app_bg.wasm",
         ],
-        kilobytes: 530.0,
+        kilobytes: 262.0,
         target: 150.0,
     },
     Budget {
