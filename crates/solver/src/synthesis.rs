@@ -14,8 +14,10 @@ struct Block([f32; BLOCK]);
 /// The neutral and the shapes of a skin, cut into blocks of some 21 vertices; each has the shapes
 /// that move it and no others.
 ///
-/// A frame costs what its weights that are not 0 move. The sums have the same bits as
-/// neutral + w_0 d_0 + w_1 d_1 + ... in single precision, one after the other.
+/// A frame costs what its weights that are not 0 move. The sums have the bits of
+/// neutral + w_0 d_0 + w_1 d_1 + ... in single precision, one after the other, each product added
+/// before it is rounded (fused): the same on every processor, slow on those that must do it in
+/// software.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Synthesis {
     shape_count: usize,
@@ -110,6 +112,7 @@ widest! {
 }
 
 widest! {
+    ["fma"]
     /// Some frames, one at a time.
     fn pose_frames(shapes: &Synthesis, weights: &[f64], out: &mut [f32]) {
         pose_groups::<1>(shapes, weights, out);
@@ -172,7 +175,7 @@ fn pose_block<const G: usize>(shapes: &Synthesis, b: usize, group: &Group<G>, ou
             let Some(Block(delta)) = deltas.get(place as usize) else { continue };
             for g in 0..G {
                 for i in 0..BLOCK {
-                    sums[g][i] += weights[g] * delta[i];
+                    sums[g][i] = weights[g].mul_add(delta[i], sums[g][i]);
                 }
             }
         }
@@ -242,7 +245,8 @@ mod tests {
                 for (shape, &w) in mesh.shapes.iter().zip(c) {
                     for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
                         for a in 0..3 {
-                            expected[3 * v as usize + a] += w as f32 * d[a] as f32;
+                            let sum = &mut expected[3 * v as usize + a];
+                            *sum = (w as f32).mul_add(d[a] as f32, *sum);
                         }
                     }
                 }

@@ -435,7 +435,13 @@ fn answer(frame: &Frame, distribution: &Distribution) -> Markup {
     let caption = html! {
         (distribution.prompt) " " code { (distribution.question) }
     };
-    let count_line = |count: u64| html! { (count) " " (frame.say("answers", "réponses")) };
+    let count_line = |count: u64| {
+        let words = match count {
+            1 => frame.say("answer", "réponse"),
+            _ => frame.say("answers", "réponses"),
+        };
+        html! { (count) " " (words) }
+    };
     match &distribution.shape {
         Shape::Counts(counts) => {
             bars_with(&caption, counts.iter().map(|(label, count)| (label.as_str(), *count)))
