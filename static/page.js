@@ -117,6 +117,9 @@ export function place() {
   return [location.pathname, location.search, navigator.languages?.join(" ") ?? "", site?.content, site?.dataset.study];
 }
 
+/** The number that a text says; NaN if it says none. */
+export const number = (words) => (words.trim() === "" ? NaN : Number(words));
+
 export const reload = () => location.reload();
 export const encode = (words) => encodeURIComponent(words);
 

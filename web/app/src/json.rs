@@ -5,12 +5,19 @@ use mimique_study::from_json::{FromJson, Mistake};
 use mimique_study::json_text;
 use serde::Serialize;
 
+use crate::page;
+
 /// Reads a type from text.
 pub fn read<T: FromJson>(text: &str) -> Result<T, Mistake> {
-    T::from_json(&json_text::read(text)?)
+    T::from_json(&json_text::read_with(text, number)?)
 }
 
 /// Writes a type.
 pub fn write(from: &impl Serialize) -> String {
     json_text::write(&serde_json::to_value(from).unwrap_or_default())
+}
+
+/// Reads a number as the browser does; none where the text is not one.
+pub fn number(text: &str) -> Option<f64> {
+    Some(page::number(text)).filter(|number| number.is_finite())
 }

@@ -4,7 +4,6 @@
 //! when the server says that they are stored. `memory` keeps the same set in IndexedDB;
 //! `engine` does the sending.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use mimique_study::wire::{Acknowledged, Event};
@@ -12,7 +11,8 @@ use mimique_study::wire::{Acknowledged, Event};
 /// Events that the server has not acknowledged.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outbox {
-    waiting: BTreeMap<u64, Event>,
+    /// In ascending order of sequence.
+    waiting: Vec<Event>,
     /// Number of events that the server has without a gap.
     stored: u64,
 }
@@ -23,19 +23,19 @@ pub const BATCH: usize = 50;
 impl Outbox {
     /// An outbox of a session of which the server has `stored` events.
     pub fn new(stored: u64) -> Self {
-        Self { waiting: BTreeMap::new(), stored }
+        Self { waiting: Vec::new(), stored }
     }
 
     /// An event to be sent. One that the server has already is not taken again.
     pub fn push(&mut self, event: Event) {
         if event.sequence >= self.stored {
-            self.waiting.insert(event.sequence, event);
+            put(&mut self.waiting, event);
         }
     }
 
     /// The next events to send, the oldest first; empty when there is nothing to do.
     pub fn batch(&self) -> Vec<Event> {
-        self.waiting.values().take(BATCH).cloned().collect()
+        self.waiting.iter().take(BATCH).cloned().collect()
     }
 
     /// The server has answered the sending of `sent`. Returns the sequences that need no keeping
@@ -44,23 +44,35 @@ impl Outbox {
         self.stored = self.stored.max(answer.stored);
         let gone: Vec<u64> = self
             .waiting
-            .keys()
-            .copied()
+            .iter()
+            .map(|event| event.sequence)
             .filter(|sequence| {
                 *sequence < answer.stored
                     || (sent.iter().any(|event| event.sequence == *sequence)
                         && !answer.gaps.contains(sequence))
             })
             .collect();
-        for sequence in &gone {
-            self.waiting.remove(sequence);
-        }
+        self.waiting.retain(|event| !gone.contains(&event.sequence));
         gone
     }
 
     /// Number of events that the server has without a gap.
     pub fn stored(&self) -> u64 {
         self.stored
+    }
+}
+
+/// Puts an event where its sequence belongs; false if that is there already: then the later one holds.
+pub fn put(events: &mut Vec<Event>, event: Event) -> bool {
+    match events.binary_search_by_key(&event.sequence, |each| each.sequence) {
+        Ok(at) => {
+            events[at] = event;
+            false
+        }
+        Err(at) => {
+            events.insert(at, event);
+            true
+        }
     }
 }
 
@@ -74,7 +86,7 @@ pub fn back_off(failures: u32, jitter: f64) -> Duration {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
+    use std::collections::{BTreeMap, BTreeSet};
 
     use proptest::prelude::*;
     use serde_json::json;

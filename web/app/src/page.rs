@@ -63,6 +63,8 @@ extern "C" {
     pub fn nonce(bytes: u32) -> String;
     /// Path, query, languages, the site's file and study.
     pub fn place() -> Array;
+    /// The number that a text says; NaN if it says none.
+    pub fn number(words: &str) -> f64;
     /// Loads the page again.
     pub fn reload();
     /// Percent-encoded.

@@ -40,7 +40,8 @@ thread_local! {
     static PLACE: RefCell<Option<Place>> = const { RefCell::new(None) };
     static SHOWN: RefCell<Shown> = RefCell::default();
     static SEEN: RefCell<Seen> = RefCell::default();
-    static MEDIA: RefCell<BTreeMap<String, Option<String>>> = const { RefCell::new(BTreeMap::new()) };
+    /// Path -> address; none yet where it is empty.
+    static MEDIA: RefCell<BTreeMap<String, String>> = const { RefCell::new(BTreeMap::new()) };
     static DUE: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -81,10 +82,10 @@ pub fn changed() {
 pub fn media(path: &str) -> Option<String> {
     let known = MEDIA.with(|media| media.borrow().get(path).cloned());
     if let Some(known) = known {
-        return known;
+        return Some(known).filter(|address| !address.is_empty());
     }
     let path = path.to_owned();
-    MEDIA.with(|media| media.borrow_mut().insert(path.clone(), None));
+    MEDIA.with(|media| media.borrow_mut().insert(path.clone(), String::new()));
     let source = engine()?.source(&format!("{}{path}", mimique_study::MEDIA_PREFIX));
     spawn_local(async move {
         let text = |key: &str| {
@@ -92,7 +93,7 @@ pub fn media(path: &str) -> Option<String> {
             value.and_then(|value| value.as_str()).unwrap_or_default().to_owned()
         };
         let fetched = bridge::media_address(&text("avatar"), &text("film")).await;
-        let address = fetched.ok().and_then(|found| found.as_string());
+        let address = fetched.ok().and_then(|found| found.as_string()).unwrap_or_default();
         MEDIA.with(|media| media.borrow_mut().insert(path, address));
         changed();
     });

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
+use crate::outbox::put;
 use crate::page;
 
 /// What `mimique export-site` writes beside the pages.
@@ -35,7 +36,8 @@ struct SiteFile {
 struct Answers {
     keep: Keep,
     started: SessionStarted,
-    events: BTreeMap<u64, Event>,
+    /// In ascending order of sequence.
+    events: Vec<Event>,
 }
 
 thread_local! {
@@ -114,11 +116,8 @@ pub async fn resume(session: &str) -> Result<Resume, Failure> {
 async fn open(started: SessionStarted) -> Vec<Event> {
     let keep = Keep::open_store(ANSWERS, &started.session).await;
     let events = keep.all().await.unwrap_or_default();
-    let mut map = BTreeMap::new();
-    for event in &events {
-        map.insert(event.sequence, event.clone());
-    }
-    ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(Answers { keep, started, events: map }));
+    let kept = events.clone();
+    ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(Answers { keep, started, events: kept }));
     events
 }
 
@@ -134,16 +133,17 @@ pub async fn append(events: Vec<Event>) -> Result<Acknowledged, Failure> {
     };
     let mut failed = None;
     for event in events {
-        if answers.events.contains_key(&event.sequence) {
+        if answers.events.iter().any(|each| each.sequence == event.sequence) {
             continue;
         }
         if let Err(error) = answers.keep.put(&event).await {
             failed = Some(error);
             break;
         }
-        answers.events.insert(event.sequence, event);
+        put(&mut answers.events, event);
     }
-    let stored = (0..).take_while(|n| answers.events.contains_key(n)).count() as u64;
+    let whole = (0..).zip(&answers.events).take_while(|(n, each)| each.sequence == *n);
+    let stored = whole.count() as u64;
     ANSWERS_HERE.with(|here| *here.borrow_mut() = Some(answers));
     match failed {
         Some(thrown) => Err(unreachable(&thrown)),
@@ -158,7 +158,7 @@ pub fn file() -> Option<(String, String, String)> {
         let here = here.borrow();
         let answers = here.as_ref()?;
         let name = format!("{study}_{}.jsonl", answers.started.participant_id);
-        let events = answers.events.values().cloned().collect();
+        let events = answers.events.clone();
         let file = SessionFile { study, started: answers.started.clone(), events };
         let (text, hash) = file.write();
         Some((name, text, hash))
@@ -170,8 +170,8 @@ pub async fn complete(events: u64) -> Result<Receipt, Failure> {
     let (_, text, hash) = file().ok_or_else(|| refused("missing-events"))?;
     let (status, stored, session) = ANSWERS_HERE.with(|here| {
         here.borrow().as_ref().map_or(("active", 0, String::new()), |answers| {
-            let all: Vec<Event> = answers.events.values().cloned().collect();
-            (session_status(&all), all.len() as u64, answers.started.participant_id.clone())
+            let all = &answers.events;
+            (session_status(all), all.len() as u64, answers.started.participant_id.clone())
         })
     });
     if stored < events {

@@ -15,7 +15,7 @@ use crate::address::Address;
 use crate::engine::Engine;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Bundle, Failure};
-use crate::outbox::back_off;
+use crate::outbox::{back_off, put};
 use crate::pages::failure::Trouble;
 use crate::screen::{self, Boot};
 use crate::{bridge, page, site};
@@ -79,12 +79,11 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
     let keep = Keep::open(&started.session).await;
     let stored =
         (0_u64..).zip(&events).take_while(|(n, event)| event.sequence == *n).count() as u64;
-    let mut all: BTreeMap<u64, Event> = BTreeMap::new();
+    let mut all: Vec<Event> = Vec::new();
     let unsent = keep.all().await.unwrap_or_default();
     for event in unsent.iter().cloned().chain(events) {
-        all.insert(event.sequence, event);
+        put(&mut all, event);
     }
-    let all: Vec<Event> = all.into_values().collect();
     // What the server has need not be kept: the answer that said so was never heard here.
     let known: Vec<u64> =
         unsent.iter().map(|event| event.sequence).filter(|number| *number < stored).collect();

@@ -140,7 +140,7 @@ impl Plan {
         };
         let mut sides = Sides::new(&study, draw, &items);
         let mut trials = 0;
-        let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut shown: Vec<&str> = Vec::new();
         for item in &items {
             match item {
                 OrderedItem::Trial { trial, component, clip, condition } => {
@@ -164,9 +164,9 @@ impl Plan {
                     push(trial.clone(), StepKind::Trial(step), block.time_limit.clone());
                 }
                 OrderedItem::Component { component } => {
-                    let times = shown.entry(component).or_default();
-                    *times += 1;
-                    let id = match *times {
+                    shown.push(component);
+                    let times = shown.iter().filter(|each| *each == component).count();
+                    let id = match times {
                         1 => component.clone(),
                         again => format!("{component}#{again}"),
                     };
@@ -236,7 +236,7 @@ impl TrialStep {
 }
 
 /// The sides that are drawn, by component: each side in half of the trials.
-struct Sides(BTreeMap<String, std::vec::IntoIter<bool>>);
+struct Sides(Vec<(String, std::vec::IntoIter<bool>)>);
 
 impl Sides {
     fn new(study: &Study, draw: Draw<'_>, items: &[OrderedItem]) -> Self {
@@ -244,20 +244,20 @@ impl Sides {
             matches!(component, Component::Trials(block)
                 if block.beside.as_ref().is_some_and(|beside| beside.side == Side::Random))
         });
-        let mut sides = BTreeMap::new();
+        let mut sides = Vec::new();
         for (name, _) in drawn {
             let of = |item: &&OrderedItem| matches!(item, OrderedItem::Trial { component, .. } if component == name);
             let count = items.iter().filter(of).count();
             let mut left: Vec<bool> = (0..count).map(|trial| trial % 2 == 0).collect();
             draw.stream(&format!("sides/{name}")).shuffle(&mut left);
-            sides.insert(name.clone(), left.into_iter());
+            sides.push((name.clone(), left.into_iter()));
         }
         Self(sides)
     }
 
     /// Whether the next companion of this component stands left, where that is drawn.
     fn next(&mut self, component: &str) -> Option<bool> {
-        self.0.get_mut(component).and_then(Iterator::next)
+        self.0.iter_mut().find(|(name, _)| name == component)?.1.next()
     }
 }
 

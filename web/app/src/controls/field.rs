@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Answering, plain};
 use crate::dom::{Element, el, words};
+use crate::json;
 
 /// A number.
 pub fn number(
@@ -29,11 +30,11 @@ pub fn number(
         .set(".value", &shown)
         .on("change", move |given| {
             let text = given.value.trim();
-            give.give(match (text, text.parse::<f64>()) {
+            give.give(match (text, json::number(text)) {
                 ("", _) => Value::Null,
-                (_, Ok(number)) => plain(number),
+                (_, Some(number)) => plain(number),
                 // The flow says what is wrong with it.
-                (other, Err(_)) => json!(other),
+                (other, None) => json!(other),
             });
         });
     let unit = unit.map(|unit| words("span", "soft", unit));

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::{Answering, ends, plain};
 use crate::dom::{Element, Given, el, words};
+use crate::json;
 
 /// The line from minimum to maximum by steps, its ends named above it.
 pub fn slider(
@@ -17,7 +18,7 @@ pub fn slider(
     let middle = (minimum + maximum) / 2.0;
     let give = answering.give.clone();
     let touch = move |given: Given| {
-        if let Ok(number) = given.value.parse::<f64>() {
+        if let Some(number) = json::number(&given.value) {
             give.give(plain(number));
         }
     };

@@ -4,7 +4,7 @@ use mimique_study::flow::{CalibrationView, CardView, DistanceView, Input};
 
 use super::{button, form, heading, main, problem, progress_line, px, submit};
 use crate::dom::{Element, el, words};
-use crate::{page, screen};
+use crate::{json, page, screen};
 
 /// Widths that the slider reaches, CSS pixels: from a phone held far out of scale to a wall.
 const WIDTHS: (f64, f64) = (150.0, 900.0);
@@ -37,7 +37,7 @@ fn distance(shown: &DistanceView) -> Element {
         .maybe("value", shown.value.map(|cm| cm.to_string()).as_deref())
         .flag("aria-invalid", wrong.is_some())
         .maybe("aria-describedby", wrong.map(|_| "distance-problem"))
-        .on("change", |given| screen::send(Input::Distance(given.value.parse().ok())));
+        .on("change", |given| screen::send(Input::Distance(json::number(&given.value))));
     fieldset("distance", wrong)
         .with(el("legend", "").with(label))
         .with(field)
@@ -75,7 +75,7 @@ fn card(shown: &CardView) -> Element {
         .flag("aria-invalid", wrong.is_some())
         .set(".value", &width.to_string())
         .on("input", |given| {
-            if let Ok(px) = given.value.parse() {
+            if let Some(px) = json::number(&given.value) {
                 set(px);
             }
         });
