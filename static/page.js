@@ -175,7 +175,13 @@ export async function openDatabase() {
     };
     return settled(request);
   })();
-  return database;
+  try {
+    return await database;
+  } catch (error) {
+    // The next one who asks tries again.
+    database = undefined;
+    throw error;
+  }
 }
 
 // Done when the database says that it is written.
