@@ -222,7 +222,10 @@ mod tests {
             assert_eq!(pair[0].end, pair[1].start);
             assert_ne!(together[pair[0].end - 1], together[pair[1].start]);
         }
-        assert_eq!(stretches(&[0, 1, 0, 1]), [0..4]);
-        assert_eq!(stretches(&[0, 0, 0]), [0..3]);
+        // One stretch: of people whose rows do not follow each other, and of one person.
+        for rows in [&[0, 1, 0, 1][..], &[0, 0, 0]] {
+            let found = stretches(rows);
+            assert_eq!((found.len(), &found[0]), (1, &(0..rows.len())));
+        }
     }
 }
