@@ -4,22 +4,38 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use mimique_study::text::template;
 use mimique_study::{Report, Severity, check, json_schema, resolve_path};
 
 /// Options.
 #[derive(clap::Args)]
-#[command(group(clap::ArgGroup::new("what").required(true).args(["study", "schema"])))]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["study", "schema", "words"])))]
 pub struct Args {
     /// Study file (JSON, comments allowed)
     study: Option<PathBuf>,
     /// Print the JSON Schema of study files instead, for editors
     #[arg(long)]
     schema: bool,
+    /// Print the buttons and messages of the pages by their names instead, to be translated into
+    /// `translations` of a study file
+    #[arg(long, value_name = "LANGUAGE")]
+    words: Option<String>,
 }
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
+    if let Some(language) = &args.words {
+        // In the order of the pages, not of the alphabet.
+        let lines: Vec<String> = template(language)
+            .iter()
+            .map(|(name, text)| format!("    \"{name}\": {}", serde_json::Value::from(*text)))
+            .collect();
+        let language = serde_json::Value::from(language.as_str());
+        let lines = lines.join(",\n");
+        writeln!(out, "{{ \"translations\": {{\n  {language}: {{\n{lines}\n  }}\n}} }}")?;
+        return Ok(());
+    }
     let Some(file) = args.study else {
         writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
         return Ok(());

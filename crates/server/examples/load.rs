@@ -7,7 +7,8 @@
 //! cargo run --release -p mimique-server --example load -- static [connections] 0 [seconds]
 //! ```
 //!
-//! A session is a start, 60 events in a request each, and its completion; then the next one begins.
+//! A session is a start, 60 events in a request each, and its completion; then the next one begins. The
+//! first ones are shorter, each by another number of events, so that people stand at all places of the study.
 //! `postgres` is a cluster of its own in the temporary folder, with its settings as they come: every
 //! commit is on the disk before it is answered, as SQLite's are.
 #![allow(clippy::print_stdout, reason = "it prints what it has measured")]
@@ -64,6 +65,7 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         answered: AtomicU64::new(0),
         failed: AtomicU64::new(0),
         sessions: AtomicU64::new(0),
+        people,
         // Everybody sends one event in this time.
         pause: (rate > 0).then(|| Duration::from_secs_f64(people as f64 / rate as f64)),
         bodies: (0..EVENTS)
@@ -174,6 +176,7 @@ struct Run {
     answered: AtomicU64,
     failed: AtomicU64,
     sessions: AtomicU64,
+    people: u64,
     pause: Option<Duration>,
     /// The 60 requests of a session: only their making would be the generator's own work.
     bodies: Vec<String>,
@@ -210,7 +213,9 @@ async fn take_part(run: &Run, number: u64) -> Vec<f32> {
         };
         let session = started["session"].as_str().unwrap_or_default().to_owned();
         let path = format!("/api/sessions/{session}/events");
-        for (sequence, body) in (0..EVENTS).zip(&run.bodies) {
+        // Nor do they all end in one moment: the first sessions are of all lengths.
+        let events = if round == 0 { EVENTS - number * EVENTS / run.people } else { EVENTS };
+        for (sequence, body) in (0..events).zip(&run.bodies) {
             if run.end.load(Ordering::Relaxed) {
                 return times;
             }
@@ -224,7 +229,7 @@ async fn take_part(run: &Run, number: u64) -> Vec<f32> {
             }
         }
         let path = format!("/api/sessions/{session}/complete");
-        if connection.post(&path, &json!({"events": EVENTS}).to_string()).await.is_some() {
+        if connection.post(&path, &json!({"events": events}).to_string()).await.is_some() {
             run.sessions.fetch_add(1, Ordering::Relaxed);
         }
     }

@@ -62,7 +62,7 @@ pub(crate) enum Error {
     #[error("there is no report: {0}")]
     NoReport(String),
     #[error("{message}; {remedy}")]
-    CannotBegin { code: &'static str, message: &'static str, remedy: &'static str },
+    CannotBegin { code: &'static str, message: String, remedy: String },
     #[error(transparent)]
     Storage(#[from] StorageError),
     #[error("the server failed: {0}")]
@@ -163,7 +163,7 @@ impl Error {
             self.to_string()
         };
         let (message, remedy) = match &self {
-            Self::CannotBegin { message, remedy, .. } => (*message, *remedy),
+            Self::CannotBegin { message, remedy, .. } => (message.as_str(), remedy.as_str()),
             _ => text.rsplit_once("; ").unwrap_or((&text, "")),
         };
         let (message, remedy) = (message.to_owned(), remedy.to_owned());

@@ -255,12 +255,33 @@ fn pages_come_in_the_language_chosen() {
     page.send(Input::ChooseLanguage("fr".into()));
     let View::Consent { agree, title, .. } = page.view() else { panic!() };
     assert_eq!(agree, "J’accepte de participer");
-    assert_eq!(title, "Que lisez-vous sur ce visage ?");
+    assert_eq!(title, "Que lisez-vous sur ce visage\u{a0}?");
     page.reload();
     let View::Consent { agree, .. } = page.view() else { panic!() };
     assert_eq!(agree, "J’accepte de participer", "kept after a reload");
     page.send(Input::ChooseLanguage("xx".into()));
     assert_eq!(page.state.record.language, "fr");
+}
+
+#[test]
+fn a_study_brings_buttons_and_messages_in_its_own_languages() {
+    let mut value = mimique_study::parse(&study_text("demo.json")).unwrap();
+    value["languages"] = json!(["en", "fr", "de"]);
+    value["translations"] = json!({
+        "de": { "language_name": "Deutsch", "agree": "Ich nehme teil", "trial_of": "Clip {number} von {of}" },
+        "fr": { "decline": "Non merci" },
+    });
+    let mut page = Page::open(&value.to_string(), 14);
+    page.send(Input::ChooseLanguage("de".into()));
+    let View::Consent { agree, decline, languages, .. } = page.view() else { panic!() };
+    assert_eq!(agree, "Ich nehme teil");
+    assert_eq!(decline, "I do not want to take part", "what is not translated is in English");
+    assert_eq!(languages[2], ("de".to_owned(), "Deutsch".to_owned()));
+    assert_eq!(page.plan.words("de").trial_of(3, 12), "Clip 3 von 12");
+    page.send(Input::ChooseLanguage("fr".into()));
+    let View::Consent { agree, decline, .. } = page.view() else { panic!() };
+    assert_eq!(agree, "J’accepte de participer");
+    assert_eq!(decline, "Non merci", "a single text is changed");
 }
 
 #[test]

@@ -114,7 +114,7 @@ impl Engine {
     }
 
     /// The fixed texts in the language of the moment.
-    pub fn words(&self) -> &'static Words {
+    pub fn words(&self) -> &Words {
         self.plan.words(&self.state.borrow().record.language)
     }
 

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use mimique_study::flow::{Input, Phase, View, view};
+use mimique_study::text::Words;
 use wasm_bindgen_futures::spawn_local;
 
 use crate::dom::Place;
@@ -19,7 +20,7 @@ pub enum Boot {
     /// The study is being fetched.
     Opening,
     /// It cannot begin.
-    Trouble(Trouble),
+    Trouble(Trouble, Words),
     /// A session runs.
     Running(Rc<Engine>),
 }
@@ -104,7 +105,7 @@ fn draw() {
     DUE.set(false);
     let Some(engine) = engine() else {
         let element = BOOT.with(|boot| match &*boot.borrow() {
-            Boot::Trouble(trouble) => failure::trouble(trouble),
+            Boot::Trouble(trouble, words) => failure::trouble(trouble, words),
             _ => pages::opening(),
         });
         return show(vec![element]);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use mimique_study::flow::{Input, Plan, State};
+use mimique_study::text::{Words, words};
 use mimique_study::wire::{Event, SessionStarted, StartSession};
 use mimique_study::{Client, Study};
 use wasm_bindgen::JsCast as _;
@@ -32,18 +33,20 @@ pub fn start() {
 /// Fetches the study and goes on where the session is.
 pub fn begin_again() {
     spawn_local(async move {
-        match begin().await {
+        let mut fixed = words(&page::language()).clone();
+        match begin(&mut fixed).await {
             Ok(engine) => {
                 screen::boot(Boot::Running(engine));
                 listen();
             }
-            Err(trouble) => screen::boot(Boot::Trouble(trouble)),
+            Err(trouble) => screen::boot(Boot::Trouble(trouble, fixed)),
         }
     });
 }
 
-/// Everything before the first page.
-async fn begin() -> Result<Rc<Engine>, Trouble> {
+/// Everything before the first page; what is said if it fails, in the study's own words as soon as it
+/// is there.
+async fn begin(fixed: &mut Words) -> Result<Rc<Engine>, Trouble> {
     let place = page::place();
     let place = |part: u32| place.get(part).as_string().unwrap_or_default();
     let (path, query) = (place(0), place(1));
@@ -66,10 +69,11 @@ async fn begin() -> Result<Rc<Engine>, Trouble> {
             || study.default_language().to_owned(),
             |each| study.language_for(each).to_owned(),
         );
+    *fixed = study.words(&language);
     page::describe(&language, study.study_metadata.title.in_language(&language));
 
     if !bridge::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
-        return Err(Trouble::OtherTab(language));
+        return Err(Trouble::OtherTab);
     }
     let known = resume(&address).await?;
     let (started, events) = match known {

@@ -8,8 +8,7 @@ use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use mimique_study::RepeatPrevention;
-use mimique_study::text::words;
+use mimique_study::{RepeatPrevention, Study};
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
     Withdraw, Withdrawn,
@@ -58,7 +57,7 @@ pub(super) async fn start(
     let recruitment = study.kept_parameters(request.recruitment);
     let browser_mark = browser_mark(&app, study, &token);
     let marks = marks(&app, study, &recruitment, browser_mark.as_deref(), &headers)
-        .ok_or_else(|| cannot_begin("no-identifier", &language))?;
+        .ok_or_else(|| cannot_begin(study.study(), "no-identifier", &language))?;
     refuse_outside_hours(&app, study, &token, &language).await?;
     let session = NewSession {
         token_hash: secret::hash(&token),
@@ -76,8 +75,8 @@ pub(super) async fn start(
         now_ms: now_ms(),
     };
     let record = app.storage.start(session).await.map_err(|error| match error {
-        StorageError::AlreadyTookPart => cannot_begin("already-took-part", &language),
-        StorageError::StudyFull => cannot_begin("study-full", &language),
+        StorageError::AlreadyTookPart => cannot_begin(study.study(), "already-took-part", &language),
+        StorageError::StudyFull => cannot_begin(study.study(), "study-full", &language),
         error => error.into(),
     })?;
     if record.status.is_deleted() {
@@ -116,14 +115,15 @@ async fn refuse_outside_hours(
     };
     match app.storage.session(&secret::hash(token)).await {
         Ok(_) => Ok(()),
-        Err(StorageError::UnknownSession) => Err(cannot_begin(code, language)),
+        Err(StorageError::UnknownSession) => Err(cannot_begin(study.study(), code, language)),
         Err(error) => Err(error.into()),
     }
 }
 
-fn cannot_begin(code: &'static str, language: &str) -> Error {
-    let (message, remedy) = words(language).refusal(code).unwrap_or(("", ""));
-    Error::CannotBegin { code, message, remedy }
+fn cannot_begin(study: &Study, code: &'static str, language: &str) -> Error {
+    let words = study.words(language);
+    let (message, remedy) = words.refusal(code).unwrap_or(("", ""));
+    Error::CannotBegin { code, message: message.to_owned(), remedy: remedy.to_owned() }
 }
 
 /// What the browser keeps where the study takes each browser once. A pilot may be repeated.

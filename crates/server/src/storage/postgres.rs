@@ -41,8 +41,9 @@ const IDENTITIES: Option<&str> = Some(
 const FOR_UPDATE: &str = " FOR NO KEY UPDATE";
 /// Two servers started at once migrate one after the other. The number spells "mimq".
 const LOCK_SCHEMA: Option<&str> = Some("SELECT pg_advisory_xact_lock(1835625841)");
-/// Sessions are spread over this many lanes, each committing on its own connection.
-const LANES: usize = 2;
+/// Lanes, each committing on its own connection: sessions are spread over two for their appends, the
+/// third makes everything else.
+const LANES: usize = 3;
 
 fn migration_text(step: &Migration) -> &'static str {
     step.postgres

@@ -1,9 +1,12 @@
 //! Languages and texts, contact, recruitment, consent, exclusions.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::Subject;
 use super::issue::{Issues, below, listed};
+use super::nearest::suggestion;
 use crate::instant::instant_ms;
 use crate::responses::is_reserved_column;
 use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
@@ -45,16 +48,65 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
         let pointer = below("/languages", index);
         if languages[..index].contains(language) {
             issues.error(pointer, "duplicate", format!("\"{language}\" twice"), "name it once");
-        } else if !text::LANGUAGES.contains(&language.as_str()) {
+        } else if !text::LANGUAGES.contains(&language.as_str())
+            && !subject.study.translations.contains_key(language)
+        {
             let message = format!("buttons and messages are not translated to \"{language}\"");
-            let hint =
-                format!("they will be in English; complete are {}", listed(&text::LANGUAGES));
+            let hint = format!(
+                "they will be in English; complete are {}; `mimique check --words {language}` prints what \
+                 to translate into /translations/{language}",
+                listed(&text::LANGUAGES)
+            );
             issues.warning(pointer, "untranslated-buttons", message, hint);
         }
+    }
+    for (language, own) in &subject.study.translations {
+        translation(language, own, languages, issues);
     }
     for pointer in texts {
         let Some(value) = subject.value.pointer(pointer) else { continue };
         local_text(pointer, value, languages, issues);
+    }
+}
+
+/// The study's own buttons and messages in a language.
+fn translation(
+    language: &str,
+    own: &BTreeMap<String, String>,
+    languages: &[String],
+    issues: &mut Issues,
+) {
+    let pointer = below("/translations", language);
+    if !languages.iter().any(|known| known == language) {
+        let message = format!("\"{language}\" is not one of the study's languages");
+        let hint = format!("add it to /languages; there is {}", listed(languages));
+        issues.warning(&pointer, "undeclared-language", message, hint);
+    }
+    for (name, _) in own.iter().filter(|(_, text)| text.trim().is_empty()) {
+        issues.error(below(&pointer, name), "empty-text", "the text is empty", "write it");
+    }
+    for fault in text::faults(language, own) {
+        match fault {
+            text::Fault::Unknown { name } => {
+                let message = format!("no button or message is called \"{name}\"");
+                let hint = suggestion(&name, text::names());
+                issues.error(below(&pointer, &name), "unknown-text", message, hint);
+            }
+            text::Fault::Placeholders { name, english } => {
+                let text = own.get(&name).map_or("", String::as_str);
+                let message = format!("\"{text}\" has not the words in braces of \"{english}\"");
+                let hint = "write each of them once, as it is in English";
+                issues.error(below(&pointer, &name), "wrong-placeholders", message, hint);
+            }
+            text::Fault::Missing(names) => {
+                let some = names.iter().take(3).copied().collect::<Vec<_>>();
+                let message = format!("{} texts are not translated: {}", names.len(), listed(&some));
+                let hint = format!(
+                    "they will be in English; `mimique check --words {language}` prints all of them"
+                );
+                issues.warning(&pointer, "incomplete-translation", message, hint);
+            }
+        }
     }
 }
 

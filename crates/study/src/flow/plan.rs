@@ -24,6 +24,7 @@ pub struct Plan {
     pub option_orders: BTreeMap<String, Vec<usize>>,
     /// Index of the step after each round of practice.
     pub rounds: Vec<usize>,
+    translated: Vec<Words>,
 }
 
 /// One page or trial.
@@ -193,7 +194,8 @@ impl Plan {
             push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()), None);
         }
         let option_orders = option_orders(&study, draw);
-        Ok(Self { study, started, steps, option_orders, rounds })
+        let translated = study.translations.keys().map(|each| study.words(each)).collect();
+        Ok(Self { study, started, steps, option_orders, rounds, translated })
     }
 
     /// The step at this place; `None` past the last one.
@@ -222,9 +224,10 @@ impl Plan {
         clips
     }
 
-    /// The fixed texts in a language.
-    pub fn words(&self, language: &str) -> &'static Words {
-        words(language)
+    /// The fixed texts in a language: the study's own, or those built in.
+    pub fn words(&self, language: &str) -> &Words {
+        let own = self.translated.iter().find(|own| own.language() == language);
+        own.unwrap_or_else(|| words(language))
     }
 }
 

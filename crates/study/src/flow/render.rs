@@ -10,7 +10,7 @@ use super::view::{
 };
 use crate::answer::{LONG_TEXT, SHORT_TEXT};
 use crate::study_file::{Choice, LocalText, Question, QuestionKind, Section};
-use crate::text::Words;
+use crate::text::{Words, typeset};
 
 /// What stands on the screen.
 pub fn view(plan: &Plan, state: &State) -> View {
@@ -19,14 +19,14 @@ pub fn view(plan: &Plan, state: &State) -> View {
     if state.record.status == Status::Withdrawn || state.live.withdrawing {
         let confirmed = state.live.withdrawal_confirmed;
         let (heading, text) = if confirmed {
-            (words.withdrawn, words.withdrawn_text)
+            (words.withdrawn(), words.withdrawn_text())
         } else {
-            (words.withdrawing, "")
+            (words.withdrawing(), "")
         };
         return View::Withdrawn { heading: heading.into(), text: text.into(), confirmed };
     }
     if state.record.status == Status::Declined {
-        let (heading, text) = (words.declined.into(), words.declined_text.into());
+        let (heading, text) = (words.declined().into(), words.declined_text().into());
         return View::Declined { heading, text };
     }
     match plan.step(state.record.step) {
@@ -38,16 +38,17 @@ pub fn view(plan: &Plan, state: &State) -> View {
 pub(super) struct Screen<'a> {
     pub(super) plan: &'a Plan,
     pub(super) state: &'a State,
-    pub(super) words: &'static Words,
+    pub(super) words: &'a Words,
 }
 
 impl Screen<'_> {
     pub(super) fn text(&self, text: &LocalText) -> String {
-        text.in_language(&self.state.record.language).to_owned()
+        let language = &self.state.record.language;
+        typeset(language, text.in_language(language)).into_owned()
     }
 
     pub(super) fn paragraphs(&self, text: &LocalText) -> Vec<String> {
-        let text = text.in_language(&self.state.record.language);
+        let text = self.text(text);
         let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
         paragraphs.map(str::to_owned).collect()
     }
@@ -76,10 +77,10 @@ impl Screen<'_> {
                 title: page
                     .title
                     .as_ref()
-                    .map_or_else(|| self.words.about_you.to_owned(), |title| self.text(title)),
+                    .map_or_else(|| self.words.about_you().to_owned(), |title| self.text(title)),
                 text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
                 questions: self.questions(step),
-                button: self.button(self.words.next),
+                button: self.button(self.words.next()),
                 clock: self.clock(step),
                 progress: self.progress(),
             },
@@ -91,14 +92,14 @@ impl Screen<'_> {
             StepKind::Page(section) => {
                 let next = self.plan.step(self.state.record.step + 1);
                 let before_trial = next.is_some_and(|step| step.trial().is_some());
-                let label = if before_trial { self.words.begin } else { self.words.next };
+                let label = if before_trial { self.words.begin() } else { self.words.next() };
                 self.page(step, section, self.button(label))
             }
-            StepKind::Debriefing(section) => self.page(step, section, self.button(self.words.next)),
+            StepKind::Debriefing(section) => self.page(step, section, self.button(self.words.next())),
             StepKind::Break(rest) => {
                 let section = Section { heading: rest.heading.clone(), text: rest.text.clone() };
                 let left = break_seconds_left(self.plan, self.state);
-                let mut button = self.button(self.words.next);
+                let mut button = self.button(self.words.next());
                 button.hint = (left > 0).then(|| self.words.wait_seconds(left));
                 self.page(step, &section, button)
             }
@@ -120,17 +121,17 @@ impl Screen<'_> {
             sections.extend(consent.sections.iter().map(|section| self.section(section)));
             if let Some(retention) = &consent.retention {
                 let text = self.paragraphs(retention);
-                sections.push(SectionView { heading: words.retention.into(), text });
+                sections.push(SectionView { heading: words.retention().into(), text });
             }
             if let Some(years) = consent.minimum_age {
                 let text = vec![words.minimum_age(years)];
-                sections.push(SectionView { heading: words.age.into(), text });
+                sections.push(SectionView { heading: words.age().into(), text });
             }
         }
         let contact = study.contact.as_ref();
         let people = [
-            (words.investigator, contact.map(|contact| &contact.investigator)),
-            (words.ethics_board, contact.and_then(|contact| contact.ethics_board.as_ref())),
+            (words.investigator(), contact.map(|contact| &contact.investigator)),
+            (words.ethics_board(), contact.and_then(|contact| contact.ethics_board.as_ref())),
         ];
         let contacts = people.into_iter().filter_map(|(role, person)| {
             person.map(|person| ContactView {
@@ -141,7 +142,7 @@ impl Screen<'_> {
             })
         });
         let languages = if study.languages.len() > 1 {
-            let name = |code: &String| (code.clone(), self.plan.words(code).language_name.into());
+            let name = |code: &String| (code.clone(), self.plan.words(code).language_name().into());
             study.languages.iter().map(name).collect()
         } else {
             Vec::new()
@@ -153,8 +154,8 @@ impl Screen<'_> {
             sections,
             contacts: contacts.collect(),
             languages,
-            agree: words.agree.to_owned(),
-            decline: words.decline.to_owned(),
+            agree: words.agree().to_owned(),
+            decline: words.decline().to_owned(),
         }
     }
 
@@ -167,7 +168,7 @@ impl Screen<'_> {
         let phase = if playing {
             Phase::Playing
         } else if let Some(reason) = trial.clips().find_map(|clip| state.live.failed.get(clip)) {
-            Phase::Failed { reason: reason.clone(), retry: words.retry.to_owned() }
+            Phase::Failed { reason: reason.clone(), retry: words.retry().to_owned() }
         } else if progress.plays > 0 {
             Phase::Answering
         } else if !prepared {
@@ -185,13 +186,13 @@ impl Screen<'_> {
         let fullscreen_first = gate::needs_fullscreen(self.plan, state);
         let message = match &phase {
             Phase::Ready if fullscreen_first => words.fullscreen_first(),
-            Phase::Playing => words.playing,
-            Phase::Failed { .. } => words.clip_failed,
-            Phase::Answering => words.answer_now,
-            Phase::Loading { .. } if saving && prepared => words.saving,
-            Phase::Loading { .. } => words.loading,
-            Phase::Ready if progress.cut_short => words.play_interrupted,
-            Phase::Ready => words.watch_first,
+            Phase::Playing => words.playing(),
+            Phase::Failed { .. } => words.clip_failed(),
+            Phase::Answering => words.answer_now(),
+            Phase::Loading { .. } if saving && prepared => words.saving(),
+            Phase::Loading { .. } => words.loading(),
+            Phase::Ready if progress.cut_short => words.play_interrupted(),
+            Phase::Ready => words.watch_first(),
         };
         let of = self.plan.trial_count(trial.training);
         let heading = if trial.training {
@@ -201,12 +202,12 @@ impl Screen<'_> {
         };
         let can_play = can_play(self.plan, state);
         let can_answer = progress.plays > 0 && !playing;
-        let mut button = self.button(words.submit);
-        button.hint = (!can_answer).then(|| words.watch_first.to_owned());
+        let mut button = self.button(words.submit());
+        button.hint = (!can_answer).then(|| words.watch_first().to_owned());
         let play_label = match progress.plays {
             _ if fullscreen_first => words.back_to_fullscreen(),
-            0 => words.play,
-            _ => words.play_again,
+            0 => words.play(),
+            _ => words.play_again(),
         };
         TrialView {
             step: step.id.clone(),
@@ -237,8 +238,8 @@ impl Screen<'_> {
         let (live, words) = (&self.state.live, self.words);
         let Some(receipt) = &live.receipt else {
             return View::ReceiptPending {
-                heading: words.sending.to_owned(),
-                text: words.sending_text.to_owned(),
+                heading: words.sending().to_owned(),
+                text: words.sending_text().to_owned(),
                 stored: live.stored.min(self.state.record.events),
                 total: self.state.record.events,
             };
@@ -251,13 +252,13 @@ impl Screen<'_> {
             outcome,
             heading,
             text,
-            completion_code: labelled(words.completion_code, &receipt.completion_code),
-            redirect: labelled(words.go_back, &receipt.redirect),
-            receipt: (words.receipt.to_owned(), receipt.receipt.clone()),
+            completion_code: labelled(words.completion_code(), &receipt.completion_code),
+            redirect: labelled(words.go_back(), &receipt.redirect),
+            receipt: (words.receipt().to_owned(), receipt.receipt.clone()),
             withdrawal_code: (
-                words.withdrawal_code.to_owned(),
+                words.withdrawal_code().to_owned(),
                 self.plan.started.withdrawal_code.clone(),
-                words.withdrawal_code_text.to_owned(),
+                words.withdrawal_code_text().to_owned(),
             ),
         }))
     }
@@ -276,7 +277,7 @@ impl Screen<'_> {
             help: question.help.as_ref().map(|help| self.text(help)),
             video: question.video.as_ref().map(|path| self.text(path)),
             required: question.required,
-            optional_mark: (!question.required).then(|| self.words.optional.to_owned()),
+            optional_mark: (!question.required).then(|| self.words.optional().to_owned()),
             kind: self.kind(question),
             value,
             problem: problem.map(|problem| self.words.problem(&problem)),
@@ -337,10 +338,10 @@ impl Screen<'_> {
                     image: None,
                     video: None,
                 };
-                let same = comparison.allow_same.then(|| option("same", self.words.both_alike));
-                let mut options = vec![option("left", self.words.left_one)];
+                let same = comparison.allow_same.then(|| option("same", self.words.both_alike()));
+                let mut options = vec![option("left", self.words.left_one())];
                 options.extend(same);
-                options.push(option("right", self.words.right_one));
+                options.push(option("right", self.words.right_one()));
                 QuestionKindView::SingleChoice { options }
             }
             QuestionKind::ValenceArousal(grid) => QuestionKindView::ValenceArousal {

@@ -34,7 +34,7 @@ impl Screen<'_> {
             _ if fullscreen => words.device_fullscreen(),
             _ => words.device_fine(),
         };
-        let label = if fullscreen { words.enter_fullscreen() } else { words.next };
+        let label = if fullscreen { words.enter_fullscreen() } else { words.next() };
         let lacking = |text: &str| (!measuring && !fine).then(|| text.to_owned());
         DeviceView {
             step: step.id.clone(),
@@ -87,7 +87,7 @@ impl Screen<'_> {
             text,
             card,
             distance,
-            button: self.button(if set { words.calibrated() } else { words.next }),
+            button: self.button(if set { words.calibrated() } else { words.next() }),
             progress: self.progress(),
         }
     }
@@ -119,7 +119,7 @@ impl Screen<'_> {
             correct,
             items,
             text: self.after_round(),
-            button: self.button(words.next),
+            button: self.button(words.next()),
             progress: self.progress(),
         }
     }
@@ -147,9 +147,9 @@ impl Screen<'_> {
         };
         match (answer, &question.kind) {
             (Value::String(word), QuestionKind::Comparison(_)) => match word.as_str() {
-                "left" => self.words.left_one.to_owned(),
-                "right" => self.words.right_one.to_owned(),
-                _ => self.words.both_alike.to_owned(),
+                "left" => self.words.left_one().to_owned(),
+                "right" => self.words.right_one().to_owned(),
+                _ => self.words.both_alike().to_owned(),
             },
             (Value::String(word), _) => label(word),
             (Value::Array(items), _) => {
@@ -219,7 +219,7 @@ impl Screen<'_> {
                 let text = vec![words.checks_failed_text(record.failed_checks)];
                 ("failed_checks", words.checks_failed().to_owned(), text)
             }
-            _ => ("completed", words.thanks.to_owned(), vec![words.thanks_text.to_owned()]),
+            _ => ("completed", words.thanks().to_owned(), vec![words.thanks_text().to_owned()]),
         }
     }
 

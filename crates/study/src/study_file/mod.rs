@@ -21,6 +21,7 @@ mod tables;
 use std::collections::BTreeMap;
 
 use crate::from_json::FromJson;
+use crate::text::{Words, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +67,10 @@ pub struct Study {
     pub study_metadata: Metadata,
     /// Languages of the pages, the first being the default: `en`, `fr`.
     pub languages: Vec<String>,
+    /// Buttons and messages in other languages than English and French, by language and by name:
+    /// `mimique check --words de` prints a beginning. In English and French it changes single texts.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub translations: BTreeMap<String, BTreeMap<String, String>>,
     /// Seed of every random stream (below 2^53).
     #[serde(default)]
     pub seed: u64,
@@ -155,6 +160,14 @@ impl Study {
     /// The default language: the first one, `en` if none is given.
     pub fn default_language(&self) -> &str {
         self.languages.first().map_or("en", String::as_str)
+    }
+
+    /// The fixed texts in a language: the study's own, those that are built in, or in English.
+    pub fn words(&self, language: &str) -> Words {
+        match self.translations.get(language) {
+            Some(own) => Words::translated(language, own),
+            None => words(language).clone(),
+        }
     }
 
     /// The language that a participant gets who asks for `wanted` (`fr-CA` gets `fr`).

@@ -41,12 +41,12 @@ pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -
         let what = el("span", "what").option(video_of(option)).all(label(option));
         place
             .with(what)
-            .with(mover(fixed.move_up, "\u{2191}", option, at, at.saturating_sub(1)))
-            .with(mover(fixed.move_down, "\u{2193}", option, at, at + 1))
+            .with(mover(fixed.move_up(), "\u{2191}", option, at, at.saturating_sub(1)))
+            .with(mover(fixed.move_down(), "\u{2193}", option, at, at + 1))
     });
     let list = el("ol", "ranking").all(places.collect());
     let give = answering.give.clone();
-    let confirm = words("button", "", fixed.confirm_order)
+    let confirm = words("button", "", fixed.confirm_order())
         .key("confirm-order")
         .set("type", "button")
         .set("data-action", "confirm-order")

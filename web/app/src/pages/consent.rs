@@ -21,7 +21,7 @@ pub fn consent(engine: &Engine, view: &View) -> Element {
         let buttons = languages.iter().map(|(code, name)| language(code, name, *code == current));
         card = card.with(
             el("nav", "row end languages")
-                .set("aria-label", fixed.choose_language)
+                .set("aria-label", fixed.choose_language())
                 .all(buttons.collect()),
         );
     }
@@ -32,7 +32,7 @@ pub fn consent(engine: &Engine, view: &View) -> Element {
         card = card.with(section);
     }
     let people = el("section", "")
-        .with(words("h2", "", fixed.contact))
+        .with(words("h2", "", fixed.contact()))
         .all(contacts.iter().map(contact).collect());
     let actions = el("div", "actions")
         .with(button("primary", "agree", agree).on("click", sends(|| Input::Consent)))

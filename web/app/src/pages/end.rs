@@ -21,7 +21,7 @@ pub fn end(engine: &Engine, end: &EndView) -> Element {
         _ => card.paragraphs(&end.text),
     };
     if ending.is_some_and(|(_, offered, _)| offered) {
-        let download = button("primary", "download", fixed.download).on("click", |_| {
+        let download = button("primary", "download", fixed.download()).on("click", |_| {
             if let Some((name, text, _)) = site::file() {
                 bridge::download(&name, &text);
             }

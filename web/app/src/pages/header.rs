@@ -28,7 +28,7 @@ pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
             | View::ReceiptPending { .. }
     );
     if can_withdraw {
-        let open = button("quiet", "withdraw", fixed.withdraw);
+        let open = button("quiet", "withdraw", fixed.withdraw());
         header = header.with(open.on("click", |_| page::dialog(true)));
     }
     let timed_out = engine.state().live.timed_out;
@@ -41,19 +41,19 @@ pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
         .key("notices")
         .set("role", "status")
         .option(notice(timed_out, "notice", "time", fixed.time_over()))
-        .option(notice(connection.offline, "notice warn", "offline", fixed.offline))
-        .option(notice(connection.fleeting, "notice warn", "fleeting", fixed.not_kept))
+        .option(notice(connection.offline, "notice warn", "offline", fixed.offline()))
+        .option(notice(connection.fleeting, "notice warn", "fleeting", fixed.not_kept()))
         .option(refused.map(|text| words("p", "notice bad", &text).key("refused")));
-    let no = words("button", "", fixed.withdraw_no)
+    let no = words("button", "", fixed.withdraw_no())
         .set("type", "button")
         .on("click", |_| page::dialog(false));
-    let yes = button("danger", "withdraw-confirm", fixed.withdraw_yes).on("click", |_| {
+    let yes = button("danger", "withdraw-confirm", fixed.withdraw_yes()).on("click", |_| {
         page::dialog(false);
         screen::send(Input::Withdraw);
     });
     let dialog = el("dialog", "card")
         .set("aria-labelledby", "withdraw-question")
-        .with(words("p", "", fixed.withdraw_question).set("id", "withdraw-question"))
+        .with(words("p", "", fixed.withdraw_question()).set("id", "withdraw-question"))
         .with(el("div", "actions").with(no).with(yes));
     vec![header, notices, dialog]
 }

@@ -41,7 +41,7 @@ pub fn another_person(engine: &Engine) -> Option<Element> {
     let offered = matches!(recruitment.repeat_prevention, RepeatPrevention::None)
         && recruitment.redirect.is_none();
     offered.then(|| {
-        let again = button("", "another-person", engine.words().another_person);
+        let again = button("", "another-person", engine.words().another_person());
         let again = again.on("click", |_| {
             if let Some(engine) = screen::engine() {
                 Identity::forget(&engine.plan.study.id);
