@@ -4,6 +4,7 @@ const MODULES = { webgpu: "./stage_webgpu.js", webgl2: "./stage_webgl.js" };
 
 let found = null;
 let restarts = 0;
+const modules = new Map();
 
 /// "webgpu" or "webgl2"; a thrown Error says why neither. `?backend=` in the address decides for tests.
 export function backend() {
@@ -11,12 +12,29 @@ export function backend() {
   return found;
 }
 
-/// The canvas module of the back end. After a crash of the module ask for a fresh one.
-export async function loadModule(name, fresh = false) {
+/// The canvas module of the back end, loaded once. After a crash of the module ask for a fresh one.
+export function loadModule(name, fresh = false) {
   if (fresh) restarts += 1;
   const url = new URL(MODULES[name], import.meta.url);
   if (restarts > 0) url.searchParams.set("restart", restarts);
-  const module = await import(url.href);
+  let module = modules.get(url.href);
+  if (!module) {
+    module = open(url.href);
+    modules.set(url.href, module);
+    // What did not arrive is asked for again the next time.
+    module.catch(() => modules.delete(url.href));
+  }
+  return module;
+}
+
+/// Loads the canvas module ahead, so that the first clip need not wait for it. What fails is said when a
+/// clip is shown.
+export function loadAhead() {
+  backend().then((name) => loadModule(name)).catch(() => {});
+}
+
+async function open(address) {
+  const module = await import(address);
   await module.default();
   return module;
 }

@@ -1,4 +1,5 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
+import { loadAhead } from "./stage-backend.js";
 import { filmDuration } from "./stage-film.js";
 import { fetchPack } from "./stage-packs.js";
 import { picturesOf } from "./stage-pictures.js";
@@ -95,9 +96,12 @@ async function prepare(clipId, source, onProgress) {
     const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
     return { clip: clipId, film, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
   }
+  // The solver comes beside the packs, the canvas after them while the solver works.
+  worker ??= startWorker();
   const [avatar, operators, take] = await Promise.all(
     [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count)),
   );
+  loadAhead();
   report(0.9);
   const [solved, pictures] = await Promise.all([
     solve(operators, take, JSON.stringify(source.method)),

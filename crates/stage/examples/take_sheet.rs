@@ -1,5 +1,5 @@
-//! A real take on a head, frame by frame: `take_sheet AVATAR.glb|builtin CAPTURE MAP.json OUT.png
-//! [COLUMNSxROWS] [WIDTHxHEIGHT]`. Evenly spaced frames of the solved take, drawn as participants
+//! A real take on a head, frame by frame: `take_sheet AVATAR.glb|builtin CAPTURE MAP.json|suggested
+//! OUT.png [COLUMNSxROWS] [WIDTHxHEIGHT]`. Evenly spaced frames of the solved take, drawn as participants
 //! see them; residuals are printed. For the built-in head a marker's place may be the name of one of
 //! its sites: `"Chin": {"site": "chin"}`.
 #![allow(clippy::print_stdout)] // what it is for
@@ -10,14 +10,14 @@ use mimique_face::HeadSpec;
 use mimique_solver::{Method, MethodSpec};
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, View};
-use mimique_stimulus::{AvatarSkin, MarkerMap, TakeOptions, solve_take};
+use mimique_stimulus::{AvatarSkin, MarkerMap, TakeOptions, solve_take, suggest_map};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [avatar, capture, map, out, rest @ ..] = arguments.as_slice() else {
         return Err(
-            "usage: take_sheet AVATAR.glb|builtin CAPTURE MAP.json OUT.png [COLUMNSxROWS] \
-                    [WIDTHxHEIGHT]"
+            "usage: take_sheet AVATAR.glb|builtin CAPTURE MAP.json|suggested OUT.png \
+                    [COLUMNSxROWS] [WIDTHxHEIGHT]"
                 .into(),
         );
     };
@@ -35,7 +35,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let skin = AvatarSkin::of(&avatar)?;
     let capture = mimique_mocap::read(Path::new(capture))?;
-    let map = MarkerMap::from_text(&with_sites(&std::fs::read_to_string(map)?)?)?;
+    let map = match map.as_str() {
+        "suggested" => suggest_map(&skin, &capture, None)?.to_map(&skin),
+        file => MarkerMap::from_text(&with_sites(&std::fs::read_to_string(file)?)?)?,
+    };
     let spec = MethodSpec { head_lowpass_hz: Some(10.0), ..MethodSpec::new(Method::Lsts) };
     let options = TakeOptions::default();
     let solved = solve_take(&skin, &capture, &map, &spec, &options, &mut || 0.0)?;
