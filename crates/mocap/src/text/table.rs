@@ -4,6 +4,9 @@ use crate::plausibility::{unique_labels, whole_or_missing, zeros_to_missing};
 use crate::unit::decide_unit;
 use crate::{Capture, Format, LengthUnit, ReadError, ReadOptions, Recording};
 
+/// Missing points that a file may make beyond as many as it has.
+const SPARE_POINTS: u64 = 4096;
+
 /// What a reader of a text format collects.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
@@ -156,8 +159,11 @@ impl Table {
         if total == rows as u64 {
             return Ok(first);
         }
-        // Bounded by the file: a wrong number must not ask for more memory than the rows did.
-        if total > 2 * rows as u64 + 1000 {
+        // Bounded by the file: a wrong number must not ask for more memory than the rows did. What is
+        // spared to short takes is counted in points: a thousand frames of many markers are too many.
+        let markers = self.labels.len();
+        let spare = (SPARE_POINTS / markers.max(1) as u64).min(1000);
+        if total > 2 * rows as u64 + spare {
             return Err(ReadError::at_line(
                 self.lines[rows - 1],
                 "frame",
@@ -165,7 +171,6 @@ impl Table {
                 "check the frame or time column and the rate, or give one take a file",
             ));
         }
-        let markers = self.labels.len();
         let mut whole = vec![[f64::NAN; 3]; total as usize * markers];
         for (row, &frame) in index.iter().enumerate() {
             let to = frame as usize * markers;

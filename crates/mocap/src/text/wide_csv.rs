@@ -331,6 +331,21 @@ mod tests {
     }
 
     #[test]
+    fn a_hole_may_not_ask_for_more_than_the_file_has() {
+        // 900 frames are missing between two rows: of a few markers they are made good, of a thousand
+        // they would be ten thousand times the file.
+        let text = |markers: usize| {
+            let names: Vec<String> = (0..markers).map(|n| format!("m{n}_x,m{n}_y,m{n}_z")).collect();
+            let row = vec!["1"; 3 * markers].join(",");
+            let names = names.join(",");
+            format!("# rate_hz: 100\nframe,{names}\n0,{row}\n901,{row}\n")
+        };
+        assert_eq!(crate::read_bytes(text(3).as_bytes()).unwrap().frames(), 902);
+        let refused = crate::read_bytes(text(1000).as_bytes()).unwrap_err().to_string();
+        assert!(refused.contains("2 rows for 902 frames"), "{refused}");
+    }
+
+    #[test]
     fn zeros_are_gaps_unless_the_marker_is_near_the_origin() {
         let text = "# unit: mm; rate_hz: 100\nframe,a_x,a_y,a_z,b_x,b_y,b_z\n\
                     0,100,2,3,1,1,1\n1,0,0,0,0,0,0\n2,100,2,3,1,0,0\n";
