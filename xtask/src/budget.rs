@@ -65,8 +65,19 @@ const BUDGETS: [Budget; 4] = [
     },
 ];
 
-/// Weighs what was built; an error names every group that is too large.
+/// Weighs what was built; an error names every group that is too large, or a file that a page asks for
+/// and that is not there.
 pub fn check() -> Result<()> {
+    for page in ["index.html", "site.html"] {
+        let text = std::fs::read_to_string(dist().join(page)).with_context(|| page.to_owned())?;
+        for asked in text.split("{{assets}}/").skip(1) {
+            let name = asked.split('"').next().unwrap_or_default();
+            anyhow::ensure!(
+                dist().join(name).is_file(),
+                "{page} asks for {name}, which is not built"
+            );
+        }
+    }
     let mut over = Vec::new();
     for budget in &BUDGETS {
         let mut bytes = 0;

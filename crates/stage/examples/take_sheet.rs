@@ -15,11 +15,9 @@ use mimique_stimulus::{AvatarSkin, MarkerMap, TakeOptions, solve_take, suggest_m
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [avatar, capture, map, out, rest @ ..] = arguments.as_slice() else {
-        return Err(
-            "usage: take_sheet AVATAR.glb|builtin CAPTURE MAP.json|suggested OUT.png \
+        return Err("usage: take_sheet AVATAR.glb|builtin CAPTURE MAP.json|suggested OUT.png \
                     [COLUMNSxROWS] [WIDTHxHEIGHT]"
-                .into(),
-        );
+            .into());
     };
     let pair = |word: Option<&String>, usual: [u32; 2]| -> Result<[u32; 2], String> {
         let Some(word) = word else { return Ok(usual) };

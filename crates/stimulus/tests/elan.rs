@@ -109,6 +109,19 @@ fn what_a_tier_cannot_hold_and_what_is_no_document_is_refused() {
         let error = EafDocument::parse(text).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error}");
     }
+    // A slot without a time after the last one that has one: a slot written after it would move it.
+    let open_end = "<ANNOTATION_DOCUMENT><TIME_ORDER><TIME_SLOT TIME_SLOT_ID=\"a\" \
+        TIME_VALUE=\"100\"/><TIME_SLOT TIME_SLOT_ID=\"b\"/></TIME_ORDER><TIER TIER_ID=\"t\"><ANNOTATION>\
+        <ALIGNABLE_ANNOTATION ANNOTATION_ID=\"a1\" TIME_SLOT_REF1=\"a\" TIME_SLOT_REF2=\"b\">\
+        <ANNOTATION_VALUE>joy</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION></TIER>\
+        </ANNOTATION_DOCUMENT>";
+    let document = EafDocument::parse(open_end).unwrap();
+    assert_eq!(
+        document.with_tier("x", &[annotation(200, 300, "a")]).unwrap_err().to_string(),
+        "tier \"x\": it would move annotations without times of the tier \"t\"; give their ends times in \
+         ELAN, or write to another file"
+    );
+    assert!(document.with_tier("t", &[annotation(200, 300, "a")]).is_ok());
     let late = DOCUMENT.replace("\"1550\"", "\"100\"");
     assert!(EafDocument::parse(&late).unwrap_err().to_string().contains("before it begins"));
     // Cut at any byte: an error, never a panic.

@@ -335,7 +335,8 @@ mod tests {
         // 900 frames are missing between two rows: of a few markers they are made good, of a thousand
         // they would be ten thousand times the file.
         let text = |markers: usize| {
-            let names: Vec<String> = (0..markers).map(|n| format!("m{n}_x,m{n}_y,m{n}_z")).collect();
+            let names: Vec<String> =
+                (0..markers).map(|n| format!("m{n}_x,m{n}_y,m{n}_z")).collect();
             let row = vec!["1"; 3 * markers].join(",");
             let names = names.join(",");
             format!("# rate_hz: 100\nframe,{names}\n0,{row}\n901,{row}\n")

@@ -8,11 +8,11 @@ use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use mimique_study::{RepeatPrevention, Study};
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
     Withdraw, Withdrawn,
 };
+use mimique_study::{RepeatPrevention, Study};
 
 use super::Body;
 use crate::app::App;
@@ -75,7 +75,9 @@ pub(super) async fn start(
         now_ms: now_ms(),
     };
     let record = app.storage.start(session).await.map_err(|error| match error {
-        StorageError::AlreadyTookPart => cannot_begin(study.study(), "already-took-part", &language),
+        StorageError::AlreadyTookPart => {
+            cannot_begin(study.study(), "already-took-part", &language)
+        }
         StorageError::StudyFull => cannot_begin(study.study(), "study-full", &language),
         error => error.into(),
     })?;

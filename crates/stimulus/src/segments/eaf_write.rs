@@ -6,7 +6,7 @@ use std::ops::Range;
 use quick_xml::escape::escape;
 
 use super::TakeSegment;
-use super::eaf::{EafAnnotation, EafDocument, EafError};
+use super::eaf::{EafAnnotation, EafDocument, EafError, EafTier};
 
 /// Linguistic type of the tiers made here, where a document has none that fits.
 const TYPE: &str = "mimique-expression";
@@ -49,8 +49,8 @@ impl EafDocument {
     /// Everything else stays, character by character.
     ///
     /// # Errors
-    /// [`EafError`]: annotations that overlap or are empty, which a tier of ELAN cannot hold, or a
-    /// tier on which others depend.
+    /// [`EafError`]: annotations that overlap or are empty, which a tier of ELAN cannot hold, a tier on
+    /// which others depend, or time slots without a time that would move.
     pub fn with_tier(&self, id: &str, annotations: &[EafAnnotation]) -> Result<Self, EafError> {
         let refuse =
             |what: String, remedy| EafError { place: format!("tier {id:?}"), what, remedy };
@@ -81,7 +81,20 @@ impl EafDocument {
                 return Err(refuse(what, "write to another tier"));
             }
         }
-        self.spliced(id, &sorted, old.map(|tier| (tier.element.clone(), tier.open_tag.clone())))
+        let old = old.map(|tier| (tier.element.clone(), tier.open_tag.clone()));
+        let with = self.spliced(id, &sorted, old)?;
+        // A slot without a time lies between those around it: new ones at its side would move it.
+        let others = |document: &Self| -> Vec<EafTier> {
+            document.tiers().iter().filter(|tier| tier.id != id).cloned().collect()
+        };
+        if let Some((moved, _)) =
+            others(self).iter().zip(others(&with)).find(|(before, after)| *before != after)
+        {
+            let what =
+                format!("it would move annotations without times of the tier {:?}", moved.id);
+            return Err(refuse(what, "give their ends times in ELAN, or write to another file"));
+        }
+        Ok(with)
     }
 
     /// The text with time slots, tier and linguistic type put in.

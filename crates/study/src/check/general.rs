@@ -100,7 +100,8 @@ fn translation(
             }
             text::Fault::Missing(names) => {
                 let some = names.iter().take(3).copied().collect::<Vec<_>>();
-                let message = format!("{} texts are not translated: {}", names.len(), listed(&some));
+                let message =
+                    format!("{} texts are not translated: {}", names.len(), listed(&some));
                 let hint = format!(
                     "they will be in English; `mimique check --words {language}` prints all of them"
                 );

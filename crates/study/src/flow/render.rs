@@ -95,7 +95,9 @@ impl Screen<'_> {
                 let label = if before_trial { self.words.begin() } else { self.words.next() };
                 self.page(step, section, self.button(label))
             }
-            StepKind::Debriefing(section) => self.page(step, section, self.button(self.words.next())),
+            StepKind::Debriefing(section) => {
+                self.page(step, section, self.button(self.words.next()))
+            }
             StepKind::Break(rest) => {
                 let section = Section { heading: rest.heading.clone(), text: rest.text.clone() };
                 let left = break_seconds_left(self.plan, self.state);

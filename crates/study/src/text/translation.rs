@@ -93,7 +93,8 @@ mod tests {
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect();
         assert_eq!(faults("de", &whole), []);
-        let found = faults("de", &texts(&[("trial_of", "Clip {nummer} von {of}"), ("nxt", "Weiter")]));
+        let found =
+            faults("de", &texts(&[("trial_of", "Clip {nummer} von {of}"), ("nxt", "Weiter")]));
         let [Fault::Unknown { name }, Fault::Placeholders { name: other, english }, rest] =
             found.as_slice()
         else {
