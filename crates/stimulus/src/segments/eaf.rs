@@ -84,7 +84,7 @@ pub(super) struct TierPlace {
     pub(super) refers: bool,
 }
 
-const REMEDY: &str = "open the file in ELAN and save it again";
+pub(super) const REMEDY: &str = "open the file in ELAN and save it again";
 
 impl EafDocument {
     /// Read a document.

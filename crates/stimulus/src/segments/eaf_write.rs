@@ -6,7 +6,7 @@ use std::ops::Range;
 use quick_xml::escape::escape;
 
 use super::TakeSegment;
-use super::eaf::{EafAnnotation, EafDocument, EafError, EafTier};
+use super::eaf::{EafAnnotation, EafDocument, EafError, EafTier, REMEDY};
 
 /// Linguistic type of the tiers made here, where a document has none that fits.
 const TYPE: &str = "mimique-expression";
@@ -187,6 +187,14 @@ impl EafDocument {
         let mut text = String::with_capacity(self.text.len() + slots_len(&edits));
         let mut at = 0;
         for (range, new) in edits {
+            // A tier inside a property, as no ELAN writes it.
+            if range.start < at {
+                return Err(EafError {
+                    place: format!("byte {}", range.start),
+                    what: "one part of the document lies inside another".to_owned(),
+                    remedy: REMEDY,
+                });
+            }
             text.push_str(&self.text[at..range.start]);
             text.push_str(&new);
             at = range.end;
