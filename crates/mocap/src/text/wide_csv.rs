@@ -341,8 +341,8 @@ mod tests {
             let names = names.join(",");
             format!("# rate_hz: 100\nframe,{names}\n0,{row}\n901,{row}\n")
         };
-        assert_eq!(crate::read_bytes(text(3).as_bytes()).unwrap().frames(), 902);
-        let refused = crate::read_bytes(text(1000).as_bytes()).unwrap_err().to_string();
+        assert_eq!(read_bytes(text(3).as_bytes()).unwrap().frames(), 902);
+        let refused = read_bytes(text(1000).as_bytes()).unwrap_err().to_string();
         assert!(refused.contains("2 rows for 902 frames"), "{refused}");
     }
 

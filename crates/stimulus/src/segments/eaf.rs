@@ -231,7 +231,10 @@ impl EafDocument {
                             }
                         }
                         "PROPERTY" => {
-                            if let Some(start) = property.take() {
+                            let number = property
+                                .take()
+                                .filter(|start| !text[*start..range.start].contains('<'));
+                            if let Some(start) = number {
                                 places.last_annotation = Some(start..range.start);
                             }
                         }

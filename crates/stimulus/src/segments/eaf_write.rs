@@ -87,11 +87,11 @@ impl EafDocument {
         let others = |document: &Self| -> Vec<EafTier> {
             document.tiers().iter().filter(|tier| tier.id != id).cloned().collect()
         };
-        if let Some((moved, _)) =
-            others(self).iter().zip(others(&with)).find(|(before, after)| *before != after)
-        {
-            let what =
-                format!("it would move annotations without times of the tier {:?}", moved.id);
+        let (before, after) = (others(self), others(&with));
+        if before != after {
+            let same = before.iter().zip(&after).take_while(|(before, after)| before == after);
+            let moved = before.get(same.count()).map_or("", |tier| &tier.id);
+            let what = format!("it would move annotations without times of the tier {moved:?}");
             return Err(refuse(what, "give their ends times in ELAN, or write to another file"));
         }
         Ok(with)
