@@ -53,6 +53,10 @@ fn a_tier_is_added_and_everything_else_stays() {
     assert!(with.text().contains(">9</PROPERTY>"));
     assert!(with.text().contains("<TIER LINGUISTIC_TYPE_REF=\"default-lt\" TIER_ID=\"clips\">"));
     assert_eq!(EafDocument::parse(with.text()).unwrap(), with);
+    // A byte order mark, as some editors leave one, shifts nothing.
+    let marked = EafDocument::parse(&format!("\u{feff}{DOCUMENT}")).unwrap();
+    let with_mark = marked.with_tier("clips", &clips).unwrap();
+    assert_eq!(with_mark.text(), format!("\u{feff}{}", with.text()));
     // Written again, mended: the tier is replaced and its old time slots are gone.
     let mended = [annotation(510, 1700, "joy2")];
     let again = with.with_tier("clips", &mended).unwrap();

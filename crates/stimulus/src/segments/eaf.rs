@@ -97,7 +97,9 @@ impl EafDocument {
             what,
             remedy: REMEDY,
         };
-        let mut reader = Reader::from_str(text);
+        // The reader counts from behind a byte order mark; the document keeps it.
+        let marks = (text.len() - text.trim_start_matches('\u{feff}').len()) as u64;
+        let mut reader = Reader::from_str(&text[marks as usize..]);
         let mut places = Places::default();
         let mut times: Vec<Option<u64>> = Vec::new();
         // Tier, slots, value of every annotation.
@@ -107,10 +109,11 @@ impl EafDocument {
         let mut value: Option<String> = None;
         let mut property: Option<usize> = None;
         loop {
-            let from = reader.buffer_position();
-            let event =
-                reader.read_event().map_err(|e| at(reader.error_position(), e.to_string()))?;
-            let to = reader.buffer_position();
+            let from = marks + reader.buffer_position();
+            let event = reader
+                .read_event()
+                .map_err(|e| at(marks + reader.error_position(), e.to_string()))?;
+            let to = marks + reader.buffer_position();
             let range = from as usize..to as usize;
             match event {
                 Event::Start(ref tag) | Event::Empty(ref tag) => {
