@@ -226,6 +226,19 @@ fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
 }
 
 #[test]
+fn check_prints_the_words_to_translate() {
+    let printed = ok(&["check", "--words", "de"]);
+    let words: Value = serde_json::from_str(&printed).expect("JSON");
+    let words = words["translations"]["de"].as_object().expect("texts by name");
+    assert_eq!(words["trial_of"], "Clip {number} of {of}");
+    // In the order of the pages: the language's own name first, refusals last.
+    let place = |name: &str| printed.find(&format!("\"{name}\"")).expect("the name");
+    assert!(place("language_name") < place("agree") && place("agree") < place("refused_internal"));
+    let french = ok(&["check", "--words", "fr"]);
+    assert!(french.contains("J’accepte de participer"), "{french}");
+}
+
+#[test]
 fn order_is_the_same_every_time_and_differs_between_participants() {
     let study = text(&repository().join("study-config/demo.json"));
     let of = |participant: &str| ok(&["order", &study, "--participant", participant, "--json"]);

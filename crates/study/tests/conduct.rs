@@ -403,7 +403,7 @@ fn feedback_names_the_right_answer_in_the_participants_words() {
     let View::Feedback(feedback) = page.view() else { panic!() };
     assert_eq!(feedback.heading, "Pas tout à fait");
     assert_eq!(feedback.items.len(), 1, "only what is known: {:?}", feedback.items);
-    assert_eq!(feedback.items[0].right.as_deref(), Some("La bonne réponse : Joie"));
+    assert_eq!(feedback.items[0].right.as_deref(), Some("La bonne réponse\u{a0}: Joie"));
 }
 
 #[test]
