@@ -101,7 +101,8 @@ class FilmClock {
   /// beside it may last longer: the time goes on after the film's end.
   at(now) {
     const video = this.#video;
-    if (video.ended) {
+    // The last frame may come together with the end: it is what is on the display now.
+    if (video.ended && !this.#fresh) {
       this.#endedAt ??= now;
       return this.#durationMs + (now - this.#endedAt);
     }
