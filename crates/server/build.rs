@@ -15,12 +15,14 @@ use sha2::{Digest, Sha256};
 mod compression;
 #[path = "src/folder.rs"]
 mod folder;
+#[path = "src/tight_gzip.rs"]
+mod tight_gzip;
 
 fn main() -> io::Result<()> {
     for variable in ["MIMIQUE_WEB_DIST", "CARGO_TARGET_DIR"] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
-    for source in ["build.rs", "src/compression.rs", "src/folder.rs"] {
+    for source in ["build.rs", "src/compression.rs", "src/folder.rs", "src/tight_gzip.rs"] {
         println!("cargo::rerun-if-changed={source}");
     }
     let dist = dist();
@@ -33,7 +35,7 @@ fn main() -> io::Result<()> {
     for (name, path) in folder::files(&dist)? {
         let bytes = fs::read(&path)?;
         let brotli = packed(&out, &bytes, "br", compression::brotli)?;
-        let gzip = packed(&out, &bytes, "gz", compression::gzip)?;
+        let gzip = packed(&out, &bytes, "gz", gzip)?;
         let _ = writeln!(
             table,
             "    EmbeddedFile {{ name: {name:?}, raw: include_bytes!({path:?}), \
@@ -42,6 +44,11 @@ fn main() -> io::Result<()> {
     }
     table.push_str("]\n");
     fs::write(out.join("embedded_files.rs"), table)
+}
+
+/// The gzip form, or `None` where it saves less than a twentieth.
+fn gzip(bytes: &[u8]) -> io::Result<Option<Vec<u8>>> {
+    Ok(compression::worth_it(bytes, tight_gzip::gzip(bytes)?))
 }
 
 /// The folder of the finished pages, as `cargo xtask web` chooses it.

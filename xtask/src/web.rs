@@ -85,6 +85,30 @@ const MODULES: [Module; 5] = [
     },
 ];
 
+/// What every module is given to `wasm-opt` with.
+///
+/// What counts is the size after compression. Functions put into their callers by `wasm-opt` (LLVM has
+/// done it where it pays) make the file smaller by a tenth and its gzip larger by a tenth; functions
+/// sorted by name, instead of by use, stand beside those that they resemble, which saves another
+/// twentieth.
+const WASM_OPT: [&str; 14] = [
+    "--all-features",
+    "--disable-gc",
+    "--disable-custom-descriptors",
+    // No browser reads them yet.
+    "--disable-compact-imports",
+    "--always-inline-max-function-size",
+    "0",
+    "--flexible-inline-max-function-size",
+    "0",
+    "--one-caller-inline-max-function-size",
+    "0",
+    "--skip-pass=reorder-functions",
+    "--reorder-functions-by-name",
+    "--strip-producers",
+    "--strip-target-features",
+];
+
 /// Where the pages are gathered.
 pub fn dist() -> PathBuf {
     target().join("web-dist")
@@ -171,11 +195,8 @@ impl Module {
             run_program(
                 Command::new("node")
                     .arg(script)
-                    // Twice: the second pass finds what the first has uncovered.
-                    .args([self.opt_level, self.opt_level])
-                    .args(["--all-features", "--disable-gc", "--disable-custom-descriptors"])
-                    // No browser reads them yet.
-                    .args(["--disable-compact-imports"])
+                    .arg(self.opt_level)
+                    .args(WASM_OPT)
                     .arg(&wasm)
                     .arg("-o")
                     .arg(&wasm),
@@ -192,6 +213,7 @@ impl Module {
         hash.update([u8::from(optimiser.is_some())]);
         hash.update(wasm_bindgen_cli_support_version());
         hash.update(self.opt_level);
+        WASM_OPT.iter().for_each(|option| hash.update(option));
         Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
     }
 }
@@ -228,7 +250,7 @@ fn gather() -> Result<()> {
     for (name, _) in stale.iter().filter(|(n, _)| !files.iter().any(|(f, _)| f == n)) {
         fs::remove_file(dist.join(name))?;
     }
-    say("the pages, in bytes and gzipped:");
+    say("the pages, in bytes and gzipped (what the server has embedded is a twentieth smaller):");
     for (name, bytes) in &files {
         let path = dist.join(name);
         if fs::read(&path).ok().as_deref() != Some(bytes) {

@@ -27,6 +27,7 @@ pub(crate) fn gzip(bytes: &[u8]) -> io::Result<Option<Vec<u8>>> {
     Ok(worth_it(bytes, writer.finish()?))
 }
 
-fn worth_it(bytes: &[u8], packed: Vec<u8>) -> Option<Vec<u8>> {
+/// What was packed, unless it saves less than a twentieth.
+pub(crate) fn worth_it(bytes: &[u8], packed: Vec<u8>) -> Option<Vec<u8>> {
     (packed.len() < bytes.len() - bytes.len() / 20).then_some(packed)
 }
