@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::files::Files;
 use crate::parts::find_eyeballs;
 use crate::settings::{AvatarSettings, fits};
-use crate::{Avatar, Part, ReadError, arkit_shapes};
+use crate::{Avatar, Mesh, Part, ReadError, arkit_shapes};
 
 /// An avatar as read, in metres, and what the reader found worth saying.
 #[derive(Debug, Clone)]
@@ -103,6 +103,7 @@ impl ReadAvatar {
         if unit_metres != 1.0 {
             scale(&mut avatar, unit_metres);
         }
+        within_reach(&avatar)?;
         let known = avatar.shape_names.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
         if known < avatar.shape_names.len() {
             let all = avatar.shape_names.len();
@@ -191,6 +192,35 @@ fn unit_of(extent: f64) -> f64 {
         e if e < 100.0 => 0.01,
         _ => 0.001,
     }
+}
+
+/// Farthest that a vertex may lie or be moved, metres: beyond are damaged numbers, with which nothing
+/// can be computed in single precision.
+const FARTHEST: f32 = 10_000.0;
+
+/// Refuses positions and displacements that no avatar has.
+fn within_reach(avatar: &Avatar) -> Result<(), ReadError> {
+    let beyond = |v: &[f32; 3]| v.iter().any(|x| !(x.abs() <= FARTHEST));
+    let refused = |mesh: &Mesh, what: String, v: &[f32; 3]| {
+        let length = v.iter().fold(0f32, |most, x| most.max(x.abs()));
+        ReadError::broken(
+            format!("mesh {:?}", mesh.name),
+            format!("{what} {length:e} m, more than {FARTHEST} m"),
+            "re-export the avatar, or give its unit in the JSON beside it",
+        )
+    };
+    for mesh in &avatar.meshes {
+        if let Some(v) = mesh.positions.iter().position(beyond) {
+            return Err(refused(mesh, format!("vertex {v} lies at"), &mesh.positions[v]));
+        }
+        for (shape, name) in mesh.shapes.iter().zip(&avatar.shape_names) {
+            if let Some(k) = shape.deltas.iter().position(beyond) {
+                let what = format!("shape {name:?} moves vertex {} by", shape.vertices[k]);
+                return Err(refused(mesh, what, &shape.deltas[k]));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn scale(avatar: &mut Avatar, factor: f64) {

@@ -155,6 +155,20 @@ fn units_are_recognised_by_the_size_of_the_face() {
 }
 
 #[test]
+fn numbers_that_no_head_has_are_refused_with_mesh_and_vertex() {
+    let put = |at: usize, value: f32| {
+        let (document, mut binary) = triangle();
+        binary[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        refusal(&document, &binary)
+    };
+    let far = put(4 * 3, 3e37);
+    assert!(far.contains("vertex 1 lies at 3e34 m"), "{far}");
+    // The second vertex of `open`, downwards.
+    let moved = put(36 + 4 * 4, -1e20);
+    assert!(moved.contains("shape \"open\" moves vertex 1 by 1e20 m"), "{moved}");
+}
+
+#[test]
 fn materials_of_one_mesh_become_one_skin_with_colours() {
     let (mut document, binary) = triangle();
     document["materials"].as_array_mut().unwrap().push(json!({"name": "lips"}));
