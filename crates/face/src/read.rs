@@ -194,9 +194,9 @@ fn unit_of(extent: f64) -> f64 {
     }
 }
 
-/// Farthest that a vertex may lie or be moved, metres: beyond are damaged numbers, with which nothing
-/// can be computed in single precision.
-const FARTHEST: f32 = 10_000.0;
+/// Farthest that a vertex may lie or be moved, metres: beyond are damaged numbers, and more than what
+/// a pack's 32 bits hold in steps of a micrometre.
+const FARTHEST: f32 = 1000.0;
 
 /// Refuses positions and displacements that no avatar has.
 fn within_reach(avatar: &Avatar) -> Result<(), ReadError> {

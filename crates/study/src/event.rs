@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::from_json::FromJson;
+use crate::sorted_map::SortedMap;
 use crate::tagged::tagged_by_type;
 
 /// Answers by question identifier.
@@ -195,8 +196,8 @@ pub struct Client {
     #[serde(default)]
     pub device_pixel_ratio: f64,
     /// Browser name, its major version, platform class.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub about: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    pub about: SortedMap<String, String>,
 }
 
 /// What the browser and its display can do.

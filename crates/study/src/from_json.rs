@@ -12,6 +12,8 @@ use serde_json::{Map, Value};
 
 pub use mimique_study_derive::FromJson;
 
+use crate::sorted_map::SortedMap;
+
 /// A type that is read from a JSON value.
 pub trait FromJson: Sized {
     /// Reads a value.
@@ -207,6 +209,16 @@ impl FromJson for (f64, f64, f64) {
 }
 
 impl<T: FromJson> FromJson for BTreeMap<String, T> {
+    fn from_json(value: &Value) -> Result<Self, Mistake> {
+        let mut items = Self::new();
+        for (key, item) in object(value)? {
+            items.insert(key.clone(), T::from_json(item).map_err(|mistake| mistake.below(key))?);
+        }
+        Ok(items)
+    }
+}
+
+impl<T: FromJson> FromJson for SortedMap<String, T> {
     fn from_json(value: &Value) -> Result<Self, Mistake> {
         let mut items = Self::new();
         for (key, item) in object(value)? {

@@ -271,7 +271,7 @@ fn number_text(number: &Number) -> String {
     if let Some(whole) = number.as_i64() {
         return whole.to_string();
     }
-    let mut text = number.as_f64().unwrap_or(0.0).to_string();
+    let mut text = crate::number_text(number.as_f64().unwrap_or(0.0));
     if !text.contains('.') {
         text.push_str(".0");
     }

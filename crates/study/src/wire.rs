@@ -16,14 +16,13 @@
 //! stored (two windows with one session) is kept apart, the rest of its request is stored, and the
 //! answer is 409 `event-conflict` with [`Refusal::sequences`]: resume, then go on.
 
-use std::collections::BTreeMap;
-
 use mimique_solver::MethodSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::from_json::FromJson;
+use crate::sorted_map::SortedMap;
 
 /// One study on this server.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,7 +45,7 @@ pub struct Bundle {
     /// The study file (the page parses it with [`crate::Study`]'s reader).
     pub study: Value,
     /// Every clip, by its identifier in the study.
-    pub clips: BTreeMap<String, ClipSource>,
+    pub clips: SortedMap<String, ClipSource>,
 }
 
 /// Where a clip's parts are, and how it is solved.
@@ -99,12 +98,12 @@ pub struct StartSession {
     pub nonce: String,
     /// Recruitment parameters of the address (`PROLIFIC_PID`...), stored apart.
     #[serde(default)]
-    pub recruitment: BTreeMap<String, String>,
+    pub recruitment: SortedMap<String, String>,
     /// Language of the pages.
     pub language: String,
     /// Browser name, its major version, platform class: nothing finer.
     #[serde(default)]
-    pub client: BTreeMap<String, String>,
+    pub client: SortedMap<String, String>,
 }
 
 /// The server's answer to [`StartSession`].

@@ -2,7 +2,7 @@
 //!
 //! `/s/demo/?lang=fr&PROLIFIC_PID=…&STUDY_ID=…&SESSION_ID=…`
 
-use std::collections::BTreeMap;
+use mimique_study::SortedMap;
 
 /// What the address says.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct Address {
     /// Language asked for (`?lang=`).
     pub language: Option<String>,
     /// Every other parameter, as recruiting sites add them.
-    pub recruitment: BTreeMap<String, String>,
+    pub recruitment: SortedMap<String, String>,
 }
 
 /// Most parameters kept, and most characters of one: an address is not a place for data.

@@ -4,14 +4,14 @@
 //! a time, whatever the pages do meanwhile.
 
 use std::cell::{Cell, Ref, RefCell};
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_study::json_text;
 use mimique_study::text::Words;
 use mimique_study::wire::{Event, Refusal};
-use mimique_study::{Display, PlayLog};
+use mimique_study::{Display, PlayLog, SortedMap};
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -51,7 +51,7 @@ pub struct Engine {
     wake: Cell<bool>,
     to_prepare: RefCell<VecDeque<String>>,
     preparing: Cell<bool>,
-    prepared: RefCell<BTreeSet<String>>,
+    prepared: RefCell<SortedMap<String, ()>>,
     /// False until the first page stands: a page that was just loaded is read from its top.
     open: Cell<bool>,
 }
@@ -306,7 +306,7 @@ impl Engine {
     }
 
     async fn prepare_one(self: &Rc<Self>, clip: String) {
-        if self.prepared.borrow().contains(&clip) {
+        if self.prepared.borrow().contains_key(&clip) {
             return self.dispatch(Input::ClipPrepared { clip });
         }
         let source = match self.clips.get(&clip) {
@@ -322,7 +322,7 @@ impl Engine {
         });
         match bridge::prepare_clip(&clip, &source, progress.as_ref().unchecked_ref()).await {
             Ok(_) => {
-                self.prepared.borrow_mut().insert(clip.clone());
+                self.prepared.borrow_mut().insert(clip.clone(), ());
                 self.dispatch(Input::ClipPrepared { clip });
             }
             Err(thrown) => {

@@ -2,9 +2,9 @@
 //! mended on the page ([`crate::dom`]), once for all changes of one turn.
 
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use mimique_study::SortedMap;
 use mimique_study::flow::{Input, Phase, View, view};
 use mimique_study::text::Words;
 use wasm_bindgen_futures::spawn_local;
@@ -42,7 +42,7 @@ thread_local! {
     static SHOWN: RefCell<Shown> = RefCell::default();
     static SEEN: RefCell<Seen> = RefCell::default();
     /// Path -> address; none yet where it is empty.
-    static MEDIA: RefCell<BTreeMap<String, String>> = const { RefCell::new(BTreeMap::new()) };
+    static MEDIA: RefCell<SortedMap<String, String>> = const { RefCell::new(SortedMap::new()) };
     static DUE: Cell<bool> = const { Cell::new(false) };
 }
 

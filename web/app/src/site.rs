@@ -4,14 +4,13 @@
 //! it names one, and offered as a file. Everything else of the page goes on as if a server answered.
 
 use std::cell::{OnceCell, RefCell};
-use std::collections::BTreeMap;
 
 use mimique_study::from_json::FromJson;
 use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
 };
-use mimique_study::{SessionFile, StaticHosting};
+use mimique_study::{SessionFile, SortedMap, StaticHosting};
 use serde_json::json;
 
 use crate::memory::{ANSWERS, Identity, Keep};
@@ -26,7 +25,7 @@ struct SiteFile {
     stage: String,
     seed: u64,
     /// Status of the export -> code.
-    codes: BTreeMap<String, String>,
+    codes: SortedMap<String, String>,
     redirect: Option<String>,
     hosting: StaticHosting,
     email: String,

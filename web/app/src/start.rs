@@ -1,12 +1,11 @@
 //! From the address to a running session: fetch the study, begin or resume, mount the pages.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use mimique_study::flow::{Input, Plan, State};
 use mimique_study::text::{Words, words};
 use mimique_study::wire::{Event, SessionStarted, StartSession};
-use mimique_study::{Client, Study};
+use mimique_study::{Client, SortedMap, Study};
 use wasm_bindgen::JsCast as _;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -179,7 +178,7 @@ where
     }
 }
 
-fn about() -> BTreeMap<String, String> {
+fn about() -> SortedMap<String, String> {
     crate::json::read(&bridge::about()).unwrap_or_default()
 }
 

@@ -93,6 +93,9 @@ pub(super) fn mesh_from(r: &mut PackReader<'_>, shapes: usize) -> Result<Mesh, P
     let Some(&part) = PARTS.get(part) else { return r.refuse(format!("part {part}")) };
     let base_colour = [r.f32()?, r.f32()?, r.f32()?];
     let step = r.f32()?;
+    if !(step > 0.0 && step <= COARSEST_STEP as f32) {
+        return r.refuse(format!("displacements in steps of {step:e} m"));
+    }
     let coloured = match r.u8()? {
         0 => false,
         1 => true,

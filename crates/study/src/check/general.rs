@@ -1,7 +1,5 @@
 //! Languages and texts, contact, recruitment, consent, exclusions.
 
-use std::collections::BTreeMap;
-
 use serde_json::Value;
 
 use super::Subject;
@@ -9,6 +7,7 @@ use super::issue::{Issues, below, listed};
 use super::nearest::suggestion;
 use crate::instant::instant_ms;
 use crate::responses::is_reserved_column;
+use crate::sorted_map::SortedMap;
 use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
 use crate::text;
 
@@ -72,7 +71,7 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
 /// The study's own buttons and messages in a language.
 fn translation(
     language: &str,
-    own: &BTreeMap<String, String>,
+    own: &SortedMap<String, String>,
     languages: &[String],
     issues: &mut Issues,
 ) {

@@ -1,9 +1,8 @@
 //! What one participant goes through, step by step: fixed at the start of the session.
 
-use std::collections::BTreeMap;
-
 use crate::event::Answers;
 use crate::order::{Draw, OrderError, OrderedItem, option_order, order};
+use crate::sorted_map::SortedMap;
 use crate::study_file::{
     Beside, BreakComponent, Calibration, Clip, Component, LocalText, OptionOrder, Question,
     QuestionKind, Questionnaire, Section, Side, Study, TimeLimit, Training,
@@ -21,7 +20,7 @@ pub struct Plan {
     /// The steps, from the first page to the debriefing.
     pub steps: Vec<Step>,
     /// Shown order of options, by question, where it is drawn.
-    pub option_orders: BTreeMap<String, Vec<usize>>,
+    pub option_orders: SortedMap<String, Vec<usize>>,
     /// Index of the step after each round of practice.
     pub rounds: Vec<usize>,
     translated: Vec<Words>,
@@ -383,8 +382,8 @@ fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
         .collect()
 }
 
-fn option_orders(study: &Study, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
-    let mut orders = BTreeMap::new();
+fn option_orders(study: &Study, draw: Draw<'_>) -> SortedMap<String, Vec<usize>> {
+    let mut orders = SortedMap::new();
     for question in study.all_questions() {
         let order = match &question.kind {
             QuestionKind::SingleChoice(choice) => choice.option_order,

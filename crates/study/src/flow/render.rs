@@ -166,7 +166,7 @@ impl Screen<'_> {
         let progress = &state.record.trial;
         let playing = state.live.play == Play::Running;
         let saving = is_saving(state);
-        let prepared = trial.clips().all(|clip| state.live.prepared.contains(clip));
+        let prepared = trial.clips().all(|clip| state.live.prepared.contains_key(clip));
         let phase = if playing {
             Phase::Playing
         } else if let Some(reason) = trial.clips().find_map(|clip| state.live.failed.get(clip)) {
@@ -175,7 +175,7 @@ impl Screen<'_> {
             Phase::Answering
         } else if !prepared {
             let part = |clip: &str| match state.live.progress.get(clip) {
-                _ if state.live.prepared.contains(clip) => 1.0,
+                _ if state.live.prepared.contains_key(clip) => 1.0,
                 fraction => fraction.copied().unwrap_or(0.0),
             };
             let fraction = trial.clips().map(part).sum::<f64>() / trial.clips().count() as f64;

@@ -1,12 +1,11 @@
 //! The state of a session: what its events make of it, and what only this page knows.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use serde_json::Value;
 
 use super::plan::{Plan, Step, StepKind};
 use crate::answer::alike;
 use crate::event::{Answers, Calibrated, Display, EventKind};
+use crate::sorted_map::SortedMap;
 use crate::wire::{self, Receipt};
 
 /// The state of a session.
@@ -125,12 +124,12 @@ pub enum Play {
 /// What only this page knows; gone after a reload.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Live {
-    /// Clips that can be played.
-    pub prepared: BTreeSet<String>,
+    /// Clips that can be played: their names alone.
+    pub prepared: SortedMap<String, ()>,
     /// Clips on their way, 0..1.
-    pub progress: BTreeMap<String, f64>,
+    pub progress: SortedMap<String, f64>,
     /// Clips that failed, and why.
-    pub failed: BTreeMap<String, String>,
+    pub failed: SortedMap<String, String>,
     /// Whether a clip is being played.
     pub play: Play,
     /// Whether missing answers are pointed out.

@@ -61,7 +61,7 @@ impl<'a> Turn<'a> {
             Input::ClipPrepared { clip } => {
                 self.state.live.progress.remove(clip);
                 self.state.live.failed.remove(clip);
-                self.state.live.prepared.insert(clip.clone());
+                self.state.live.prepared.insert(clip.clone(), ());
                 true
             }
             Input::Withdraw => self.withdraw(),
@@ -433,7 +433,7 @@ pub(super) fn can_play(plan: &Plan, state: &State) -> bool {
     };
     state.record.status == Status::Active
         && state.live.play == Play::Still
-        && trial.clips().all(|clip| state.live.prepared.contains(clip))
+        && trial.clips().all(|clip| state.live.prepared.contains_key(clip))
         && !trial.clips().any(|clip| state.live.failed.contains_key(clip))
         && replays_left
         && !is_saving(state)

@@ -15,8 +15,7 @@ mod latin_square;
 mod stream;
 mod subset;
 
-use std::collections::BTreeMap;
-
+use crate::sorted_map::SortedMap;
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
 use constrained::{Search, arrange, prove_arrangement};
 pub use stream::Stream;
@@ -126,9 +125,9 @@ pub(crate) fn prove(study: &Study, draw: Draw<'_>) -> Result<(), OrderError> {
     Ok(())
 }
 
-fn by_id(clips: &[Clip]) -> BTreeMap<&str, &Clip> {
+fn by_id(clips: &[Clip]) -> SortedMap<&str, &Clip> {
     // One by one: to collect would bring a sort of its own into the page.
-    let mut known = BTreeMap::new();
+    let mut known = SortedMap::new();
     for clip in clips {
         known.insert(clip.id.as_str(), clip);
     }
@@ -190,7 +189,7 @@ fn least_common_multiple(left: u64, right: u64) -> u64 {
 struct Context<'a> {
     study: &'a Study,
     clips: &'a [Clip],
-    by_id: BTreeMap<&'a str, &'a Clip>,
+    by_id: SortedMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
     /// Whether the orders that prove feasibility are sought, not the participant's.
     prove: bool,
@@ -330,7 +329,7 @@ impl Context<'_> {
         constraint: &crate::study_file::Constraint,
         parts: &[Vec<OrderedItem>],
     ) -> constrained::Rule {
-        let mut numbers: BTreeMap<String, u32> = BTreeMap::new();
+        let mut numbers: SortedMap<String, u32> = SortedMap::new();
         let values = parts
             .iter()
             .map(|part| {

@@ -1,6 +1,6 @@
 //! The clips that the rules make, each with its factors.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -8,10 +8,12 @@ use serde_json::Value;
 
 use super::{ClipEntry, Study};
 use crate::from_json::{FromJson, Mistake};
+use crate::number_text::number_text;
+use crate::sorted_map::SortedMap;
 use crate::tagged;
 
 /// Free key -> value pairs that the analysis groups by.
-pub type Factors = BTreeMap<String, FactorValue>;
+pub type Factors = SortedMap<String, FactorValue>;
 
 /// The value of a factor.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -68,7 +70,7 @@ impl std::fmt::Display for FactorValue {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Truth(truth) => write!(formatter, "{truth}"),
-            Self::Number(number) => write!(formatter, "{number}"),
+            Self::Number(number) => formatter.write_str(&number_text(*number)),
             Self::Text(text) => formatter.write_str(text),
         }
     }
@@ -173,11 +175,11 @@ impl Study {
         entries.extend(rules.list.iter().cloned());
         let several_avatars =
             entries.first().is_some_and(|one| entries.iter().any(|each| each.avatar != one.avatar));
-        let mut seen = BTreeSet::new();
+        let mut seen = SortedMap::new();
         entries
             .iter()
             .filter_map(|entry| self.clip(entry, several_avatars))
-            .filter(|clip| seen.insert(clip.id.clone()))
+            .filter(|clip| seen.insert(clip.id.clone(), ()).is_none())
             .collect()
     }
 

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::{Condition, LocalText};
 use crate::from_json::FromJson;
+use crate::sorted_map::SortedMap;
 
 /// What a device must have. It is looked at right after consent; whoever cannot mend what is missing
 /// is screened out with the reason.
@@ -148,7 +149,7 @@ pub enum AfterTraining {
 }
 
 /// Right answers that no factor of the clip gives: clip -> question -> answer.
-pub type StatedAnswers = BTreeMap<String, BTreeMap<String, Value>>;
+pub type StatedAnswers = SortedMap<String, BTreeMap<String, Value>>;
 
 /// What becomes of failed attention checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]

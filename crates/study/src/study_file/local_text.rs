@@ -1,12 +1,11 @@
 //! Text in one language or in several.
 
-use std::collections::BTreeMap;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::from_json::{FromJson, Mistake};
+use crate::sorted_map::SortedMap;
 use crate::tagged;
 
 /// A string for every language, or one string a language.
@@ -16,7 +15,7 @@ pub enum LocalText {
     /// The same in every language (a name, a number, a study in one language).
     Plain(String),
     /// By language code: `{"en": "joy", "fr": "joie"}`.
-    Languages(BTreeMap<String, String>),
+    Languages(SortedMap<String, String>),
 }
 
 impl<'de> Deserialize<'de> for LocalText {
@@ -32,7 +31,7 @@ impl FromJson for LocalText {
     fn from_json(value: &Value) -> Result<Self, Mistake> {
         match value {
             Value::String(text) => Ok(Self::Plain(text.clone())),
-            other => BTreeMap::from_json(other).map(Self::Languages),
+            other => SortedMap::from_json(other).map(Self::Languages),
         }
     }
 }

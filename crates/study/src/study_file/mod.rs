@@ -18,9 +18,8 @@ mod sequence;
 mod stimuli;
 mod tables;
 
-use std::collections::BTreeMap;
-
 use crate::from_json::FromJson;
+use crate::sorted_map::SortedMap;
 use crate::text::{Words, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,8 +68,8 @@ pub struct Study {
     pub languages: Vec<String>,
     /// Buttons and messages in other languages than English and French, by language and by name:
     /// `mimique check --words de` prints a beginning. In English and French it changes single texts.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub translations: BTreeMap<String, BTreeMap<String, String>>,
+    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    pub translations: SortedMap<String, SortedMap<String, String>>,
     /// Seed of every random stream (below 2^53).
     #[serde(default)]
     pub seed: u64,
@@ -108,7 +107,7 @@ pub struct Study {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub questions: Vec<Question>,
     /// What the sequence is made of, by name.
-    pub components: BTreeMap<String, Component>,
+    pub components: SortedMap<String, Component>,
     /// The order of components and trials.
     pub sequence: Sequence,
     /// Shown after the last answer.

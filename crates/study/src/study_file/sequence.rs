@@ -1,13 +1,12 @@
 //! What is shown in which order: components, blocks of trials, sequences.
 
-use std::collections::BTreeMap;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
 use crate::from_json::{FromJson, Mistake};
+use crate::sorted_map::SortedMap;
 use crate::tagged::{self, tagged_by_type};
 
 /// A part of the study that a sequence names.
@@ -103,8 +102,8 @@ pub struct ClipSelection {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ids: Vec<String>,
     /// Factor -> the values that are taken.
-    #[serde(default, rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
-    pub factors: BTreeMap<String, Vec<FactorValue>>,
+    #[serde(default, rename = "where", skip_serializing_if = "SortedMap::is_empty")]
+    pub factors: SortedMap<String, Vec<FactorValue>>,
 }
 
 /// A page of questions.
@@ -166,7 +165,7 @@ pub struct Training {
     #[serde(default)]
     pub feedback: bool,
     /// Right answers that no factor of the clip gives: clip -> question -> answer.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
     pub answers: StatedAnswers,
     /// How many clips must be answered right before the study goes on.
     #[serde(default, skip_serializing_if = "Option::is_none")]

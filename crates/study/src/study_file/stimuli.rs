@@ -1,12 +1,11 @@
 //! Avatars, captures, segments, methods, and the rule that makes clips of them.
 
-use std::collections::BTreeMap;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
 use crate::from_json::FromJson;
+use crate::sorted_map::SortedMap;
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -18,13 +17,13 @@ pub const DATA_PREFIX: &str = "${MIMIQUE_DATA}/";
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Stimuli {
     /// Heads, by identifier.
-    pub avatars: BTreeMap<String, Avatar>,
+    pub avatars: SortedMap<String, Avatar>,
     /// Recorded or built-in performances, by identifier.
-    pub captures: BTreeMap<String, Capture>,
+    pub captures: SortedMap<String, Capture>,
     /// Cuts of the captures.
     pub segments: Vec<Segment>,
     /// Methods with parameters, by identifier.
-    pub methods: BTreeMap<String, MethodEntry>,
+    pub methods: SortedMap<String, MethodEntry>,
     /// Which avatar performs which segment by which method; every combination if not given.
     #[serde(default)]
     pub clips: ClipRules,
@@ -45,8 +44,8 @@ pub struct Avatar {
     pub file: Option<String>,
     /// Films of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
     /// with the method `recorded`.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub videos: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    pub videos: SortedMap<String, String>,
     /// How a head is drawn.
     #[serde(default, skip_serializing_if = "AvatarLook::is_stimulus")]
     pub look: AvatarLook,
@@ -113,7 +112,7 @@ pub enum AvatarSource<'a> {
     /// A GLB file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
     /// Films: segment -> a file, its path as above.
-    Videos(&'a BTreeMap<String, String>),
+    Videos(&'a SortedMap<String, String>),
 }
 
 impl Avatar {

@@ -6,8 +6,9 @@ mod table;
 mod translation;
 mod typography;
 
+use crate::number_text::number_text;
+use crate::sorted_map::SortedMap;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
 pub use translation::{Fault, faults, names, template};
@@ -18,7 +19,7 @@ pub use typography::typeset;
 pub struct Words {
     language: Cow<'static, str>,
     /// What a study file has brought, by name; the rest is built in.
-    own: BTreeMap<String, String>,
+    own: SortedMap<String, String>,
     built_in: &'static [&'static str; COUNT],
 }
 
@@ -28,16 +29,16 @@ pub const LANGUAGES: [&str; 2] = ["en", "fr"];
 /// The built-in texts of a language; English where there are none.
 pub fn words(language: &str) -> &'static Words {
     static ENGLISH_WORDS: Words =
-        Words { language: Cow::Borrowed("en"), own: BTreeMap::new(), built_in: &ENGLISH };
+        Words { language: Cow::Borrowed("en"), own: SortedMap::new(), built_in: &ENGLISH };
     static FRENCH_WORDS: Words =
-        Words { language: Cow::Borrowed("fr"), own: BTreeMap::new(), built_in: &FRENCH };
+        Words { language: Cow::Borrowed("fr"), own: SortedMap::new(), built_in: &FRENCH };
     if language.split(['-', '_']).next() == Some("fr") { &FRENCH_WORDS } else { &ENGLISH_WORDS }
 }
 
 impl Words {
     /// The texts that a study file brings for a language, by name; what it leaves out is in English
     /// (or French, where it mends those).
-    pub fn translated(language: &str, own: &BTreeMap<String, String>) -> Words {
+    pub fn translated(language: &str, own: &SortedMap<String, String>) -> Words {
         let built_in = words(language).built_in;
         Words { language: Cow::Owned(language.to_owned()), own: own.clone(), built_in }
     }
@@ -56,11 +57,34 @@ impl Words {
     }
 
     /// The text with its words in braces filled in.
-    fn fill(&self, place: Place, values: &[(&str, &dyn std::fmt::Display)]) -> String {
+    fn fill(&self, place: Place, values: &[(&str, &dyn Shown)]) -> String {
         let mut text = self.at(place).to_owned();
         for (name, value) in values {
-            text = text.replace(&format!("{{{name}}}"), &value.to_string());
+            text = text.replace(&format!("{{{name}}}"), &value.shown());
         }
         text
     }
 }
+
+/// What can stand for a word in braces.
+trait Shown {
+    fn shown(&self) -> String;
+}
+
+impl Shown for f64 {
+    fn shown(&self) -> String {
+        number_text(*self)
+    }
+}
+
+macro_rules! shown_as_displayed {
+    ($($kind:ty),*) => {$(
+        impl Shown for $kind {
+            fn shown(&self) -> String {
+                self.to_string()
+            }
+        }
+    )*};
+}
+
+shown_as_displayed!(u32, u64, usize, &str, String);

@@ -1,7 +1,7 @@
 //! Texts in which something is filled in, or which are chosen by what has happened.
 
-use super::Words;
 use super::table::{NAMES, Place};
+use super::{Shown, Words};
 use crate::answer::AnswerProblem;
 use crate::flow::Unmet;
 use crate::wire::Refusal;
@@ -71,7 +71,7 @@ impl Words {
                 (self.at(Place::lacks_graphics).to_owned(), Place::lacks_graphics_remedy)
             }
             Unmet::Refresh { least, found } => {
-                let values: [(&str, &dyn std::fmt::Display); 2] =
+                let values: [(&str, &dyn Shown); 2] =
                     [("least", &least.round()), ("found", &found.round())];
                 (self.fill(Place::lacks_refresh, &values), Place::lacks_refresh_remedy)
             }

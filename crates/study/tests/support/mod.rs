@@ -1,14 +1,13 @@
 //! The studies of `study-config`, and a participant who goes through one.
 #![allow(dead_code)]
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use mimique_study::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_study::wire::{Event, Receipt, SessionStarted};
-use mimique_study::{Client, Display, PlayLog, Study, config_hash};
+use mimique_study::{Client, Display, PlayLog, SortedMap, Study, config_hash};
 use serde_json::{Value, json};
 
 /// The text of a study of the repository.
@@ -209,7 +208,7 @@ pub fn first_answer(_: &str, kind: &QuestionKindView) -> Value {
 }
 
 pub fn client() -> Client {
-    Client { viewport: [1280, 720], device_pixel_ratio: 2.0, about: BTreeMap::new() }
+    Client { viewport: [1280, 720], device_pixel_ratio: 2.0, about: SortedMap::new() }
 }
 
 pub fn display() -> Display {

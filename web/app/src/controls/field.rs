@@ -1,6 +1,6 @@
 //! A number or a text that is typed. The answer is given when the field is left, not at every key.
 
-use mimique_study::json_text;
+use mimique_study::{json_text, number_text};
 use serde_json::{Value, json};
 
 use super::{Answering, plain};
@@ -23,8 +23,8 @@ pub fn number(
     let give = answering.give.clone();
     let field = typed(answering, el("input", "").set("type", "number"), "number")
         .set("inputmode", if integer { "numeric" } else { "decimal" })
-        .maybe("min", minimum.map(|m| m.to_string()).as_deref())
-        .maybe("max", maximum.map(|m| m.to_string()).as_deref())
+        .maybe("min", minimum.map(number_text).as_deref())
+        .maybe("max", maximum.map(number_text).as_deref())
         .set("step", if integer { "1" } else { "any" })
         .set("autocomplete", "off")
         .set(".value", &shown)

@@ -1,6 +1,6 @@
 //! A number on a line. Until it is touched it has no value, and shows none.
 
-use mimique_study::json_text;
+use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, ends, plain};
@@ -25,10 +25,10 @@ pub fn slider(
     let field = el("input", if value.is_none() { "untouched" } else { "" })
         .key("line")
         .set("type", "range")
-        .set("min", &minimum.to_string())
-        .set("max", &maximum.to_string())
-        .set("step", &step.to_string())
-        .set(".value", &value.and_then(Value::as_f64).unwrap_or(middle).to_string())
+        .set("min", &number_text(minimum))
+        .set("max", &number_text(maximum))
+        .set("step", &number_text(step))
+        .set(".value", &number_text(value.and_then(Value::as_f64).unwrap_or(middle)))
         .on("change", touch.clone())
         .on("click", touch);
     let shown = value.map_or_else(|| "\u{2013}".to_owned(), json_text::write);

@@ -1,6 +1,7 @@
 //! The size of the screen: a card drawn to be made as large as a real one, and the distance.
 
 use mimique_study::flow::{CalibrationView, CardView, DistanceView, Input};
+use mimique_study::number_text;
 
 use super::{button, form, heading, main, problem, progress_line, px, submit};
 use crate::dom::{Element, el, words};
@@ -34,7 +35,7 @@ fn distance(shown: &DistanceView) -> Element {
         .set("min", "15")
         .set("max", "300")
         .set("step", "1")
-        .maybe("value", shown.value.map(|cm| cm.to_string()).as_deref())
+        .maybe("value", shown.value.map(number_text).as_deref())
         .flag("aria-invalid", wrong.is_some())
         .maybe("aria-describedby", wrong.map(|_| "distance-problem"))
         .on("change", |given| screen::send(Input::Distance(json::number(&given.value))));
@@ -65,15 +66,15 @@ fn card(shown: &CardView) -> Element {
     let slider = el("input", "")
         .set("type", "range")
         .set("aria-label", &shown.label)
-        .set("min", &WIDTHS.0.to_string())
-        .set("max", &WIDTHS.1.to_string())
+        .set("min", &number_text(WIDTHS.0))
+        .set("max", &number_text(WIDTHS.1))
         .set("step", "0.5")
         .set(
             "aria-describedby",
             if wrong.is_some() { "card-hint card-problem" } else { "card-hint" },
         )
         .flag("aria-invalid", wrong.is_some())
-        .set(".value", &width.to_string())
+        .set(".value", &number_text(width))
         .on("input", |given| {
             if let Some(px) = json::number(&given.value) {
                 set(px);

@@ -14,6 +14,7 @@ mod read;
 mod trial;
 
 use mimique_study::flow::{Input, ProgressView, View};
+use mimique_study::number_text;
 
 use crate::dom::{Element, Given, el, words};
 use crate::engine::Engine;
@@ -137,7 +138,7 @@ fn px(length: f64) -> String {
 
 /// A number to its second decimal.
 fn hundredth(number: f64) -> String {
-    ((number * 100.0).round() / 100.0).to_string()
+    number_text((number * 100.0).round() / 100.0)
 }
 
 /// How far the session is, as a bar and in words for those who do not see it.

@@ -1,6 +1,7 @@
 //! A trial: the clip, then its questions. The canvas stays from one trial to the next.
 
 use mimique_study::flow::{BesideView, Input, Phase, TrialView, View};
+use mimique_study::number_text;
 
 use super::clock::clock;
 use super::questions::question_list;
@@ -84,7 +85,7 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
         let bar = el("progress", "")
             .set("max", "1")
             .set("aria-label", &trial.message)
-            .set("value", &fraction.to_string());
+            .set("value", &number_text(fraction));
         place = place.with(el("div", "veil").with(bar));
     }
     let caption = beside.and_then(|beside| beside.clip_caption.as_ref());
