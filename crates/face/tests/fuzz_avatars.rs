@@ -6,12 +6,18 @@
 //! `tests/records/fuzz-avatar.md`.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use mimique_face::pack::{decode_pack, encode_pack, open_pack, seal_pack};
-use mimique_face::{Avatar, AvatarSettings, Image, read_avatar_bytes};
+use mimique_face::pack::{encode_pack, open_pack};
+use mimique_face::read_avatar_bytes;
 use serde_json::{Value, json};
+
+#[path = "support/any_avatar.rs"]
+mod any_avatar;
+
+use any_avatar::{Kind, consume};
 
 /// Counts what is allocated.
 struct Counted;
@@ -54,68 +60,6 @@ impl Random {
     fn below(&mut self, count: usize) -> usize {
         (self.next() % count.max(1) as u64) as usize
     }
-}
-
-/// A kind of file and how it is read.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Gltf,
-    Bank,
-    Settings,
-    Pack,
-}
-
-/// Reads a file and everything in it.
-fn consume(kind: Kind, bytes: &[u8]) {
-    match kind {
-        Kind::Gltf | Kind::Bank => {
-            let settings = AvatarSettings::default();
-            match read_avatar_bytes(bytes.to_vec(), "fuzz", None, Some(settings)) {
-                Ok(read) => sound(&read.avatar),
-                Err(error) => {
-                    let text = error.to_string();
-                    assert!(
-                        text.contains(": ") && text.contains("; "),
-                        "no place or remedy: {text}"
-                    );
-                }
-            }
-        }
-        Kind::Settings => drop(AvatarSettings::from_json("avatar.json", bytes)),
-        Kind::Pack => {
-            // A body as it is, in a pack without pictures.
-            let sealed = [seal_pack("MMAV", 3, bytes), vec![0; 4]].concat();
-            for bytes in [bytes.to_vec(), sealed] {
-                if let Ok(avatar) = decode_pack(&bytes) {
-                    sound(&avatar);
-                }
-            }
-        }
-    }
-}
-
-/// No index leads outside, every number is finite, and the pack takes it.
-fn sound(avatar: &Avatar) {
-    for mesh in &avatar.meshes {
-        let count = mesh.positions.len();
-        assert!(mesh.triangles.iter().flatten().all(|v| (*v as usize) < count));
-        assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
-        assert_eq!(mesh.shapes.len(), avatar.shape_names.len());
-        for shape in &mesh.shapes {
-            assert_eq!(shape.vertices.len(), shape.deltas.len());
-            assert!(shape.vertices.iter().all(|v| (*v as usize) < count));
-        }
-        assert!(mesh.uvs.is_empty() || mesh.uvs.len() == count);
-        for run in &mesh.textured {
-            assert!(
-                run.triangles.end <= mesh.triangles.len() && run.texture < avatar.textures.len()
-            );
-        }
-    }
-    for texture in &avatar.textures {
-        let _ = Image::decode(texture);
-    }
-    decode_pack(&encode_pack(avatar).bytes).expect("what is read can be packed");
 }
 
 // ---- seeds ----
@@ -415,6 +359,38 @@ impl Seeds {
         let behind = files.sum::<usize>() + 4;
         let pack_body = open_pack("MMAV", 3, &pack[..pack.len() - behind]).unwrap();
         Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), pack, pack_body }
+    }
+}
+
+/// What the fuzzer that sees coverage begins with and has found; `MIMIQUE_FUZZ_WRITE=1` writes the
+/// seeds anew.
+#[test]
+fn the_corpus_of_the_fuzzer_is_replayed() {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
+    let folders = [("avatar_file", Kind::Gltf), ("avatar_pack", Kind::Pack)];
+    if std::env::var_os("MIMIQUE_FUZZ_WRITE").is_some() {
+        let seeds = Seeds::new();
+        for (name, bytes) in [
+            ("avatar_file/seed-glb", &seeds.glb),
+            ("avatar_file/seed-zip", &seeds.zip),
+            ("avatar_file/seed-tar", &seeds.tar),
+            ("avatar_file/seed-tar-gz", &seeds.tar_gz),
+            ("avatar_pack/seed-pack", &seeds.pack),
+            ("avatar_pack/seed-body", &seeds.pack_body),
+        ] {
+            let path = corpus.join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, bytes).unwrap();
+        }
+    }
+    for (folder, kind) in folders {
+        let files = std::fs::read_dir(corpus.join(folder)).unwrap();
+        let mut count = 0;
+        for file in files {
+            consume(kind, &std::fs::read(file.unwrap().path()).unwrap());
+            count += 1;
+        }
+        assert!(count > 1, "{folder} holds no seeds");
     }
 }
 

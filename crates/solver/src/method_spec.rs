@@ -3,7 +3,7 @@
 //! What is absent takes the method's default; what the method does not use is refused, so that a
 //! study never claims a parameter that had no effect.
 
-use std::collections::BTreeMap;
+use litemap::LiteMap;
 
 use serde::{Deserialize, Serialize};
 
@@ -156,13 +156,13 @@ pub struct MethodSpec {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<String>,
     /// Importance of markers, by label; a marker that is not named has 1.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub importance: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "LiteMap::is_empty")]
+    pub importance: LiteMap<String, f64>,
     /// Bounds of single shapes, by name, instead of 0 and 1 (`lsts`, `box`, `kouadio`,
     /// `regression`) or of
     /// `softBounds` (the methods with soft bounds).
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub bounds: BTreeMap<String, [f64; 2]>,
+    #[serde(default, skip_serializing_if = "LiteMap::is_empty")]
+    pub bounds: LiteMap<String, [f64; 2]>,
     /// Cut-off of the zero-phase low-pass of the head's pose, Hz; absent or 0 = no filter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_lowpass_hz: Option<f64>,
@@ -193,8 +193,8 @@ impl MethodSpec {
             signal: None,
             noise: None,
             locked: Vec::new(),
-            importance: BTreeMap::new(),
-            bounds: BTreeMap::new(),
+            importance: LiteMap::new_vec(),
+            bounds: LiteMap::new_vec(),
             head_lowpass_hz: None,
         }
     }

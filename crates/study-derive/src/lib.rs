@@ -6,6 +6,9 @@
 //! `default`, `default = "path"`, `rename`, `rename_all` (camelCase, snake_case, kebab-case),
 //! `deny_unknown_fields`, and `remote = "Self"`, which marks an enum whose tag stands inside, under
 //! `type`. Keys that say how to write are passed over; others are an error.
+//!
+//! `#[from_json(off_page)]` marks what no page asks for (hypotheses, the paths of captures): the module in
+//! the browser leaves it empty and carries no reader for it. Its key is known there as everywhere.
 
 use proc_macro::TokenStream;
 use proc_macro2::{Span, TokenStream as Tokens};
@@ -16,7 +19,7 @@ use syn::{
 };
 
 /// Derives a reader from a JSON value.
-#[proc_macro_derive(FromJson, attributes(serde))]
+#[proc_macro_derive(FromJson, attributes(serde, from_json))]
 pub fn from_json(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     implement(&input).unwrap_or_else(Error::into_compile_error).into()
@@ -31,11 +34,19 @@ struct Said {
     default: Option<Option<Path>>,
     deny_unknown_fields: bool,
     tag_inside: bool,
+    /// No page asks for it.
+    off_page: bool,
 }
 
 impl Said {
     fn of(attributes: &[Attribute]) -> Result<Self, Error> {
         let mut said = Self::default();
+        for attribute in attributes.iter().filter(|each| each.path().is_ident("from_json")) {
+            attribute.parse_nested_meta(|meta| {
+                said.off_page = meta.path.is_ident("off_page");
+                if said.off_page { Ok(()) } else { Err(meta.error("only off_page is known")) }
+            })?;
+        }
         for attribute in attributes.iter().filter(|each| each.path().is_ident("serde")) {
             attribute.parse_nested_meta(|meta| {
                 let text = |meta: &syn::meta::ParseNestedMeta| -> Result<LitStr, Error> {
@@ -108,42 +119,58 @@ fn implement(input: &DeriveInput) -> Result<Tokens, Error> {
     let name = &input.ident;
     let body = match &input.data {
         Data::Struct(data) => {
-            let fields = fields(&data.fields, &said)?;
-            let whole = match said.default {
-                Some(_) => quote! { let whole = <Self as Default>::default(); },
-                None => quote! {},
-            };
             let known = known(&data.fields, &said)?;
+            let read = match said.default {
+                Some(_) => in_place(&data.fields, &said)?,
+                None => {
+                    let fields = fields(&data.fields, &said)?;
+                    quote! { Self { #fields } }
+                }
+            };
             quote! {
-                let map = ::mimique_study::from_json::object(value)?;
-                #whole
-                let read = Self { #fields };
-                #known
-                Ok(read)
+                faults.object(value, &[#known]);
+                #read
             }
         }
         Data::Enum(data) if said.tag_inside => {
             let arms = data.variants.iter().map(|variant| tagged(variant, &said));
-            let arms = arms.collect::<Result<Tokens, Error>>()?;
+            let arms = arms.collect::<Result<Vec<Tokens>, Error>>()?;
+            let words = data
+                .variants
+                .iter()
+                .map(|variant| Said::of(&variant.attrs)?.name(&variant.ident, &said))
+                .collect::<Result<Vec<String>, Error>>()?;
+            // A word that is not known stands for the first kind.
+            let (first, rest) = arms.split_first().ok_or_else(|| empty(name))?;
+            let (first_word, rest_words) = words.split_first().ok_or_else(|| empty(name))?;
             quote! {
-                let map = ::mimique_study::from_json::object(value)?;
-                match ::mimique_study::from_json::word(map.get("type"))? {
-                    #arms
-                    other => Err(::mimique_study::from_json::unknown_word(other)),
+                let word = faults.tag(value);
+                match word {
+                    #(#rest_words => #rest,)*
+                    other => {
+                        if other != #first_word {
+                            faults.unknown_word(value, other);
+                        }
+                        #first
+                    }
                 }
             }
         }
         Data::Enum(data) => {
+            let first = &data.variants.first().ok_or_else(|| empty(name))?.ident;
             let mut arms = quote! {};
             for variant in &data.variants {
                 let word = Said::of(&variant.attrs)?.name(&variant.ident, &said)?;
                 let ident = &variant.ident;
-                arms.extend(quote! { #word => Ok(Self::#ident), });
+                arms.extend(quote! { #word => Self::#ident, });
             }
             quote! {
-                match ::mimique_study::from_json::word(Some(value))? {
+                match faults.word(value) {
                     #arms
-                    other => Err(::mimique_study::from_json::unknown_word(other)),
+                    other => {
+                        faults.unknown_word(value, other);
+                        Self::#first
+                    }
                 }
             }
         }
@@ -153,58 +180,89 @@ fn implement(input: &DeriveInput) -> Result<Tokens, Error> {
         impl ::mimique_study::from_json::FromJson for #name {
             fn from_json(
                 value: &::serde_json::Value,
-            ) -> ::core::result::Result<Self, ::mimique_study::from_json::Mistake> {
+                faults: &mut ::mimique_study::from_json::Faults,
+            ) -> Self {
                 #body
             }
         }
     })
 }
 
-/// One kind of thing, by its tag.
+fn empty(name: &Ident) -> Error {
+    Error::new(name.span(), "an enum without variants is not read")
+}
+
+/// One kind of thing that its tag names.
 fn tagged(variant: &Variant, all: &Said) -> Result<Tokens, Error> {
-    let word = Said::of(&variant.attrs)?.name(&variant.ident, all)?;
+    // Its word is read, and refused where it cannot be.
+    Said::of(&variant.attrs)?.name(&variant.ident, all)?;
     let ident = &variant.ident;
     Ok(match &variant.fields {
-        Fields::Unit => quote! { #word => Ok(Self::#ident), },
-        Fields::Unnamed(_) => quote! {
-            #word => Ok(Self::#ident(::mimique_study::from_json::untagged(map)?)),
-        },
+        Fields::Unit => quote! { Self::#ident },
+        Fields::Unnamed(_) => quote! {{
+            faults.besides(&["type"]);
+            Self::#ident(::mimique_study::from_json::FromJson::from_json(value, faults))
+        }},
         named @ Fields::Named(_) => {
             // `rename_all` of an enum is for its variants alone.
             let fields = fields(named, &Said::default())?;
-            quote! { #word => Ok(Self::#ident { #fields }), }
+            quote! { Self::#ident { #fields } }
         }
     })
 }
 
-/// `field: read(map, "key")?` and so on.
+/// `field: read(value, "key", faults)` and so on.
 fn fields(fields: &Fields, all: &Said) -> Result<Tokens, Error> {
     let mut tokens = quote! {};
     for (ident, key, said) in named(fields, all)? {
-        let read = match (&said.default, &all.default) {
-            (Some(Some(path)), _) => {
-                quote! { ::mimique_study::from_json::or_else(map, #key, #path)? }
+        let read = match &said.default {
+            Some(Some(path)) => {
+                quote! { ::mimique_study::from_json::or_else(value, #key, faults, #path) }
             }
-            (Some(None), _) => {
-                quote! { ::mimique_study::from_json::or_else(map, #key, Default::default)? }
+            Some(None) => {
+                quote! { ::mimique_study::from_json::or_else(value, #key, faults, Default::default) }
             }
-            (None, Some(_)) => {
-                quote! { ::mimique_study::from_json::or(map, #key, whole.#ident)? }
-            }
-            (None, None) => quote! { ::mimique_study::from_json::required(map, #key)? },
+            None => quote! { ::mimique_study::from_json::required(value, #key, faults) },
+        };
+        let read = match said.off_page {
+            true => quote! {
+                if cfg!(target_arch = "wasm32") { Default::default() } else { #read }
+            },
+            false => read,
         };
         tokens.extend(quote! { #ident: #read, });
     }
     Ok(tokens)
 }
 
-/// Refuses keys that are none of the type's.
+/// The type's default, and each field that is given put in its place; a field's own default before it.
+fn in_place(fields: &Fields, all: &Said) -> Result<Tokens, Error> {
+    let mut tokens = quote! { let mut whole = <Self as Default>::default(); };
+    for (ident, key, said) in named(fields, all)? {
+        let own = match &said.default {
+            Some(Some(path)) => quote! { whole.#ident = #path(); },
+            Some(None) => quote! { whole.#ident = Default::default(); },
+            None => quote! {},
+        };
+        let put =
+            quote! { ::mimique_study::from_json::put(value, #key, faults, &mut whole.#ident); };
+        let put = match said.off_page {
+            true => quote! { if !cfg!(target_arch = "wasm32") { #put } },
+            false => put,
+        };
+        tokens.extend(quote! { #own #put });
+    }
+    tokens.extend(quote! { whole });
+    Ok(tokens)
+}
+
+/// The keys of a type that refuses others; none of one that does not.
 fn known(fields: &Fields, all: &Said) -> Result<Tokens, Error> {
     if !all.deny_unknown_fields {
         return Ok(quote! {});
     }
     let keys: Vec<String> = named(fields, all)?.into_iter().map(|(_, key, _)| key).collect();
-    Ok(quote! { ::mimique_study::from_json::only(map, &[#(#keys),*])?; })
+    Ok(quote! { #(#keys),* })
 }
 
 fn named<'a>(fields: &'a Fields, all: &Said) -> Result<Vec<(&'a Ident, String, Said)>, Error> {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::from_json::FromJson;
+use crate::from_json::{self, FromJson};
 use crate::sorted_map::SortedMap;
 use crate::tagged::tagged_by_type;
 
@@ -168,7 +168,7 @@ fn is_false(value: &bool) -> bool {
 impl EventKind {
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
-        Self::from_json(body).ok()
+        from_json::read(body).ok()
     }
 
     /// The body of a [`crate::wire::Event`].

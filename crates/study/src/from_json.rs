@@ -5,24 +5,37 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use litemap::LiteMap;
 use mimique_solver::{Association, Hold, Inference, LaplacianKind, Method, MethodSpec, Unit};
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, IntoDeserializer as _};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 pub use mimique_study_derive::FromJson;
 
 use crate::sorted_map::SortedMap;
 
 /// A type that is read from a JSON value.
+///
+/// A reader never stops: what is wrong is noted, and what is returned then stands for nothing. So no
+/// reader has a second way out, on which everything read so far would have to be cleared away; those
+/// ways were half of the readers' code.
 pub trait FromJson: Sized {
-    /// Reads a value.
-    fn from_json(value: &Value) -> Result<Self, Mistake>;
+    /// Whether the key may be missing; it is then read from `null`.
+    const MAY_BE_MISSING: bool = false;
 
-    /// What a missing key means, where that is not a mistake.
-    fn missing() -> Option<Self> {
-        None
-    }
+    /// Reads a value; notes what is wrong.
+    fn from_json(value: &Value, faults: &mut Faults) -> Self;
+}
+
+/// Reads a type from a value.
+///
+/// # Errors
+/// The first thing that is wrong with it, below its keys.
+pub fn read<T: FromJson>(value: &Value) -> Result<T, Mistake> {
+    let mut faults = Faults::default();
+    let read = T::from_json(value, &mut faults);
+    faults.none(value).map(|()| read)
 }
 
 /// Why a value cannot be read: what is wrong, and below which key.
@@ -35,11 +48,6 @@ impl Mistake {
     pub fn new(words: &str) -> Self {
         Self(words.into())
     }
-
-    #[inline(never)]
-    fn below(self, key: &str) -> Self {
-        Self([key, ": ", &*self.0].concat().into())
-    }
 }
 
 impl fmt::Display for Mistake {
@@ -48,115 +56,188 @@ impl fmt::Display for Mistake {
     }
 }
 
-/// The value as an object.
-#[inline(never)]
-pub fn object(value: &Value) -> Result<&Map<String, Value>, Mistake> {
-    value.as_object().ok_or_else(|| Mistake::new("an object is missing"))
+/// What is wrong with a value that is being read.
+#[derive(Debug, Default)]
+pub struct Faults {
+    /// The first fault: where the value stands in memory, which tells its place in the tree, and what
+    /// is wrong with it.
+    first: Option<(*const Value, Box<str>)>,
+    /// Keys that the next object may have besides its own.
+    besides: &'static [&'static str],
 }
 
-/// The value as a word.
-#[inline(never)]
-pub fn word(value: Option<&Value>) -> Result<&str, Mistake> {
-    value.and_then(Value::as_str).ok_or_else(|| Mistake::new("a word is missing"))
-}
+static NULL: Value = Value::Null;
 
-/// A word that is none of those known here.
-#[inline(never)]
-pub fn unknown_word(word: &str) -> Mistake {
-    Mistake(["unknown word `", word, "`"].concat().into())
-}
-
-/// The value of a key that must be there.
-pub fn required<T: FromJson>(map: &Map<String, Value>, key: &str) -> Result<T, Mistake> {
-    match map.get(key) {
-        Some(value) => T::from_json(value).map_err(|mistake| mistake.below(key)),
-        None => T::missing().ok_or_else(|| Mistake::new("missing field").below(key)),
+impl Faults {
+    /// Notes what is wrong with a value.
+    #[inline(never)]
+    pub fn note(&mut self, value: &Value, words: &[&str]) {
+        if self.first.is_none() {
+            self.first = Some((value, words.concat().into()));
+        }
     }
+
+    /// Lets the next object have these keys too.
+    pub fn besides(&mut self, keys: &'static [&'static str]) {
+        self.besides = keys;
+    }
+
+    /// The value must be an object; where `keys` are given, with no others.
+    #[inline(never)]
+    pub fn object(&mut self, value: &Value, keys: &[&str]) {
+        let besides = std::mem::take(&mut self.besides);
+        let Value::Object(map) = value else { return self.note(value, &["an object is missing"]) };
+        if keys.is_empty() {
+            return;
+        }
+        for key in map.keys().map(String::as_str) {
+            if !keys.contains(&key) && !besides.contains(&key) {
+                return self.note(value, &["unknown field `", key, "`"]);
+            }
+        }
+    }
+
+    /// The value of a key; `null` where it is missing, which is noted unless it may be.
+    #[inline(never)]
+    fn value<'a>(&mut self, object: &'a Value, key: &str, may_be_missing: bool) -> &'a Value {
+        get(object, key).unwrap_or_else(|| {
+            if !may_be_missing {
+                self.note(object, &[key, ": missing field"]);
+            }
+            &NULL
+        })
+    }
+
+    /// The word that the value is.
+    #[inline(never)]
+    pub fn word<'a>(&mut self, value: &'a Value) -> &'a str {
+        value.as_str().unwrap_or_else(|| {
+            self.note(value, &["a word is missing"]);
+            ""
+        })
+    }
+
+    /// The word that says of which type an object is.
+    #[inline(never)]
+    pub fn tag<'a>(&mut self, object: &'a Value) -> &'a str {
+        let tag = self.value(object, "type", false);
+        self.word(tag)
+    }
+
+    /// Notes a word that is none of those known here.
+    #[inline(never)]
+    pub fn unknown_word(&mut self, value: &Value, word: &str) {
+        self.note(value, &["unknown word `", word, "`"]);
+    }
+
+    fn none(self, root: &Value) -> Result<(), Mistake> {
+        let Some((fault, words)) = self.first else { return Ok(()) };
+        let mut text = String::new();
+        place(root, fault, &mut text);
+        text.push_str(&words);
+        Err(Mistake(text.into()))
+    }
+}
+
+/// Writes the keys that lead to a value of the tree; false where it is not there.
+fn place(tree: &Value, wanted: *const Value, text: &mut String) -> bool {
+    if std::ptr::eq(tree, wanted) {
+        return true;
+    }
+    let before = text.len();
+    let mut leads = |key: &str, item: &Value| {
+        text.push_str(key);
+        text.push_str(": ");
+        let found = place(item, wanted, text);
+        if !found {
+            text.truncate(before);
+        }
+        found
+    };
+    match tree {
+        Value::Object(map) => map.iter().any(|(key, item)| leads(key, item)),
+        Value::Array(items) => {
+            items.iter().enumerate().any(|(index, item)| leads(&index.to_string(), item))
+        }
+        _ => false,
+    }
+}
+
+/// The value of a key.
+#[inline(never)]
+pub fn get<'a>(object: &'a Value, key: &str) -> Option<&'a Value> {
+    object.as_object().and_then(|map| map.get(key))
+}
+
+/// The value of a key that must be there, unless its type says that it may be missing.
+pub fn required<T: FromJson>(object: &Value, key: &str, faults: &mut Faults) -> T {
+    T::from_json(faults.value(object, key, T::MAY_BE_MISSING), faults)
 }
 
 /// The value of a key; what `absent` makes where it is not there.
 pub fn or_else<T: FromJson>(
-    map: &Map<String, Value>,
+    object: &Value,
     key: &str,
+    faults: &mut Faults,
     absent: fn() -> T,
-) -> Result<T, Mistake> {
-    match map.get(key) {
-        Some(value) => T::from_json(value).map_err(|mistake| mistake.below(key)),
-        None => Ok(absent()),
+) -> T {
+    match get(object, key) {
+        Some(value) => T::from_json(value, faults),
+        None => absent(),
     }
 }
 
-/// The value of a key; `absent` where it is not there.
-pub fn or<T: FromJson>(map: &Map<String, Value>, key: &str, absent: T) -> Result<T, Mistake> {
-    match map.get(key) {
-        Some(value) => T::from_json(value).map_err(|mistake| mistake.below(key)),
-        None => Ok(absent),
+/// Puts the value of a key in its place; leaves the place as it is where the key is not there.
+pub fn put<T: FromJson>(object: &Value, key: &str, faults: &mut Faults, place: &mut T) {
+    if let Some(value) = get(object, key) {
+        *place = T::from_json(value, faults);
     }
-}
-
-/// Refuses other keys than these.
-#[inline(never)]
-pub fn only(map: &Map<String, Value>, keys: &[&str]) -> Result<(), Mistake> {
-    match map.keys().find(|key| !keys.contains(&key.as_str())) {
-        Some(key) => Err(Mistake(["unknown field `", key, "`"].concat().into())),
-        None => Ok(()),
-    }
-}
-
-/// Reads an object without the tag that says what it is.
-pub fn untagged<T: FromJson>(map: &Map<String, Value>) -> Result<T, Mistake> {
-    T::from_json(&without_tag(map))
-}
-
-#[inline(never)]
-fn without_tag(map: &Map<String, Value>) -> Value {
-    let mut rest = map.clone();
-    rest.remove("type");
-    Value::Object(rest)
 }
 
 impl FromJson for Value {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        Ok(value.clone())
+    fn from_json(value: &Value, _: &mut Faults) -> Self {
+        value.clone()
     }
 }
 
 impl FromJson for String {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        value.as_str().map(str::to_owned).ok_or_else(|| Mistake::new("a text is missing"))
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        value.as_str().map(str::to_owned).unwrap_or_else(|| {
+            faults.note(value, &["a text is missing"]);
+            Self::new()
+        })
     }
 }
 
-impl FromJson for bool {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        value.as_bool().ok_or_else(|| Mistake::new("true or false is missing"))
-    }
+/// Simple values: how they are taken from a value, and what is wrong where they cannot be.
+macro_rules! simple {
+    ($($kind:ty, $take:expr, $wrong:literal;)*) => {$(
+        impl FromJson for $kind {
+            fn from_json(value: &Value, faults: &mut Faults) -> Self {
+                $take(value).unwrap_or_else(|| {
+                    faults.note(value, &[$wrong]);
+                    Self::default()
+                })
+            }
+        }
+    )*};
 }
 
-impl FromJson for f64 {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        value.as_f64().ok_or_else(|| Mistake::new("a number is missing"))
-    }
-}
-
-impl FromJson for i64 {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        value.as_i64().ok_or_else(|| Mistake::new("a whole number is missing"))
-    }
-}
-
-impl FromJson for u64 {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        value.as_u64().ok_or_else(|| Mistake::new("a whole number of at least 0 is missing"))
-    }
+simple! {
+    bool, Value::as_bool, "true or false is missing";
+    f64, Value::as_f64, "a number is missing";
+    i64, Value::as_i64, "a whole number is missing";
+    u64, Value::as_u64, "a whole number of at least 0 is missing";
 }
 
 macro_rules! small_number {
     ($($number:ty),*) => {$(
         impl FromJson for $number {
-            fn from_json(value: &Value) -> Result<Self, Mistake> {
-                let number = u64::from_json(value)?;
-                Self::try_from(number).map_err(|_| Mistake::new("a number is too large"))
+            fn from_json(value: &Value, faults: &mut Faults) -> Self {
+                Self::try_from(u64::from_json(value, faults)).unwrap_or_else(|_| {
+                    faults.note(value, &["a number is too large"]);
+                    0
+                })
             }
         }
     )*};
@@ -165,74 +246,96 @@ macro_rules! small_number {
 small_number!(u8, u32, usize);
 
 impl<T: FromJson> FromJson for Option<T> {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        if value.is_null() { Ok(None) } else { T::from_json(value).map(Some) }
-    }
+    const MAY_BE_MISSING: bool = true;
 
-    fn missing() -> Option<Self> {
-        Some(None)
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        if value.is_null() { None } else { Some(T::from_json(value, faults)) }
     }
 }
 
 impl<T: FromJson> FromJson for Box<T> {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        T::from_json(value).map(Self::new)
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        Self::new(T::from_json(value, faults))
     }
 }
 
 impl<T: FromJson> FromJson for Vec<T> {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         let mut items = Self::new();
-        for item in array(value)? {
-            items.push(T::from_json(item)?);
+        for item in list(value, faults) {
+            items.push(T::from_json(item, faults));
         }
-        Ok(items)
+        items
     }
 }
 
 #[inline(never)]
-fn array(value: &Value) -> Result<&[Value], Mistake> {
-    value.as_array().map(Vec::as_slice).ok_or_else(|| Mistake::new("a list is missing"))
+fn list<'a>(value: &'a Value, faults: &mut Faults) -> &'a [Value] {
+    value.as_array().map(Vec::as_slice).unwrap_or_else(|| {
+        faults.note(value, &["a list is missing"]);
+        &[]
+    })
 }
 
 impl<T: FromJson, const N: usize> FromJson for [T; N] {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        let items = Vec::<T>::from_json(value)?;
-        Self::try_from(items).map_err(|_| Mistake::new("a list has another length"))
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        let items = list(value, faults);
+        if items.len() != N {
+            faults.note(value, &["a list has another length"]);
+        }
+        std::array::from_fn(|index| T::from_json(items.get(index).unwrap_or(&NULL), faults))
     }
 }
 
 impl FromJson for (f64, f64, f64) {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        <[f64; 3]>::from_json(value).map(Self::from)
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        <[f64; 3]>::from_json(value, faults).into()
+    }
+}
+
+/// Hands each key and value of an object on.
+#[inline(never)]
+fn entries(value: &Value, faults: &mut Faults, each: &mut dyn FnMut(&str, &Value, &mut Faults)) {
+    faults.object(value, &[]);
+    for (key, item) in value.as_object().into_iter().flatten() {
+        each(key, item, faults);
     }
 }
 
 impl<T: FromJson> FromJson for BTreeMap<String, T> {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         let mut items = Self::new();
-        for (key, item) in object(value)? {
-            items.insert(key.clone(), T::from_json(item).map_err(|mistake| mistake.below(key))?);
-        }
-        Ok(items)
+        entries(value, faults, &mut |key, item, faults| {
+            items.insert(key.to_owned(), T::from_json(item, faults));
+        });
+        items
     }
 }
 
 impl<T: FromJson> FromJson for SortedMap<String, T> {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        LiteMap::from_json(value, faults).into()
+    }
+}
+
+impl<T: FromJson> FromJson for LiteMap<String, T> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         let mut items = Self::new();
-        for (key, item) in object(value)? {
-            items.insert(key.clone(), T::from_json(item).map_err(|mistake| mistake.below(key))?);
-        }
-        Ok(items)
+        entries(value, faults, &mut |key, item, faults| {
+            items.insert(key.to_owned(), T::from_json(item, faults));
+        });
+        items
     }
 }
 
 /// A word of an enum that serde reads.
-fn listed<T: DeserializeOwned>(value: &Value) -> Result<T, Mistake> {
-    let text = word(Some(value))?;
+fn listed<T: DeserializeOwned>(value: &Value, faults: &mut Faults, first: T) -> T {
+    let text = faults.word(value);
     let reader: StrDeserializer<'_, NoWord> = text.into_deserializer();
-    T::deserialize(reader).map_err(|_| unknown_word(text))
+    T::deserialize(reader).unwrap_or_else(|_| {
+        faults.unknown_word(value, text);
+        first
+    })
 }
 
 /// The error of [`listed`]: the word itself says more.
@@ -258,35 +361,40 @@ impl serde::de::Error for NoWord {
 }
 
 macro_rules! listed_words {
-    ($($name:ty),*) => {$(
+    ($($name:ident $first:ident),*) => {$(
         impl FromJson for $name {
-            fn from_json(value: &Value) -> Result<Self, Mistake> {
-                listed(value)
+            fn from_json(value: &Value, faults: &mut Faults) -> Self {
+                listed(value, faults, Self::$first)
             }
         }
     )*};
 }
 
-listed_words!(Method, LaplacianKind, Association, Unit, Hold, Inference);
+listed_words! {
+    Method Lsts, LaplacianKind Uniform, Association Zones, Unit M, Hold Unmoved, Inference Sparse
+}
 
-/// The solver's own type, which it reads by serde: here by the same keys.
+/// The solver's own type, which it reads by serde: here by the same keys. Of the parameters, pages ask
+/// for alpha alone, a factor; the solver's worker reads them all.
 macro_rules! method_spec {
     ($($field:ident $key:literal)* ; $($many:ident $many_key:literal)*) => {
         impl FromJson for MethodSpec {
-            fn from_json(value: &Value) -> Result<Self, Mistake> {
-                let map = object(value)?;
-                only(map, &[$($key,)* $($many_key,)*])?;
-                Ok(Self {
-                    $($field: required(map, $key)?,)*
-                    $($many: or_else(map, $many_key, Default::default)?,)*
-                })
+            fn from_json(value: &Value, faults: &mut Faults) -> Self {
+                faults.object(value, &["method", "alpha", $($key,)* $($many_key,)*]);
+                let mut spec = MethodSpec::new(required(value, "method", faults));
+                spec.alpha = required(value, "alpha", faults);
+                if !cfg!(target_arch = "wasm32") {
+                    $(spec.$field = required(value, $key, faults);)*
+                    $(spec.$many = or_else(value, $many_key, faults, Default::default);)*
+                }
+                spec
             }
         }
     };
 }
 
 method_spec! {
-    method "method" alpha "alpha" kappa "kappa" k_s "kS" k_b "kB" laplacian "laplacian"
+    kappa "kappa" k_s "kS" k_b "kB" laplacian "laplacian"
     soft_bounds "softBounds" s "s" eps "eps" association "association" sigma "sigma"
     bounds_weight "boundsWeight" unit "unit" stiffness "stiffness" hold "hold"
     inference "inference" basis_vectors "basisVectors" length_scale "lengthScale"
@@ -322,12 +430,12 @@ mod tests {
             json!(["box"]),
         ] {
             let theirs = crate::json_reader::read_value::<MethodSpec>(spec.clone()).ok();
-            assert_eq!(MethodSpec::from_json(&spec).ok(), theirs, "{spec}");
+            assert_eq!(read::<MethodSpec>(&spec).ok(), theirs, "{spec}");
         }
         // Every key that the solver knows is known here.
         for key in crate::method_keys() {
             let spec = json!({ "method": "box", key.clone(): {} });
-            let mistake = MethodSpec::from_json(&spec).err().map(|mistake| mistake.to_string());
+            let mistake = read::<MethodSpec>(&spec).err().map(|mistake| mistake.to_string());
             assert!(!mistake.unwrap_or_default().starts_with("unknown field"), "{key}");
         }
     }

@@ -27,10 +27,7 @@ fn browser(number: f64) -> String {
 }
 
 /// What ECMAScript writes, as Rust writes it: `1.5e-7` is `0.00000015`.
-#[cfg_attr(
-    not(target_arch = "wasm32"),
-    expect(dead_code, reason = "the browser's part, tested natively")
-)]
+#[cfg(any(test, target_arch = "wasm32"))]
 fn plain(text: &str) -> String {
     let (sign, size) = match text.strip_prefix('-') {
         Some(size) => ("-", size),

@@ -41,6 +41,12 @@ impl<K, V> SortedMap<K, V> {
     }
 }
 
+impl<K, V> From<LiteMap<K, V>> for SortedMap<K, V> {
+    fn from(map: LiteMap<K, V>) -> Self {
+        Self(map)
+    }
+}
+
 impl<K, V> Default for SortedMap<K, V> {
     fn default() -> Self {
         Self::new()

@@ -1,7 +1,7 @@
 //! Reading and writing JSON by one way only: text, tree, type. A second way would double the readers
 //! of every type in the module that participants download.
 
-use mimique_study::from_json::{FromJson, Mistake};
+use mimique_study::from_json::{self, FromJson, Mistake};
 use mimique_study::json_text;
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::page;
 
 /// Reads a type from text.
 pub fn read<T: FromJson>(text: &str) -> Result<T, Mistake> {
-    T::from_json(&json_text::read_with(text, number)?)
+    from_json::read(&json_text::read_with(text, number)?)
 }
 
 /// Writes a type.

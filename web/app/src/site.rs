@@ -5,7 +5,7 @@
 
 use std::cell::{OnceCell, RefCell};
 
-use mimique_study::from_json::FromJson;
+use mimique_study::from_json::{self, FromJson};
 use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
@@ -98,7 +98,7 @@ pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
         })
     });
     let started = started.unwrap_or_default();
-    SessionStarted::from_json(&started).map_err(|error| Failure::Unreachable(error.to_string()))
+    from_json::read(&started).map_err(|error| Failure::Unreachable(error.to_string()))
 }
 
 /// The session that this browser is in the middle of.

@@ -152,13 +152,12 @@ impl Turn<'_> {
         }
         let Some(step) = self.step() else { return };
         // What can be taken is taken; what is half written is not an answer.
-        let answers: Answers = shown_questions(step, &self.state)
-            .filter_map(|question| {
-                let value = self.state.record.draft(&question.id)?;
-                question.accept(Some(value)).ok()?;
-                Some((question.id.clone(), value.clone()))
-            })
-            .collect();
+        let mut answers = Answers::new();
+        answers.extend(shown_questions(step, &self.state).filter_map(|question| {
+            let value = self.state.record.draft(&question.id)?;
+            question.accept(Some(value)).ok()?;
+            Some((question.id.clone(), value.clone()))
+        }));
         match step.trial() {
             Some(_) => self.finish_trial(answers, true),
             None => self.finish_page(answers, true),

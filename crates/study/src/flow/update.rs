@@ -249,12 +249,11 @@ impl<'a> Turn<'a> {
             // A break that has not lasted long enough is no mistake either.
             return may_answer;
         }
-        let answers: Answers = shown_questions(step, &self.state)
-            .filter_map(|question| {
-                let value = self.state.record.draft(&question.id)?;
-                Some((question.id.clone(), value.clone()))
-            })
-            .collect();
+        let mut answers = Answers::new();
+        answers.extend(shown_questions(step, &self.state).filter_map(|question| {
+            let value = self.state.record.draft(&question.id)?;
+            Some((question.id.clone(), value.clone()))
+        }));
         match &step.kind {
             StepKind::Trial(_) => self.finish_trial(answers, false),
             StepKind::Device => return self.pass_gate(),

@@ -33,10 +33,9 @@ pub(super) fn subset(
     let circle = circle(number);
     // No product goes beyond count * count: place is below count.
     let start = place as usize * samples % count;
-    let mut chosen: Vec<usize> =
-        (0..samples).map(|step| circle[(start + step) * stride % count]).collect();
-    chosen.sort_unstable();
-    chosen
+    let mut chosen = vec![false; count];
+    (0..samples).for_each(|step| chosen[circle[(start + step) * stride % count]] = true);
+    (0..count).filter(|index| chosen[*index]).collect()
 }
 
 fn greatest_common_divisor(left: usize, right: usize) -> usize {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::{ClipEntry, Study};
-use crate::from_json::{FromJson, Mistake};
+use crate::from_json::{Faults, FromJson};
 use crate::number_text::number_text;
 use crate::sorted_map::SortedMap;
 use crate::tagged;
@@ -42,12 +42,15 @@ impl<'de> Deserialize<'de> for FactorValue {
 }
 
 impl FromJson for FactorValue {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         match (value, value.as_f64()) {
-            (Value::Bool(truth), _) => Ok(Self::Truth(*truth)),
-            (Value::String(text), _) => Ok(Self::Text(text.clone())),
-            (_, Some(number)) => Ok(Self::Number(number)),
-            _ => Err(Mistake::new("a factor is a word, a number, true or false")),
+            (Value::Bool(truth), _) => Self::Truth(*truth),
+            (Value::String(text), _) => Self::Text(text.clone()),
+            (_, Some(number)) => Self::Number(number),
+            _ => {
+                faults.note(value, &["a factor is a word, a number, true or false"]);
+                Self::Truth(false)
+            }
         }
     }
 }

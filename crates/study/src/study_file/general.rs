@@ -79,17 +79,21 @@ pub struct Recruitment {
     /// How many participants the study wants; it takes no more once so many have finished or are
     /// on their way. None: any number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub participants: Option<u64>,
     /// Nobody can begin before: `2026-03-01T08:00:00+01:00`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub opens: Option<String>,
     /// Nobody can begin from then on; who has begun can finish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub closes: Option<String>,
     /// How long a participant's place is kept after the last sign of life, in minutes (60 if not
     /// given). Then the next participant takes it, so that conditions stay balanced over those who
     /// finish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub reservation_minutes: Option<u32>,
 }
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use crate::from_json::{FromJson, Mistake};
+use crate::from_json::{Faults, FromJson};
 use crate::sorted_map::SortedMap;
 use crate::tagged;
 
@@ -28,10 +28,10 @@ impl<'de> Deserialize<'de> for LocalText {
 }
 
 impl FromJson for LocalText {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         match value {
-            Value::String(text) => Ok(Self::Plain(text.clone())),
-            other => SortedMap::from_json(other).map(Self::Languages),
+            Value::String(text) => Self::Plain(text.clone()),
+            other => Self::Languages(SortedMap::from_json(other, faults)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The pictures and signed videos that questions and their options show.
 
 use super::{LocalText, Question, QuestionKind, Study};
+use crate::sorted_map::SortedMap;
 
 /// What the key of such a file in [`crate::wire::Bundle::clips`] begins with: it is served like a film.
 pub const MEDIA_PREFIX: &str = "media:";
@@ -29,21 +30,22 @@ impl Study {
                 LocalText::Languages(paths) => paths.values().map(String::as_str).collect(),
             }
         }
-        let mut paths: Vec<&str> = Vec::new();
+        let mut paths: SortedMap<&str, ()> = SortedMap::new();
+        let mut found = |path| {
+            paths.insert(path, ());
+        };
         for question in self.all_questions() {
             let Question { video, kind, .. } = question;
-            paths.extend(video.iter().flat_map(videos));
+            video.iter().flat_map(videos).for_each(&mut found);
             let rows = match kind {
                 QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
                 _ => &[],
             };
             for choice in kind.options().iter().chain(rows) {
-                paths.extend(choice.video.iter().flat_map(videos));
-                paths.extend(choice.image.as_deref());
+                choice.video.iter().flat_map(videos).for_each(&mut found);
+                choice.image.as_deref().into_iter().for_each(&mut found);
             }
         }
-        paths.sort_unstable();
-        paths.dedup();
-        paths
+        paths.into_keys().collect()
     }
 }

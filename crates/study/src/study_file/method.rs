@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use super::{Factors, LocalText};
-use crate::from_json::{self, FromJson, Mistake};
+use crate::from_json::{self, Faults, FromJson};
 use crate::json_reader::read_value;
 
 /// A method, its parameters, and what the analysis calls it.
@@ -49,18 +49,18 @@ impl MethodEntry {
 }
 
 impl FromJson for MethodEntry {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        let map = from_json::object(value)?;
-        let mut spec = map.clone();
-        for key in ["factors", "label", "training"] {
-            spec.remove(key);
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        faults.besides(&["factors", "label", "training"]);
+        Self {
+            spec: MethodSpec::from_json(value, faults),
+            factors: from_json::or_else(value, "factors", faults, Factors::default),
+            label: from_json::required(value, "label", faults),
+            training: if cfg!(target_arch = "wasm32") {
+                None
+            } else {
+                from_json::required(value, "training", faults)
+            },
         }
-        Ok(Self {
-            spec: MethodSpec::from_json(&Value::Object(spec))?,
-            factors: from_json::or_else(map, "factors", Factors::default)?,
-            label: from_json::required(map, "label")?,
-            training: from_json::required(map, "training")?,
-        })
     }
 }
 

@@ -18,7 +18,7 @@ mod sequence;
 mod stimuli;
 mod tables;
 
-use crate::from_json::FromJson;
+use crate::from_json::{self, FromJson};
 use crate::sorted_map::SortedMap;
 use crate::text::{Words, words};
 use schemars::JsonSchema;
@@ -117,15 +117,19 @@ pub struct Study {
     pub stimuli: Stimuli,
     /// Where answers go when the pages are hosted without the server.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub static_hosting: Option<StaticHosting>,
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[from_json(off_page)]
     pub hypotheses: Vec<Hypothesis>,
     /// Tables of the report in the study's own layout; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[from_json(off_page)]
     pub tables: Vec<TableLayout>,
     /// Rules, fixed beforehand, that leave trials or people out of the analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub exclusions: Option<Exclusions>,
 }
 
@@ -148,7 +152,7 @@ pub enum StudyFileError {
 impl Study {
     /// Reads a study from a JSON value, stopping at the first mistake.
     pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
-        Self::from_json(value).map_err(|error| StudyFileError::Shape(error.to_string()))
+        from_json::read(value).map_err(|error| StudyFileError::Shape(error.to_string()))
     }
 
     /// Reads a study from text: JSON, comments allowed. Stops at the first mistake.

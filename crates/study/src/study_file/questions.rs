@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::LocalText;
-use crate::from_json::{FromJson, Mistake};
+use crate::from_json::{Faults, FromJson};
 use crate::tagged::{self, tagged_by_type};
 
 /// One question.
@@ -72,8 +72,8 @@ impl Common {
 }
 
 impl FromJson for Question {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
-        Ok(Common::from_json(value)?.with(QuestionKind::from_json(value)?))
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
+        Common::from_json(value, faults).with(QuestionKind::from_json(value, faults))
     }
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
-use crate::from_json::{FromJson, Mistake};
+use crate::from_json::{Faults, FromJson};
 use crate::sorted_map::SortedMap;
 use crate::tagged::{self, tagged_by_type};
 
@@ -209,10 +209,10 @@ pub enum SequenceItem {
 }
 
 impl FromJson for SequenceItem {
-    fn from_json(value: &Value) -> Result<Self, Mistake> {
+    fn from_json(value: &Value, faults: &mut Faults) -> Self {
         match value {
-            Value::String(name) => Ok(Self::Component(name.clone())),
-            other => Box::from_json(other).map(Self::Sequence),
+            Value::String(name) => Self::Component(name.clone()),
+            other => Self::Sequence(Box::from_json(other, faults)),
         }
     }
 }

@@ -19,6 +19,7 @@ pub struct Stimuli {
     /// Heads, by identifier.
     pub avatars: SortedMap<String, Avatar>,
     /// Recorded or built-in performances, by identifier.
+    #[from_json(off_page)]
     pub captures: SortedMap<String, Capture>,
     /// Cuts of the captures.
     pub segments: Vec<Segment>,
@@ -38,19 +39,24 @@ pub struct Stimuli {
 pub struct Avatar {
     /// A person of the built-in head.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub builtin: Option<BuiltinAvatar>,
     /// A GLB file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub file: Option<String>,
     /// Films of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
     /// with the method `recorded`.
     #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    #[from_json(off_page)]
     pub videos: SortedMap<String, String>,
     /// How a head is drawn.
     #[serde(default, skip_serializing_if = "AvatarLook::is_stimulus")]
+    #[from_json(off_page)]
     pub look: AvatarLook,
     /// Symmetric shapes to cut into `NAME_L` and `NAME_R` along the face's middle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[from_json(off_page)]
     pub split: Vec<String>,
     /// Factors of the clips shown with it.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
