@@ -263,6 +263,14 @@ fn put(text: &mut String, value: &Value) {
     }
 }
 
+/// An object of these keys and values. Where `json!` would do, this is for the participant's page: the
+/// macro brings the errors of writers along.
+pub fn object<const N: usize>(pairs: [(&str, Value); N]) -> Value {
+    let mut map = Map::new();
+    pairs.into_iter().for_each(|(key, value)| drop(map.insert(key.to_owned(), value)));
+    Value::Object(map)
+}
+
 /// A number as JSON: the shortest digits that are read as the same number; 1.0 keeps its point.
 fn number_text(number: &Number) -> String {
     if let Some(whole) = number.as_u64() {

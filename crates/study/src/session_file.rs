@@ -8,7 +8,7 @@
 //! ```
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use crate::json_text;
@@ -60,8 +60,11 @@ pub enum SessionFileError {
 impl SessionFile {
     /// The file, and the SHA-256 of all its lines but the last, which serves as the receipt.
     pub fn write(&self) -> (String, String) {
-        let head =
-            json!({ "mimique_session": VERSION, "study": self.study, "started": self.started });
+        let head = json_text::object([
+            ("mimique_session", VERSION.into()),
+            ("study", self.study.as_str().into()),
+            ("started", serde_json::to_value(&self.started).unwrap_or_default()),
+        ]);
         let mut text = json_text::write(&head);
         text.push('\n');
         for event in &self.events {
@@ -69,7 +72,10 @@ impl SessionFile {
             text.push('\n');
         }
         let hash = sha256(&text);
-        let end = json!({ "events": self.events.len(), "sha256": hash });
+        let end = json_text::object([
+            ("events", self.events.len().into()),
+            ("sha256", hash.as_str().into()),
+        ]);
         text.push_str(&json_text::write(&end));
         text.push('\n');
         (text, hash)
@@ -126,6 +132,8 @@ fn sha256(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     fn file() -> SessionFile {

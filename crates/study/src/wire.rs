@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::from_json::FromJson;
+use crate::json_text;
 use crate::sorted_map::SortedMap;
 
 /// One study on this server.
@@ -150,7 +151,11 @@ pub struct Event {
 impl Event {
     /// As JSON.
     pub fn to_value(&self) -> Value {
-        serde_json::json!({ "sequence": self.sequence, "at_ms": self.at_ms, "body": self.body })
+        json_text::object([
+            ("sequence", self.sequence.into()),
+            ("at_ms", self.at_ms.into()),
+            ("body", self.body.clone()),
+        ])
     }
 }
 

@@ -37,3 +37,7 @@ mod screen;
 mod site;
 #[cfg(target_arch = "wasm32")]
 mod start;
+
+#[cfg(target_arch = "wasm32")]
+#[global_allocator]
+static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();

@@ -10,8 +10,7 @@ use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
 };
-use mimique_study::{SessionFile, SortedMap, StaticHosting};
-use serde_json::json;
+use mimique_study::{SessionFile, SortedMap, StaticHosting, json_text};
 
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
@@ -85,16 +84,16 @@ pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
     };
     let started = FILE.with(|file| {
         file.borrow().as_ref().map(|site| {
-            json!({
-                "session": nonce,
-                "participant_id": format!("s{name}"),
+            json_text::object([
+                ("session", nonce.as_str().into()),
+                ("participant_id", ["s", name].concat().into()),
                 // Nobody counts here: the place in squares and subsets is drawn.
-                "participant": number,
-                "seed": site.seed,
-                "stage": site.stage,
-                "config_hash": site.bundle.config_hash,
-                "withdrawal_code": code,
-            })
+                ("participant", number.into()),
+                ("seed", site.seed.into()),
+                ("stage", site.stage.as_str().into()),
+                ("config_hash", site.bundle.config_hash.as_str().into()),
+                ("withdrawal_code", code.into()),
+            ])
         })
     });
     let started = started.unwrap_or_default();

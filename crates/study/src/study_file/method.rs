@@ -41,10 +41,7 @@ pub struct MethodTraining {
 impl MethodEntry {
     /// The word of the method: `lsts-norm`.
     pub fn word(&self) -> String {
-        match serde_json::to_value(self.spec.method) {
-            Ok(Value::String(word)) => word,
-            _ => String::new(),
-        }
+        self.spec.method.name().to_owned()
     }
 }
 

@@ -1,7 +1,7 @@
 //! One of several, or any of several.
 
 use mimique_study::flow::ChoiceView;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::Answering;
 use super::media::{picture, signed_video};
@@ -13,7 +13,7 @@ pub fn single(answering: &Answering, options: &[ChoiceView]) -> Vec<Element> {
         let (give, value) = (answering.give.clone(), option.value.clone());
         let field = answering
             .radio("choice", &option.value, answering.is(&option.value))
-            .on("change", move |_| give.give(json!(value)));
+            .on("change", move |_| give.give(Value::from(value.as_str())));
         tile(field, option)
     });
     vec![el("div", "choices").all(tiles.collect())]
@@ -42,8 +42,8 @@ pub fn multiple(
                     true => given.checked,
                     false => chosen.contains(value),
                 };
-                let now: Vec<&String> = order.iter().filter(is_on).collect();
-                give.give(if now.is_empty() { Value::Null } else { json!(now) });
+                let now: Vec<String> = order.iter().filter(is_on).cloned().collect();
+                give.give(if now.is_empty() { Value::Null } else { Value::from(now) });
             });
         tile(field, option)
     });

@@ -1,7 +1,7 @@
 //! A number or a text that is typed. The answer is given when the field is left, not at every key.
 
 use mimique_study::{json_text, number_text};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::{Answering, plain};
 use crate::dom::{Element, el, words};
@@ -34,7 +34,7 @@ pub fn number(
                 ("", _) => Value::Null,
                 (_, Some(number)) => plain(number),
                 // The flow says what is wrong with it.
-                (other, None) => json!(other),
+                (other, None) => Value::from(other),
             });
         });
     let unit = unit.map(|unit| words("span", "soft", unit));
@@ -53,7 +53,7 @@ pub fn text(answering: &Answering, long: bool, max_length: usize) -> Vec<Element
         .set(".value", answering.value().and_then(Value::as_str).unwrap_or_default())
         .on("change", move |given| {
             let empty = given.value.trim().is_empty();
-            give.give(if empty { Value::Null } else { json!(given.value) });
+            give.give(if empty { Value::Null } else { Value::from(given.value) });
         });
     vec![field]
 }

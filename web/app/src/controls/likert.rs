@@ -1,6 +1,6 @@
 //! A rating scale: equal steps, coded as shown. Digits answer it when it has the focus.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::{Answering, ends};
 use crate::dom::{Element, el, words};
@@ -32,7 +32,7 @@ pub fn likert(
         let field = answering
             .radio("point", &shown, answer == Some(number))
             .set("aria-label", &spoken)
-            .on("change", move |_| give.give(json!(number)));
+            .on("change", move |_| give.give(Value::from(number)));
         let label = (!label.is_empty())
             .then(|| words("span", "label", label).key("label").set("aria-hidden", "true"));
         el("label", "point")
@@ -49,7 +49,7 @@ pub fn likert(
         .on("keydown", move |given| {
             let digit = given.value.parse::<i64>().ok();
             if let Some(digit) = digit.filter(|digit| values.contains(digit)) {
-                give.give(json!(digit));
+                give.give(Value::from(digit));
                 // The arrows go on from the point that was chosen.
                 page::focus(&format!("input[name='{group}'][value='{digit}']"));
             }

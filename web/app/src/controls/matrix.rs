@@ -1,7 +1,7 @@
 //! One choice in each of several rows; on a narrow screen the rows stand below each other.
 
 use mimique_study::flow::ChoiceView;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use super::Answering;
 use super::choice::{tile, video_of};
@@ -19,7 +19,7 @@ pub fn matrix(answering: &Answering, rows: &[ChoiceView], options: &[ChoiceView]
                 .radio(&row.value, &option.value, chosen == Some(option.value.as_str()))
                 .on("change", move |_| {
                     let mut now = rows_of(give.now().as_ref());
-                    now.insert(in_row.clone(), json!(value));
+                    now.insert(in_row.clone(), Value::from(value.as_str()));
                     give.give(Value::Object(now));
                 });
             tile(field, option)

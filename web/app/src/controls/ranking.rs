@@ -4,7 +4,7 @@
 use std::rc::Rc;
 
 use mimique_study::flow::ChoiceView;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::Answering;
 use super::choice::{label, texts, video_of};
@@ -30,7 +30,7 @@ pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -
                 if at < now.len() && with < now.len() {
                     now.swap(at, with);
                 }
-                give.give(json!(now));
+                give.give(Value::from(now));
             })
     };
     let places = order.iter().enumerate().map(|(at, value)| {
@@ -51,7 +51,7 @@ pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -
         .set("type", "button")
         .set("data-action", "confirm-order")
         .set("aria-pressed", if answering.value().is_some() { "true" } else { "false" })
-        .on("click", move |_| give.give(json!(order_of(give.now().as_ref(), &initial))));
+        .on("click", move |_| give.give(Value::from(order_of(give.now().as_ref(), &initial))));
     vec![list, confirm]
 }
 
