@@ -62,7 +62,10 @@ pub(crate) fn write<S: Serializer>(
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     use serde::ser::Error as _;
-    inside_from_outside(outside.map_err(S::Error::custom)?).serialize(serializer)
+    // What a `Value` cannot hold (a map whose keys are no texts) no type here has. The error's own words
+    // would bring those of every error of reading and of files into the page.
+    let outside = outside.map_err(|_| S::Error::custom("a value that is no JSON"))?;
+    inside_from_outside(outside).serialize(serializer)
 }
 
 /// Reads and writes an enum with its tag inside. The enum derives both with
