@@ -1,5 +1,5 @@
 // The solver's worker: packs in, weights out. Speaks with stage-host.js:
-//   in   {id, operators: Uint8Array, take: Uint8Array, method: string (JSON)}
+//   in   {id, operators: Uint8Array, take: Uint8Array, method: object (a MethodSpec)}
 //   out  {id, weights: Float32Array (frames x shapes), frames, shapes, rate_hz, weights_hash, report, solve_ms}
 //   or   {id, error: string}
 import init, { solve } from "./solver.js";

@@ -104,7 +104,7 @@ async function prepare(clipId, source, onProgress) {
   loadAhead();
   report(0.9);
   const [solved, pictures] = await Promise.all([
-    solve(operators, take, JSON.stringify(source.method)),
+    solve(operators, take, source.method),
     picturesOf(avatar),
   ]);
   const clip = {
@@ -122,7 +122,7 @@ async function prepare(clipId, source, onProgress) {
     weights_hash: solved.weights_hash,
     provenance: source.provenance,
     solve_ms: solved.solve_ms,
-    report: parsed(solved.report),
+    report: solved.report,
     warnings: [],
   };
   clip.warnings = warnings(clip, source);
@@ -151,15 +151,6 @@ function warnings(clip, source) {
 
 function summary({ clip, frames, rate_hz, duration_ms, weights_hash, solve_ms, warnings }) {
   return { clip, frames, rate_hz, duration_ms, weights_hash, solve_ms, warnings: [...warnings] };
-}
-
-function parsed(report) {
-  if (typeof report !== "string") return report ?? null;
-  try {
-    return JSON.parse(report);
-  } catch {
-    return null;
-  }
 }
 
 function solve(operators, take, method) {

@@ -34,7 +34,7 @@ try {
     const bytes = async (name) => new Uint8Array(await (await fetch(`/problem/${name}`)).arrayBuffer());
     const operators = await bytes("operators.mmop");
     const takes = await Promise.all(Array.from({ length: 54 }, (_, clip) => bytes(`clip${clip}.mmtk`)));
-    const method = await (await fetch("/problem/lsts.json")).text();
+    const method = await (await fetch("/problem/lsts.json")).json();
     const worker = new Worker("/solver-worker.js", { type: "module" });
     const solve = (id, take) =>
       new Promise((done, fail) => {

@@ -17,7 +17,7 @@ for (const clip of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) 
   const bytes = (name) => new Uint8Array(readFileSync(join(cases, name)));
   const [operators, take] = [bytes(clip.operators), bytes(clip.take)];
   const start = performance.now();
-  const solved = solver.solve(operators, take, JSON.stringify(clip.method));
+  const solved = solver.solve(operators, take, clip.method);
   const milliseconds = performance.now() - start;
   const weights = solved.weights();
   const right =
@@ -34,7 +34,7 @@ for (const clip of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) 
 // What is damaged is an Error with a message, not a trap.
 for (const wrong of [new Uint8Array(0), new Uint8Array([77, 77, 79, 80, 9, 9, 9, 9, 9, 9, 9, 9])]) {
   try {
-    solver.solve(wrong, wrong, '{"method":"lsts"}');
+    solver.solve(wrong, wrong, { method: "lsts" });
     console.log("DIFFERENT: a damaged pack was solved");
     failed += 1;
   } catch (error) {

@@ -14,9 +14,9 @@ const bytes = (name) => new Uint8Array(readFileSync(join(folder, name)));
 const [operators, take] = [bytes("operators.mmop"), bytes("take.mmtk")];
 
 function solve(method) {
-  const text = readFileSync(join(folder, `${method}.json`), "utf8");
+  const spec = JSON.parse(readFileSync(join(folder, `${method}.json`), "utf8"));
   const before = process.cpuUsage();
-  const solved = solver.solve(operators, take, text);
+  const solved = solver.solve(operators, take, spec);
   const { user, system } = process.cpuUsage(before);
   const answer = { units: solved.frames(), seconds: (user + system) / 1e6, hash: solved.weights_hash() };
   solved.free();

@@ -32,7 +32,7 @@ const BUDGETS: [Budget; 4] = [
             "app.js",
             "app_bg.wasm",
         ],
-        kilobytes: 240.0,
+        kilobytes: 150.0,
         target: 150.0,
     },
     Budget {

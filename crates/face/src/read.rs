@@ -200,7 +200,7 @@ const FARTHEST: f32 = 1000.0;
 
 /// Refuses positions and displacements that no avatar has.
 fn within_reach(avatar: &Avatar) -> Result<(), ReadError> {
-    let beyond = |v: &[f32; 3]| v.iter().any(|x| !(x.abs() <= FARTHEST));
+    let beyond = |v: &[f32; 3]| v.iter().any(|x| x.is_nan() || x.abs() > FARTHEST);
     let refused = |mesh: &Mesh, what: String, v: &[f32; 3]| {
         let length = v.iter().fold(0f32, |most, x| most.max(x.abs()));
         ReadError::broken(

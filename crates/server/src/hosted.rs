@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use mimique_study::wire::{Bundle, ClipSource, StudySummary};
-use mimique_study::{Study, StudyFileError, config_hash};
+use mimique_study::{SortedMap, Study, StudyFileError, config_hash};
 use serde_json::Value;
 
 use crate::export::Version;
@@ -65,7 +65,7 @@ impl HostedStudy {
             study_id: study.id.clone(),
             config_hash: config_hash(&file),
             study: without_secrets(file.clone()),
-            clips,
+            clips: clips.into_iter().collect(),
         };
         Self { study, stage, file, bundle }
     }
@@ -126,7 +126,7 @@ impl HostedStudy {
     /// longer than any platform's identifier are cut off.
     pub(crate) fn kept_parameters(
         &self,
-        given: BTreeMap<String, String>,
+        given: SortedMap<String, String>,
     ) -> BTreeMap<String, String> {
         const LONGEST: usize = 200;
         given

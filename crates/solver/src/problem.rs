@@ -263,7 +263,7 @@ fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitEr
         let linking = match o.linking {
             None => "none".to_owned(),
             Some(Linking::Zones { sigma }) => format!("zones of {sigma} m"),
-            Some(other) => format!("{other:?}").to_lowercase(),
+            Some(other) => format!("{other:?}").to_ascii_lowercase(),
         };
         format!("laplacian {:?}, kS {}, kB {}, association {linking}", o.laplacian, o.k_s, o.k_b)
     };

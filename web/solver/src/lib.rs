@@ -1,7 +1,7 @@
 //! The solver's worker: operators and a take in, weights out.
 //!
 //! ```js
-//! const solved = solve(operators, take, JSON.stringify(clip.method));
+//! const solved = solve(operators, take, clip.method);
 //! solved.weights();       // Float32Array, frames x shapes
 //! solved.weights_hash();  // compare with clip.weights_hash
 //! ```
@@ -10,7 +10,8 @@
 //! weights have the same bits; they leave here in single precision, which is what is drawn.
 
 use mimique_solver::MethodSpec;
-use mimique_stimulus::{SolvedTake, solve_packs};
+use mimique_stimulus::{FrameStatistics, SolvedTake, solve_packs};
+use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 /// The weights of one clip.
@@ -20,17 +21,27 @@ pub struct Solved {
     take: SolvedTake,
 }
 
-/// Solves the take pack with the operators pack; `method_json` is a `MethodSpec`.
+/// Solves the take pack with the operators pack; `method` is a `MethodSpec`, as the object that its JSON
+/// is. It is the browser that reads and writes JSON here: our own way would be a fifth of the module.
 ///
 /// # Errors
 /// Throws an `Error` whose message says place, what and remedy: a damaged pack, packs that do not
 /// belong together, a method that does not solve with these operators.
 #[wasm_bindgen]
-pub fn solve(operators: &[u8], take: &[u8], method_json: &str) -> Result<Solved, JsError> {
-    let spec: MethodSpec =
-        serde_json::from_str(method_json).map_err(|e| JsError::new(&format!("method: {e}")))?;
+pub fn solve(operators: &[u8], take: &[u8], method: JsValue) -> Result<Solved, JsError> {
+    let spec: MethodSpec = serde_wasm_bindgen::from_value(method)
+        .map_err(|e| JsError::new(&format!("method: {e}")))?;
     let take = solve_packs(operators, take, &spec)?;
     Ok(Solved { take })
+}
+
+/// What the worker says of a clip besides its weights.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Report<'a> {
+    shape_names: &'a [String],
+    statistics: &'a Option<FrameStatistics>,
+    warnings: &'a [String],
 }
 
 #[wasm_bindgen]
@@ -60,13 +71,16 @@ impl Solved {
         self.take.weights_hash.clone()
     }
 
-    /// JSON: `{"shapeNames": [...], "statistics": {...} or null, "warnings": [...]}`.
-    pub fn report(&self) -> String {
-        serde_json::json!({
-            "shapeNames": self.take.shape_names,
-            "statistics": self.take.statistics,
-            "warnings": self.take.warnings,
-        })
-        .to_string()
+    /// `{"shapeNames": [...], "statistics": {...} or null, "warnings": [...]}`.
+    ///
+    /// # Errors
+    /// None that is known: everything in it is numbers and texts.
+    pub fn report(&self) -> Result<JsValue, JsError> {
+        let report = Report {
+            shape_names: &self.take.shape_names,
+            statistics: &self.take.statistics,
+            warnings: &self.take.warnings,
+        };
+        Ok(report.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
     }
 }

@@ -125,8 +125,8 @@ mod tests {
         .unwrap();
         assert_eq!(spec.sigma, Some(0.012));
         assert_eq!(spec.locked, ["jawOpen", "jawLeft"]);
-        assert_eq!(spec.bounds["jawRight"], [-1.0, 1.0]);
-        assert_eq!(spec.importance["M03"], 0.5);
+        assert_eq!(spec.bounds.get("jawRight"), Some(&[-1.0, 1.0]));
+        assert_eq!(spec.importance.get("M03"), Some(&0.5));
         assert_eq!(spec.head_lowpass_hz, Some(10.0));
     }
 
