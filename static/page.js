@@ -49,9 +49,13 @@ export function dialog(open) {
   if (found?.open !== open) open ? found?.showModal() : found?.close();
 }
 
+/** Languages written from right to left, by their ISO 639 codes. */
+const RIGHT_TO_LEFT = /^(ar|arc|ckb|dv|fa|he|iw|ks|ku-arab|nqo|ps|sd|syr|ug|ur|yi)(-|_|$)/i;
+
 /** Language and title of the document. */
 export function describe(language, title) {
   document.documentElement.lang = language;
+  document.documentElement.dir = RIGHT_TO_LEFT.test(language) ? "rtl" : "ltr";
   if (title) document.title = title;
 }
 

@@ -10,7 +10,7 @@ import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { film } from "./lib/film.mjs";
 import { go, leave, phase, place } from "./lib/participant.mjs";
-import { serve } from "./lib/server.mjs";
+import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -107,3 +107,51 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
     }
   });
 }
+
+/** The study with every text in this language as well: the English words. */
+function alsoIn(language, study) {
+  const copy = structuredClone(study);
+  const walk = (part) => {
+    if (part === null || typeof part !== "object") return;
+    if (typeof part.en === "string") part[language] = part.en;
+    Object.values(part).forEach(walk);
+  };
+  walk(copy);
+  const { translations } = JSON.parse(mimique(["check", "--words", language]));
+  return { ...copy, languages: ["en", "fr", language], translations };
+}
+
+test("access: a language written from right to left, 320 px", { skip: unable, timeout: 300_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
+  const simple = questions.filter(({ id }) => id !== "single");
+  writeFileSync(join(folder, "access.json"), JSON.stringify(alsoIn("he", { ...study, demographics: { title: text("About you"), questions: simple } })));
+  const browser = await open("webgl2", { viewport: { width: 320, height: 900 }, locale: "he-IL" });
+  const server = await serve([join(folder, "access.json")]);
+  const { page } = browser;
+  const { look } = looker(page, screenshotFolder("access-rtl"));
+  const direction = (selector) => page.locator(selector).first().evaluate((element) => getComputedStyle(element).direction);
+  try {
+    await page.goto(`${server.url}/s/access/?backend=webgl2`);
+    await page.waitForSelector('main[data-view="consent"]', { timeout: 30_000 });
+    assert.deepEqual(await page.evaluate(() => [document.documentElement.lang, document.documentElement.dir]), ["he", "rtl"]);
+    await look("consent");
+    let here = await place(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.equal(here.view, "questions");
+    assert.equal(await direction("fieldset"), "rtl");
+    assert.equal(await direction(".affect"), "ltr", "valence grows to the right");
+    await answerAll(page);
+    await look("questions");
+    while (here.view !== "trial") {
+      await go(page, "mouse");
+      here = await leave(page, here, 60_000);
+    }
+    assert.equal(await direction(".stage-frame"), "ltr", "the left clip stands left");
+    await look("trial");
+    assert.deepEqual(browser.errors, [], "the console is clean");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});

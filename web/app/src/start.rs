@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use mimique_study::flow::{Input, Plan, State};
-use mimique_study::text::{Words, words};
+use mimique_study::text::{Words, primary_language, words};
 use mimique_study::wire::{Event, SessionStarted, StartSession};
 use mimique_study::{Client, SortedMap, Study};
 use wasm_bindgen::JsCast as _;
@@ -63,7 +63,7 @@ async fn begin(fixed: &mut Words) -> Result<Rc<Engine>, Trouble> {
         Study::from_value(&bundle.study).map_err(|error| Trouble::Unreadable(error.to_string()))?;
     let language = wanted
         .iter()
-        .find(|each| study.language_for(each).split('-').next() == each.split('-').next())
+        .find(|each| primary_language(study.language_for(each)) == primary_language(each))
         .map_or_else(
             || study.default_language().to_owned(),
             |each| study.language_for(each).to_owned(),

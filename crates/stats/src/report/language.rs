@@ -1,5 +1,7 @@
 //! The language of a report.
 
+use mimique_study::text::primary_language;
+
 /// English or French.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Language {
@@ -13,7 +15,7 @@ pub enum Language {
 impl Language {
     /// From a code such as `fr` or `en-GB`; none for a language that no report is written in.
     pub fn from_code(code: &str) -> Option<Self> {
-        match code.split(['-', '_']).next().unwrap_or(code).to_ascii_lowercase().as_str() {
+        match primary_language(code).to_ascii_lowercase().as_str() {
             "en" => Some(Self::English),
             "fr" => Some(Self::French),
             _ => None,

@@ -20,7 +20,7 @@ mod tables;
 
 use crate::from_json::{self, FromJson};
 use crate::sorted_map::SortedMap;
-use crate::text::{Words, words};
+use crate::text::{Words, primary_language, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -175,7 +175,7 @@ impl Study {
 
     /// The language that a participant gets who asks for `wanted` (`fr-CA` gets `fr`).
     pub fn language_for(&self, wanted: &str) -> &str {
-        let short = wanted.split(['-', '_']).next().unwrap_or(wanted);
+        let short = primary_language(wanted);
         self.languages
             .iter()
             .find(|known| known.eq_ignore_ascii_case(wanted))

@@ -32,7 +32,12 @@ pub fn words(language: &str) -> &'static Words {
         Words { language: Cow::Borrowed("en"), own: SortedMap::new(), built_in: &ENGLISH };
     static FRENCH_WORDS: Words =
         Words { language: Cow::Borrowed("fr"), own: SortedMap::new(), built_in: &FRENCH };
-    if language.split(['-', '_']).next() == Some("fr") { &FRENCH_WORDS } else { &ENGLISH_WORDS }
+    if primary_language(language) == "fr" { &FRENCH_WORDS } else { &ENGLISH_WORDS }
+}
+
+/// The language that a code begins with: `fr` of `fr-BE` (BCP 47, 2.2.1) and of `fr_BE`.
+pub fn primary_language(code: &str) -> &str {
+    code.split(['-', '_']).next().unwrap_or(code)
 }
 
 impl Words {

@@ -1,7 +1,7 @@
 //! Translations of the fixed texts: what a study file brings for a language.
 
 use super::table::{ENGLISH, NAMES};
-use super::words;
+use super::{primary_language, words};
 use crate::sorted_map::SortedMap;
 
 /// What is wrong with a translation.
@@ -38,7 +38,7 @@ pub fn faults(language: &str, texts: &SortedMap<String, String>) -> Vec<Fault> {
     }
     let missing = NAMES.iter().copied().filter(|name| !texts.contains_key(*name));
     let missing: Vec<&str> = missing.collect();
-    let complete = words(language).language() == language.split(['-', '_']).next().unwrap_or("");
+    let complete = words(language).language() == primary_language(language);
     if !missing.is_empty() && !complete {
         faults.push(Fault::Missing(missing));
     }

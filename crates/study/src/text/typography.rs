@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use super::primary_language;
+
 /// French marks that stand after a space, and its quotation marks.
 const FRENCH: [(&str, &str); 6] = [
     (" ?", "\u{a0}?"),
@@ -16,7 +18,7 @@ const FRENCH: [(&str, &str); 6] = [
 /// a question mark, though keyboards write an ordinary space before it.
 pub fn typeset<'a>(language: &str, text: &'a str) -> Cow<'a, str> {
     let mut text = Cow::Borrowed(text);
-    if language.split(['-', '_']).next() != Some("fr") {
+    if primary_language(language) != "fr" {
         return text;
     }
     for (written, set) in FRENCH {
