@@ -57,6 +57,7 @@ mod marker_site;
 mod mask;
 mod method;
 mod method_spec;
+mod named_values;
 mod newton;
 mod objective;
 mod operators;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::linked::Linking;
 use crate::method::Method;
+use crate::named_values;
 
 /// The weights of the discrete Laplacian (thesis 5.1.2).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -156,12 +157,12 @@ pub struct MethodSpec {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<String>,
     /// Importance of markers, by label; a marker that is not named has 1.
-    #[serde(default, skip_serializing_if = "LiteMap::is_empty")]
+    #[serde(default, skip_serializing_if = "LiteMap::is_empty", with = "named_values")]
     pub importance: LiteMap<String, f64>,
     /// Bounds of single shapes, by name, instead of 0 and 1 (`lsts`, `box`, `kouadio`,
     /// `regression`) or of
     /// `softBounds` (the methods with soft bounds).
-    #[serde(default, skip_serializing_if = "LiteMap::is_empty")]
+    #[serde(default, skip_serializing_if = "LiteMap::is_empty", with = "named_values")]
     pub bounds: LiteMap<String, [f64; 2]>,
     /// Cut-off of the zero-phase low-pass of the head's pose, Hz; absent or 0 = no filter.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -427,6 +427,9 @@ mod tests {
             json!({ "method": "box", "softBounds": [1] }),
             json!({ "method": "box", "basisVectors": -1 }),
             json!({ "method": "box", "locked": null }),
+            json!({ "method": "box", "importance": {} }),
+            json!({ "method": "box", "importance": [] }),
+            json!({ "method": "box", "bounds": [["b", [0, 2]]] }),
             json!(["box"]),
         ] {
             let theirs = crate::json_reader::read_value::<MethodSpec>(spec.clone()).ok();

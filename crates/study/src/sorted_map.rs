@@ -10,13 +10,11 @@ use std::ops::{Deref, DerefMut, Index};
 
 use litemap::LiteMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A map of few entries, in the order of their keys; it is searched by halves, and an insertion moves
 /// what is behind it. As JSON it is an object.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(transparent)]
-#[serde(bound(deserialize = "K: Ord + Deserialize<'de>, V: Deserialize<'de>"))]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SortedMap<K, V>(LiteMap<K, V>);
 
 impl<K, V> SortedMap<K, V> {
@@ -38,6 +36,19 @@ impl<K, V> SortedMap<K, V> {
     /// The keys, taken.
     pub fn into_keys(self) -> impl Iterator<Item = K> {
         self.0.into_tuple_vec().into_iter().map(|(key, _)| key)
+    }
+}
+
+// Not `LiteMap`'s own way, which writes an empty map as a list.
+impl<K: Serialize, V: Serialize> Serialize for SortedMap<K, V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self)
+    }
+}
+
+impl<'de, K: Ord + Deserialize<'de>, V: Deserialize<'de>> Deserialize<'de> for SortedMap<K, V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        BTreeMap::deserialize(deserializer).map(|map| map.into_iter().collect())
     }
 }
 
