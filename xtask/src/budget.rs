@@ -32,7 +32,8 @@ const BUDGETS: [Budget; 4] = [
             "app.js",
             "app_bg.wasm",
         ],
-        kilobytes: 150.0,
+        // It weighs 149.95; the paths of the sources, which depend on the machine, are part of it.
+        kilobytes: 151.0,
         target: 150.0,
     },
     Budget {
@@ -50,7 +51,7 @@ const BUDGETS: [Budget; 4] = [
             "solver.js",
             "solver_bg.wasm",
         ],
-        kilobytes: 132.0,
+        kilobytes: 127.0,
         target: 100.0,
     },
     Budget {
