@@ -51,7 +51,7 @@ const BUDGETS: [Budget; 4] = [
             "solver.js",
             "solver_bg.wasm",
         ],
-        kilobytes: 127.0,
+        kilobytes: 130.0,
         target: 100.0,
     },
     Budget {
