@@ -6,6 +6,9 @@ import { refreshPeriod } from "./stage-clock.js";
 import { Film } from "./stage-film.js";
 import { Playback } from "./stage-playback.js";
 
+// Modules, scripts and shaders are served under the hash of all of them.
+const renderer = /\/assets\/([0-9a-f]+)\//.exec(import.meta.url)?.[1] ?? "";
+
 export { backend, prepareClip, preparedClip, putClip };
 
 /// A stage on a canvas. `look`: {background: "#rrggbb", width, height (CSS pixels), variant:
@@ -91,6 +94,7 @@ class Stage {
     const parts = [{ stage: this, clip }];
     if (beside) parts.push({ stage: beside.stage, clip: preparedClip(beside.clipId) });
     if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
+    const shown = parts.map((part) => part.clip);
     const playback = new Playback(parts.map(({ stage, clip }) => stage.#part(clip)));
     for (const { stage } of parts) stage.#playback = playback;
     try {
@@ -99,10 +103,10 @@ class Stage {
       if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
-      return this.#log(clip, log);
+      return this.#log(shown, log);
     } catch (error) {
       for (const { stage } of parts) stage.#fail(error.message);
-      return this.#log(clip, playback.log(error.message));
+      return this.#log(shown, playback.log(error.message));
     } finally {
       for (const { stage, clip } of parts) {
         stage.#playback = null;
@@ -246,7 +250,7 @@ class Stage {
     return this.#gpu.draw(clip.avatarHash, this.#weights, yaw, pitch, zoom);
   }
 
-  #log(clip, { failure, ...log }) {
+  #log([clip, beside], { failure, ...log }) {
     const css = this.#canvas.getBoundingClientRect();
     return {
       backend: this.#backend,
@@ -255,6 +259,9 @@ class Stage {
       height: css.height,
       device_pixel_ratio: globalThis.devicePixelRatio || 1,
       weights_hash: clip.weights_hash,
+      provenance: clip.provenance,
+      beside_provenance: beside?.provenance ?? "",
+      renderer,
     };
   }
 }

@@ -117,7 +117,8 @@ function compare(server, { backend }, given, bundle) {
     assert.ok(["lsts", "box"].includes(row.method), row.method);
     assert.ok(Number(row.frames) > 1, "frames are logged");
     assert.ok(Number(row.rt) > 0, "response time from the frame shown");
-    assert.match(row.provenance, /^[0-9a-f]{64}$/);
+    assert.equal(row.provenance, bundle.clips[row.stimulus].provenance, "of the clip as it was shown");
+    assert.match(row.renderer, /^[0-9a-f]{16,64}$/);
     assert.equal(row.weights_hash, bundle.clips[row.stimulus].weights_hash, "the browser solved the server's bits");
     if (row.response_id === "emotion") {
       assert.equal(row.correct, String(row.answer === row.expression));

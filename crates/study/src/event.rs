@@ -265,6 +265,12 @@ pub struct PlayLog {
     pub device_pixel_ratio: f64,
     /// SHA-256 of the weights as the browser solved them, hexadecimal.
     pub weights_hash: String,
+    /// Provenance of the clip that was shown, as the page had it; empty in logs of earlier versions.
+    pub provenance: String,
+    /// Side by side: that of the other clip.
+    pub beside_provenance: String,
+    /// What drew it: the hash in the address of the page's modules and shaders.
+    pub renderer: String,
     /// Side by side: the largest time between what the two clips showed in one frame, milliseconds.
     pub drift_ms: f64,
     /// Why the play ended early; null for a whole play.

@@ -104,6 +104,39 @@ fn tidy_rows_are_the_answers_given_with_their_factors() {
 }
 
 #[test]
+fn the_provenance_is_that_of_the_clip_as_it_was_shown() {
+    let mut page = Page::open(&study_text("demo.json"), 1);
+    while page.act(&mut first_answer) {}
+    // As the server's table of clips is after its stimuli have changed under the same study file.
+    let served = sources(&page.plan.study);
+    let mut logged = 0;
+    for event in &mut page.stored {
+        if let Some(log) = event.body.get_mut("log").filter(|log| log.is_object()) {
+            logged += 1;
+            // The last trial is of an earlier version of the pages, which said nothing.
+            if logged < 12 {
+                log["provenance"] = json!("as shown");
+                log["renderer"] = json!("drawn by");
+            }
+        }
+    }
+    assert_eq!(logged, 12);
+    let table = tidy(&page.plan.study, &served, [record(&page)]);
+    for row in 0..table.rows.len() {
+        let Some(order) = table.cell(row, "trial_order").as_u64() else { continue };
+        let stimulus = table.cell(row, "stimulus").as_str().unwrap();
+        let [provenance, renderer] =
+            ["provenance", "renderer"].map(|name| table.cell(row, name).clone());
+        if order < 12 {
+            assert_eq!((provenance, renderer), (json!("as shown"), json!("drawn by")));
+        } else {
+            let served = json!(format!("provenance of {stimulus}"));
+            assert_eq!((provenance, renderer), (served, Value::Null));
+        }
+    }
+}
+
+#[test]
 fn response_times_run_from_the_first_frame_to_the_last_change_of_the_answer() {
     let mut page = Page::open(&study_text("demo.json"), 2);
     while page.played.is_empty() {

@@ -259,6 +259,9 @@ impl Walk<'_, '_> {
             device_pixel_ratio: client.device_pixel_ratio,
             // Nothing was rendered.
             weights_hash: String::new(),
+            provenance: String::new(),
+            beside_provenance: String::new(),
+            renderer: String::new(),
             drift_ms: 0.0,
             aborted: aborted.map(str::to_owned),
         }

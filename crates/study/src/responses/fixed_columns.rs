@@ -12,7 +12,7 @@ pub fn is_reserved_column(name: &str) -> bool {
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 51] = {
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 52] = {
     use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
     [
         ("participant_id", Text, "", "Public identifier of the participant"),
@@ -109,6 +109,7 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 51] = {
             "SHA-256 over avatar, capture, marker map, method, parameters and solver",
         ),
         ("beside_provenance", Text, "", "The same of the clip beside it"),
+        ("renderer", Text, "", "Hash of the modules and shaders that drew the clip"),
         ("start_time", Time, "", "Start of the trial or page, UTC, the participant's clock"),
         ("end_time", Time, "", "Its end"),
         ("language", Text, "", "Language of the pages"),

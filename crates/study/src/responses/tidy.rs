@@ -168,9 +168,8 @@ impl<'a> Layout<'a> {
                 put(factor, value.to_value());
             }
         }
-        if let Some(source) = self.sources.get(clip) {
-            put("provenance", source.provenance.as_str().into());
-        }
+        let play = step.play.as_ref();
+        put("provenance", self.provenance(clip, play.map(|play| play.provenance.as_str())));
         if let Some(play) = &step.play {
             put("onset_ms", milliseconds(play.onset_ms - walk.opened_ms));
             put("frames", play.frames.len().into());
@@ -181,6 +180,8 @@ impl<'a> Layout<'a> {
             put("clip_width", number(play.width));
             put("clip_height", number(play.height));
             put("weights_hash", play.weights_hash.as_str().into());
+            let renderer = Some(play.renderer.as_str()).filter(|hash| !hash.is_empty());
+            put("renderer", renderer.into());
             if step.beside.is_some() {
                 put("beside_drift_ms", milliseconds(play.drift_ms));
             }
@@ -188,9 +189,15 @@ impl<'a> Layout<'a> {
         let Some(beside) = &step.beside else { return };
         put("beside", beside.clip.as_str().into());
         put("beside_side", if beside.left { "left" } else { "right" }.into());
-        if let Some(source) = self.sources.get(&beside.clip) {
-            put("beside_provenance", source.provenance.as_str().into());
-        }
+        let logged = play.map(|play| play.beside_provenance.as_str());
+        put("beside_provenance", self.provenance(&beside.clip, logged));
+    }
+
+    /// What the page logged with the play: the stimuli that are served now may be others under the
+    /// same study file. Logs of earlier versions say nothing, then it is what is served.
+    fn provenance(&self, clip: &str, logged: Option<&str>) -> Value {
+        let served = || self.sources.get(clip).map(|source| source.provenance.as_str());
+        logged.filter(|hash| !hash.is_empty()).or_else(served).into()
     }
 
     fn answer_rows(&self, step: &FinishedStep, cells: &Cells, rows: &mut Vec<Vec<Value>>) {

@@ -235,8 +235,7 @@ pub fn whole_play(onset_ms: f64) -> PlayLog {
         height: 480.0,
         device_pixel_ratio: 2.0,
         weights_hash: "ab".repeat(32),
-        drift_ms: 0.0,
-        aborted: None,
+        ..PlayLog::default()
     }
 }
 
