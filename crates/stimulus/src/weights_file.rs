@@ -57,6 +57,24 @@ impl WeightsTable {
         }
     }
 
+    /// The same at another rate: straight between the two nearest rows, as the stage shows them.
+    /// Frames are numbered at the new rate. A table of fewer than two rows stays as it is.
+    #[cfg(feature = "prepare")]
+    pub(crate) fn at(&self, rate_hz: f64) -> Self {
+        let Some(recorded_hz) = self.rate_hz() else { return self.clone() };
+        let (step, last) = (recorded_hz / rate_hz, self.frames.len() - 1);
+        // The last new row is not after the last old one, but for rounding.
+        let rows = (last as f64 / step + 1e-9).floor() as usize + 1;
+        let weights = (0..rows).flat_map(|row| {
+            let at = (row as f64 * step).min(last as f64);
+            let (low, part) = (at.floor() as usize, at.fract());
+            let pair = self.row(low).iter().zip(self.row((low + 1).min(last)));
+            pair.map(move |(a, b)| a + part * (b - a)).collect::<Vec<_>>()
+        });
+        let first = (self.frames[0] as f64 / step).round() as u64;
+        Self::at_rate(self.shape_names.clone(), weights.collect(), first, rate_hz)
+    }
+
     /// The N weights of row `row`.
     ///
     /// # Panics

@@ -109,6 +109,94 @@ fn built_in_stimuli_are_prepared_once_and_play() {
     assert_eq!(files(folder.path()), before);
 }
 
+/// A capture of 200 Hz shown at 60 has the frames of 60 Hz, the same motion, and a third of the
+/// weight; so has what the actor recorded.
+#[test]
+fn a_capture_is_shown_at_a_lower_rate() {
+    let mut stimuli = builtin();
+    stimuli["captures"] = json!({
+        "whole": {"builtin": {"actor": 1, "noiseMm": 0.0}},
+        "shown": {"builtin": {"actor": 1, "noiseMm": 0.0}, "rateHz": 60.0},
+        "noisy": {"builtin": {"actor": 1}},
+        "noisy_shown": {"builtin": {"actor": 1}, "rateHz": 60.0},
+    });
+    let segments = ["whole", "shown", "noisy", "noisy_shown"].map(|capture| {
+        json!({"id": capture, "capture": capture,
+            "performance": {"expression": "fear", "intensity": 3}})
+    });
+    stimuli["segments"] = json!(segments);
+    stimuli["methods"] =
+        json!({"norm": {"method": "lsts-norm", "alpha": 0.3}, "own": {"method": "recorded"}});
+    let folder = tempfile::tempdir().unwrap();
+    let prepared = prepare(&study(stimuli), &places(folder.path(), None), &mut |_| {}).unwrap();
+    let read = |hash: &str| std::fs::read(folder.path().join(hash)).unwrap();
+    let solved = |clip: &str| {
+        let source = &prepared.clips[clip];
+        solve_packs(&read(&source.operators), &read(&source.take), &source.method).unwrap()
+    };
+    for method in ["norm", "own"] {
+        let whole = solved(&format!("whole.{method}"));
+        let shown = solved(&format!("shown.{method}"));
+        assert_eq!((whole.rate_hz, shown.rate_hz), (200.0, 60.0));
+        assert_eq!((whole.frames(), shown.frames()), (800, 240));
+        assert_eq!(prepared.clips[&format!("shown.{method}")].duration_ms, 4000.0);
+        let n = whole.shape_names.len();
+        let (mut worst, mut largest) = (0f64, 0f64);
+        for frame in 0..shown.frames() {
+            let at = frame as f64 * 200.0 / 60.0;
+            let (low, part) = (at as usize, at.fract());
+            for k in 0..n {
+                let of = |f: usize| whole.weights[f.min(799) * n + k];
+                let between = of(low) + part * (of(low + 1) - of(low));
+                worst = worst.max((between - shown.weights[frame * n + k]).abs());
+                largest = largest.max(between.abs());
+            }
+        }
+        eprintln!("{method}: {worst:.4} off of {largest:.3}");
+        assert!(largest > 0.5 && worst < 0.02, "{method}: {worst} off of {largest}");
+    }
+    let bytes = |clip: &str| read(&prepared.clips[&format!("{clip}.norm")].take).len();
+    eprintln!("noisy: {} bytes, shown {}", bytes("noisy"), bytes("noisy_shown"));
+    assert!(3 * bytes("noisy_shown") < bytes("noisy"));
+}
+
+#[test]
+fn rates_and_frames_that_were_not_recorded_are_refused() {
+    let refused = |captures: Value, segments: Value| {
+        let mut stimuli = builtin();
+        stimuli["captures"] = captures;
+        stimuli["segments"] = segments;
+        let folder = tempfile::tempdir().unwrap();
+        prepare(&study(stimuli), &places(folder.path(), None), &mut |_| {}).unwrap_err()
+    };
+    let fear = json!([{"id": "fear", "capture": "actor",
+        "performance": {"expression": "fear", "intensity": 3}}]);
+    let error = refused(json!({"actor": {"builtin": {"actor": 1}, "rateHz": 250.0}}), fear);
+    assert_eq!(error.pointer, "/stimuli/captures/actor/rateHz");
+    assert!(error.message.contains("250") && error.message.contains("200"), "{error}");
+
+    // Frames are said as the file counts them, whatever is shown.
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..50).map(|f| format!("{f},{},0.5\n", f as f64 / 50.0)).collect();
+    std::fs::write(folder.path().join("w.csv"), format!("frame,time,jawOpen\n{rows}")).unwrap();
+    let places = Places { study: folder.path().into(), data: None, packs: folder.path().into() };
+    let recorded = |rate: Value, end: usize| {
+        let study = study(json!({
+            "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+            "captures": {"phone": {"file": "w.csv", "rateHz": rate}},
+            "segments": [{"id": "s", "capture": "phone", "first": 10, "end": end}],
+            "methods": {"phone": {"method": "recorded"}},
+        }));
+        prepare(&study, &places, &mut |_| {}).map(|p| p.clips["s.phone"].duration_ms)
+    };
+    for rate in [Value::Null, json!(20.0)] {
+        assert!((recorded(rate.clone(), 50).unwrap() - 800.0).abs() < 1e-6);
+        let error = recorded(rate, 51).unwrap_err();
+        assert_eq!(error.pointer, "/stimuli/segments/0");
+        assert!(error.message.contains("50"), "{error}");
+    }
+}
+
 #[test]
 fn recorded_weights_are_played_as_they_are() {
     let folder = tempfile::tempdir().unwrap();

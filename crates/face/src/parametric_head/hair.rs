@@ -163,10 +163,10 @@ const ACROSS: usize = 7;
 /// Middle line and half thickness of the left brow at `s` (0 at the nose, 1 at the temple), mm.
 fn brow_line(s: f64, who: &Identity, at: &Landmarks) -> (f64, f64, f64) {
     let m = who.masculinity;
-    let arch = mix(4.4, 2.6, m);
+    let arch = mix(2.8, 1.4, m);
     let x = mix(10.5 - 1.0 * m, 52.0, s) + 0.5 * (at.eye.x - 31.5);
     // Rises to two thirds, then falls to the tail.
-    let y = at.brow_y - 1.0
+    let y = at.brow_y - 0.2
         + arch * (smoothstep(0.0, 0.66, s) - 1.25 * libm::pow(((s - 0.62) / 0.38).max(0.0), 1.7));
     let half = (3.1 + 0.9 * m + 0.45 * who.brow_weight)
         * mix(0.42, 1.0, smoothstep(0.0, 0.16, s))

@@ -64,16 +64,18 @@ impl Emotion {
                 ("noseSneer", 0.22),
                 ("jawForward", 0.40),
             ],
-            // AU 9, 15, 16, with 4 and 10.
+            // AU 9, 15, 16, with 10 and 17, and narrow eyes under a brow that hardly frowns: as strong
+            // a frown as anger's makes a snarl of it.
             Emotion::Disgust => &[
                 ("noseSneer", 1.0),
-                ("mouthUpperUp", 0.40),
-                ("mouthFrown", 0.55),
-                ("mouthLowerDown", 0.18),
-                ("mouthShrugLower", 0.45),
-                ("browDown", 0.40),
-                ("eyeSquint", 0.95),
-                ("cheekSquint", 0.60),
+                ("mouthUpperUp", 0.45),
+                ("mouthFrown", 0.80),
+                ("mouthLowerDown", 0.10),
+                ("mouthShrugLower", 0.75),
+                ("browDown", 0.15),
+                ("eyeSquint", 1.0),
+                ("cheekSquint", 0.90),
+                ("eyeBlink", 0.12),
             ],
             // AU 1, 2, 4, 5, 20, 26.
             Emotion::Fear => &[
@@ -104,10 +106,10 @@ impl Emotion {
             ],
             // AU 1, 2, 5, 26.
             Emotion::Surprise => &[
-                ("browInnerUp", 0.90),
-                ("browOuterUp", 1.0),
-                ("eyeWide", 0.85),
-                ("jawOpen", 0.70),
+                ("browInnerUp", 1.0),
+                ("browOuterUp", 0.90),
+                ("eyeWide", 0.90),
+                ("jawOpen", 0.72),
                 ("mouthFunnel", 0.15),
             ],
         }

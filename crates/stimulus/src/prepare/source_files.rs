@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use mimique_face::Avatar;
 use mimique_face::pack::encode_pack;
-use mimique_mocap::Capture;
+use mimique_mocap::{Capture, resample};
 use mimique_solver::FrontEndError;
 
 use super::PrepareError;
@@ -33,6 +33,16 @@ pub(super) struct CaptureFile {
     pub repair: Option<String>,
     /// Neutral and played frames of a built-in performance.
     pub known: Option<(Range<usize>, Range<usize>)>,
+    /// What its frames became.
+    pub frames: FrameCount,
+}
+
+/// The frames of a recording, and how many there are at the rate that is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FrameCount {
+    recorded: usize,
+    shown: usize,
+    shown_per_recorded: f64,
 }
 
 /// A segment of a capture, to be played by an avatar.
@@ -69,6 +79,85 @@ pub(super) struct Recording {
     pub table: WeightsTable,
     /// Frames played.
     pub frames: Range<usize>,
+}
+
+impl FrameCount {
+    /// `recorded` frames at a rate, `shown` at another.
+    pub fn new([recorded, shown]: [usize; 2], [recorded_hz, shown_hz]: [f64; 2]) -> Self {
+        Self { recorded, shown, shown_per_recorded: shown_hz / recorded_hz }
+    }
+
+    /// The shown frames of recorded ones: at least one, the nearest at both ends.
+    ///
+    /// # Errors
+    /// [`SolveError::Segment`] in the recording's own frames where they are not there.
+    pub fn shown(&self, of: Range<usize>) -> Result<Range<usize>, SolveError> {
+        let Range { start: first, end } = of;
+        if first >= end || end > self.recorded {
+            return Err(SolveError::Segment { first, end, frames: self.recorded });
+        }
+        let at = |frame: usize| (frame as f64 * self.shown_per_recorded).round() as usize;
+        let start = at(first).min(self.shown.saturating_sub(1));
+        Ok(start..at(end).clamp(start + 1, self.shown.max(start + 1)))
+    }
+}
+
+impl CaptureFile {
+    /// A capture as it was recorded.
+    pub fn new(key: String, capture: Capture) -> Self {
+        let (count, rate) = (capture.frames(), capture.rate_hz);
+        let frames = FrameCount::new([count; 2], [rate; 2]);
+        Self { key, capture, head: vec![], repair: None, known: None, frames }
+    }
+
+    /// The same at a lower rate.
+    ///
+    /// # Errors
+    /// [`PrepareError`] at `pointer` for a rate above the capture's.
+    pub fn at_rate(mut self, rate_hz: f64, pointer: &str) -> Result<Self, PrepareError> {
+        let recorded_hz = self.capture.rate_hz;
+        lower(rate_hz, recorded_hz, pointer)?;
+        let before = self.capture.frames();
+        self.capture =
+            resample(&self.capture, rate_hz).map_err(|e| PrepareError::new(pointer, e))?;
+        self.frames = FrameCount::new([before, self.capture.frames()], [recorded_hz, rate_hz]);
+        let shown = |frames: Range<usize>| {
+            self.frames.shown(frames).map_err(|e| PrepareError::new(pointer, e))
+        };
+        self.known = match self.known {
+            Some((neutral, played)) => Some((shown(neutral)?, shown(played)?)),
+            None => None,
+        };
+        self.key = format!("{} at {rate_hz} Hz", self.key);
+        Ok(self)
+    }
+}
+
+impl Recording {
+    /// The same at a lower rate.
+    ///
+    /// # Errors
+    /// [`PrepareError`] at `pointer` for a rate above the file's.
+    pub fn at_rate(self, rate_hz: f64, pointer: &str) -> Result<Self, PrepareError> {
+        let Some(recorded_hz) = self.table.rate_hz() else { return Ok(self) };
+        lower(rate_hz, recorded_hz, pointer)?;
+        let table = self.table.at(rate_hz);
+        let frames =
+            FrameCount::new([self.table.frames.len(), table.frames.len()], [recorded_hz, rate_hz]);
+        let frames = frames.shown(self.frames).map_err(|e| PrepareError::new(&self.pointer, e))?;
+        Ok(Self { table, frames, ..self })
+    }
+}
+
+/// More frames than were recorded would show nothing more.
+fn lower(rate_hz: f64, recorded_hz: f64, pointer: &str) -> Result<(), PrepareError> {
+    // The rate of a file may be written with few digits.
+    if rate_hz <= recorded_hz * (1.0 + 1e-6) {
+        return Ok(());
+    }
+    let message =
+        format!("{rate_hz} frames a second of a recording of {recorded_hz}; leave rateHz out");
+    Err(PrepareError::new(pointer, message))
 }
 
 impl AvatarFile {

@@ -116,7 +116,12 @@ impl<'a> Sources<'a> {
             }
         };
         let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
-        let neutral = entry.neutral.map(|[first, end]| first..end);
+        let shown = |[first, end]: [usize; 2]| file.frames.shown(first..end);
+        let neutral = entry
+            .neutral
+            .map(shown)
+            .transpose()
+            .map_err(|e| PrepareError::new(format!("{capture_pointer}/neutral"), e))?;
         let known = file.known.as_ref().map(|(neutral, _)| neutral.clone());
         let options = TakeOptions {
             neutral: neutral.or(known),
@@ -125,7 +130,9 @@ impl<'a> Sources<'a> {
             ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
-            (Some(Span::Frames { first, end }), None) => first..end,
+            (Some(Span::Frames { first, end }), None) => {
+                file.frames.shown(first..end).map_err(|e| PrepareError::new(&at, e))?
+            }
             (Some(Span::Performance(_)), Some((_, played))) => played.clone(),
             _ => {
                 return Err(PrepareError::new(
@@ -188,9 +195,20 @@ impl<'a> Sources<'a> {
         Ok(training)
     }
 
-    /// The segment of that identifier as recorded weights.
+    /// The segment of that identifier as recorded weights, at the rate that is shown.
     pub fn recording(&self, segment: &str) -> Result<Recording, PrepareError> {
         let (segment, at) = self.segment(segment)?;
+        let recording = self.recorded(segment, at)?;
+        let id = &segment.capture;
+        match self.study.stimuli.captures.get(id).and_then(|c| c.rate_hz) {
+            Some(rate_hz) => {
+                recording.at_rate(rate_hz, &pointer(&["stimuli", "captures", id, "rateHz"]))
+            }
+            None => Ok(recording),
+        }
+    }
+
+    fn recorded(&self, segment: &Segment, at: String) -> Result<Recording, PrepareError> {
         let pointer = format!("{}/file", pointer(&["stimuli", "captures", &segment.capture]));
         let entry = self.study.stimuli.captures.get(&segment.capture);
         let file = match (entry.and_then(|c| c.source()), segment.span()) {
@@ -239,11 +257,9 @@ impl<'a> Sources<'a> {
                 }
                 let take = builtin::take(actor, what);
                 let file = CaptureFile {
-                    key: builtin::take_key(&take.capture),
-                    capture: take.capture,
                     head: take.head,
-                    repair: None,
                     known: Some((take.neutral, take.played)),
+                    ..CaptureFile::new(builtin::take_key(&take.capture), take.capture)
                 };
                 (name, file)
             }
@@ -254,7 +270,7 @@ impl<'a> Sources<'a> {
                 let unit = entry.and_then(|c| c.unit.as_deref());
                 let at = pointer(&["stimuli", "captures", id]);
                 let (key, capture, repair) = self.read_capture(path, unit, &at)?;
-                (id.clone(), CaptureFile { key, capture, head: vec![], repair, known: None })
+                (id.clone(), CaptureFile { repair, ..CaptureFile::new(key, capture) })
             }
             (None, _) => {
                 let message = "give exactly one of builtin and file";
@@ -264,6 +280,12 @@ impl<'a> Sources<'a> {
                 let message = "give first and end for a file, performance for a built-in actor";
                 return Err(PrepareError::new(at, message));
             }
+        };
+        let file = match entry.and_then(|c| c.rate_hz) {
+            Some(rate_hz) => {
+                file.at_rate(rate_hz, &pointer(&["stimuli", "captures", id, "rateHz"]))?
+            }
+            None => file,
         };
         let file = Rc::new(file);
         self.captures.borrow_mut().insert(name, file.clone());

@@ -8,6 +8,9 @@ use super::{FileLookup, Subject, avatars};
 use crate::responses::is_reserved_column;
 use crate::study_file::{Capture, CaptureSource, Component, QuestionKind, Sequence, SequenceItem};
 
+/// Frames a second that a clip can be shown at.
+const RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=1000.0;
+
 pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
     for (name, avatar) in &stimuli.avatars {
@@ -72,6 +75,12 @@ fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
         let message = format!("{hertz} Hz lets nothing pass");
         let hint = "take a frequency above 0, or leave it out";
         issues.error(below(pointer, "headLowpassHz"), "out-of-range", message, hint);
+    }
+    if let Some(hertz) = capture.rate_hz.filter(|hertz| !RATES_HZ.contains(hertz)) {
+        let message = format!("{hertz} frames a second show no face as it moves");
+        let hint =
+            "take 60 (what most displays show), another rate from 15 to 1000, or leave it out";
+        issues.error(below(pointer, "rateHz"), "out-of-range", message, hint);
     }
     if let Some(CaptureSource::File(_)) = capture.source() {
         if capture.markers.is_none() {

@@ -168,6 +168,12 @@ pub struct Capture {
     /// Cut-off of the low-pass filter on the head's motion, Hz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_lowpass_hz: Option<f64>,
+    /// Frames a second that are solved and shown, the capture's own if not given. Fewer than the
+    /// capture has: low-passed below what they can hold, then brought to the rate. At 60 Hz a
+    /// participant loads and solves a third of a capture of 200 Hz. Segments and `neutral` still
+    /// count the capture's own frames.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_hz: Option<f64>,
 }
 
 /// A built-in actor.
