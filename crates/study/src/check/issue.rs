@@ -60,7 +60,11 @@ impl Issues {
         message: String,
         hint: String,
     ) {
-        let issue = Issue { pointer, severity, code, message, hint };
+        self.push(Issue { pointer, severity, code, message, hint });
+    }
+
+    /// Adds a problem that is not known yet.
+    pub fn push(&mut self, issue: Issue) {
         if !self.0.contains(&issue) {
             self.0.push(issue);
         }
@@ -72,6 +76,12 @@ impl Issues {
 
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|issue| issue.severity == Severity::Error)
+    }
+
+    /// Pointers of the errors.
+    pub fn errors(&self) -> impl Iterator<Item = &str> {
+        let errors = self.0.iter().filter(|issue| issue.severity == Severity::Error);
+        errors.map(|issue| issue.pointer.as_str())
     }
 
     /// Errors first, each kind in the order found.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Subject;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
-use crate::order::{Draw, prove};
+use crate::order::{CYCLES, Draw, Flaw, prove};
 use crate::study_file::{
     Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
 };
@@ -56,7 +56,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let message = format!("{total} trials");
         let hint = format!("show at most {MOST_TRIALS}");
         issues.error("/sequence", "too-many", message, hint);
-    } else if !issues.has_errors() {
+    } else if !issues.errors().any(changes_order) {
         feasible(subject, issues);
     }
 }
@@ -231,6 +231,50 @@ fn sequence<'a>(
         }
     }
     constraints(subject, here, pointer, issues);
+    reach(subject, here, pointer, issues);
+}
+
+/// Constraints order single trials: a sequence that stays together keeps its own.
+fn reach(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Issues) {
+    if here.constraints.is_empty() {
+        return;
+    }
+    let pointer = below(pointer, "constraints");
+    if let Some(index) =
+        here.components.iter().position(|item| matches!(item, SequenceItem::Sequence(_)))
+    {
+        let message = format!(
+            "constraints order single trials, and part {} of this sequence is a sequence that stays \
+             together",
+            index + 1
+        );
+        let hint = "write constraints in the nested sequences, or name their components here";
+        issues.error(pointer, "constraint-on-sequence", message, hint);
+        return;
+    }
+    let blocks: Vec<&TrialsComponent> = here
+        .components
+        .iter()
+        .filter_map(|item| match item {
+            SequenceItem::Component(name) => subject.study.components.get(name),
+            SequenceItem::Sequence(_) => None,
+        })
+        .filter_map(|component| match component {
+            Component::Trials(block) => Some(block),
+            _ => None,
+        })
+        .collect();
+    let factors = all_factors(subject);
+    for (index, constraint) in here.constraints.iter().enumerate() {
+        let factor = constraint.factor.as_str();
+        let has = |clip: &&Clip| clip.factor_text(factor).is_some();
+        let shown = |clip: &Clip| blocks.iter().any(|block| block.clips.takes(clip));
+        if factors.contains_key(factor) && !subject.clips.iter().filter(has).any(shown) {
+            let message = format!("no trial of this sequence has the factor \"{factor}\"");
+            let hint = "move the constraint to the sequence with these trials, or remove it";
+            issues.error(below(&pointer, index), "constraint-on-nothing", message, hint);
+        }
+    }
 }
 
 fn constraints(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Issues) {
@@ -276,13 +320,47 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence) -> usize {
     sequence.components.iter().map(count).fold(0, usize::saturating_add)
 }
 
+/// Whether to mend what is wrong at this place changes what is shown, or the constraints on it.
+fn changes_order(pointer: &str) -> bool {
+    let is_in = |part: &str| pointer.starts_with(part);
+    // Without a factor that is not there a constraint asks for less, not for more.
+    (is_in("/sequence") && !pointer.ends_with("/factor") && !pointer.contains("/interruptions/"))
+        || (is_in("/components")
+            && ["/clips", "/repetitions"].iter().any(|key| pointer.contains(key)))
+        || ["/stimuli/segments", "/stimuli/clips"].into_iter().any(is_in)
+        || (is_in("/stimuli") && pointer.contains("/factors"))
+}
+
 /// Proves that an order exists for every participant, or says which constraints cannot be met.
 fn feasible(subject: &Subject<'_>, issues: &mut Issues) {
     let draw = Draw { seed: subject.study.seed, config_hash: subject.hash, participant: 0 };
-    if let Err(error) = prove(subject.study, draw) {
-        let text = error.to_string();
-        let (pointer, message) = text.split_once(": ").unwrap_or(("/sequence", &text));
-        let (message, hint) = message.split_once("; ").unwrap_or((message, "loosen one of them"));
-        issues.error(pointer, "unsatisfiable-order", message, hint);
+    for flaw in prove(subject.study, draw) {
+        match flaw {
+            Flaw::NoOrder(error) => {
+                let text = error.to_string();
+                let (pointer, message) = text.split_once(": ").unwrap_or(("/sequence", &text));
+                let (message, hint) =
+                    message.split_once("; ").unwrap_or((message, "loosen one of them"));
+                issues.error(pointer, "unsatisfiable-order", message, hint);
+            }
+            Flaw::TooManySamples { pointer, parts, samples } => {
+                let message = format!(
+                    "{samples} of {parts} parts under constraints are too many samples to try each"
+                );
+                let hint =
+                    format!("take a numSamples that divides {parts}, or drop the constraints");
+                issues.error(below(&pointer, "numSamples"), "too-many", message, hint);
+            }
+            Flaw::Unbalanced { pointer, anew, first } => {
+                let message = format!(
+                    "of {CYCLES} rounds of samples after the first, {anew} had to be drawn anew to meet \
+                     the constraints and {first} repeat the first: some parts will be shown together \
+                     more often than others"
+                );
+                let hint = "loosen the constraints or take a larger numSamples; each part is still \
+                            shown equally often";
+                issues.warning(below(&pointer, "numSamples"), "uneven-samples", message, hint);
+            }
+        }
     }
 }

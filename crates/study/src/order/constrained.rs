@@ -29,6 +29,8 @@ const SHUFFLES: usize = 200;
 const STARTS: usize = 20;
 /// Times an order is begun anew for the order that proves a study feasible.
 const PROOF_STARTS: usize = 200;
+/// Times an order is begun anew to see whether a sample has one: the first of those of the proof.
+const QUICK_STARTS: usize = 4;
 /// Steps of one start, for each part.
 const STEPS_A_PART: usize = 200;
 
@@ -65,7 +67,17 @@ pub(super) fn prove_arrangement(count: usize, rules: &[Rule]) -> Result<Vec<usiz
     }
     let builder = Builder::new(count, rules);
     let classes = builder.proof()?;
-    Ok(builder.parts_of(&classes, &mut Stream::new(0, "", None, "proof")))
+    Ok(builder.parts_of(&classes, &mut proof_stream()))
+}
+
+/// Whether a short search finds an order; [`arrange`] then finds one for whoever asks.
+pub(super) fn quickly_arranged(count: usize, rules: &[Rule]) -> bool {
+    Builder::new(count, rules).search(&mut proof_stream(), QUICK_STARTS).is_ok()
+}
+
+/// The stream of the proof: [`Builder::proof`] begins as [`quickly_arranged`] does.
+fn proof_stream() -> Stream {
+    Stream::new(0, "", None, "proof")
 }
 
 impl Rule {
@@ -132,7 +144,7 @@ impl<'a> Builder<'a> {
     }
 
     fn proof(&self) -> Result<Vec<usize>, Search> {
-        self.search(&mut Stream::new(0, "", None, "proof"), PROOF_STARTS)
+        self.search(&mut proof_stream(), PROOF_STARTS)
     }
 
     /// One depth-first search with a budget; without recursion, so that no input is too long.

@@ -1,5 +1,11 @@
 //! Williams squares (E. J. Williams 1949): Latin squares balanced for first-order carry-over.
 
+/// Rows of the square of `count` parts.
+pub(super) fn rows(count: usize) -> u64 {
+    let rows = if count.is_multiple_of(2) { count } else { 2 * count };
+    rows.max(1) as u64
+}
+
 /// Row of a participant in a Williams square of `count` parts: over the square's rows (`count` of
 /// them, twice as many when `count` is odd) each part stands at each place equally often and follows
 /// each other part equally often.
@@ -7,8 +13,7 @@ pub(super) fn williams_row(count: usize, participant: u64) -> Vec<usize> {
     if count == 0 {
         return Vec::new();
     }
-    let rows = if count.is_multiple_of(2) { count } else { 2 * count };
-    let row = (participant % rows as u64) as usize;
+    let row = (participant % rows(count)) as usize;
     // 0, 1, n-1, 2, n-2, ...: neighbouring differences are all different modulo n.
     let zigzag = (0..count).map(|place| {
         let half = place.div_ceil(2);
@@ -28,7 +33,7 @@ mod tests {
     #[test]
     fn williams_square_balances_places_and_successions() {
         for count in 1..=13 {
-            let rows = if count % 2 == 0 { count } else { 2 * count };
+            let rows = rows(count) as usize;
             let mut places = vec![vec![0; count]; count];
             let mut successions = vec![vec![0; count]; count];
             for participant in 0..rows {

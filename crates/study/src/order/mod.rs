@@ -9,16 +9,24 @@
 //! within a budget; where that fails too, the order falls back on the one that `mimique check` found
 //! to prove that the constraints can be met. So a study that passed the check never hangs and never
 //! breaks a constraint.
+//!
+//! Squares and samples go round with the participants. Several of them in one study are balanced
+//! against each other: see [`Turns`].
 
 mod constrained;
 mod latin_square;
+mod proof;
+mod samples;
 mod stream;
 mod subset;
+mod turns;
 
 use crate::sorted_map::SortedMap;
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
-use constrained::{Search, arrange, prove_arrangement};
+use constrained::{Search, arrange};
+pub(crate) use proof::{CYCLES, Flaw, prove};
 pub use stream::Stream;
+use turns::Turns;
 
 /// One item of a participant's order.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -108,21 +116,10 @@ impl<'a> Draw<'a> {
 pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
     let clips = study.clips();
     let by_id = by_id(&clips);
-    let context = Context { study, clips: &clips, by_id, draw, prove: false };
+    let turns = Turns::of(draw.participant);
+    let mut context = Context { study, clips: &clips, by_id, draw, turns, squares: 1 };
+    context.squares = context.all_squares(&study.sequence);
     context.sequence(&study.sequence, "/sequence", None)
-}
-
-/// Proves that every participant has an order: finds, for every sample that can be drawn, the order
-/// on which [`order`] falls back when its own search fails.
-pub(crate) fn prove(study: &Study, draw: Draw<'_>) -> Result<(), OrderError> {
-    let clips = study.clips();
-    for participant in 0..sample_period(study).min(MOST_SAMPLES) {
-        let by_id = by_id(&clips);
-        let draw = Draw { participant, ..draw };
-        let context = Context { study, clips: &clips, by_id, draw, prove: true };
-        context.sequence(&study.sequence, "/sequence", None)?;
-    }
-    Ok(())
 }
 
 fn by_id(clips: &[Clip]) -> SortedMap<&str, &Clip> {
@@ -134,9 +131,6 @@ fn by_id(clips: &[Clip]) -> SortedMap<&str, &Clip> {
     known
 }
 
-/// Most samples that are tried out; nested samples could have more, by their product.
-const MOST_SAMPLES: u64 = 2_000;
-
 /// The order in which the options of a question are shown, as indices into the file's list.
 pub fn option_order(draw: Draw<'_>, question: &str, options: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..options).collect();
@@ -144,55 +138,14 @@ pub fn option_order(draw: Draw<'_>, question: &str, options: usize) -> Vec<usize
     order
 }
 
-/// How many participants it takes until the samples of every sequence have come round; 1 without
-/// `numSamples`. Whether constraints can be met depends on nothing else of the participant number.
-pub(crate) fn sample_period(study: &Study) -> u64 {
-    fn of(study: &Study, clips: &[Clip], sequence: &Sequence) -> u64 {
-        let mut parts = 0_u64;
-        let mut period = 1_u64;
-        for item in &sequence.components {
-            match item {
-                SequenceItem::Component(name) => {
-                    parts += match study.components.get(name) {
-                        Some(Component::Trials(trials)) => {
-                            let chosen = clips.iter().filter(|clip| trials.clips.takes(clip));
-                            chosen.count() as u64 * u64::from(trials.repetitions)
-                        }
-                        _ => 1,
-                    };
-                }
-                SequenceItem::Sequence(nested) => {
-                    parts += 1;
-                    period = least_common_multiple(period, of(study, clips, nested));
-                }
-            }
-        }
-        match sequence.num_samples {
-            Some(samples) if (samples as u64) < parts => {
-                let windows = parts / greatest_common_divisor(parts, samples.max(1) as u64);
-                least_common_multiple(period, windows)
-            }
-            _ => period,
-        }
-    }
-    of(study, &study.clips(), &study.sequence)
-}
-
-fn greatest_common_divisor(left: u64, right: u64) -> u64 {
-    if right == 0 { left.max(1) } else { greatest_common_divisor(right, left % right) }
-}
-
-fn least_common_multiple(left: u64, right: u64) -> u64 {
-    (left / greatest_common_divisor(left, right)).saturating_mul(right)
-}
-
 struct Context<'a> {
     study: &'a Study,
     clips: &'a [Clip],
     by_id: SortedMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
-    /// Whether the orders that prove feasibility are sought, not the participant's.
-    prove: bool,
+    turns: Turns,
+    /// The product of the periods of all squares.
+    squares: u64,
 }
 
 impl Context<'_> {
@@ -216,7 +169,7 @@ impl Context<'_> {
             }
         }
         if let Some(samples) = sequence.num_samples {
-            parts = self.sample(parts, samples, pointer);
+            parts = self.sample(sequence, parts, samples, pointer);
         }
         let order = self.arrangement(sequence, &parts, pointer)?;
         let mut slots: Vec<Option<Vec<OrderedItem>>> = parts.into_iter().map(Some).collect();
@@ -259,30 +212,6 @@ impl Context<'_> {
         Ok(parts)
     }
 
-    /// `samples` of the parts, each part equally often over participants, and each pair too.
-    fn sample(
-        &self,
-        parts: Vec<Vec<OrderedItem>>,
-        samples: usize,
-        pointer: &str,
-    ) -> Vec<Vec<OrderedItem>> {
-        let count = parts.len();
-        if samples >= count {
-            return parts;
-        }
-        let chosen = subset::subset(count, samples, self.draw.participant, |number| {
-            let mut circle: Vec<usize> = (0..count).collect();
-            let name = match number {
-                0 => format!("sample{pointer}"),
-                _ => format!("sample{pointer}/{number}"),
-            };
-            self.draw.shared_stream(&name).shuffle(&mut circle);
-            circle
-        });
-        let mut parts: Vec<Option<Vec<OrderedItem>>> = parts.into_iter().map(Some).collect();
-        chosen.into_iter().filter_map(|index| parts[index].take()).collect()
-    }
-
     /// The parts' order as indices.
     fn arrangement(
         &self,
@@ -296,42 +225,39 @@ impl Context<'_> {
             OrderRule::LatinSquare => {
                 let mut labels: Vec<usize> = (0..count).collect();
                 self.draw.shared_stream(&format!("latin square{pointer}")).shuffle(&mut labels);
-                let row = latin_square::williams_row(count, self.draw.participant);
+                let turn = self.turns.next(latin_square::rows(count));
+                let row = latin_square::williams_row(count, turn);
                 Ok(row.into_iter().map(|index| labels[index]).collect())
             }
             OrderRule::Random => {
                 let mut stream = self.draw.stream(&format!("order{pointer}"));
-                let rules: Vec<constrained::Rule> = sequence
-                    .constraints
-                    .iter()
-                    .map(|constraint| self.rule(constraint, parts))
-                    .collect();
-                let arranged = if self.prove {
-                    prove_arrangement(count, &rules)
-                } else {
-                    arrange(count, &rules, &mut stream)
-                };
-                arranged.map_err(|search| match search {
-                    Search::Impossible => {
-                        OrderError::Unsatisfiable { pointer: pointer.to_owned(), parts: count }
-                    }
-                    Search::OutOfBudget => {
-                        OrderError::NotFound { pointer: pointer.to_owned(), parts: count }
-                    }
-                })
+                let rules = self.rules(sequence, parts.iter());
+                arrange(count, &rules, &mut stream).map_err(|search| search.error(pointer, count))
             }
         }
     }
 
+    /// The rules for these parts of a sequence; none where its order is not random.
+    fn rules<'p>(
+        &self,
+        sequence: &Sequence,
+        parts: impl Iterator<Item = &'p Vec<OrderedItem>> + Clone,
+    ) -> Vec<constrained::Rule> {
+        if sequence.order != OrderRule::Random {
+            return Vec::new();
+        }
+        let of = |constraint| self.rule(constraint, parts.clone());
+        sequence.constraints.iter().map(of).collect()
+    }
+
     /// A constraint with each part's value as a number; only single trials have one.
-    fn rule(
+    fn rule<'p>(
         &self,
         constraint: &crate::study_file::Constraint,
-        parts: &[Vec<OrderedItem>],
+        parts: impl Iterator<Item = &'p Vec<OrderedItem>>,
     ) -> constrained::Rule {
         let mut numbers: SortedMap<String, u32> = SortedMap::new();
         let values = parts
-            .iter()
             .map(|part| {
                 let [OrderedItem::Trial { clip, .. }] = part.as_slice() else { return None };
                 let value = self.by_id.get(clip.as_str())?.factor_text(&constraint.factor)?;
@@ -343,6 +269,16 @@ impl Context<'_> {
             values,
             at_most_alike: constraint.at_most_alike.unwrap_or(usize::MAX).max(1),
             minimum_distance: constraint.minimum_distance.unwrap_or(1).max(1),
+        }
+    }
+}
+
+impl Search {
+    fn error(self, pointer: &str, parts: usize) -> OrderError {
+        let pointer = pointer.to_owned();
+        match self {
+            Self::Impossible => OrderError::Unsatisfiable { pointer, parts },
+            Self::OutOfBudget => OrderError::NotFound { pointer, parts },
         }
     }
 }

@@ -8,38 +8,38 @@
 //! the integers modulo `v`, which is 2-transitive, so that every pair is shown together equally often
 //! after `(v - 1) / 2` cycles (C. Colbourn & J. Dinitz, "Handbook of Combinatorial Designs", II.1).
 //! Where `v` is not prime each cycle has a circle of its own, shuffled anew: every pair is then equally
-//! likely in each.
+//! likely in each. Where constraints must be met, `samples` says which of these circles are walked.
+
+use super::turns::greatest_common_divisor;
 
 /// Participants after whom each of `count` parts was taken equally often.
 pub(super) fn cycle(count: usize, samples: usize) -> u64 {
-    (count / greatest_common_divisor(count, samples)) as u64
+    count as u64 / greatest_common_divisor(count as u64, samples as u64).max(1)
 }
 
-/// The parts of a participant, in ascending order. `circle` is asked for the shuffled parts of a
-/// numbered circle. `samples` is less than `count`.
-pub(super) fn subset(
-    count: usize,
-    samples: usize,
-    participant: u64,
-    circle: impl FnOnce(u64) -> Vec<usize>,
-) -> Vec<usize> {
-    let cycle_length = cycle(count, samples);
-    let (cycle, place) = (participant / cycle_length, participant % cycle_length);
+/// Which circle a cycle walks round, and with which stride.
+pub(super) fn circle_and_stride(count: usize, cycle: u64) -> (u64, usize) {
     let strides = if is_prime(count) { (count as u64 - 1) / 2 } else { 0 };
-    let (number, stride) = match strides {
+    match strides {
         0 => (cycle, 1),
         _ => (cycle / strides, 1 + (cycle % strides) as usize),
-    };
-    let circle = circle(number);
+    }
+}
+
+/// The parts in the order in which a cycle walks round their circle.
+pub(super) fn walk(circle: &[usize], stride: usize) -> Vec<usize> {
+    (0..circle.len()).map(|step| circle[step * stride % circle.len()]).collect()
+}
+
+/// What the participant at this place of a cycle is shown: indices in ascending order. `samples` is
+/// less than the number of parts.
+pub(super) fn window(walk: &[usize], samples: usize, place: u64) -> Vec<usize> {
+    let count = walk.len();
     // No product goes beyond count * count: place is below count.
     let start = place as usize * samples % count;
     let mut chosen = vec![false; count];
-    (0..samples).for_each(|step| chosen[circle[(start + step) * stride % count]] = true);
+    (0..samples).for_each(|step| chosen[walk[(start + step) % count]] = true);
     (0..count).filter(|index| chosen[*index]).collect()
-}
-
-fn greatest_common_divisor(left: usize, right: usize) -> usize {
-    if right == 0 { left } else { greatest_common_divisor(right, left % right) }
 }
 
 fn is_prime(number: usize) -> bool {
@@ -50,11 +50,19 @@ fn is_prime(number: usize) -> bool {
 mod tests {
     use super::*;
 
+    /// The parts of a participant, where every circle has the parts in the order of the file.
+    fn subset(count: usize, samples: usize, participant: u64) -> Vec<usize> {
+        let length = cycle(count, samples);
+        let (_, stride) = circle_and_stride(count, participant / length);
+        let circle: Vec<usize> = (0..count).collect();
+        window(&walk(&circle, stride), samples, participant % length)
+    }
+
     /// How often each pair is shown together, over so many participants.
     fn pairs(count: usize, samples: usize, participants: u64) -> Vec<u64> {
         let mut together = vec![0; count * count];
         for participant in 0..participants {
-            let chosen = subset(count, samples, participant, |_| (0..count).collect());
+            let chosen = subset(count, samples, participant);
             assert_eq!(chosen.len(), samples);
             assert!(chosen.windows(2).all(|pair| pair[0] < pair[1]), "{chosen:?}");
             for (at, &left) in chosen.iter().enumerate() {
@@ -80,10 +88,10 @@ mod tests {
 
     #[test]
     fn two_parts_take_turns() {
-        let first = subset(2, 1, 0, |_| vec![0, 1]);
-        let second = subset(2, 1, 1, |_| vec![0, 1]);
+        let first = subset(2, 1, 0);
+        let second = subset(2, 1, 1);
         assert_eq!((first, second), (vec![0], vec![1]));
-        assert_eq!(subset(5, 0, 3, |_| (0..5).collect()), Vec::<usize>::new());
-        assert_eq!(subset(6, 4, u64::MAX, |_| (0..6).collect()).len(), 4);
+        assert_eq!(subset(5, 0, 3), Vec::<usize>::new());
+        assert_eq!(subset(6, 4, u64::MAX).len(), 4);
     }
 }

@@ -1,6 +1,8 @@
 //! The studies of `study-config`, and a participant who goes through one.
 #![allow(dead_code)]
 
+pub mod small;
+
 use std::path::PathBuf;
 
 use mimique_study::flow::{
