@@ -2,10 +2,12 @@
 //!
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
 //! raw types -> [`general`], [`questions`], [`conduct`], [`stimuli`], [`sequence`], [`hypotheses`],
-//! [`tables`] (what no type can say) -> [`CheckedStudy`]. The later stages run only on a file whose structure is sound.
+//! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
+//! later stages run on what can be read of the file.
 
 mod avatars;
 mod conduct;
+mod damage;
 mod general;
 mod hypotheses;
 mod issue;
@@ -21,6 +23,7 @@ mod tables;
 use serde_json::Value;
 
 use crate::canonical::config_hash;
+use crate::from_json::{Faults, FromJson as _};
 use crate::study_file::{Clip, Study, parse};
 use issue::Issues;
 pub use issue::{Issue, Severity};
@@ -95,8 +98,15 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
             return None;
         }
     };
-    let texts = structure::examine(&value, issues);
-    if issues.has_errors() {
+    let (texts, damage) = structure::examine(&value, issues);
+    let config_hash = config_hash(&value);
+    if !damage.is_none() || issues.has_errors() {
+        let study = Study::from_json(&damage.mended(&value), &mut Faults::default());
+        let mut found = Issues::default();
+        examine_study(&study, &value, &config_hash, &texts, lookup, &mut found);
+        for issue in found.into_sorted().into_iter().filter(|issue| damage.leaves(issue)) {
+            issues.push(damage.placed(issue));
+        }
         return None;
     }
     let study = match Study::from_value(&value) {
@@ -107,10 +117,22 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
             return None;
         }
     };
-    let config_hash = config_hash(&value);
+    examine_study(&study, &value, &config_hash, &texts, lookup, issues);
+    Some(CheckedStudy { study, value, config_hash })
+}
+
+/// What no type can say.
+fn examine_study(
+    study: &Study,
+    value: &Value,
+    hash: &str,
+    texts: &[String],
+    lookup: &FileLookup<'_>,
+    issues: &mut Issues,
+) {
     let clips = study.clips();
-    let subject = Subject { study: &study, value: &value, clips: &clips, hash: &config_hash };
-    general::examine(&subject, &texts, issues);
+    let subject = Subject { study, value, clips: &clips, hash };
+    general::examine(&subject, texts, issues);
     questions::examine(&subject, issues);
     conduct::examine(&subject, issues);
     media::examine(&subject, lookup, issues);
@@ -118,7 +140,6 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);
     tables::examine(&subject, issues);
-    Some(CheckedStudy { study, value, config_hash })
 }
 
 /// What is checked.

@@ -2,22 +2,24 @@
 
 use serde_json::{Map, Value};
 
+use super::damage::Damage;
 use super::issue::{Issues, below, listed};
 use super::nearest::{nearest, suggestion};
 use super::schema::json_schema;
 
-/// Examines a file; returns the pointers of all its localised texts.
-pub(super) fn examine(value: &Value, issues: &mut Issues) -> Vec<String> {
+/// Examines a file; returns the pointers of all its localised texts, and what cannot be read.
+pub(super) fn examine(value: &Value, issues: &mut Issues) -> (Vec<String>, Damage) {
     let schema = json_schema();
-    let mut walk = Walk { root: &schema, issues, texts: Vec::new() };
+    let mut walk = Walk { root: &schema, issues, texts: Vec::new(), damage: Damage::default() };
     walk.value(&schema, value, "");
-    walk.texts
+    (walk.texts, walk.damage)
 }
 
 struct Walk<'a> {
     root: &'a Value,
     issues: &'a mut Issues,
     texts: Vec<String>,
+    damage: Damage,
 }
 
 /// What the parts of a schema say about an object.
@@ -120,7 +122,7 @@ impl<'a> Walk<'a> {
         if names(kinds).any(|kind| kind == "integer") && !(least..=most).contains(&number) {
             let message = format!("{value} is out of range");
             let hint = format!("write a whole number from {least} to {most}");
-            self.issues.error(pointer, "out-of-range", message, hint);
+            self.fault(pointer, "out-of-range", message, hint);
             return false;
         }
         true
@@ -128,7 +130,13 @@ impl<'a> Walk<'a> {
 
     fn wrong_type(&mut self, wanted: &str, value: &Value, pointer: &str) {
         let message = format!("{} where {wanted} belongs", shown(value));
-        self.issues.error(pointer, "wrong-type", message, format!("write {wanted}"));
+        self.fault(pointer, "wrong-type", message, format!("write {wanted}"));
+    }
+
+    /// Says that a value cannot be read as it stands.
+    fn fault(&mut self, pointer: &str, code: &'static str, message: String, hint: String) {
+        self.damage.place(pointer.to_owned());
+        self.issues.error(pointer, code, message, hint);
     }
 
     fn wrong_word(&mut self, words: &[&str], value: &Value, pointer: &str) {
@@ -136,7 +144,7 @@ impl<'a> Walk<'a> {
             Some(word) => {
                 let hint = suggestion(word, words);
                 let message = format!("\"{word}\" is not one of {}", listed(words));
-                self.issues.error(pointer, "unknown-word", message, hint);
+                self.fault(pointer, "unknown-word", message, hint);
             }
             None => self.wrong_type(&format!("one of {}", listed(words)), value, pointer),
         }
@@ -149,7 +157,7 @@ impl<'a> Walk<'a> {
         {
             let wanted = limit("minItems").unwrap_or_default();
             let message = format!("{} items where {wanted} belong", items.len());
-            self.issues.error(pointer, "wrong-length", message, format!("write {wanted} items"));
+            self.fault(pointer, "wrong-length", message, format!("write {wanted} items"));
         }
         if let Some(schema) = part.get("items") {
             for (index, item) in items.iter().enumerate() {
@@ -178,15 +186,25 @@ impl<'a> Walk<'a> {
             } else if rules.closed {
                 let known: Vec<&str> =
                     rules.properties.iter().map(|(name, _)| name.as_str()).collect();
-                meant.extend(nearest(key, &known));
                 let message = format!("unknown key \"{key}\"");
-                self.issues.error(place, "unknown-key", message, suggestion(key, &known));
+                self.issues.error(&place, "unknown-key", message, suggestion(key, &known));
+                let Some(name) = nearest(key, &known) else { continue };
+                // It is read as the key that is meant, so that what it holds is checked too.
+                if !map.contains_key(name) && !meant.contains(&name) {
+                    self.damage.misspelt(place.clone(), name);
+                    if let Some((_, schema)) = rules.properties.iter().find(|(key, _)| *key == name)
+                    {
+                        self.value(schema, value, &place);
+                    }
+                }
+                meant.push(name);
             }
         }
         for key in rules.required {
             // A misspelt key is one mistake, not two.
             if !map.contains_key(key) && !meant.contains(&key) {
                 let message = format!("\"{key}\" is missing");
+                self.damage.place(below(pointer, key));
                 self.issues.error(pointer, "missing-key", message, format!("add \"{key}\""));
             }
         }
@@ -222,6 +240,7 @@ impl<'a> Walk<'a> {
         }
         let Some(given) = map.get("type") else {
             let hint = format!("add \"type\": {}", listed(&words));
+            self.damage.place(below(pointer, "type"));
             self.issues.error(pointer, "missing-key", "\"type\" is missing", hint);
             return false;
         };
