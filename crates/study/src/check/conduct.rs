@@ -1,10 +1,10 @@
 //! Device, calibration, time limits, practice, screening, attention checks, hosting without a server.
 
-use super::Subject;
-use super::issue::{Issues, below, listed};
+use super::issue::{Issues, below};
 use super::nearest::suggestion;
+use super::{Subject, conditions};
 use crate::flow::right_answers;
-use crate::study_file::{Component, Question, QuestionKind, TimeLimit, Training};
+use crate::study_file::{Component, Question, TimeLimit, Training};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     device(subject, issues);
@@ -181,40 +181,9 @@ fn screening(subject: &Subject<'_>, issues: &mut Issues) {
             issues.error(below(&place, "question"), "unknown-reference", message, hint);
             continue;
         };
-        let wanted = condition.equals.iter().chain(&condition.one_of);
-        let bounds = [condition.at_least, condition.at_most];
-        if condition.equals.is_none()
-            && condition.one_of.is_empty()
-            && bounds.iter().all(Option::is_none)
-        {
-            let message = "a condition without a value";
-            let hint = "add equals, oneOf, atLeast or atMost";
-            issues.error(&place, "empty", message, hint);
-        }
-        let options: Vec<&str> =
-            question.kind.options().iter().map(|option| option.value.as_str()).collect();
-        for value in wanted {
-            let known = value.as_str().is_some_and(|word| options.contains(&word));
-            if !options.is_empty() && !known {
-                let message = format!("{value} is no answer to \"{}\"", question.id);
-                let hint = format!("there is {}", listed(&options));
-                issues.error(&place, "bad-answer", message, hint);
-            }
-        }
         // Whoever is to be turned away must be able to say so.
-        let (least, most) = match &question.kind {
-            QuestionKind::Number(field) => (field.minimum, field.maximum),
-            QuestionKind::Slider(slider) => (Some(slider.minimum), Some(slider.maximum)),
-            _ => (None, None),
-        };
-        let too_low = condition.at_most.zip(least).filter(|(at_most, least)| at_most < least);
-        let too_high = condition.at_least.zip(most).filter(|(at_least, most)| at_least > most);
-        if let Some((bound, end)) = too_low.or(too_high) {
-            let message =
-                format!("the answers to \"{}\" end at {end}; {bound} never comes", question.id);
-            let hint = "widen the question's minimum and maximum, so that people can say the truth";
-            issues.error(&place, "never-holds", message, hint);
-        }
+        let hint = "widen the question's minimum and maximum, so that people can say the truth";
+        conditions::values(condition, question, &place, hint, issues);
     }
 }
 

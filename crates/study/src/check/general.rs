@@ -42,6 +42,7 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
     let languages = &subject.study.languages;
     if languages.is_empty() {
         issues.error("/languages", "no-language", "no language", "add one: [\"en\"]");
+        return;
     }
     for (index, language) in languages.iter().enumerate() {
         let pointer = below("/languages", index);

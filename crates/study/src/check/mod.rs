@@ -5,7 +5,9 @@
 //! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
 //! later stages run on what can be read of the file.
 
+mod attention;
 mod avatars;
+mod conditions;
 mod conduct;
 mod damage;
 mod general;

@@ -1,10 +1,10 @@
-//! Questions: identifiers, options, scales, attention checks, conditions.
+//! Questions: identifiers, options, scales, right answers.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Subject;
 use super::issue::{Issues, below, listed};
 use super::nearest::suggestion;
+use super::{Subject, attention, conditions};
 use crate::responses::is_reserved_column;
 use crate::study_file::{Choice, Component, LocalText, Question, QuestionKind, TrialsComponent};
 
@@ -30,12 +30,10 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
                 issues.error(below(&place, "id"), "duplicate", message, "give it another one");
             }
             kind(question, &place, issues);
-            attention(subject, question, &place, issues);
+            attention::examine(subject, question, &place, issues);
         }
     }
-    for (pointer, questions) in &pages {
-        conditions(&seen, pointer, questions, issues);
-    }
+    conditions::examine(subject, issues);
     for (index, question) in study.questions.iter().enumerate() {
         let blocks: Vec<&TrialsComponent> = blocks_asking(subject, &question.id).collect();
         let in_training =
@@ -179,80 +177,6 @@ fn options(options: &[Choice], place: &str, key: &str, least: usize, issues: &mu
         } else if options[..index].iter().any(|each| each.value == option.value) {
             let message = format!("\"{}\" is the value of two", option.value);
             issues.error(place, "duplicate", message, "give each its own value");
-        }
-    }
-}
-
-/// An attention check must have an answer that fits, be required, and say in its prompt which
-/// answer to give: Prolific accepts no check that needs memory, guessing or free text.
-fn attention(subject: &Subject<'_>, question: &Question, place: &str, issues: &mut Issues) {
-    let Some(check) = &question.attention_check else { return };
-    let pointer = below(place, "attentionCheck");
-    if question.accept(Some(&check.expected)).is_err() {
-        let message = format!("{} is no answer to this question", check.expected);
-        let place = below(&pointer, "expected");
-        issues.error(place, "bad-answer", message, "write an answer that can be given");
-        return;
-    }
-    if matches!(question.kind, QuestionKind::ShortText(_) | QuestionKind::LongText(_)) {
-        let message = "an attention check that asks for free text";
-        let hint = "take a choice or a scale; Prolific does not accept free text";
-        issues.error(&pointer, "unfair-check", message, hint);
-    }
-    if !question.required {
-        let message = "an attention check that may be left out";
-        issues.error(&pointer, "unfair-check", message, "remove \"required\": false");
-    }
-    for language in &subject.study.languages {
-        let wanted = match check.expected.as_str() {
-            Some(word) => question
-                .kind
-                .options()
-                .iter()
-                .find(|option| option.value == word)
-                .map_or(word, |option| option.label.in_language(language))
-                .to_owned(),
-            None => check.expected.to_string(),
-        };
-        let prompt = question.prompt.in_language(language).to_lowercase();
-        if !prompt.contains(&wanted.to_lowercase()) {
-            let message =
-                format!("the prompt in \"{language}\" does not say to answer \"{wanted}\"");
-            let hint =
-                format!("tell which answer to give (\"Please choose {wanted}\"), as Prolific asks");
-            issues.error(&pointer, "unfair-check", message, hint);
-        }
-    }
-}
-
-fn conditions(
-    seen: &BTreeMap<&str, String>,
-    pointer: &str,
-    questions: &[Question],
-    issues: &mut Issues,
-) {
-    for (index, question) in questions.iter().enumerate() {
-        let Some(condition) = &question.show_if else { continue };
-        let place = below(&below(pointer, index), "showIf");
-        let known: Vec<&str> = seen.keys().copied().collect();
-        if !seen.contains_key(condition.question.as_str()) {
-            let message = format!("there is no question \"{}\"", condition.question);
-            let hint = suggestion(&condition.question, &known);
-            issues.error(below(&place, "question"), "unknown-reference", message, hint);
-        }
-        if questions[index..].iter().any(|later| later.id == condition.question) {
-            let message = format!("\"{}\" is asked later", condition.question);
-            let hint = "put that question first";
-            issues.error(below(&place, "question"), "too-late", message, hint);
-        }
-        if condition.equals.is_none()
-            && condition.one_of.is_empty()
-            && condition.at_least.is_none()
-            && condition.at_most.is_none()
-        {
-            let message = "a condition without a value";
-            let hint = "add equals, oneOf, atLeast or atMost";
-            issues.error(place, "empty", message, hint);
         }
     }
 }

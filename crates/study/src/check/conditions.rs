@@ -1,0 +1,244 @@
+//! `showIf`: a question that is asked before, whose answer is kept, and an answer that can be given.
+//! The values of a screening rule are checked here too.
+
+use std::cmp::Ordering;
+
+use serde_json::Value;
+
+use super::Subject;
+use super::issue::{Issues, below, listed};
+use super::nearest::suggestion;
+use crate::study_file::{
+    Component, Condition, OrderRule, Question, QuestionKind, Sequence, SequenceItem,
+};
+
+/// Where a question is asked.
+#[derive(Clone, Copy)]
+enum Asked<'a> {
+    Demographics,
+    Practice,
+    /// A page of questions or a block of trials.
+    Component(&'a str),
+}
+
+/// Why an answer is not known when the question that wants it comes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Unknown {
+    AskedLater,
+    PerhapsLater,
+    NotKept,
+}
+
+pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
+    let study = subject.study;
+    let demographics = study.demographics.iter().flat_map(|page| &page.questions).enumerate();
+    for (index, question) in demographics {
+        let place = below("/demographics/questions", index);
+        condition(subject, question, &[Asked::Demographics], &place, issues);
+    }
+    for (index, question) in study.questions.iter().enumerate() {
+        let place = below("/questions", index);
+        condition(subject, question, &asked(subject, &question.id), &place, issues);
+    }
+    for (name, component) in &study.components {
+        let Component::Questionnaire(page) = component else { continue };
+        let pointer = below(&below("/components", name), "questions");
+        for (index, question) in page.questions.iter().enumerate() {
+            let place = below(&pointer, index);
+            condition(subject, question, &[Asked::Component(name)], &place, issues);
+        }
+    }
+}
+
+/// Where a shared question is asked.
+fn asked<'a>(subject: &Subject<'a>, id: &str) -> Vec<Asked<'a>> {
+    let names = |ids: &[String]| ids.iter().any(|each| each == id);
+    let practice = subject.study.training.iter().filter(|it| names(&it.questions));
+    let blocks = subject.study.components.iter().filter(
+        |(_, component)| matches!(component, Component::Trials(block) if names(&block.questions)),
+    );
+    practice
+        .map(|_| Asked::Practice)
+        .chain(blocks.map(|(name, _)| Asked::Component(name)))
+        .collect()
+}
+
+fn condition(
+    subject: &Subject<'_>,
+    question: &Question,
+    asked: &[Asked<'_>],
+    place: &str,
+    issues: &mut Issues,
+) {
+    let Some(condition) = &question.show_if else { return };
+    let place = below(place, "showIf");
+    let wanted = condition.question.as_str();
+    let Some(of) = subject.study.all_questions().find(|each| each.id == wanted) else {
+        let known: Vec<&str> = subject.study.all_questions().map(|each| each.id.as_str()).collect();
+        let message = format!("there is no question \"{wanted}\"");
+        let hint = suggestion(wanted, &known);
+        issues.error(below(&place, "question"), "unknown-reference", message, hint);
+        return;
+    };
+    for &here in asked {
+        let place = below(&place, "question");
+        match known_before(subject, here, &question.id, wanted) {
+            Ok(()) => {}
+            Err(Unknown::AskedLater) => {
+                let message = format!("\"{wanted}\" is asked later");
+                issues.error(place, "too-late", message, "put that question first");
+            }
+            Err(Unknown::PerhapsLater) => {
+                let message = format!("\"{wanted}\" may be asked later: their order is drawn");
+                let hint = "put its page first, in a sequence of fixed order";
+                issues.warning(place, "perhaps-too-late", message, hint);
+            }
+            Err(Unknown::NotKept) => {
+                let message =
+                    format!("\"{wanted}\" is asked in trials, whose answers are not kept");
+                let hint = "ask it before this question in the same trials, or on a page before";
+                issues.error(place, "not-kept", message, hint);
+            }
+        }
+    }
+    let hint = "mend the bound, or the question's own";
+    values(condition, of, &place, hint, issues);
+}
+
+/// Whether the answer to `wanted` is known where `id` is asked.
+fn known_before(
+    subject: &Subject<'_>,
+    here: Asked<'_>,
+    id: &str,
+    wanted: &str,
+) -> Result<(), Unknown> {
+    let study = subject.study;
+    let page = |questions: &[Question]| questions.iter().map(|each| each.id.clone()).collect();
+    let together: Vec<String> = match here {
+        Asked::Demographics => study.demographics.as_ref().map(|it| page(&it.questions)),
+        Asked::Practice => study.training.as_ref().map(|it| it.questions.clone()),
+        Asked::Component(name) => match study.components.get(name) {
+            Some(Component::Questionnaire(it)) => Some(page(&it.questions)),
+            Some(Component::Trials(block)) => Some(block.questions.clone()),
+            _ => None,
+        },
+    }
+    .unwrap_or_default();
+    let place = |id: &str| together.iter().position(|each| each == id);
+    if let Some(before) = place(wanted) {
+        return if Some(before) < place(id) { Ok(()) } else { Err(Unknown::AskedLater) };
+    }
+    if study.demographics.iter().flat_map(|it| &it.questions).any(|each| each.id == wanted) {
+        return Ok(());
+    }
+    let asks = |component: &Component| matches!(component, Component::Questionnaire(page) if page.questions.iter().any(|each| each.id == wanted));
+    let Some((there, _)) = study.components.iter().find(|(_, component)| asks(component)) else {
+        return Err(Unknown::NotKept);
+    };
+    let Asked::Component(here) = here else { return Err(Unknown::AskedLater) };
+    let (there, here) = (path(&study.sequence, there), path(&study.sequence, here));
+    match there.zip(here).map(|(there, here)| first(&there, &here)) {
+        Some(Some(Ordering::Less)) => Ok(()),
+        Some(None) => Err(Unknown::PerhapsLater),
+        Some(_) | None => Err(Unknown::AskedLater),
+    }
+}
+
+/// The way to a component: in each sequence its order and the place in it; no place where the
+/// component interrupts the sequence.
+type Way = Vec<(OrderRule, Option<usize>)>;
+
+fn path(sequence: &Sequence, name: &str) -> Option<Way> {
+    for (index, item) in sequence.components.iter().enumerate() {
+        let rest = match item {
+            SequenceItem::Component(other) => (other == name).then(Vec::new),
+            SequenceItem::Sequence(nested) => path(nested, name),
+        };
+        if let Some(rest) = rest {
+            return Some([vec![(sequence.order, Some(index))], rest].concat());
+        }
+    }
+    let interrupts = sequence.interruptions.iter().any(|each| each.component == name);
+    interrupts.then(|| vec![(sequence.order, None)])
+}
+
+/// Which of two comes first; `None` where that is drawn.
+fn first(left: &Way, right: &Way) -> Option<Ordering> {
+    let ((order, left), (_, right)) = left.iter().zip(right).find(|(left, right)| left != right)?;
+    let (left, right) = left.as_ref().zip(right.as_ref())?;
+    (*order == OrderRule::Fixed).then(|| left.cmp(right))
+}
+
+/// The values of a condition: there are some, and they can be answers to the question.
+pub(super) fn values(
+    condition: &Condition,
+    question: &Question,
+    place: &str,
+    hint: &str,
+    issues: &mut Issues,
+) {
+    let bounds = [condition.at_least, condition.at_most];
+    if condition.equals.is_none() && condition.one_of.is_empty() && bounds == [None, None] {
+        let message = "a condition without a value";
+        issues.error(place, "empty", message, "add equals, oneOf, atLeast or atMost");
+    }
+    let id = &question.id;
+    let options: Vec<&str> =
+        question.kind.options().iter().map(|option| option.value.as_str()).collect();
+    let remedy = || match options.as_slice() {
+        [] => "write an answer that can be given".to_owned(),
+        options => format!("there is {}", listed(options)),
+    };
+    let several = matches!(question.kind, QuestionKind::MultipleChoice(_));
+    for value in &condition.one_of {
+        // One of several choices is enough.
+        let fits = match several {
+            true => value.as_str().is_some_and(|word| options.contains(&word)),
+            false => can_be_given(question, value),
+        };
+        if !fits {
+            let message = format!("{value} is no answer to \"{id}\"");
+            issues.error(place, "bad-answer", message, remedy());
+        }
+    }
+    if let Some(value) = condition.equals.as_ref().filter(|value| !can_be_given(question, value)) {
+        let message = format!("{value} is no answer to \"{id}\"");
+        let hint = match several && value.is_string() {
+            true => format!("write \"oneOf\": [{value}] for whoever chooses it among others"),
+            false => remedy(),
+        };
+        issues.error(place, "bad-answer", message, hint);
+    }
+    let (least, most) = match &question.kind {
+        QuestionKind::Number(field) => (field.minimum, field.maximum),
+        QuestionKind::Slider(slider) => (Some(slider.minimum), Some(slider.maximum)),
+        QuestionKind::Likert(scale) => (Some(scale.start as f64), Some(scale.end() as f64)),
+        _ => {
+            if bounds != [None, None] {
+                let message = format!("the answers to \"{id}\" are not numbers");
+                issues.error(place, "bad-answer", message, "write equals or oneOf");
+            }
+            return;
+        }
+    };
+    if let (Some(at_least), Some(at_most)) = (condition.at_least, condition.at_most)
+        && at_least > at_most
+    {
+        let message = format!("no number is at least {at_least} and at most {at_most}");
+        issues.error(place, "never-holds", message, "make atLeast the smaller one");
+    }
+    let too_low = condition.at_most.zip(least).filter(|(at_most, least)| at_most < least);
+    let too_high = condition.at_least.zip(most).filter(|(at_least, most)| at_least > most);
+    if let Some((bound, end)) = too_low.or(too_high) {
+        let message = format!("the answers to \"{id}\" end at {end}; {bound} never comes");
+        issues.error(place, "never-holds", message, hint);
+    }
+}
+
+/// Whether somebody can give this answer; 3.0 is 3.
+fn can_be_given(question: &Question, value: &Value) -> bool {
+    let whole = value.as_f64().filter(|number| number.fract() == 0.0 && number.abs() < 9e15);
+    let value = whole.map_or_else(|| value.clone(), |number| (number as i64).into());
+    let required = Question { required: true, ..question.clone() };
+    required.accept(Some(&value)).is_ok()
+}
