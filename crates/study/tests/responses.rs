@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use mimique_study::flow::Input;
 use mimique_study::responses::{
-    SessionRecord, Table, psych_ds_description, session_status, tidy, wide,
+    SessionRecord, Table, failed_attention_checks, psych_ds_description, session_status, tidy, wide,
 };
 use mimique_study::wire::{ClipSource, SessionStarted};
 use mimique_study::{Study, parse};
@@ -294,4 +294,50 @@ fn every_column_is_described() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), table.columns.len(), "no column twice");
+}
+
+/// On the closing page of a study two questions are opened by an answer of the first page: one that
+/// may be left out, and an attention check. Rows as they were shown.
+#[test]
+fn a_question_opened_by_an_earlier_page_and_left_empty_has_a_row() {
+    let mut file = parse(&study_text("demo.json")).unwrap();
+    let yes_no = json!([{ "value": "yes", "label": "Yes" }, { "value": "no", "label": "No" }]);
+    file["demographics"] = json!({ "questions": [
+        { "id": "glasses", "type": "singleChoice", "prompt": "Glasses?", "options": yes_no } ] });
+    let opened = json!({ "question": "glasses", "equals": "yes" });
+    file["components"]["closing"] = json!({ "type": "questionnaire", "questions": [
+        { "id": "which", "type": "shortText", "prompt": "Which?", "required": false, "showIf": opened },
+        { "id": "awake", "type": "singleChoice", "prompt": "Choose yes.", "required": false,
+          "options": yes_no, "showIf": opened, "attentionCheck": { "expected": "yes" } },
+        { "id": "comment", "type": "longText", "prompt": "Else?", "required": false } ] });
+    let sequence = file["sequence"].take();
+    file["sequence"] = json!({ "order": "fixed", "components": [sequence, "closing"] });
+    let rows_for = |glasses: &str| {
+        let mut page = Page::open(&file.to_string(), 1);
+        loop {
+            let step = page.plan.step(page.state.record.step).map(|step| step.id.clone());
+            if step.as_deref() == Some("closing") {
+                page.send(Input::Next);
+            } else if !page.act(&mut |id, kind| match id {
+                "glasses" => json!(glasses),
+                _ => first_answer(id, kind),
+            }) {
+                break;
+            }
+        }
+        let study = Study::from_value(&file).unwrap();
+        let table = tidy(&study, &sources(&study), [record(&page)]);
+        let column = |name| table.columns.iter().position(|each| each.name == name).unwrap();
+        let (trial, response) = (column("trial_id"), column("response_id"));
+        let shown: Vec<String> = table
+            .rows
+            .iter()
+            .filter(|row| row[trial] == "closing")
+            .map(|row| row[response].as_str().unwrap().to_owned())
+            .collect();
+        (shown, failed_attention_checks(&study, &page.stored))
+    };
+    let wanted = |ids: &[&str]| ids.iter().map(|id| (*id).to_owned()).collect::<Vec<_>>();
+    assert_eq!(rows_for("yes"), (wanted(&["which", "awake", "comment"]), 1));
+    assert_eq!(rows_for("no"), (wanted(&["comment"]), 0));
 }

@@ -180,16 +180,30 @@ impl Walk {
     }
 }
 
+impl FinishedStep {
+    /// Adds the answers that conditions on later questions go by: those of pages, not of trials.
+    pub fn keep_answers(&self, kept: &mut Answers) {
+        if self.clip.is_none() {
+            kept.extend(self.answers.iter().map(|(id, value)| (id.clone(), value.clone())));
+        }
+    }
+}
+
 /// How many attention checks of a session were failed: answered otherwise than expected, or not at
-/// all where their page was finished.
+/// all where they were shown and their page was finished.
 pub fn failed_attention_checks(study: &Study, events: &[Event]) -> u32 {
     let mut failed = 0;
+    let mut earlier = Answers::new();
     for step in Walk::of(events).steps {
         for question in study.questions_of(&step.id) {
             let Some(check) = &question.attention_check else { continue };
+            if !question.is_shown(&step.answers, &earlier) {
+                continue;
+            }
             let answer = step.answers.get(&question.id);
             failed += u32::from(!answer.is_some_and(|answer| alike(answer, &check.expected)));
         }
+        step.keep_answers(&mut earlier);
     }
     failed
 }

@@ -9,6 +9,7 @@ use super::column::{Column, ColumnKind, Table};
 use super::fixed_columns::FIXED_COLUMNS;
 use super::session::{EarlyEnd, FinishedStep, SessionRecord, Walk, session_status};
 use crate::answer::alike;
+use crate::event::Answers;
 use crate::study_file::{Clip, Question, QuestionKind, SequenceItem, Study, component_of};
 use crate::wire::ClipSource;
 
@@ -86,6 +87,7 @@ impl<'a> Layout<'a> {
             }
         }
         let (mut trials, mut trainings) = (0_u64, 0_u64);
+        let mut earlier = Answers::new();
         for (index, step) in walk.steps.iter().enumerate() {
             let kind = self.kind(step);
             let order = match kind {
@@ -97,7 +99,8 @@ impl<'a> Layout<'a> {
             self.step_cells(&walk, step, kind, &mut cells);
             cells.insert("trial_index".to_owned(), index.into());
             cells.insert("trial_order".to_owned(), order);
-            self.answer_rows(step, &cells, rows);
+            self.answer_rows(step, &earlier, &cells, rows);
+            step.keep_answers(&mut earlier);
         }
         if let Some(end) = &walk.end {
             rows.push(self.end_row(&walk, end, common));
@@ -200,12 +203,18 @@ impl<'a> Layout<'a> {
         logged.filter(|hash| !hash.is_empty()).or_else(served).into()
     }
 
-    fn answer_rows(&self, step: &FinishedStep, cells: &Cells, rows: &mut Vec<Vec<Value>>) {
+    /// The rows of a step, given the answers of the pages before it.
+    fn answer_rows(
+        &self,
+        step: &FinishedStep,
+        earlier: &Answers,
+        cells: &Cells,
+        rows: &mut Vec<Vec<Value>>,
+    ) {
         let questions = self.study.questions_of(&step.id);
-        let earlier = BTreeMap::new();
         for question in &questions {
             let answer = step.answers.get(&question.id);
-            if answer.is_none() && !question.is_shown(&step.answers, &earlier) {
+            if answer.is_none() && !question.is_shown(&step.answers, earlier) {
                 continue;
             }
             let answer = answer.unwrap_or(&Value::Null);
