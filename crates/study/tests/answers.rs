@@ -63,6 +63,11 @@ fn each_type_takes_its_answers_and_no_others() {
                 (json!("0"), Err(NotAnOption)),
             ],
         ),
+        // No sum overflows.
+        (
+            json!({ "type": "likert", "numItems": 5, "start": i64::MAX }),
+            vec![(json!(i64::MAX), Ok(())), (json!(0), Err(NotAnOption))],
+        ),
         (
             json!({ "type": "slider", "minimum": 0.5, "maximum": 9.5, "leftLabel": "l", "rightLabel": "r" }),
             vec![

@@ -56,6 +56,21 @@ fn what_a_misspelt_key_holds_is_checked_at_its_own_place() {
     assert_eq!(found(&file), wanted.map(|(pointer, code)| (pointer.to_owned(), code)));
 }
 
+/// What README.md shows of `mimique check bad.json`.
+#[test]
+fn the_example_of_the_readme_says_what_is_printed_there() {
+    let readme =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+    let report = check(r#"{ "id": "x", "languges": ["en"], "components": {} }"#, &|_| Ok(()));
+    for Issue { pointer, message, hint, .. } in &report.issues {
+        let place = if pointer.is_empty() { "/" } else { pointer };
+        let line = format!("\nerror: bad.json: {place}: {message}; {hint}\n");
+        assert!(readme.contains(&line), "{line}");
+    }
+    let count = format!("\nbad.json: {} errors, 0 warnings\n", report.errors());
+    assert!(readme.contains(&count), "{count}");
+}
+
 /// The pointers of everything in a file.
 fn pointers(value: &Value, here: &str, all: &mut Vec<String>) {
     let mut below = |key: &str, value| {

@@ -56,7 +56,10 @@ impl Design {
         };
         let constraints =
             json!([constraint("expression", limits[0]), constraint("method", limits[1])]);
-        let random = |block: &str| json!({ "order": "random", "components": [block], "constraints": constraints.clone() });
+        let random = |block: &str| {
+            let constraints = constraints.clone();
+            json!({ "order": "random", "components": [block], "constraints": constraints })
+        };
         let samples =
             (family == Family::Sampled).then(|| 1 + numbers.below((count * methods) as u64));
         let sequence = match family {

@@ -73,7 +73,9 @@ fn told(kind: &QuestionKind, answer: &Value, language: &str, words: &Words) -> V
             };
             if let Some(point) = answer.as_i64() {
                 named(
-                    usize::try_from(point - scale.start).ok().and_then(|it| scale.labels.get(it)),
+                    usize::try_from(point.saturating_sub(scale.start))
+                        .ok()
+                        .and_then(|it| scale.labels.get(it)),
                 );
                 named(scale.left_label.as_ref().filter(|_| point == scale.start));
                 named(scale.right_label.as_ref().filter(|_| point == scale.end()));

@@ -131,7 +131,10 @@ fn known_before(
     if study.demographics.iter().flat_map(|it| &it.questions).any(|each| each.id == wanted) {
         return Ok(());
     }
-    let asks = |component: &Component| matches!(component, Component::Questionnaire(page) if page.questions.iter().any(|each| each.id == wanted));
+    let asks = |component: &Component| match component {
+        Component::Questionnaire(page) => page.questions.iter().any(|each| each.id == wanted),
+        _ => false,
+    };
     let Some((there, _)) = study.components.iter().find(|(_, component)| asks(component)) else {
         return Err(Unknown::NotKept);
     };

@@ -265,7 +265,7 @@ fn one() -> i64 {
 impl Likert {
     /// Number of the last point.
     pub fn end(&self) -> i64 {
-        self.start + i64::from(self.num_items) - 1
+        self.start.saturating_add(i64::from(self.num_items) - 1)
     }
 }
 
