@@ -60,7 +60,7 @@ fn every_code_has_an_expected_report() {
     let mut reported = BTreeSet::new();
     for entry in std::fs::read_dir(study_folder().join("invalid")).unwrap() {
         let path = entry.unwrap().path();
-        if !path.extension().is_some_and(|extension| extension == "txt") {
+        if path.extension().is_none_or(|extension| extension != "txt") {
             continue;
         }
         for line in std::fs::read_to_string(path).unwrap().lines() {

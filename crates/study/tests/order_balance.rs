@@ -122,7 +122,7 @@ fn samples_under_constraints_have_an_order_for_everybody() {
         passed += 1;
         uneven += usize::from(report.issues.iter().any(|issue| issue.code == "uneven-samples"));
         let mut shown: BTreeMap<String, usize> = BTreeMap::new();
-        let cycle = (1..).find(|cycle| cycle * samples % count == 0).unwrap();
+        let cycle = (1_usize..).find(|cycle| (cycle * samples).is_multiple_of(count)).unwrap();
         for participant in 0..200 {
             let clips = clips(checked.study(), checked.config_hash(), participant);
             assert_eq!(clips.len(), samples, "seed {seed}, participant {participant}");
