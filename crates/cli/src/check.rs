@@ -18,8 +18,16 @@ pub struct Args {
     schema: bool,
     /// Print the buttons and messages of the pages by their names instead, to be translated into
     /// `translations` of a study file
-    #[arg(long, value_name = "LANGUAGE")]
+    #[arg(long, value_name = "LANGUAGE", value_parser = language)]
     words: Option<String>,
+}
+
+/// The code of a language.
+fn language(code: &str) -> Result<String, String> {
+    match code.trim() {
+        "" => Err("no language is named; write its code, as in --words de".to_owned()),
+        code => Ok(code.to_owned()),
+    }
 }
 
 /// Runs the command.

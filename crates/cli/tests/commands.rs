@@ -214,7 +214,15 @@ fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
     let found = mimique(&["check", &text(&bad)]);
     assert_eq!(found.status.code(), Some(2));
     let err = String::from_utf8_lossy(&found.stdout);
-    for part in ["/languges", "did you mean \"languages\"", "studyMetadata", "stimuli"] {
+    let parts = [
+        "/languges",
+        "did you mean \"languages\"",
+        "studyMetadata",
+        "stimuli",
+        "no contact",
+        "no consent",
+    ];
+    for part in parts {
         assert!(err.contains(part), "{part}: {err}");
     }
     let listed: Value = {
@@ -236,6 +244,10 @@ fn check_prints_the_words_to_translate() {
     assert!(place("language_name") < place("agree") && place("agree") < place("refused_internal"));
     let french = ok(&["check", "--words", "fr"]);
     assert!(french.contains("J’accepte de participer"), "{french}");
+    for empty in ["", "  "] {
+        let err = refused(&["check", "--words", empty]);
+        assert!(err.contains("--words") && err.contains("write its code"), "{err}");
+    }
 }
 
 #[test]
