@@ -14,6 +14,7 @@ mod install;
 mod process;
 mod tally;
 mod test;
+mod wasm_names;
 mod wasm_order;
 mod web;
 

@@ -9,6 +9,8 @@ use std::collections::HashMap;
 use anyhow::{Context as _, Result};
 use wasmparser::{Parser, Payload, TypeRef};
 
+use crate::wasm_names::leb;
+
 /// Bytes that are compared as one.
 const GRAM: usize = 6;
 /// What more functions than this contain tells nothing about any.
@@ -54,15 +56,6 @@ pub fn named_by_place(wasm: &[u8]) -> Result<Vec<u8>> {
     leb(&mut named, section.len());
     named.extend(section);
     Ok(named)
-}
-
-/// Unsigned LEB128.
-fn leb(out: &mut Vec<u8>, mut number: usize) {
-    while number > 127 {
-        out.push(number as u8 & 127 | 128);
-        number >>= 7;
-    }
-    out.push(number as u8);
 }
 
 /// The indices of the functions in their new order: after each, the one of which the largest share is
@@ -142,12 +135,5 @@ mod tests {
         assert_eq!(all, [0, 1, 2, 3, 4, 5]);
         let kinds: Vec<usize> = found.iter().filter(|i| **i < 5).map(|index| index % 2).collect();
         assert!([vec![0, 0, 0, 1, 1], vec![1, 1, 0, 0, 0]].contains(&kinds), "{found:?}");
-    }
-
-    #[test]
-    fn numbers_are_leb128() {
-        let mut out = Vec::new();
-        [0, 127, 128, 624_485].into_iter().for_each(|number| leb(&mut out, number));
-        assert_eq!(out, [0, 127, 128, 1, 0xe5, 0x8e, 0x26]);
     }
 }

@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
 use crate::process::{cargo, locked, root, run as run_program, say, target};
-use crate::wasm_order;
+use crate::{wasm_names, wasm_order};
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
@@ -198,8 +198,14 @@ impl Module {
             .omit_default_module_path(false)
             .generate(&out)
             .with_context(|| format!("wasm-bindgen of {}", self.name))?;
+        let script = out.join(format!("{}.js", self.name));
+        let wasm = out.join(format!("{}_bg.wasm", self.name));
+        let (short, renamed) =
+            wasm_names::shortened(&fs::read_to_string(&script)?, &fs::read(&wasm)?)
+                .with_context(|| format!("names of {}", self.name))?;
+        fs::write(&script, short)?;
+        fs::write(&wasm, renamed)?;
         if let Some(script) = optimiser {
-            let wasm = out.join(format!("{}_bg.wasm", self.name));
             let wasm_opt = |options: &[&str]| {
                 let mut command = Command::new("node");
                 command.arg(script).args(FEATURES).args(options);
@@ -222,6 +228,7 @@ impl Module {
         hash.update(self.opt_level);
         FEATURES.iter().chain(&WASM_OPT).for_each(|option| hash.update(option));
         hash.update(include_bytes!("wasm_order.rs"));
+        hash.update(include_bytes!("wasm_names.rs"));
         Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
     }
 }
