@@ -98,6 +98,11 @@ export const focusHeading = () =>
 export function watch(call) {
   for (const name of ["blur", "focus", "resize", "online", "pagehide"]) addEventListener(name, () => call(name));
   document.addEventListener("fullscreenchange", () => call("fullscreenchange"));
+  // A hidden page need not lose the focus; what it has is sent, as it may never come back.
+  document.addEventListener("visibilitychange", () => {
+    if (document.hidden) call("blur"), call("pagehide");
+    else if (document.hasFocus()) call("focus");
+  });
   setInterval(() => call("tick"), 1000);
 }
 
@@ -132,10 +137,10 @@ export const viewport = () => [innerWidth, innerHeight, devicePixelRatio];
 
 // ---- requests
 
-/** Status and text of an answer; throws where there is none. */
-export async function request(method, address, type, body) {
+/** Status and text of an answer; throws where none has come whole in `patience` ms. */
+export async function request(method, address, type, body, patience) {
   const headers = type ? { "content-type": type } : {};
-  const answer = await fetch(address, { method, headers, body });
+  const answer = await fetch(address, { method, headers, body, signal: AbortSignal.timeout(patience) });
   return [answer.status, await answer.text()];
 }
 

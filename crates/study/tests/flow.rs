@@ -223,6 +223,33 @@ fn declining_and_withdrawing_end_the_session() {
 }
 
 #[test]
+fn who_withdraws_while_the_last_answers_are_sent_stays_withdrawn_after_a_reload() {
+    let mut page = Page::open(&study_text("demo.json"), 11);
+    page.finish();
+    // The same session, of which the server has acknowledged nothing.
+    let state = State::replay(&page.plan, &page.stored);
+    let shown = mimique_study::flow::view(&page.plan, &state);
+    assert!(matches!(shown, View::ReceiptPending { .. }), "{shown:?}");
+    let (_, effects) = update(&page.plan, state, Input::Withdraw, page.now_ms);
+    assert!(effects.contains(&Effect::Withdraw));
+    let made = effects.into_iter().filter_map(|effect| match effect {
+        Effect::Store(event) => Some(event),
+        _ => None,
+    });
+    page.stored.extend(made);
+
+    let state = State::replay(&page.plan, &page.stored);
+    let (state, effects) = update(&page.plan, state, Input::Resumed(client()), page.now_ms);
+    assert_eq!(effects, vec![Effect::Flush, Effect::Withdraw]);
+    // And the server's word that everything has arrived completes nothing.
+    let stored = page.stored.len() as u64;
+    let (state, effects) = update(&page.plan, state, Input::Acknowledged { stored }, page.now_ms);
+    assert_eq!(effects, vec![]);
+    let shown = mimique_study::flow::view(&page.plan, &state);
+    assert!(matches!(shown, View::Withdrawn { confirmed: false, .. }), "{shown:?}");
+}
+
+#[test]
 fn focus_is_logged_once_a_change() {
     let mut page = Page::open(&study_text("demo.json"), 12);
     let stored = page.stored.len();

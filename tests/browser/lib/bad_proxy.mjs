@@ -1,14 +1,22 @@
-// A network that drops, delays, doubles and reorders what goes to the server's /api, by a drawn fate
-// each request; everything else goes through.
+// A network that drops, delays, doubles, reorders and swallows what goes to the server's /api, by a drawn
+// fate each request; everything else goes through. Or one that does what a test says.
 
 import { createServer, request } from "node:http";
 
-/** `{url, counts, calm(), close()}`; `seed` decides every fate, `calm` ends the storm. */
+/** What stands on the way answers with a page of its own, by any status. */
+const foreign = [403, 200, 404, 511];
+
+/**
+ * `{url, counts, calm(), rule(fate), close()}`; `seed` decides every fate, and without one there is no
+ * storm; `calm` ends it. `fate(method, path)` of `rule` goes before: "silent" is never answered, "foreign"
+ * by somebody else, "damaged" with other bytes; nothing else is changed.
+ */
 export async function badProxy(target, seed) {
   const { hostname, port } = new URL(target);
-  const counts = { lost: 0, unanswered: 0, late: 0, doubled: 0, held: 0, whole: 0 };
+  const counts = { lost: 0, unanswered: 0, late: 0, doubled: 0, held: 0, silent: 0, foreign: 0, damaged: 0, whole: 0 };
   let state = seed >>> 0 || 1;
-  let stormy = true;
+  let stormy = seed !== undefined;
+  let rule = () => undefined;
   // xorshift32 (Marsaglia 2003).
   const below = (n) => {
     state ^= state << 13;
@@ -37,6 +45,16 @@ export async function badProxy(target, seed) {
       const body = Buffer.concat(parts);
       const drop = () => answer.destroy();
       try {
+        const told = rule(method, url);
+        if (told === "silent") return void counts.silent++;
+        if (told === "foreign") {
+          answer.writeHead(foreign[counts.foreign++ % foreign.length], { "content-type": "text/html" });
+          return answer.end("<!doctype html><title>Please log in</title><p>This network is filtered.</p>");
+        }
+        if (told === "damaged") {
+          counts.damaged++;
+          return answer.end("not what was asked for");
+        }
         const fate = stormy && url.startsWith("/api/sessions/") ? below(10) : 9;
         if (fate === 0) return (counts.lost++, drop());
         if (fate === 1) {
@@ -53,6 +71,8 @@ export async function badProxy(target, seed) {
           setTimeout(() => forward(method, url, headers, body).catch(() => {}), 1000 + below(3000));
           return drop();
         }
+        // Held open and never answered: once, as the page waits long for it.
+        if (fate === 5 && counts.silent === 0) return void counts.silent++;
         counts.whole++;
         const given = await forward(method, url, headers, body);
         if (answer.destroyed) return;
@@ -69,6 +89,7 @@ export async function badProxy(target, seed) {
     url: `http://127.0.0.1:${proxy.address().port}`,
     counts,
     calm: () => (stormy = false),
+    rule: (fate) => (rule = fate),
     close: () => (proxy.closeAllConnections(), new Promise((done) => proxy.close(done))),
   };
 }

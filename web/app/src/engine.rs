@@ -17,6 +17,7 @@ use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 
+use crate::answer::is_gone;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Failure};
 use crate::outbox::{Outbox, back_off};
@@ -253,7 +254,7 @@ impl Engine {
                     Err(Failure::Refused(_)) if engine.is_withdrawing() => break,
                     Err(Failure::Refused(refusal)) => {
                         // The events stay in IndexedDB; a reload or a retry sends them again.
-                        engine.connection_is(|connection| connection.refused = Some(refusal));
+                        engine.troubled(Failure::Refused(refusal));
                         break;
                     }
                 }
@@ -264,6 +265,14 @@ impl Engine {
 
     fn is_withdrawing(&self) -> bool {
         self.state.borrow().live.withdrawing
+    }
+
+    /// The header says what is wrong.
+    fn troubled(&self, failure: Failure) {
+        self.connection_is(|connection| match failure {
+            Failure::Unreachable(_) => connection.offline = true,
+            Failure::Refused(refusal) => connection.refused = Some(refusal),
+        });
     }
 
     fn connected(&self) {
@@ -365,6 +374,10 @@ impl Engine {
                 while engine.sending.get() {
                     page::sleep(100.0).await;
                 }
+                // Whoever takes everything back needs no receipt.
+                if engine.is_withdrawing() {
+                    break;
+                }
                 match network::complete(&engine.plan.started.session, events).await {
                     Ok(receipt) => {
                         engine.connected();
@@ -373,10 +386,7 @@ impl Engine {
                     }
                     Err(failure) => {
                         failures += 1;
-                        engine.connection_is(|connection| match failure {
-                            Failure::Unreachable(_) => connection.offline = true,
-                            Failure::Refused(refusal) => connection.refused = Some(refusal),
-                        });
+                        engine.troubled(failure);
                         engine.wait(failures).await;
                     }
                 }
@@ -393,11 +403,12 @@ impl Engine {
                 let answer =
                     network::withdraw(&started.session, started.withdrawal_code.clone()).await;
                 match answer {
-                    // Whatever is refused now is gone already.
-                    Ok(_) | Err(Failure::Refused(_)) => break,
-                    Err(Failure::Unreachable(_)) => {
+                    Ok(_) => break,
+                    // It is gone already: the answer that said so was never heard here.
+                    Err(Failure::Refused(refusal)) if is_gone(&refusal) => break,
+                    Err(failure) => {
                         failures += 1;
-                        engine.connection_is(|connection| connection.offline = true);
+                        engine.troubled(failure);
                         engine.wait(failures).await;
                     }
                 }

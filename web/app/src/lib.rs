@@ -11,6 +11,7 @@
 //! ```
 
 pub mod address;
+pub mod answer;
 pub mod outbox;
 
 #[cfg(target_arch = "wasm32")]

@@ -1,5 +1,6 @@
 //! Talking to the server: `mimique_study::wire`, as JSON; or to [`site`] where there is none.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use js_sys::Array;
@@ -13,15 +14,14 @@ use serde_json::Value;
 
 use wasm_bindgen::JsValue;
 
+pub use crate::answer::Failure;
+use crate::answer::failure;
+use crate::outbox::patience;
 use crate::{bridge, json, page, site};
 
-/// Why a request brought nothing.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Failure {
-    /// No answer, or one that says to come back later: worth another try.
-    Unreachable(String),
-    /// The server understood and refuses: trying again changes nothing.
-    Refused(Refusal),
+thread_local! {
+    /// Requests since the last answer that were given up.
+    static UNANSWERED: Cell<u32> = const { Cell::new(0) };
 }
 
 /// What the pages need of `wire::Bundle`: the clips go through to the stage as they came.
@@ -107,18 +107,26 @@ impl Answer {
     }
 }
 
-/// A request; a failure where no answer comes.
+/// A request; a failure where no answer comes, or none in time ([`patience`]).
 pub async fn send(
     method: &str,
     address: &str,
     content_type: &str,
     body: Option<String>,
 ) -> Result<Answer, Failure> {
-    let answer = page::request(method, address, content_type, body).await;
+    let patience = patience(UNANSWERED.get()).as_millis() as f64;
+    let begun = page::now();
+    let answer = page::request(method, address, content_type, body, patience).await;
     let answer: Array = match answer {
         Ok(answer) => Array::from(&answer),
-        Err(thrown) => return Err(unreachable(&thrown)),
+        Err(thrown) => {
+            // A connection that breaks at once says nothing of how slow it is.
+            let given_up = page::now() - begun >= patience;
+            UNANSWERED.set(UNANSWERED.get() + u32::from(given_up));
+            return Err(unreachable(&thrown));
+        }
     };
+    UNANSWERED.set(0);
     let status = answer.get(0).as_f64().unwrap_or(0.0) as u16;
     Ok(Answer { status, text: answer.get(1).as_string().unwrap_or_default() })
 }
@@ -129,20 +137,9 @@ pub fn unreachable(thrown: &JsValue) -> Failure {
 }
 
 fn read<T: FromJson>(answer: &Answer) -> Result<T, Failure> {
-    let status = answer.status;
     if answer.ok() {
+        // A page where JSON should be: something on the way answered.
         return json::read(&answer.text).map_err(|error| Failure::Unreachable(error.to_string()));
     }
-    // Too early, too many, too late: the server wants us to come back.
-    let later = status >= 500 || matches!(status, 408 | 425 | 429);
-    match json::read::<Refusal>(&answer.text) {
-        Ok(refusal) if !later => Err(Failure::Refused(refusal)),
-        _ if later => Err(Failure::Unreachable(format!("HTTP {status}"))),
-        _ => Err(Failure::Refused(Refusal {
-            code: format!("http-{status}"),
-            message: format!("HTTP {status}"),
-            remedy: String::new(),
-            sequences: Vec::new(),
-        })),
-    }
+    Err(failure(answer.status, json::read::<Refusal>(&answer.text).ok()))
 }

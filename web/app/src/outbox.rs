@@ -84,6 +84,13 @@ pub fn back_off(failures: u32, jitter: f64) -> Duration {
     Duration::from_millis((doubled.min(30_000.0) * (0.5 + 0.5 * jitter.clamp(0.0, 1.0))) as u64)
 }
 
+/// How long a request may take, whole, after `unanswered` ones in a row (from 0) that brought no
+/// answer: doubling from 20 s to 160 s, so that a network that is slow but works is not given up for
+/// ever. What is given up counts as lost, and is sent again after [`back_off`].
+pub fn patience(unanswered: u32) -> Duration {
+    Duration::from_secs(20 << unanswered.min(3))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::{BTreeMap, BTreeSet};
@@ -162,6 +169,11 @@ mod tests {
                 prop_assert_eq!(stored, &event(*sequence));
             }
         }
+    }
+
+    #[test]
+    fn patience_grows_and_ends() {
+        assert_eq!([0, 1, 3, u32::MAX].map(|n| patience(n).as_secs()), [20, 40, 160, 160]);
     }
 
     #[test]

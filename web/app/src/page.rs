@@ -72,13 +72,14 @@ extern "C" {
     /// Width, height, device pixels per CSS pixel.
     pub fn viewport() -> Array;
 
-    /// Status and text of an answer.
+    /// Status and text of an answer; throws where none has come in so many milliseconds.
     #[wasm_bindgen(catch)]
     pub async fn request(
         method: &str,
         address: &str,
         content_type: &str,
         body: Option<String>,
+        patience: f64,
     ) -> Result<JsValue, JsValue>;
 
     /// A value of the browser's storage.

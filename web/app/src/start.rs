@@ -12,6 +12,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::spawn_local;
 
 use crate::address::Address;
+use crate::answer::is_gone;
 use crate::engine::Engine;
 use crate::memory::{Identity, Keep};
 use crate::network::{self, Bundle, Failure};
@@ -114,7 +115,7 @@ async fn bundle(study: &str) -> Result<Bundle, Trouble> {
     };
     match persist(|| network::bundle(study, Some(&begun.config_hash))).await {
         Ok(earlier) => Ok(earlier),
-        Err(Trouble::Refused(_)) => {
+        Err(Trouble::Refused(refusal)) if refusal.code == "unknown-study" => {
             // The server has never had that version: the session is not of this server.
             Identity::forget(study);
             Ok(today)
@@ -130,7 +131,7 @@ async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)
     };
     match persist(|| network::resume(&started.session)).await {
         Ok(resume) => Ok(Some((resume.started, resume.events))),
-        Err(Trouble::Refused(_)) => {
+        Err(Trouble::Refused(refusal)) if is_gone(&refusal) => {
             Identity::forget(&address.study);
             Ok(None)
         }
@@ -156,12 +157,15 @@ async fn begin_session(address: &Address, language: &str) -> Result<SessionStart
     Ok(started)
 }
 
-/// A request tried for about a quarter of a minute before the page says that it cannot begin.
+/// A request tried six times in about a quarter of a minute, or for a minute where nobody answers,
+/// before the page says that it cannot begin.
 async fn persist<T, F>(request: impl Fn() -> F) -> Result<T, Trouble>
 where
     F: Future<Output = Result<T, Failure>>,
 {
     const TRIES: u32 = 6;
+    const LONGEST_MS: f64 = 60_000.0;
+    let begun = page::now();
     let mut failures = 0;
     loop {
         match request().await {
@@ -169,7 +173,7 @@ where
             Err(Failure::Refused(refusal)) => return Err(Trouble::Refused(refusal)),
             Err(Failure::Unreachable(reason)) => {
                 failures += 1;
-                if failures >= TRIES {
+                if failures >= TRIES || page::now() - begun > LONGEST_MS {
                     return Err(Trouble::Unreachable(reason));
                 }
                 page::sleep(back_off(failures, page::random()).as_millis() as f64).await;

@@ -3,13 +3,13 @@
 //! nothing is doubled.
 //!
 //! `MIMIQUE_SESSIONS` sets another number. What stands in for the browser and the server here follows
-//! `engine.rs` (an event is sent only once it is kept; one request at a time; what failed is sent
-//! again) and the server's append (first write wins, by session and sequence; the answer follows the
-//! commit).
+//! `engine.rs` (an event is sent only once it is kept; one request at a time; what failed, or was not
+//! answered within `patience`, is sent again after `back_off`) and the server's append (first write
+//! wins, by session and sequence; the answer follows the commit).
 
 use std::collections::{BTreeMap, VecDeque};
 
-use mimique_app::outbox::Outbox;
+use mimique_app::outbox::{Outbox, back_off, patience};
 use mimique_study::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
@@ -76,12 +76,27 @@ impl Server {
     }
 }
 
-/// What lies on the way.
-enum Packet {
+/// What is asked of the server.
+#[derive(Clone)]
+enum Request {
     Append(Vec<Event>),
     Complete(u64),
+}
+
+/// What is heard of a request.
+#[derive(Clone)]
+enum Answer {
     Acknowledged(Vec<Event>, Acknowledged),
     Receipt(Receipt),
+    /// The connection broke, or the server refuses for now.
+    Failed,
+}
+
+/// What lies on the way, with the number of its request.
+#[derive(Clone)]
+enum Packet {
+    Request(u64, Request),
+    Answer(u64, Answer),
 }
 
 /// One browser, one server and the network between them.
@@ -98,8 +113,17 @@ struct World<'p> {
     state: State,
     outbox: Outbox,
     to_keep: VecDeque<Event>,
-    /// When the request that is out is given up; none is out if not given.
-    waiting_until: Option<f64>,
+    /// The request that is out: its number, and when it is given up.
+    out: Option<(u64, f64)>,
+    /// Requests so far, of every tab.
+    requests: u64,
+    /// Requests in a row that failed, and those of them that nobody answered.
+    failures: u32,
+    unanswered: u32,
+    /// Requests that were given up.
+    given_up: u32,
+    /// When the next request may leave.
+    rest_until: f64,
     completing: Option<u64>,
     reloads: u32,
 }
@@ -119,7 +143,12 @@ impl<'p> World<'p> {
             state: State::new(plan, "en"),
             outbox: Outbox::new(0),
             to_keep: VecDeque::new(),
-            waiting_until: None,
+            out: None,
+            requests: 0,
+            failures: 0,
+            unanswered: 0,
+            given_up: 0,
+            rest_until: 0.0,
             completing: None,
             reloads: 0,
         };
@@ -145,6 +174,7 @@ impl<'p> World<'p> {
                     }
                     Effect::MeasureDevice => inputs.push_back(Input::Measured(Display::default())),
                     Effect::Complete { events } => self.completing = Some(events),
+                    Effect::Flush => self.rest_until = 0.0,
                     _ => {}
                 }
             }
@@ -155,8 +185,8 @@ impl<'p> World<'p> {
     fn reopen(&mut self) {
         self.reloads += 1;
         self.to_keep.clear();
-        self.waiting_until = None;
-        self.completing = None;
+        (self.out, self.completing) = (None, None);
+        (self.failures, self.unanswered, self.rest_until) = (0, 0, 0.0);
         // `GET session`, and what IndexedDB kept: as `start.rs` joins them.
         let mut all: BTreeMap<u64, Event> = self.kept.clone();
         all.extend(self.server.stored.iter().map(|(n, event)| (*n, event.clone())));
@@ -174,17 +204,28 @@ impl<'p> World<'p> {
         }
     }
 
-    /// A request leaves: it may be lost, late, doubled; its answer too.
-    fn send(&mut self, packet: impl Fn() -> Packet, storm: bool) {
-        let copies = match self.chance.below(8) {
+    /// A request or an answer leaves: it may be lost (heard at once, or never), late, doubled.
+    fn send(&mut self, packet: &Packet, storm: bool) {
+        let (Packet::Request(number, _) | Packet::Answer(number, _)) = packet;
+        let copies = match self.chance.below(10) {
             _ if !storm => 1,
-            0 | 1 => 0,
+            0 => {
+                let broken = Packet::Answer(*number, Answer::Failed);
+                self.network.push((self.now_ms + 30.0, broken));
+                0
+            }
+            1 => 0,
             2 => 2,
             _ => 1,
         };
         for _ in 0..copies {
-            let delay = if storm { self.chance.below(6_000) as f64 } else { 40.0 };
-            self.network.push((self.now_ms + delay, packet()));
+            let delay = match self.chance.below(20) {
+                _ if !storm => 40,
+                // Longer than anybody waits.
+                0 => 20_000 + self.chance.below(40_000),
+                _ => self.chance.below(6_000),
+            };
+            self.network.push((self.now_ms + delay as f64, packet.clone()));
         }
     }
 
@@ -193,34 +234,56 @@ impl<'p> World<'p> {
         while let Some(at) = self.network.iter().position(|(due, _)| *due <= self.now_ms) {
             let (_, packet) = self.network.swap_remove(at);
             match packet {
-                Packet::Append(events) => {
+                Packet::Request(number, Request::Append(events)) => {
                     let answer = self.server.append(&events);
-                    self.send(|| Packet::Acknowledged(events.clone(), answer.clone()), storm);
+                    let answer = Answer::Acknowledged(events, answer);
+                    self.send(&Packet::Answer(number, answer), storm);
                 }
-                Packet::Complete(events) => {
-                    if let Some(receipt) = self.server.complete(events) {
-                        self.send(|| Packet::Receipt(receipt.clone()), storm);
-                    }
+                Packet::Request(number, Request::Complete(events)) => {
+                    let receipt = self.server.complete(events);
+                    let answer = receipt.map_or(Answer::Failed, Answer::Receipt);
+                    self.send(&Packet::Answer(number, answer), storm);
                 }
-                Packet::Acknowledged(sent, answer) => {
-                    // An answer that comes after it was given up, or to a tab that is gone, is heard
-                    // by nobody.
-                    if self.waiting_until.take().is_none() {
-                        continue;
-                    }
-                    for gone in self.outbox.acknowledge(&sent, &answer) {
-                        self.kept.remove(&gone);
-                    }
-                    let stored = self.outbox.stored();
-                    self.input(Input::Acknowledged { stored });
-                }
-                Packet::Receipt(receipt) => {
-                    if self.completing.take().is_some() {
-                        self.input(Input::ReceiptArrived(receipt));
+                // An answer that comes after its request was given up, or to a tab that is gone, is
+                // heard by nobody.
+                Packet::Answer(number, answer) => {
+                    if self.out.is_some_and(|(out, _)| out == number) {
+                        self.out = None;
+                        self.hear(answer);
                     }
                 }
             }
         }
+    }
+
+    fn hear(&mut self, answer: Answer) {
+        if !matches!(answer, Answer::Failed) {
+            (self.failures, self.unanswered) = (0, 0);
+        }
+        match answer {
+            Answer::Acknowledged(sent, answer) => {
+                let gone = self.outbox.acknowledge(&sent, &answer);
+                gone.iter().for_each(|number| drop(self.kept.remove(number)));
+                let stored = self.outbox.stored();
+                self.input(Input::Acknowledged { stored });
+                if gone.is_empty() {
+                    self.rest_until = self.now_ms + 1_000.0;
+                }
+            }
+            Answer::Receipt(receipt) => {
+                self.completing = None;
+                self.input(Input::ReceiptArrived(receipt));
+            }
+            Answer::Failed => self.fail(),
+        }
+    }
+
+    /// A request failed: the next one leaves after a rest.
+    fn fail(&mut self) {
+        self.failures += 1;
+        let jitter = self.chance.below(1_000) as f64 / 1_000.0;
+        let rest = back_off(self.failures, jitter).as_millis() as f64;
+        self.rest_until = self.now_ms + rest;
     }
 
     /// The tab's machinery: writer, sender, completion.
@@ -230,18 +293,25 @@ impl<'p> World<'p> {
             self.kept.insert(event.sequence, event.clone());
             self.outbox.push(event);
         }
-        if self.waiting_until.is_some_and(|until| until <= self.now_ms) {
-            self.waiting_until = None;
+        if self.out.is_some_and(|(_, until)| until <= self.now_ms) {
+            self.out = None;
+            self.given_up += 1;
+            self.unanswered += 1;
+            self.fail();
         }
-        if self.waiting_until.is_none() {
-            let batch = self.outbox.batch();
-            if !batch.is_empty() {
-                self.waiting_until = Some(self.now_ms + 3_000.0);
-                self.send(|| Packet::Append(batch.clone()), storm);
-            } else if let Some(events) = self.completing {
-                self.send(|| Packet::Complete(events), storm);
-            }
+        if self.out.is_some() || self.now_ms < self.rest_until {
+            return;
         }
+        let batch = self.outbox.batch();
+        let request = match (batch.is_empty(), self.completing) {
+            (false, _) => Request::Append(batch),
+            (true, Some(events)) => Request::Complete(events),
+            (true, None) => return,
+        };
+        self.requests += 1;
+        let until = self.now_ms + patience(self.unanswered).as_millis() as f64;
+        self.out = Some((self.requests, until));
+        self.send(&Packet::Request(self.requests, request), storm);
     }
 
     /// The participant does the next thing that the page asks for.
@@ -344,7 +414,7 @@ fn ten_thousand_sessions_lose_nothing_and_double_nothing() {
     let sessions: u64 = std::env::var("MIMIQUE_SESSIONS")
         .map_or(10_000, |text| text.parse().expect("MIMIQUE_SESSIONS is a number"));
     let plan = plan();
-    let (mut events, mut reloads) = (0, 0);
+    let (mut events, mut reloads, mut given_up) = (0, 0, 0);
     for session in 0..sessions {
         let mut world = World::new(&plan, session);
         world.run();
@@ -364,7 +434,12 @@ fn ten_thousand_sessions_lose_nothing_and_double_nothing() {
         assert!(world.outbox.batch().is_empty() && world.kept.is_empty(), "session {session}");
         events += made;
         reloads += world.reloads;
+        given_up += world.given_up;
     }
-    eprintln!("{sessions} sessions, {events} events, {reloads} reloads: 0 lost, 0 doubled");
+    eprintln!(
+        "{sessions} sessions, {events} events, {reloads} reloads, {given_up} requests given up: \
+         0 lost, 0 doubled"
+    );
     assert!(sessions < 100 || reloads > sessions as u32 / 10, "{reloads} reloads");
+    assert!(sessions < 100 || given_up > sessions as u32 / 10, "{given_up} requests given up");
 }

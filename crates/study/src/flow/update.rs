@@ -355,7 +355,8 @@ impl<'a> Turn<'a> {
         if self.state.live.withdrawing {
             return true;
         }
-        if self.state.record.status == Status::Active {
+        // At the end, too, so that a reload goes on with it.
+        if self.state.record.status != Status::Withdrawn {
             self.record(EventKind::Withdrawn);
         }
         self.state.live.withdrawing = true;

@@ -63,6 +63,8 @@ fixed {
     choose_language: "Language", "Langue";
     /// Marks an answer that may be left out.
     optional: "optional", "facultatif";
+    /// What a slider says that nobody has touched.
+    not_answered: "not answered yet", "pas encore de réponse";
     /// Heading of the consent page's line on age.
     age: "Age", "Âge";
     /// Heading of how long answers are kept.

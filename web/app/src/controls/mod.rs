@@ -152,7 +152,7 @@ fn control(engine: &Engine, answering: &Answering) -> Vec<Element> {
             likert::likert(answering, points, left, right)
         }
         QuestionKindView::Slider { minimum, maximum, step, left, right } => {
-            slider::slider(answering, [*minimum, *maximum, *step], left, right)
+            slider::slider(engine, answering, [*minimum, *maximum, *step], [left, right])
         }
         QuestionKindView::Number { minimum, maximum, integer, unit } => {
             field::number(answering, *minimum, *maximum, *integer, unit.as_deref())

@@ -1,18 +1,19 @@
-//! A number on a line. Until it is touched it has no value, and shows none.
+//! A number on a line. Until it is touched it has no value, and neither shows nor says one.
 
 use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, ends, plain};
 use crate::dom::{Element, Given, el, words};
+use crate::engine::Engine;
 use crate::json;
 
 /// The line from minimum to maximum by steps, its ends named above it.
 pub fn slider(
+    engine: &Engine,
     answering: &Answering,
     [minimum, maximum, step]: [f64; 3],
-    left: &str,
-    right: &str,
+    [left, right]: [&str; 2],
 ) -> Vec<Element> {
     let value = answering.value();
     let middle = (minimum + maximum) / 2.0;
@@ -28,6 +29,8 @@ pub fn slider(
         .set("min", &number_text(minimum))
         .set("max", &number_text(maximum))
         .set("step", &number_text(step))
+        // Where the knob stands is no answer, for those who hear it either.
+        .maybe("aria-valuetext", value.is_none().then(|| engine.words().not_answered()))
         .set(".value", &number_text(value.and_then(Value::as_f64).unwrap_or(middle)))
         .on("change", touch.clone())
         .on("click", touch);

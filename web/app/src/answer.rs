@@ -1,0 +1,83 @@
+//! Whose word an answer is: Mimique's own server's, or that of something on the way.
+//!
+//! A proxy, a captive portal or a firewall answers too, with any status and a page of its own. Only a
+//! [`Refusal`] is the server's word; everything else is a network that does not work, and what waits
+//! is kept and sent again.
+
+use mimique_study::wire::Refusal;
+
+/// Why a request brought nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// No answer, one that says to come back later, or one that is not the server's: worth another
+    /// try.
+    Unreachable(String),
+    /// The server understood and refuses: trying again changes nothing.
+    Refused(Refusal),
+}
+
+/// What an answer means that is not what was asked for: its status, and its body where that is a
+/// refusal as Mimique's server writes it.
+pub fn failure(status: u16, refusal: Option<Refusal>) -> Failure {
+    // Too early, too many, too late: the server wants us to come back.
+    let later = status >= 500 || matches!(status, 408 | 425 | 429);
+    match refusal {
+        Some(refusal) if !later && status >= 400 => Failure::Refused(refusal),
+        _ => Failure::Unreachable(["HTTP ", &status.to_string()].concat()),
+    }
+}
+
+/// Whether the server says that it has the session no more: only then is it forgotten here.
+pub fn is_gone(refusal: &Refusal) -> bool {
+    matches!(refusal.code.as_str(), "unknown-session" | "withdrawn")
+}
+
+#[cfg(test)]
+mod tests {
+    use mimique_study::{from_json, json_text};
+
+    use super::*;
+
+    /// As `network` reads it.
+    fn judged(status: u16, body: &str) -> Failure {
+        let value = json_text::read_with(body, |text| text.parse().ok());
+        failure(status, value.ok().and_then(|value| from_json::read(&value).ok()))
+    }
+
+    #[test]
+    fn the_servers_own_refusal_is_its_word() {
+        let body =
+            r#"{"code":"unknown-session","message":"no session","remedy":"reload the page"}"#;
+        let Failure::Refused(refusal) = judged(404, body) else { panic!("it is the server's") };
+        assert!(is_gone(&refusal));
+        for code in ["bad-request", "too-large", "not-found", "unknown-study", "event-conflict"] {
+            let Failure::Refused(refusal) = judged(400, &body.replace("unknown-session", code))
+            else {
+                panic!("{code} is the server's")
+            };
+            assert!(!is_gone(&refusal), "{code} forgets nothing");
+        }
+        // A server that is busy says so in the same words.
+        for status in [408, 425, 429, 500, 503] {
+            assert!(matches!(judged(status, body), Failure::Unreachable(_)), "{status}");
+        }
+    }
+
+    #[test]
+    fn what_stands_on_the_way_ends_nothing() {
+        let bodies = [
+            "<!doctype html><title>403 Forbidden</title>",
+            "",
+            "null",
+            r#"{"error":"blocked by policy"}"#,
+            r#"{"code":403,"message":"blocked","remedy":""}"#,
+            r#"{"code":"blocked","message":"by policy"}"#,
+        ];
+        for status in [200, 302, 400, 401, 403, 404, 407, 410, 451, 502] {
+            for body in bodies {
+                let found = judged(status, body);
+                assert_eq!(found, Failure::Unreachable(format!("HTTP {status}")), "{body}");
+            }
+        }
+    }
+}
