@@ -4,6 +4,10 @@ import { filmDuration } from "./stage-film.js";
 import { fetchPack } from "./stage-packs.js";
 import { picturesOf } from "./stage-pictures.js";
 
+// A solve takes seconds, a minute on the slowest phones: a worker that is silent for longer, or was never
+// loaded, is given up.
+const SOLVE_MS = 180_000;
+
 const clips = new Map();
 let worker = null;
 let nextJob = 1;
@@ -155,11 +159,14 @@ function summary({ clip, frames, rate_hz, duration_ms, weights_hash, solve_ms, w
 
 function solve(operators, take, method) {
   worker ??= startWorker();
+  const asked = worker;
   const id = nextJob++;
+  let timer;
   return new Promise((resolve, reject) => {
     jobs.set(id, { resolve, reject });
-    worker.postMessage({ id, operators, take, method });
-  });
+    asked.postMessage({ id, operators, take, method });
+    timer = setTimeout(() => discard(asked, `solver: no answer for ${SOLVE_MS / 1000} s; try again`), SOLVE_MS);
+  }).finally(() => clearTimeout(timer));
 }
 
 function startWorker() {

@@ -276,6 +276,61 @@ fn a_failed_clip_can_be_tried_again() {
     assert!(matches!(page.view(), View::End(_)));
 }
 
+/// A page of questions and a trial, each with a picture.
+const WITH_PICTURES: &str = "{ id: 's', studyMetadata: { title: 'Faces', version: '1' },
+  languages: ['en'], seed: 5,
+  demographics: { questions: [{ id: 'who', type: 'singleChoice', prompt: 'Who?',
+    options: [{ value: 'a', label: 'A', image: 'who.png' }, { value: 'b', label: 'B' }] }] },
+  questions: [{ id: 'r', type: 'singleChoice', prompt: 'Which?', video: { en: 'sign.webm' },
+    options: [{ value: 'a', label: 'A', image: 'eye.png' }, { value: 'b', label: 'B', image: 'eye.png' }] }],
+  components: { faces: { type: 'trials', questions: ['r'] } },
+  sequence: { order: 'fixed', components: ['faces'] },
+  stimuli: { avatars: { h: { builtin: {} } }, captures: { c: { file: 'x' } },
+    segments: [{ id: 'p', capture: 'c', first: 0, end: 9 }],
+    methods: { box: { method: 'box' } } } }";
+
+#[test]
+fn pictures_are_loaded_before_their_page_and_no_trial_starts_without_them() {
+    let (study, session) = started(WITH_PICTURES, 1);
+    let plan = Plan::new(study, session).unwrap();
+    let shown = |state: &State| mimique_study::flow::view(&plan, state);
+    let turn = |state: State, input: Input| update(&plan, state, input, 1e12);
+    let prepared = |state, name: &str| turn(state, Input::ClipPrepared { clip: name.into() }).0;
+    let failed = |state, name: &str| {
+        let message = "no network".to_owned();
+        turn(state, Input::ClipFailed { clip: name.into(), message }).0
+    };
+    let all = ["media:who.png", "p.box", "media:sign.webm", "media:eye.png"].map(str::to_owned);
+    let (state, effects) = turn(State::new(&plan, "en"), Input::Opened(client()));
+    assert!(effects.contains(&Effect::PrepareClips(all.to_vec())), "{effects:?}");
+
+    // A page of questions stands there at once; it says what could not be had, and tries again.
+    let View::Questions { failed: None, .. } = shown(&state) else { panic!() };
+    let state = failed(state, "media:who.png");
+    let View::Questions { failed: Some(trouble), .. } = shown(&state) else { panic!() };
+    assert_eq!((trouble.reason.as_str(), trouble.retry.as_str()), ("no network", "Try again"));
+    let (state, effects) = turn(state, Input::Retry);
+    assert_eq!(effects, vec![Effect::PrepareClips(all.to_vec())]);
+    let View::Questions { failed: None, .. } = shown(&state) else { panic!() };
+    let answer = Input::Answer { question: "who".into(), value: json!("a") };
+    let (state, _) = turn(turn(state, answer).0, Input::Next);
+
+    // The trial waits for everything.
+    let state = prepared(prepared(state, "p.box"), "media:sign.webm");
+    let View::Trial(trial) = shown(&state) else { panic!() };
+    assert_eq!((trial.phase, trial.can_play), (Phase::Loading { fraction: 2.0 / 3.0 }, false));
+    let state = failed(state, "media:eye.png");
+    let View::Trial(trial) = shown(&state) else { panic!() };
+    assert!(matches!(trial.phase, Phase::Failed { .. }) && !trial.can_play);
+    assert_eq!(trial.message, "A picture or a video of this page could not be shown.");
+    let (state, effects) = turn(state, Input::Retry);
+    assert_eq!(effects, vec![Effect::PrepareClips(all[1..].to_vec())]);
+    let state = prepared(state, "media:eye.png");
+    let (state, _) = turn(state, Input::Acknowledged { stored: 99 });
+    let View::Trial(trial) = shown(&state) else { panic!() };
+    assert_eq!((trial.phase, trial.can_play), (Phase::Ready, true));
+}
+
 #[test]
 fn pages_come_in_the_language_chosen() {
     let mut page = Page::open(&study_text("demo.json"), 14);

@@ -11,7 +11,7 @@ use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_study::json_text;
 use mimique_study::text::Words;
 use mimique_study::wire::{Event, Refusal};
-use mimique_study::{Display, PlayLog, SortedMap};
+use mimique_study::{Display, MEDIA_PREFIX, PlayLog, SortedMap};
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -164,11 +164,6 @@ impl Engine {
         });
     }
 
-    /// Where a clip, a picture or a signed video comes from.
-    pub fn source(&self, id: &str) -> Option<Value> {
-        self.clips.get(id).cloned()
-    }
-
     /// The window has another size: the device gate looks again.
     pub fn resized(self: &Rc<Self>) {
         let known = {
@@ -318,19 +313,16 @@ impl Engine {
         if self.prepared.borrow().contains_key(&clip) {
             return self.dispatch(Input::ClipPrepared { clip });
         }
-        let source = match self.clips.get(&clip) {
-            Some(source) => json_text::write(source),
-            None => {
-                let message = "the server has no such clip".to_owned();
-                return self.dispatch(Input::ClipFailed { clip, message });
-            }
+        let Some(source) = self.clips.get(&clip) else {
+            let message = ["the server has no ", &clip].concat();
+            return self.dispatch(Input::ClipFailed { clip, message });
         };
-        let progress = Closure::<dyn Fn(f64)>::new({
-            let (engine, clip) = (Rc::clone(self), clip.clone());
-            move |fraction| engine.dispatch(Input::ClipProgress { clip: clip.clone(), fraction })
-        });
-        match bridge::prepare_clip(&clip, &source, progress.as_ref().unchecked_ref()).await {
-            Ok(_) => {
+        let loaded = match clip.strip_prefix(MEDIA_PREFIX) {
+            Some(path) => screen::load_media(path, source).await,
+            None => self.load_clip(&clip, source).await,
+        };
+        match loaded {
+            Ok(()) => {
                 self.prepared.borrow_mut().insert(clip.clone(), ());
                 self.dispatch(Input::ClipPrepared { clip });
             }
@@ -339,6 +331,16 @@ impl Engine {
                 self.dispatch(Input::ClipFailed { clip, message });
             }
         }
+    }
+
+    async fn load_clip(self: &Rc<Self>, clip: &str, source: &Value) -> Result<(), JsValue> {
+        let progress = Closure::<dyn Fn(f64)>::new({
+            let (engine, clip) = (Rc::clone(self), clip.to_owned());
+            move |fraction| engine.dispatch(Input::ClipProgress { clip: clip.clone(), fraction })
+        });
+        let source = json_text::write(source);
+        bridge::prepare_clip(clip, &source, progress.as_ref().unchecked_ref()).await?;
+        Ok(())
     }
 
     /// Shows the first frame of a clip that is prepared, and of the one beside it.

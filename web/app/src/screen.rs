@@ -7,6 +7,8 @@ use std::rc::Rc;
 use mimique_study::SortedMap;
 use mimique_study::flow::{Input, Phase, View, view};
 use mimique_study::text::Words;
+use serde_json::Value;
+use wasm_bindgen::JsValue;
 use wasm_bindgen_futures::spawn_local;
 
 use crate::dom::Place;
@@ -41,7 +43,7 @@ thread_local! {
     static PLACE: RefCell<Option<Place>> = const { RefCell::new(None) };
     static SHOWN: RefCell<Shown> = RefCell::default();
     static SEEN: RefCell<Seen> = RefCell::default();
-    /// Path -> address; none yet where it is empty.
+    /// Path -> address of what has been fetched.
     static MEDIA: RefCell<SortedMap<String, String>> = const { RefCell::new(SortedMap::new()) };
     static DUE: Cell<bool> = const { Cell::new(false) };
 }
@@ -81,24 +83,16 @@ pub fn changed() {
 
 /// The address of a picture or a signed video of the study, once it has been fetched.
 pub fn media(path: &str) -> Option<String> {
-    let known = MEDIA.with(|media| media.borrow().get(path).cloned());
-    if let Some(known) = known {
-        return Some(known).filter(|address| !address.is_empty());
-    }
-    let path = path.to_owned();
-    MEDIA.with(|media| media.borrow_mut().insert(path.clone(), String::new()));
-    let source = engine()?.source(&format!("{}{path}", mimique_study::MEDIA_PREFIX));
-    spawn_local(async move {
-        let text = |key: &str| {
-            let value = source.as_ref().and_then(|source| source.get(key));
-            value.and_then(|value| value.as_str()).unwrap_or_default().to_owned()
-        };
-        let fetched = bridge::media_address(&text("avatar"), &text("film")).await;
-        let address = fetched.ok().and_then(|found| found.as_string()).unwrap_or_default();
-        MEDIA.with(|media| media.borrow_mut().insert(path, address));
-        changed();
-    });
-    None
+    MEDIA.with(|media| media.borrow().get(path).cloned())
+}
+
+/// Fetches a picture or a signed video, from the bundle's `source`.
+pub async fn load_media(path: &str, source: &Value) -> Result<(), JsValue> {
+    let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default();
+    let address = bridge::media_address(text("avatar"), text("film")).await?;
+    let address = address.as_string().unwrap_or_default();
+    MEDIA.with(|media| media.borrow_mut().insert(path.to_owned(), address));
+    Ok(())
 }
 
 fn draw() {

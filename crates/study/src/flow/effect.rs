@@ -9,8 +9,9 @@ pub enum Effect {
     /// Put this event into the outbox (it is numbered already), to be sent and sent again until the
     /// server acknowledges it.
     Store(wire::Event),
-    /// Load and solve these clips, the first one first. Report by `ClipProgress`, `ClipPrepared`,
-    /// `ClipFailed`. Clips that are prepared already may be named again.
+    /// Load and solve these clips, the first one first; what begins with [`crate::MEDIA_PREFIX`] is a
+    /// picture or a signed video, which is loaded. Report by `ClipProgress`, `ClipPrepared`,
+    /// `ClipFailed`. What is prepared already may be named again.
     PrepareClips(Vec<String>),
     /// Play this clip once from its start, the one beside it in step; report by `Played`.
     PlayClip {

@@ -45,7 +45,7 @@ pub enum Input {
         /// 0..1.
         fraction: f64,
     },
-    /// A clip can be played.
+    /// A clip can be played, a picture or a signed video can be shown.
     ClipPrepared {
         /// Which clip.
         clip: String,
@@ -57,7 +57,7 @@ pub enum Input {
         /// What the stage says.
         message: String,
     },
-    /// The button that tries a failed clip again.
+    /// The button that tries again what failed: a clip, a picture or a signed video.
     Retry,
     /// The page lost the focus or was hidden.
     FocusLost,

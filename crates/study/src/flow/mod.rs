@@ -17,6 +17,7 @@ mod device;
 mod effect;
 mod gate;
 mod input;
+mod needs;
 mod plan;
 mod render;
 mod render_gate;
@@ -35,6 +36,6 @@ pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
     BesideView, ButtonView, CalibrationView, CardView, ChoiceView, ClockView, ContactView,
-    DeviceView, DistanceView, EndView, FeedbackItem, FeedbackView, Phase, ProgressView,
+    DeviceView, DistanceView, EndView, FailedView, FeedbackItem, FeedbackView, Phase, ProgressView,
     QuestionKindView, QuestionView, SectionView, StageSize, TrialView, View,
 };

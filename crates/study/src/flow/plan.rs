@@ -211,18 +211,6 @@ impl Plan {
         self.steps.iter().filter(counts).count()
     }
 
-    /// The clips of the next `count` trials from a step on, each once.
-    pub fn clips_from(&self, index: usize, count: usize) -> Vec<String> {
-        let mut clips: Vec<String> = Vec::new();
-        let trials = self.steps.iter().skip(index).filter_map(Step::trial);
-        for clip in trials.take(count).flat_map(TrialStep::clips) {
-            if !clips.iter().any(|known| known == clip) {
-                clips.push(clip.to_owned());
-            }
-        }
-        clips
-    }
-
     /// The fixed texts in a language: the study's own, or those built in.
     pub fn words(&self, language: &str) -> &Words {
         let own = self.translated.iter().find(|own| own.language() == language);

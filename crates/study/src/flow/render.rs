@@ -1,15 +1,16 @@
 //! From state to screen: decisions made, texts in the participant's language.
 
 use super::gate;
+use super::needs::{Needs, needs_of};
 use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
 use super::update::{break_seconds_left, can_play, can_submit, is_saving, shown_questions};
 use super::view::{
-    BesideView, ButtonView, ChoiceView, ContactView, EndView, Phase, ProgressView,
+    BesideView, ButtonView, ChoiceView, ContactView, EndView, FailedView, Phase, ProgressView,
     QuestionKindView, QuestionView, SectionView, TrialView, View,
 };
 use crate::answer::{LONG_TEXT, SHORT_TEXT};
-use crate::study_file::{Choice, LocalText, Question, QuestionKind, Section};
+use crate::study_file::{Choice, LocalText, MEDIA_PREFIX, Question, QuestionKind, Section};
 use crate::text::{Words, typeset};
 
 /// What stands on the screen.
@@ -47,6 +48,11 @@ impl Screen<'_> {
         typeset(language, text.in_language(language)).into_owned()
     }
 
+    /// The path of a file, as the study file writes it.
+    fn path(&self, path: &LocalText) -> String {
+        path.in_language(&self.state.record.language).to_owned()
+    }
+
     pub(super) fn paragraphs(&self, text: &LocalText) -> Vec<String> {
         let text = self.text(text);
         let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
@@ -80,6 +86,14 @@ impl Screen<'_> {
                     .map_or_else(|| self.words.about_you().to_owned(), |title| self.text(title)),
                 text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
                 questions: self.questions(step),
+                failed: match needs_of(step, self.state) {
+                    Needs::Failed(_, reason) => Some(FailedView {
+                        message: self.words.media_failed().to_owned(),
+                        reason,
+                        retry: self.words.retry().to_owned(),
+                    }),
+                    _ => None,
+                },
                 button: self.button(self.words.next()),
                 clock: self.clock(step),
                 progress: self.progress(),
@@ -166,30 +180,27 @@ impl Screen<'_> {
         let progress = &state.record.trial;
         let playing = state.live.play == Play::Running;
         let saving = is_saving(state);
-        let prepared = trial.clips().all(|clip| state.live.prepared.contains_key(clip));
-        let phase = if playing {
-            Phase::Playing
-        } else if let Some(reason) = trial.clips().find_map(|clip| state.live.failed.get(clip)) {
-            Phase::Failed { reason: reason.clone(), retry: words.retry().to_owned() }
-        } else if progress.plays > 0 {
-            Phase::Answering
-        } else if !prepared {
-            let part = |clip: &str| match state.live.progress.get(clip) {
-                _ if state.live.prepared.contains_key(clip) => 1.0,
-                fraction => fraction.copied().unwrap_or(0.0),
-            };
-            let fraction = trial.clips().map(part).sum::<f64>() / trial.clips().count() as f64;
-            Phase::Loading { fraction }
-        } else if saving {
-            Phase::Loading { fraction: 1.0 }
-        } else {
-            Phase::Ready
+        let needs = needs_of(step, state);
+        let prepared = matches!(needs, Needs::Ready);
+        let mut failed = words.clip_failed();
+        let phase = match needs {
+            _ if playing => Phase::Playing,
+            Needs::Failed(need, reason) => {
+                if need.starts_with(MEDIA_PREFIX) {
+                    failed = words.media_failed();
+                }
+                Phase::Failed { reason, retry: words.retry().to_owned() }
+            }
+            _ if progress.plays > 0 => Phase::Answering,
+            Needs::Loading(fraction) => Phase::Loading { fraction },
+            Needs::Ready if saving => Phase::Loading { fraction: 1.0 },
+            Needs::Ready => Phase::Ready,
         };
         let fullscreen_first = gate::needs_fullscreen(self.plan, state);
         let message = match &phase {
             Phase::Ready if fullscreen_first => words.fullscreen_first(),
             Phase::Playing => words.playing(),
-            Phase::Failed { .. } => words.clip_failed(),
+            Phase::Failed { .. } => failed,
             Phase::Answering => words.answer_now(),
             Phase::Loading { .. } if saving && prepared => words.saving(),
             Phase::Loading { .. } => words.loading(),
@@ -277,7 +288,7 @@ impl Screen<'_> {
             id: question.id.clone(),
             prompt: self.text(&question.prompt),
             help: question.help.as_ref().map(|help| self.text(help)),
-            video: question.video.as_ref().map(|path| self.text(path)),
+            video: question.video.as_ref().map(|path| self.path(path)),
             required: question.required,
             optional_mark: (!question.required).then(|| self.words.optional().to_owned()),
             kind: self.kind(question),
@@ -374,7 +385,7 @@ impl Screen<'_> {
             value: choice.value.clone(),
             label: self.text(&choice.label),
             image: choice.image.clone(),
-            video: choice.video.as_ref().map(|path| self.text(path)),
+            video: choice.video.as_ref().map(|path| self.path(path)),
         }
     }
 }

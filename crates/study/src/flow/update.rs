@@ -5,14 +5,13 @@ use serde_json::Value;
 use super::effect::Effect;
 use super::gate;
 use super::input::Input;
+use super::needs::{Needs, needs_ahead, needs_of};
 use super::plan::{Plan, Step, StepKind, TrialStep};
 use super::state::{Play, State, Status};
 use crate::event::{Answers, Client, EventKind, PlayLog, ShownBeside};
 use crate::study_file::Question;
 use crate::wire;
 
-/// How many trials ahead clips are prepared, the one on the screen included.
-const CLIPS_AHEAD: usize = 3;
 /// How long a trial waits for the last answers to reach the server, milliseconds. Beyond that the
 /// participant goes on: the outbox keeps what is not yet sent.
 pub(super) const SAVING_GRACE_MS: f64 = 3_000.0;
@@ -164,9 +163,9 @@ impl<'a> Turn<'a> {
         } else if self.step().is_some_and(|step| step.kind == StepKind::Device) {
             self.effects.push(Effect::MeasureDevice);
         }
-        let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
-        if !clips.is_empty() && self.state.record.status == Status::Active {
-            self.effects.push(Effect::PrepareClips(clips));
+        let needs = needs_ahead(self.plan, &self.state);
+        if !needs.is_empty() && self.state.record.status == Status::Active {
+            self.effects.push(Effect::PrepareClips(needs));
         }
         if self.step().is_none() && self.state.record.status == Status::Active {
             self.record(EventKind::Finished);
@@ -332,15 +331,15 @@ impl<'a> Turn<'a> {
     }
 
     fn retry(&mut self) -> bool {
-        let Some((_, trial)) = self.trial() else { return false };
+        let Some(step) = self.step() else { return false };
+        let needs = step.needs(&self.state.record.language);
         let failed = &mut self.state.live.failed;
         let before = failed.len();
-        trial.clips().for_each(|clip| drop(failed.remove(clip)));
+        needs.iter().for_each(|need| drop(failed.remove(need)));
         if failed.len() == before {
             return false;
         }
-        let clips = self.plan.clips_from(self.state.record.step, CLIPS_AHEAD);
-        self.effects.push(Effect::PrepareClips(clips));
+        self.effects.push(Effect::PrepareClips(needs_ahead(self.plan, &self.state)));
         true
     }
 
@@ -426,15 +425,15 @@ pub(super) fn is_saving(state: &State) -> bool {
 
 /// Whether the clip on the screen may be played, or played again.
 pub(super) fn can_play(plan: &Plan, state: &State) -> bool {
-    let Some(trial) = plan.step(state.record.step).and_then(Step::trial) else { return false };
+    let Some(step) = plan.step(state.record.step) else { return false };
+    let Some(trial) = step.trial() else { return false };
     let replays_left = match (state.record.trial.plays, trial.maximum_replays) {
         (0, _) | (_, None) => true,
         (plays, Some(most)) => plays <= most,
     };
     state.record.status == Status::Active
         && state.live.play == Play::Still
-        && trial.clips().all(|clip| state.live.prepared.contains_key(clip))
-        && !trial.clips().any(|clip| state.live.failed.contains_key(clip))
+        && matches!(needs_of(step, state), Needs::Ready)
         && replays_left
         && !is_saving(state)
 }

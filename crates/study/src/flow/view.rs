@@ -34,6 +34,8 @@ pub enum View {
         text: Vec<String>,
         /// The questions that are asked.
         questions: Vec<QuestionView>,
+        /// A picture or a signed video that could not be had.
+        failed: Option<FailedView>,
         /// The button that leads on.
         button: ButtonView,
         /// How much time is left.
@@ -93,6 +95,17 @@ pub enum View {
         /// Whether the server has deleted everything.
         confirmed: bool,
     },
+}
+
+/// Something that the page shows could not be had.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedView {
+    /// What is said.
+    pub message: String,
+    /// What went wrong.
+    pub reason: String,
+    /// The button that tries again ([`super::Input::Retry`]).
+    pub retry: String,
 }
 
 /// A heading and its paragraphs.

@@ -49,3 +49,19 @@ impl Study {
         paths.into_keys().collect()
     }
 }
+
+impl Question {
+    /// The paths of the pictures and signed videos that it shows in a language.
+    pub fn media<'a>(&'a self, language: &'a str) -> impl Iterator<Item = &'a str> {
+        let rows = match &self.kind {
+            QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
+            _ => &[],
+        };
+        let choices = self.kind.options().iter().chain(rows);
+        let of_choices = choices.flat_map(move |choice| {
+            let video = choice.video.as_ref().map(|video| video.in_language(language));
+            video.into_iter().chain(choice.image.as_deref())
+        });
+        self.video.iter().map(move |video| video.in_language(language)).chain(of_choices)
+    }
+}

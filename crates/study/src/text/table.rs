@@ -97,6 +97,10 @@ fixed {
         "La lecture a été interrompue. Veuillez revoir l’extrait.";
     /// A clip failed.
     clip_failed: "This clip could not be shown.", "Cet extrait n’a pas pu être affiché.";
+    /// A picture or a signed video of the page failed.
+    media_failed:
+        "A picture or a video of this page could not be shown.",
+        "Une image ou une vidéo de cette page n’a pas pu être affichée.";
     /// Heading while the last answers are sent.
     sending: "Your last answers are being sent", "Vos dernières réponses sont en cours d’envoi";
     /// Below it.

@@ -1,4 +1,5 @@
-//! Pictures and signed videos: fetched by their hash like every stimulus, shown when they are there.
+//! Pictures and signed videos: fetched by their hash like every stimulus, before the page that shows
+//! them.
 
 use crate::dom::{Element, el};
 use crate::screen;

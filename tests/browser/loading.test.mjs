@@ -1,0 +1,132 @@
+// What a trial is made of arrives late, damaged or not at all: the page shows how far it is, says what is
+// wrong, tries again when asked to, and never starts half loaded.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { badProxy } from "./lib/bad_proxy.mjs";
+import { executable, open, skip } from "./lib/browser.mjs";
+import { go, leave, phase, place } from "./lib/participant.mjs";
+import { serve } from "./lib/server.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+
+const unable = skip(!executable && "Chromium not found");
+
+const choice = (id, image) => ({
+  id,
+  type: "singleChoice",
+  prompt: text("Which?"),
+  options: [{ value: "a", label: text("a"), image }, { value: "b", label: text("b") }],
+});
+const study = small("loading", {
+  demographics: { title: text("About you"), questions: [choice("who", "who.svg")] },
+  questions: [choice("which", "which.svg")],
+  components: { faces: trials(["joy2.box"], ["which"]) },
+  sequence: { order: "fixed", components: ["faces"] },
+  stimuli: stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, [["head", "box"]]),
+});
+const dot = (radius) => `<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="${radius}"/></svg>`;
+
+/** Server, proxy and page of the study; the hashes of its packs. */
+async function loading() {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-loading-"));
+  writeFileSync(join(folder, "loading.json"), JSON.stringify(study));
+  writeFileSync(join(folder, "who.svg"), dot(9));
+  writeFileSync(join(folder, "which.svg"), dot(15));
+  const server = await serve([join(folder, "loading.json")]);
+  const proxy = await badProxy(server.url);
+  const browser = await open("webgl2", { viewport: { width: 600, height: 800 } });
+  const { clips } = await (await fetch(`${server.url}/api/studies/loading`)).json();
+  const begin = async () => {
+    await browser.page.goto(`${proxy.url}/s/loading/?backend=webgl2`);
+    await browser.page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });
+    const here = await place(browser.page);
+    await go(browser.page, "mouse");
+    return leave(browser.page, here);
+  };
+  const close = async () => {
+    await browser.close();
+    await proxy.close();
+    await server.stop();
+  };
+  return { proxy, page: browser.page, clips, begin, close };
+}
+
+const choose = (page) => page.locator("fieldset[data-question] label").first().click();
+const shown = (page) =>
+  page.waitForFunction(() => document.querySelector(".choice img")?.naturalWidth === 40, undefined, { timeout: 30_000 });
+
+test("loading: a damaged clip is asked for again by a press, and one that stalls arrives by itself", { skip: unable, timeout: 240_000 }, async () => {
+  const { proxy, page, clips, begin, close } = await loading();
+  const take = `/packs/${clips["joy2.box"].take}`;
+  try {
+    // Its take comes damaged, five times.
+    proxy.rule((_, url) => (url === take ? "damaged" : undefined));
+    let here = await begin();
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.equal(here.view, "trial");
+    await phase(page, "failed", 60_000);
+    assert.equal(proxy.counts.damaged, 5);
+    assert.match(await page.locator(".trial-message").innerText(), /could not be shown/);
+    assert.match(await page.locator(".notice.bad").innerText(), /damaged.*try again/);
+    assert.equal(await page.locator("[data-action=play]").count(), 0);
+
+    // Then nothing at all comes, once.
+    proxy.rule((_, url) => (url === take && proxy.counts.silent === 0 ? "silent" : undefined));
+    await page.locator("[data-action=retry]").click();
+    await phase(page, "loading");
+    const bar = page.locator(".stage .veil progress");
+    await page.waitForFunction(() => document.querySelector(".stage .veil progress")?.value > 0, undefined, { timeout: 10_000 });
+    const part = Number(await bar.getAttribute("value"));
+    assert.ok(part < 0.9, `${part} of the clip is there, its take is not`);
+    assert.equal(await bar.getAttribute("aria-label"), await page.locator(".trial-message").innerText());
+    assert.equal(await page.locator("[data-action=play]").getAttribute("aria-disabled"), "true");
+    await phase(page, "ready", 60_000);
+    assert.equal(proxy.counts.silent, 1);
+    assert.equal(await bar.count(), 0);
+    await go(page, "mouse");
+    await phase(page, "answering", 60_000);
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.ok(["receipt", "end"].includes(here.view), here.view);
+  } finally {
+    await close();
+  }
+});
+
+test("loading: no trial starts without its pictures, and a page says which is missing", { skip: unable, timeout: 240_000 }, async () => {
+  const { proxy, page, clips, begin, close } = await loading();
+  const pack = (path) => `/packs/${clips[`media:${path}`].avatar}`;
+  const failed = [pack("who.svg"), pack("which.svg")];
+  try {
+    proxy.rule((_, url) => (failed.includes(url) ? "damaged" : undefined));
+    let here = await begin();
+    await page.waitForSelector("main[data-view=questions] .notice.bad", { timeout: 60_000 });
+    assert.match(await page.locator(".notice.bad").innerText(), /picture or a video.*could not be shown.*damaged/s);
+    failed.shift();
+    await page.locator("[data-action=retry]").click();
+    await shown(page);
+    assert.equal(await page.locator(".notice.bad").count(), 0);
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.equal(here.view, "trial");
+
+    await phase(page, "failed", 60_000);
+    assert.match(await page.locator(".trial-message").innerText(), /picture or a video/);
+    failed.shift();
+    await page.locator("[data-action=retry]").click();
+    await phase(page, "ready", 60_000);
+    await go(page, "mouse");
+    await phase(page, "answering", 60_000);
+    // It was there before the clip: it does not have to come now.
+    assert.equal(await page.locator(".choice img").evaluate((image) => image.complete && image.naturalWidth), 40);
+  } finally {
+    await close();
+  }
+});
