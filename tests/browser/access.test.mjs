@@ -1,5 +1,6 @@
 // Every page for everybody: axe finds nothing against WCAG 2.2 AA, in light and dark, on a screen of
-// 320 px, with text of 200 %; every type of question among them.
+// 320 px, with text of 200 %; every type of question among them. What a screen reader finds there is
+// what the snapshots say.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, writeFileSync } from "node:fs";
@@ -8,40 +9,13 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { film } from "./lib/film.mjs";
+import { questions, study, written } from "./lib/every_question.mjs";
 import { go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
-import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+import { heard } from "./lib/snapshot.mjs";
+import { text } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
-
-const option = (value) => ({ value, label: text(value) });
-const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
-const questions = [
-  { id: "single", type: "singleChoice", prompt: text("One of these?"), video: { en: "sign.webm", fr: "sign.webm" }, options: [{ ...option("a"), video: { en: "sign.webm", fr: "sign.webm" } }, { ...option("b"), image: "dot.svg" }, option("c")] },
-  { id: "several", type: "multipleChoice", prompt: text("Any of these?"), help: text("Choose some."), options: ["a", "b", "c"].map(option) },
-  { id: "likert", type: "likert", prompt: text("How strong?"), ...scale },
-  { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") },
-  { id: "matrix", type: "matrix", prompt: text("How often?"), rows: ["play", "call"].map(option), options: ["never", "sometimes", "often"].map(option) },
-  { id: "number", type: "number", prompt: text("How old?"), minimum: 0, maximum: 120, integer: true, unit: text("years") },
-  { id: "short", type: "shortText", prompt: text("In a word?") },
-  { id: "long", type: "longText", prompt: text("In some words?"), required: false },
-  { id: "ranking", type: "ranking", prompt: text("In which order?"), options: ["eyes", "mouth", "skin"].map(option) },
-  { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited") },
-];
-const study = small("access", {
-  demographics: { title: text("About you"), questions },
-  instructions: [{ heading: text("Before you begin"), text: text("Watch.") }],
-  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is nearer?"), allowSame: true }, { id: "rating", type: "likert", prompt: text("How strong is it?"), ...scale }],
-  components: { pairs: { ...trials(["joy2.box.head"], ["nearer", "rating"]), beside: { avatar: "actor", method: "real", caption: text("The person") } } },
-  sequence: { order: "fixed", components: ["pairs"] },
-  debriefing: [{ heading: text("What it was about"), text: text("Faces.") }],
-  stimuli: stimuli(
-    { head: { builtin: { seed: 1 } }, actor: { builtin: { actor: 7 }, look: "reference" } },
-    { box: { method: "box" }, real: { method: "recorded" } },
-    [["head", "box"], ["actor", "real"]],
-  ),
-});
 
 /** One answer of each question, by the controls that people use. */
 async function answerAll(page) {
@@ -60,15 +34,17 @@ async function answerAll(page) {
 
 for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark", 320, 1, "fr-FR"], ["light", 1280, 2, "fr-FR"]]) {
   test(`access: every page, ${scheme}, ${width} px, text ${zoom * 100} %`, { skip: unable, timeout: 300_000 }, async () => {
-    const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
-    writeFileSync(join(folder, "access.json"), JSON.stringify(study));
-    writeFileSync(join(folder, "dot.svg"), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="15"/></svg>');
     const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
-    writeFileSync(join(folder, "sign.webm"), await film(browser.page));
-    const server = await serve([join(folder, "access.json")]);
+    const server = await serve([await written(browser.page, study)]);
     const shots = screenshotFolder(`access-${scheme}-${width}-${zoom}`);
     const { page } = browser;
-    const { seen, look } = looker(page, shots, zoom);
+    const { seen, look: looked } = looker(page, shots, zoom);
+    // And what a screen reader finds there.
+    const look = async (name) => {
+      await looked(name);
+      const again = seen.filter((each) => each === name).length;
+      await heard(page, `${locale.slice(0, 2)}-${name}${again > 1 ? again : ""}`);
+    };
     try {
       await page.goto(`${server.url}/s/access/?backend=webgl2`);
       await page.waitForSelector('main[data-view="consent"]', { timeout: 30_000 });
@@ -81,11 +57,15 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
         if (here.view === "questions") {
           // What is signed can be played, and a picture is there.
           await page.waitForFunction(() => [...document.querySelectorAll("video")].length === 2 && [...document.querySelectorAll("video")].every((video) => video.readyState >= 1 && video.videoWidth > 0) && document.querySelector(".choice img").naturalWidth > 0, undefined, { timeout: 30_000 });
+          const slider = page.locator("fieldset[data-question=slider] input");
+          const untouched = { "en-GB": "not answered yet", "fr-FR": "pas encore de réponse" }[locale];
+          assert.equal(await slider.getAttribute("aria-valuetext"), untouched, "nothing is pre-selected");
           // Without answers the page says what is missing, and stays.
           await go(page, "mouse");
           await page.waitForSelector(".problem");
           await look("questions-missing");
           await answerAll(page);
+          assert.equal(await slider.getAttribute("aria-valuetext"), null);
         }
         if (here.view === "trial") {
           await phase(page, "ready", 120_000);

@@ -1,0 +1,44 @@
+// A study with every type of question, a signed video, a picture, and a clip beside another.
+
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { film } from "./film.mjs";
+import { small, stimuli, text, trials } from "./small_study.mjs";
+
+const option = (value) => ({ value, label: text(value) });
+const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
+export const questions = [
+  { id: "single", type: "singleChoice", prompt: text("One of these?"), video: { en: "sign.webm", fr: "sign.webm" }, options: [{ ...option("a"), video: { en: "sign.webm", fr: "sign.webm" } }, { ...option("b"), image: "dot.svg" }, option("c")] },
+  { id: "several", type: "multipleChoice", prompt: text("Any of these?"), help: text("Choose some."), options: ["a", "b", "c"].map(option) },
+  { id: "likert", type: "likert", prompt: text("How strong?"), ...scale },
+  { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") },
+  { id: "matrix", type: "matrix", prompt: text("How often?"), rows: ["play", "call"].map(option), options: ["never", "sometimes", "often"].map(option) },
+  { id: "number", type: "number", prompt: text("How old?"), minimum: 0, maximum: 120, integer: true, unit: text("years") },
+  { id: "short", type: "shortText", prompt: text("In a word?") },
+  { id: "long", type: "longText", prompt: text("In some words?"), required: false },
+  { id: "ranking", type: "ranking", prompt: text("In which order?"), options: ["eyes", "mouth", "skin"].map(option) },
+  { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited") },
+];
+export const study = small("access", {
+  demographics: { title: text("About you"), questions },
+  instructions: [{ heading: text("Before you begin"), text: text("Watch.") }],
+  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is nearer?"), allowSame: true }, { id: "rating", type: "likert", prompt: text("How strong is it?"), ...scale }],
+  components: { pairs: { ...trials(["joy2.box.head"], ["nearer", "rating"]), beside: { avatar: "actor", method: "real", caption: text("The person") } } },
+  sequence: { order: "fixed", components: ["pairs"] },
+  debriefing: [{ heading: text("What it was about"), text: text("Faces.") }],
+  stimuli: stimuli(
+    { head: { builtin: { seed: 1 } }, actor: { builtin: { actor: 7 }, look: "reference" } },
+    { box: { method: "box" }, real: { method: "recorded" } },
+    [["head", "box"], ["actor", "real"]],
+  ),
+});
+
+/** Writes a study and the files that it shows into a new folder; its path. `page` makes the film. */
+export async function written(page, study) {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
+  writeFileSync(join(folder, "access.json"), JSON.stringify(study));
+  writeFileSync(join(folder, "dot.svg"), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="15"/></svg>');
+  writeFileSync(join(folder, "sign.webm"), await film(page));
+  return join(folder, "access.json");
+}
