@@ -9,7 +9,7 @@ const foreign = [403, 200, 404, 511];
 /**
  * `{url, counts, calm(), rule(fate), close()}`; `seed` decides every fate, and without one there is no
  * storm; `calm` ends it. `fate(method, path)` of `rule` goes before: "silent" is never answered, "foreign"
- * by somebody else, "damaged" with other bytes; nothing else is changed.
+ * by somebody else ("foreign 403" by that status), "damaged" with other bytes; nothing else is changed.
  */
 export async function badProxy(target, seed) {
   const { hostname, port } = new URL(target);
@@ -47,8 +47,10 @@ export async function badProxy(target, seed) {
       try {
         const told = rule(method, url);
         if (told === "silent") return void counts.silent++;
-        if (told === "foreign") {
-          answer.writeHead(foreign[counts.foreign++ % foreign.length], { "content-type": "text/html" });
+        if (told?.startsWith("foreign")) {
+          const status = Number(told.slice(8)) || foreign[counts.foreign % foreign.length];
+          counts.foreign++;
+          answer.writeHead(status, { "content-type": "text/html" });
           return answer.end("<!doctype html><title>Please log in</title><p>This network is filtered.</p>");
         }
         if (told === "damaged") {

@@ -139,7 +139,8 @@ pub fn unreachable(thrown: &JsValue) -> Failure {
 fn read<T: FromJson>(answer: &Answer) -> Result<T, Failure> {
     if answer.ok() {
         // A page where JSON should be: something on the way answered.
-        return json::read(&answer.text).map_err(|error| Failure::Unreachable(error.to_string()));
+        let foreign = |error| Failure::Unreachable(format!("HTTP {}: {error}", answer.status));
+        return json::read(&answer.text).map_err(foreign);
     }
     Err(failure(answer.status, json::read::<Refusal>(&answer.text).ok()))
 }
