@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
+use mimique_face::AvatarSettings;
 use mimique_server::{Assets, StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
 use serde_json::json;
 use tokio::net::TcpListener;
@@ -37,22 +38,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         Some(folder) => Assets::from_folder(folder)?,
         None => Assets::embedded()?,
     };
-    let mut files = StudioFiles::new();
-    if let Some(avatar) = &args.avatar {
-        if avatar.is_dir() {
-            bail!("{}: a folder; pack its OBJ files as a .zip for the studio", avatar.display());
-        }
-        put(&mut files, StudioRole::Avatar, avatar)?;
-        let beside = avatar.with_extension("avatar.json");
-        if beside.is_file() {
-            put(&mut files, StudioRole::Settings, &beside)?;
-        }
-    }
-    for (role, file) in [(StudioRole::Take, &args.mocap), (StudioRole::Map, &args.markers)] {
-        if let Some(file) = file {
-            put(&mut files, role, file)?;
-        }
-    }
+    let files = given(&args)?;
     let runtime = tokio::runtime::Runtime::new().context("the server's threads")?;
     runtime.block_on(async {
         let listener = TcpListener::bind(args.listen).await.with_context(|| {
@@ -74,6 +60,27 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     })
 }
 
+/// The files that the options name, and the settings beside the avatar.
+fn given(args: &Args) -> anyhow::Result<StudioFiles> {
+    let mut files = StudioFiles::new();
+    if let Some(avatar) = &args.avatar {
+        if avatar.is_dir() {
+            bail!("{}: a folder; pack its OBJ files as a .zip for the studio", avatar.display());
+        }
+        put(&mut files, StudioRole::Avatar, avatar)?;
+        let beside = AvatarSettings::path_beside(avatar);
+        if beside.is_file() {
+            put(&mut files, StudioRole::Settings, &beside)?;
+        }
+    }
+    for (role, file) in [(StudioRole::Take, &args.mocap), (StudioRole::Map, &args.markers)] {
+        if let Some(file) = file {
+            put(&mut files, role, file)?;
+        }
+    }
+    Ok(files)
+}
+
 fn put(files: &mut StudioFiles, role: StudioRole, path: &Path) -> anyhow::Result<()> {
     let bytes = std::fs::read(path).with_context(|| {
         format!("{}: cannot be read; check the path and its permissions", path.display())
@@ -81,4 +88,32 @@ fn put(files: &mut StudioFiles, role: StudioRole, path: &Path) -> anyhow::Result
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     files.insert(role, StudioFile { name, bytes: bytes.into() });
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_beside_an_archive_of_two_endings_are_given_too() {
+        let folder = tempfile::tempdir().unwrap();
+        for (avatar, settings) in [
+            ("bank.tar.xz", "bank.avatar.json"),
+            ("other.tar.gz", "other.avatar.json"),
+            ("head.glb", "head.avatar.json"),
+        ] {
+            std::fs::write(folder.path().join(avatar), b"avatar").unwrap();
+            let args = Args {
+                avatar: Some(folder.path().join(avatar)),
+                mocap: None,
+                markers: None,
+                listen: SocketAddr::from(([127, 0, 0, 1], 0)),
+                web_dir: None,
+            };
+            assert!(!given(&args).unwrap().contains_key(&StudioRole::Settings), "{avatar}");
+            std::fs::write(folder.path().join(settings), b"{}").unwrap();
+            let files = given(&args).unwrap();
+            assert_eq!(files[&StudioRole::Settings].name, settings);
+        }
+    }
 }

@@ -5,6 +5,12 @@
 
 use std::ops::Range;
 
+/// Most blendshapes of an avatar: so many weights and turns fit into the 16 KiB of constants that
+/// every browser gives a shader.
+pub const MOST_SHAPES: usize = 2048;
+/// Most meshes of an avatar that are eyeballs, or parts of one that turn with it.
+pub const MOST_EYEBALLS: usize = 16;
+
 /// A head: its meshes, and the blendshapes that deform all of them together.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Avatar {

@@ -3,6 +3,8 @@
 mod avatar;
 mod driven;
 #[cfg(feature = "readers")]
+mod eye_pairs;
+#[cfg(feature = "readers")]
 mod files;
 #[cfg(feature = "readers")]
 mod glb;
@@ -11,6 +13,8 @@ mod image;
 #[cfg(feature = "readers")]
 mod obj;
 pub mod pack;
+#[cfg(feature = "readers")]
+mod part_words;
 #[cfg(feature = "readers")]
 mod parts;
 #[cfg(feature = "readers")]
@@ -25,7 +29,9 @@ mod texture;
 #[cfg(feature = "readers")]
 mod texture_in;
 
-pub use avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape, Texture, Textured};
+pub use avatar::{
+    Avatar, Eyeball, Look, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, SparseShape, Texture, Textured,
+};
 pub use driven::{Driven, DrivenError};
 #[cfg(feature = "readers")]
 pub use glb::read_gltf;

@@ -1,5 +1,6 @@
 //! What each mesh is of a face, told from its names; and how eyeballs turn.
 
+use crate::part_words::{Said, Side, said};
 use crate::settings::{AvatarSettings, fits};
 use crate::{Avatar, Eyeball, Look, Part, ReadError, arkit_shapes};
 
@@ -9,12 +10,15 @@ pub(crate) struct PartName<'a> {
     pub names: [&'a str; 3],
     /// Its vertices, metres or not.
     pub positions: &'a [[f32; 3]],
+    /// How many shapes move it.
+    pub shapes: usize,
     /// How many vertex displacements its shapes have.
     pub moved: usize,
 }
 
-/// The part of each mesh, nothing for one that `settings` leave out. Where no name says skin, the
-/// mesh that its shapes move most is the skin.
+/// The part of each mesh, nothing for one that `settings` leave out. A mesh without a telling name
+/// is skin where more shapes move it than any mesh called skin (a face called `Body`), unless
+/// `settings` name the skin; where none is called skin, the one with the most displacements is.
 pub(crate) fn assign_parts(
     meshes: &[PartName<'_>],
     settings: &AvatarSettings,
@@ -35,7 +39,7 @@ pub(crate) fn assign_parts(
     }
     // What the user says wins over what names say; of patterns, the one with the most letters.
     let letters = |pattern: &str| pattern.len() - pattern.matches('*').count();
-    let said = |m: &PartName<'_>| {
+    let by_user = |m: &PartName<'_>| {
         let fit = settings.parts.iter().filter(|(pattern, _)| fitting(pattern, m));
         fit.max_by_key(|(pattern, _)| letters(pattern)).map(|(_, part)| *part)
     };
@@ -43,66 +47,31 @@ pub(crate) fn assign_parts(
         .iter()
         .map(|m| {
             let named = || m.names.iter().find_map(|name| part_of_name(name, m.positions));
-            said(m).or_else(|| named().map(Some))
+            by_user(m).or_else(|| named().map(Some))
         })
         .collect();
-    let has_skin = found.contains(&Some(Some(Part::Skin)));
+    let called_skin = |i: &usize| found[*i] == Some(Some(Part::Skin));
+    let most_of_skin = (0..meshes.len()).filter(called_skin).map(|i| meshes[i].shapes).max();
+    let skin_said = meshes.iter().any(|m| by_user(m) == Some(Some(Part::Skin)));
+    let more = |i: usize| most_of_skin.is_none_or(|most| !skin_said && meshes[i].shapes > most);
     let skin = (0..meshes.len())
-        .filter(|&i| !has_skin && found[i].is_none())
+        .filter(|&i| found[i].is_none() && more(i))
         .max_by_key(|&i| (meshes[i].moved, std::cmp::Reverse(i)));
     let rest = |i| if skin == Some(i) { Part::Skin } else { Part::Other };
     Ok((0..meshes.len()).map(|i| found[i].unwrap_or(Some(rest(i)))).collect())
 }
 
-/// What a name says, by the words that rigs use; the order matters (an eyelash is no eye).
+/// What a name says; an eye whose name says no side is of the side on which its vertices lie (+X is
+/// the person's left).
 fn part_of_name(name: &str, positions: &[[f32; 3]]) -> Option<Part> {
-    let name = name.to_lowercase();
-    let any = |words: &[&str]| words.iter().any(|w| name.contains(w));
-    if any(&["lash"]) {
-        Some(Part::Lashes)
-    } else if any(&[
-        "lacrimal",
-        "occlusion",
-        "tearline",
-        "eyewet",
-        "eye_wet",
-        "eyeblend",
-        "cornea",
-        "caruncle",
-    ]) {
-        Some(Part::EyeOverlay)
-    } else if any(&["brow", "hair", "beard", "moustache", "mustache"]) {
-        Some(Part::Hair)
-    } else if any(&["socket", "mouthbag", "oralcavity", "oral_cavity", "cavity"]) {
-        Some(Part::Socket)
-    } else if any(&["tongue", "gum"]) {
-        Some(Part::Tongue)
-    } else if any(&["teeth", "tooth", "denture"]) {
-        Some(Part::Teeth)
-    } else if any(&["skin", "lid"]) {
-        Some(Part::Skin)
-    } else if any(&["eye", "sclera", "iris"]) {
-        Some(if on_the_left(&name, positions) { Part::EyeLeft } else { Part::EyeRight })
-    } else if any(&["head", "face"]) {
-        Some(Part::Skin)
-    } else {
-        None
-    }
-}
-
-/// The side in a name, or else the side on which the vertices lie (+X is the person's left).
-fn on_the_left(name: &str, positions: &[[f32; 3]]) -> bool {
-    let says = |long: &str, short: char| {
-        name.contains(long)
-            || name
-                .split(|c: char| !c.is_alphanumeric())
-                .any(|word| word.len() == 1 && word.starts_with(short))
-    };
-    match (says("left", 'l'), says("right", 'r')) {
-        (true, false) => true,
-        (false, true) => false,
-        _ => positions.iter().map(|p| f64::from(p[0])).sum::<f64>() >= 0.0,
-    }
+    let on_the_left = || positions.iter().map(|p| f64::from(p[0])).sum::<f64>() >= 0.0;
+    Some(match said(name)? {
+        Said::Part(part) => part,
+        Said::Eye(Some(Side::Left)) => Part::EyeLeft,
+        Said::Eye(Some(Side::Right)) => Part::EyeRight,
+        Said::Eye(None) if on_the_left() => Part::EyeLeft,
+        Said::Eye(None) => Part::EyeRight,
+    })
 }
 
 /// Angles of the four eye-look shapes at weight 1, degrees. ARKit publishes none; these are the
@@ -211,35 +180,51 @@ fn sphere_centre(points: &[[f32; 3]]) -> Option<[f32; 3]> {
 mod tests {
     use super::*;
 
-    fn part(name: &str) -> Option<Part> {
-        part_of_name(name, &[[0.03, 0.0, 0.0]])
+    #[test]
+    fn an_eye_without_a_side_in_its_name_is_where_it_lies() {
+        let at = |name, x| part_of_name(name, &[[x, 0.0, 0.0]]);
+        assert_eq!(at("Eyeball", 0.03), Some(Part::EyeLeft));
+        assert_eq!(at("Eyeball", -0.03), Some(Part::EyeRight));
+        assert_eq!(at("Eye_R", 0.03), Some(Part::EyeRight));
+        assert_eq!(at("Shirt", 0.03), None);
     }
 
     #[test]
-    fn parts_are_told_from_the_names_that_rigs_use() {
-        for (name, expected) in [
-            ("MouthSocketEyeSockets", Part::Socket),
-            ("GumsTongue", Part::Tongue),
-            ("Teeth", Part::Teeth),
-            ("EyeLeft", Part::EyeLeft),
-            ("EyeRight", Part::EyeRight),
-            ("eye_R", Part::EyeRight),
-            ("LacrimalBlendOcclusion", Part::EyeOverlay),
-            ("Lashes", Part::Lashes),
-            ("Wolf3D_Head", Part::Skin),
-            ("ict_skin", Part::Skin),
-            ("Eyebrows", Part::Hair),
-            ("Eyeball", Part::EyeLeft),
-        ] {
-            assert_eq!(part(name), Some(expected), "{name}");
-        }
-        assert_eq!(part("Shirt"), None);
+    fn a_face_with_another_name_is_skin_beside_a_mesh_called_so() {
+        let named = |name: &'static str, material: &'static str, shapes, moved| PartName {
+            names: [name, "", material],
+            positions: &[],
+            shapes,
+            moved,
+        };
+        let parts = |meshes: &[PartName<'_>]| {
+            assign_parts(meshes, &AvatarSettings::default())
+                .unwrap()
+                .into_iter()
+                .flatten()
+                .collect()
+        };
+        let meshes = [
+            named("Head_Scalp", "", 4, 900),
+            named("Body", "", 52, 400),
+            named("Shirt", "Solid", 3, 2000),
+        ];
+        let found: Vec<Part> = parts(&meshes);
+        assert_eq!(found, [Part::Skin, Part::Skin, Part::Other]);
+        // A beard or a mouth that every shape of the face moves too is none.
+        let meshes = [named("Head", "", 52, 900), named("Whiskers", "", 52, 2000)];
+        let found: Vec<Part> = parts(&meshes);
+        assert_eq!(found, [Part::Skin, Part::Other]);
     }
 
     #[test]
     fn without_a_name_the_most_moved_mesh_is_the_skin() {
-        let named =
-            |name: &'static str, moved| PartName { names: [name, "", ""], positions: &[], moved };
+        let named = |name: &'static str, moved| PartName {
+            names: [name, "", ""],
+            positions: &[],
+            shapes: moved,
+            moved,
+        };
         let meshes = [named("a", 3), named("b", 90), named("Teeth", 200)];
         let parts = assign_parts(&meshes, &AvatarSettings::default()).unwrap();
         assert_eq!(parts, [Part::Other, Part::Skin, Part::Teeth].map(Some));

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use crate::eye_pairs::part_eyes;
 use crate::files::Files;
 use crate::parts::find_eyeballs;
-use crate::settings::{AvatarSettings, fits};
-use crate::{Avatar, Mesh, Part, ReadError, arkit_shapes};
+use crate::settings::{AvatarSettings, avatar_name, fits};
+use crate::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, ReadError, arkit_shapes};
 
 /// An avatar as read, in metres, and what the reader found worth saying.
 #[derive(Debug, Clone)]
@@ -26,15 +27,12 @@ pub struct ReadAvatar {
 /// # Errors
 /// [`ReadError`]: the file is absent, of another format, damaged, or holds no face.
 pub fn read_avatar(path: &Path) -> Result<ReadAvatar, ReadError> {
-    let file_name = path.file_name().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    // `bank.tar.xz` is called bank.
-    let name = file_name.strip_suffix(".tar.xz").or(file_name.strip_suffix(".tar.gz"));
-    let stem = || path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let name = name.map_or_else(stem, str::to_owned);
-    let settings = settings_beside(path, &name)?;
+    let name = avatar_name(path);
+    let settings = settings_beside(path)?;
     if path.is_dir() {
         let files = Files::Folder(path.to_owned());
-        return crate::obj::read_obj_poses(&files, &file_name, settings);
+        let name = path.file_name().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        return crate::obj::read_obj_poses(&files, &name, settings);
     }
     let bytes = std::fs::read(path)
         .map_err(|source| ReadError::Io { place: "the avatar file".to_owned(), source })?;
@@ -61,12 +59,12 @@ pub fn read_avatar_bytes(
 }
 
 /// `head.avatar.json` beside `head.glb`.
-fn settings_beside(path: &Path, name: &str) -> Result<Option<AvatarSettings>, ReadError> {
-    let file = format!("{name}.avatar.json");
-    let beside = path.with_file_name(&file);
+fn settings_beside(path: &Path) -> Result<Option<AvatarSettings>, ReadError> {
+    let beside = AvatarSettings::path_beside(path);
     if !beside.is_file() {
         return Ok(None);
     }
+    let file = beside.file_name().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let bytes =
         std::fs::read(&beside).map_err(|source| ReadError::Io { place: file.clone(), source })?;
     AvatarSettings::from_json(&file, &bytes).map(Some)
@@ -91,6 +89,12 @@ impl ReadAvatar {
                 "export the head with its morph targets (shape keys), or one OBJ file a pose",
             ));
         }
+        within_most(
+            "meshes, blendshapes",
+            avatar.shape_names.len(),
+            MOST_SHAPES,
+            "leave unused ones out by \"leaveOut\" in the JSON beside the avatar",
+        )?;
         let extent = skin_extent(&avatar).filter(|extent| *extent > 0.0).ok_or_else(|| {
             ReadError::broken(
                 "meshes",
@@ -109,10 +113,33 @@ impl ReadAvatar {
             let all = avatar.shape_names.len();
             notes.push(format!("{known} of {all} shapes are ARKit's by name, the rest are kept"));
         }
+        let pairs = part_eyes(&mut avatar);
+        if !pairs.is_empty() {
+            let pairs = pairs.join(", ");
+            notes.push(format!("both eyes in one mesh, parted into left and right: {pairs}"));
+        }
+        within_most(
+            "meshes, eyeballs",
+            avatar.meshes.iter().filter(|m| is_eye(m)).count(),
+            MOST_EYEBALLS,
+            "leave layers out, or call them eyeOverlay, under \"parts\" in the JSON beside the avatar",
+        )?;
         avatar.eyeballs = find_eyeballs(&avatar);
         let locked = locked(&avatar.shape_names, settings)?;
         Ok(Self { avatar, unit_metres, locked, notes })
     }
+}
+
+/// Refuses more of something than can be drawn.
+fn within_most(place: &str, found: usize, most: usize, remedy: &str) -> Result<(), ReadError> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(ReadError::broken(place, format!("{found} of them, at most {most} can be drawn"), remedy))
+}
+
+fn is_eye(mesh: &Mesh) -> bool {
+    matches!(mesh.part, Part::EyeLeft | Part::EyeRight)
 }
 
 /// Leaves shapes out and renames shapes as the settings ask.

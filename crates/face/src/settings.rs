@@ -22,6 +22,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
@@ -66,6 +67,12 @@ const KEYS: [&str; 8] =
     ["unit", "neutral", "parts", "vertexParts", "shapes", "leaveOut", "locked", "driven"];
 
 impl AvatarSettings {
+    /// Where the JSON beside an avatar's file or folder lies: `head.avatar.json` beside `head.glb`,
+    /// `bank.avatar.json` beside `bank.tar.xz`.
+    pub fn path_beside(avatar: &Path) -> PathBuf {
+        avatar.with_file_name(format!("{}.avatar.json", avatar_name(avatar)))
+    }
+
     /// Reads the JSON; `file` names it in errors.
     ///
     /// # Errors
@@ -125,6 +132,15 @@ impl AvatarSettings {
             }
         }
         Ok(out)
+    }
+}
+
+/// The name of an avatar: its file's without the ending, of which `.tar.xz` and `.tar.gz` are one.
+pub(crate) fn avatar_name(path: &Path) -> String {
+    let file = path.file_name().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    match file.strip_suffix(".tar.xz").or(file.strip_suffix(".tar.gz")) {
+        Some(name) => name.to_owned(),
+        None => path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned()),
     }
 }
 
@@ -216,6 +232,21 @@ impl Place<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn settings_lie_beside_files_archives_and_folders() {
+        for (avatar, settings) in [
+            ("a/head.glb", "a/head.avatar.json"),
+            ("bank.zip", "bank.avatar.json"),
+            ("a/bank.tar.xz", "a/bank.avatar.json"),
+            ("bank.tar.gz", "bank.avatar.json"),
+            ("a/my.head.v2.glb", "a/my.head.v2.avatar.json"),
+            ("a/folder", "a/folder.avatar.json"),
+        ] {
+            let beside = AvatarSettings::path_beside(Path::new(avatar));
+            assert_eq!(beside, Path::new(settings), "{avatar}");
+        }
+    }
 
     #[test]
     fn patterns_fit_as_file_names_do() {

@@ -252,3 +252,133 @@ fn every_single_byte_may_be_wrong() {
         }
     }
 }
+
+/// A GLB of a head, with a mesh `Eyes` that holds two balls of 24 mm, 62 mm apart, as one primitive
+/// of positions and a shape that moves the person's left one up.
+fn head_with_eyes_in_one_mesh() -> Vec<u8> {
+    let (around, down) = (16u16, 10u16);
+    let mut eyes: Vec<[f32; 3]> = Vec::new();
+    let mut corners: Vec<u16> = Vec::new();
+    for x in [-0.031f32, 0.031] {
+        let first = eyes.len() as u16;
+        for i in 0..=down {
+            let (high, ring) = (std::f32::consts::PI * f32::from(i) / f32::from(down)).sin_cos();
+            for j in 0..around {
+                let turn = std::f32::consts::TAU * f32::from(j) / f32::from(around);
+                let unit = [high * turn.cos(), high * turn.sin(), ring];
+                eyes.push([x + 0.012 * unit[0], 0.02 + 0.012 * unit[1], 0.06 + 0.012 * unit[2]]);
+                let at = |i: u16, j: u16| first + i * around + j % around;
+                if i < down {
+                    let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                    corners.extend([a, b, c, a, c, d]);
+                }
+            }
+        }
+    }
+    let up = eyes.iter().map(|p| [0.0, if p[0] > 0.0 { 0.001 } else { 0.0 }, 0.0]);
+    let up: Vec<f32> = up.flatten().collect();
+    let skin = [[-0.08f32, -0.1, 0.05], [0.08, -0.1, 0.05], [0.0, 0.12, 0.05]];
+    let open = [[0.0f32, -0.01, 0.0], [0.0; 3], [0.0; 3]];
+    let mut binary = floats(&skin.concat());
+    binary.extend(floats(&open.concat()));
+    let at_eyes = binary.len();
+    binary.extend(floats(&eyes.concat()));
+    binary.extend(floats(&up));
+    let at_corners = binary.len();
+    corners.iter().for_each(|c| binary.extend(c.to_le_bytes()));
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let (bytes, moved) = (eyes.len() * 12, at_eyes + eyes.len() * 12);
+    let document = json!({
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "name": "Head"}, {"mesh": 1, "name": "Eyes"}],
+        "meshes": [
+            {"primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 1}]}],
+             "extras": {"targetNames": ["jawOpen"]}},
+            {"name": "Eyes", "extras": {"targetNames": ["eyeLookUpLeft"]},
+             "primitives": [{"attributes": {"POSITION": 2}, "indices": 4,
+                             "targets": [{"POSITION": 3}]}]}
+        ],
+        "buffers": [{"byteLength": binary.len()}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 36},
+            {"buffer": 0, "byteOffset": at_eyes, "byteLength": bytes},
+            {"buffer": 0, "byteOffset": moved, "byteLength": bytes},
+            {"buffer": 0, "byteOffset": at_corners, "byteLength": corners.len() * 2}
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+             "min": [-0.08, -0.1, 0.05], "max": [0.08, 0.12, 0.05]},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 2, "componentType": 5126, "count": eyes.len(), "type": "VEC3",
+             "min": [-0.043, 0.008, 0.048], "max": [0.043, 0.032, 0.072]},
+            {"bufferView": 3, "componentType": 5126, "count": eyes.len(), "type": "VEC3"},
+            {"bufferView": 4, "componentType": 5123, "count": corners.len(), "type": "SCALAR"}
+        ]
+    });
+    glb(&document, &binary)
+}
+
+#[test]
+fn eyes_in_one_mesh_become_two_that_turn_about_their_own_centres() {
+    let file = head_with_eyes_in_one_mesh();
+    let read = read_gltf(&file, "test", None).unwrap();
+    let avatar = &read.avatar;
+    let named: Vec<(&str, Part)> =
+        avatar.meshes.iter().map(|m| (m.name.as_str(), m.part)).collect();
+    assert_eq!(named[1..], [("Eyes_L", Part::EyeLeft), ("Eyes_R", Part::EyeRight)]);
+    assert!(read.notes.iter().any(|n| n.contains("into left and right: Eyes")), "{:?}", read.notes);
+    assert_eq!(avatar.eyeballs.len(), 2);
+    for (eye, x) in avatar.eyeballs.iter().zip([0.031, -0.031]) {
+        for (found, truth) in eye.centre.iter().zip([x, 0.02, 0.06]) {
+            assert!((found - truth).abs() < 1e-6, "{eye:?}");
+        }
+    }
+    // The look that moves the left eye's vertices turns nothing, and leaves the right eye alone.
+    let [_, left, right] = avatar.meshes.as_slice() else { panic!("{named:?}") };
+    assert_eq!(left.shapes[1].vertices.len(), left.positions.len());
+    assert_eq!((left.positions.len(), left.triangles.len()), (right.positions.len(), 320));
+    assert!(right.shapes[1].vertices.is_empty());
+    assert!(avatar.eyeballs.iter().all(|e| e.looks.is_empty()));
+    // What the user calls otherwise stays whole.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("head.glb");
+    std::fs::write(&path, &file).unwrap();
+    std::fs::write(folder.path().join("head.avatar.json"), r#"{"parts": {"Eyes": "other"}}"#)
+        .unwrap();
+    let other = mimique_face::read_avatar(&path).unwrap().avatar;
+    assert_eq!((other.meshes.len(), other.meshes[1].part), (2, Part::Other));
+}
+
+#[test]
+fn more_shapes_or_eyeballs_than_can_be_drawn_are_refused_when_read() {
+    let (mut document, binary) = triangle();
+    let many = |count: usize| {
+        let targets: Vec<Value> = (0..count).map(|_| json!({"POSITION": 1})).collect();
+        let names: Vec<String> = (0..count).map(|k| format!("s{k}")).collect();
+        (json!(targets), json!(names))
+    };
+    for (count, fits) in [(2048, true), (2049, false)] {
+        (
+            document["meshes"][0]["primitives"][0]["targets"],
+            document["meshes"][0]["extras"]["targetNames"],
+        ) = many(count);
+        let read = read_gltf(&glb(&document, &binary), "test", None);
+        assert_eq!(read.is_ok(), fits, "{count} shapes");
+        let says = "meshes, blendshapes: 2049 of them, at most 2048 can be drawn; leave unused";
+        assert!(fits || read.unwrap_err().to_string().starts_with(says));
+    }
+    let (mut document, binary) = triangle();
+    for (eyes, fits) in [(16, true), (17, false)] {
+        let mut nodes = vec![json!({"mesh": 0, "name": "Head"})];
+        nodes.extend((0..eyes).map(|_| json!({"mesh": 0, "name": "Eye_L"})));
+        document["scenes"][0]["nodes"] = json!((0..=eyes).collect::<Vec<_>>());
+        document["nodes"] = json!(nodes);
+        let read = read_gltf(&glb(&document, &binary), "test", None);
+        assert_eq!(read.is_ok(), fits, "{eyes} eyes: {read:?}");
+        let says = "meshes, eyeballs: 17 of them, at most 16 can be drawn; leave layers out";
+        assert!(fits || read.unwrap_err().to_string().starts_with(says));
+    }
+}

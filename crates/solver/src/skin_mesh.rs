@@ -117,6 +117,17 @@ impl SkinMesh {
         Ok(())
     }
 
+    /// Diagonal of the box round the positions, metres.
+    fn size(&self) -> f64 {
+        let side = |a: usize| {
+            let ends = |(low, high): (f64, f64), p: &[f64; 3]| (low.min(p[a]), high.max(p[a]));
+            let start = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = self.positions.iter().fold(start, ends);
+            high - low
+        };
+        (0..3).map(|a| side(a) * side(a)).sum::<f64>().sqrt()
+    }
+
     /// Which vertices no shape moves by more than `tolerance` metres at weight 1.
     pub fn unmoved(&self, tolerance: f64) -> Vec<bool> {
         let mut out = vec![true; self.positions.len()];
@@ -129,8 +140,9 @@ impl SkinMesh {
         out
     }
 
-    /// Close seams: vertices with exactly the same position and the same deltas become one, as
-    /// exporters split them where textures meet. Open seams change H by 10 %.
+    /// Close seams: vertices with exactly the same position and the same deltas, within a millionth of
+    /// the model's size, become one, as exporters split them where textures meet (and round the
+    /// deltas of each twin by itself). Open seams change H by 10 %.
     ///
     /// The order of the vertices that remain is that of their first occurrence; triangles that
     /// collapse go. Vertices at one place that move differently (lips that touch) stay apart.
@@ -149,14 +161,14 @@ impl SkinMesh {
         {
             (shared[vertex], shared[other]) = (true, true);
         }
-        let moves = Moves::new(self, &shared);
+        let (moves, most) = (Moves::new(self, &shared), SEAM_TOLERANCE * self.size());
         let mut index_of: Vec<u32> = Vec::with_capacity(self.positions.len());
         let mut positions = Vec::new();
         for (vertex, p) in self.positions.iter().enumerate() {
             let (mut at, mut same) = (vertex, None);
             while before[at] != at {
                 at = before[at];
-                if moves.of(at) == moves.of(vertex) {
+                if moves.alike(at, vertex, most) {
                     same = Some(index_of[at]);
                 }
             }
@@ -174,10 +186,14 @@ impl SkinMesh {
     }
 }
 
-/// For each vertex that shares its place its non-zero deltas as (shape, bits); nothing for others.
+/// How far the deltas of one place may lie apart, in sizes of the model: a third of a micrometre on a
+/// head, which 32-bit numbers reach when an exporter scales or turns; lips that touch part by more.
+const SEAM_TOLERANCE: f64 = 1e-6;
+
+/// For each vertex that shares its place its non-zero deltas and their shapes; nothing for others.
 struct Moves {
     starts: Vec<usize>,
-    entries: Vec<(u32, [u64; 3])>,
+    entries: Vec<(u32, [f64; 3])>,
 }
 
 impl Moves {
@@ -195,18 +211,42 @@ impl Moves {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut entries = vec![(0, [0; 3]); starts[mesh.positions.len()]];
+        let mut entries = vec![(0, [0.0; 3]); starts[mesh.positions.len()]];
         for (k, shape) in shapes.iter().enumerate() {
             for (v, d) in shape {
-                entries[next[*v as usize]] = (k as u32, d.map(bits));
+                entries[next[*v as usize]] = (k as u32, *d);
                 next[*v as usize] += 1;
             }
         }
         Moves { starts, entries }
     }
 
-    fn of(&self, vertex: usize) -> &[(u32, [u64; 3])] {
+    fn of(&self, vertex: usize) -> &[(u32, [f64; 3])] {
         &self.entries[self.starts[vertex]..self.starts[vertex + 1]]
+    }
+
+    /// Whether no coordinate of any delta of the two differs by more than `most`; a shape that moves
+    /// one of them only moves the other by nothing.
+    fn alike(&self, a: usize, b: usize, most: f64) -> bool {
+        let (mut a, mut b) = (self.of(a), self.of(b));
+        loop {
+            let shape = |list: &[(u32, [f64; 3])]| list.first().map_or(u32::MAX, |e| e.0);
+            let first = shape(a).min(shape(b));
+            let take = |list: &mut &[(u32, [f64; 3])]| match list.split_first() {
+                Some((entry, rest)) if entry.0 == first => {
+                    *list = rest;
+                    entry.1
+                }
+                _ => [0.0; 3],
+            };
+            let (d, e) = (take(&mut a), take(&mut b));
+            if d.iter().zip(&e).any(|(x, y)| (x - y).abs() > most) {
+                return false;
+            }
+            if a.is_empty() && b.is_empty() {
+                return true;
+            }
+        }
     }
 }
 

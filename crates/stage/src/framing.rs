@@ -6,6 +6,8 @@ use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, Vec3};
 use mimique_face::{Avatar, Mesh, Part};
 
+use crate::eye_guess::guess_eyes;
+
 /// What the camera does relative to the standard portrait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
@@ -53,7 +55,7 @@ const CHIN_DROP: f32 = 1.85;
 const FIELD_OF_VIEW: f32 = 0.30;
 
 impl Landmarks {
-    /// Finds them: eyes from the eyeballs (else from the upper third of the skin), chin and nose
+    /// Finds them: eyes from the eyeballs (else from what the shapes move), chin and nose
     /// from the skin near the midline.
     pub fn find(avatar: &Avatar) -> Self {
         let (right, left) = eyes(avatar);
@@ -115,19 +117,7 @@ fn eyes(avatar: &Avatar) -> (Vec3, Vec3) {
     if let (Some(right), Some(left)) = (centre(Part::EyeRight), centre(Part::EyeLeft)) {
         return if right.x <= left.x { (right, left) } else { (left, right) };
     }
-    // No eyes: a face's eyes are a third below the crown, 0.42 of its width apart.
-    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for p in avatar.meshes.iter().flat_map(|m| &m.positions).map(|&p| Vec3::from(p)) {
-        low = low.min(p);
-        high = high.max(p);
-    }
-    let middle = Vec3::new(
-        (low.x + high.x) * 0.5,
-        low.y + (high.y - low.y) * 0.62,
-        low.z + (high.z - low.z) * 0.75,
-    );
-    let half = Vec3::new((high.x - low.x).max(1e-3) * 0.21, 0.0, 0.0);
-    (middle - half, middle + half)
+    guess_eyes(avatar)
 }
 
 /// The midpoint and the left corner of the open border of the skin nearest to where a mouth is.

@@ -13,11 +13,11 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
-use mimique_face::{Avatar, Mesh, Part};
+use mimique_face::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part};
 
 use crate::StageError;
 use crate::framing::{Landmarks, bounds_centre};
-use crate::layouts::{MAX_EYEBALLS, MAX_SHAPES, Material};
+use crate::layouts::Material;
 
 /// Everything the GPU needs of an avatar.
 #[derive(Debug, Default)]
@@ -76,8 +76,8 @@ impl Geometry {
     /// Checks the avatar and lays it out.
     pub fn new(avatar: &Avatar, landmarks: &Landmarks) -> Result<Self, StageError> {
         let shape_count = avatar.shape_names.len();
-        if shape_count > MAX_SHAPES {
-            return Err(StageError::TooManyShapes { found: shape_count, most: MAX_SHAPES });
+        if shape_count > MOST_SHAPES {
+            return Err(StageError::TooManyShapes { found: shape_count, most: MOST_SHAPES });
         }
         let mut out = Self { shape_count, ..Self::default() };
         let eye_of_mesh = out.measure_eyes(avatar)?;
@@ -121,8 +121,8 @@ impl Geometry {
             self.eyes.push(measure_eye(mesh, centre, looks));
         }
         match self.eyes.len() {
-            n if n > MAX_EYEBALLS => {
-                Err(StageError::TooManyEyeballs { found: n, most: MAX_EYEBALLS })
+            n if n > MOST_EYEBALLS => {
+                Err(StageError::TooManyEyeballs { found: n, most: MOST_EYEBALLS })
             }
             _ => Ok(eye_of_mesh),
         }

@@ -1,7 +1,7 @@
 //! An avatar on the GPU: its tables, and what one frame needs to know of its eyes and landmarks.
 
 use glam::{Mat3, Vec3};
-use mimique_face::{Avatar, Image};
+use mimique_face::{Avatar, Image, MOST_EYEBALLS};
 use wgpu::util::DeviceExt;
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Buffer, Device, Queue, TextureFormat, TextureView,
@@ -10,9 +10,7 @@ use wgpu::{
 use crate::StageError;
 use crate::framing::Landmarks;
 use crate::geometry::{Draw, Eye, Geometry};
-use crate::layouts::{
-    EyeballPose, Gaze, LIST_TABLE_WIDTH, MAX_EYEBALLS, Pose, Scene, VERTEX_TABLE_WIDTH,
-};
+use crate::layouts::{EyeballPose, Gaze, LIST_TABLE_WIDTH, Pose, Scene, VERTEX_TABLE_WIDTH};
 use crate::pipelines::{OCCLUSION_FORMAT, Pipelines};
 use crate::tables;
 use crate::textures::Textures;
@@ -197,8 +195,8 @@ impl Head {
 
     /// The eyes' own frames at the given weights, as `shade.wgsl` reads them; `iris` colours those
     /// that came without a colour.
-    pub(crate) fn gaze(&self, weights: &[f32], iris: [f32; 3]) -> [Gaze; MAX_EYEBALLS] {
-        let mut out: [Gaze; MAX_EYEBALLS] = bytemuck::Zeroable::zeroed();
+    pub(crate) fn gaze(&self, weights: &[f32], iris: [f32; 3]) -> [Gaze; MOST_EYEBALLS] {
+        let mut out: [Gaze; MOST_EYEBALLS] = bytemuck::Zeroable::zeroed();
         for (slot, eye) in out.iter_mut().zip(&self.eyes) {
             let [r, g, b] = eye.iris.unwrap_or(iris);
             slot.iris = [r, g, b, 0.0];

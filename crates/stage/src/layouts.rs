@@ -2,11 +2,8 @@
 //! and size here is the field's order and size there.
 
 use bytemuck::{Pod, Zeroable};
+use mimique_face::{MOST_EYEBALLS, MOST_SHAPES};
 
-/// Blendshapes that [`Pose`] holds.
-pub(crate) const MAX_SHAPES: usize = 256;
-/// Eyeballs that [`Pose`] holds.
-pub(crate) const MAX_EYEBALLS: usize = 4;
 /// Width of the tables with one entry a vertex (`deform.wgsl`, `surface.wgsl`, `shade.wgsl`).
 pub(crate) const VERTEX_TABLE_WIDTH: u32 = 256;
 /// Width of the tables of deltas and rings (`deform.wgsl`, `surface.wgsl`).
@@ -18,9 +15,22 @@ pub(crate) const SHADOW_SIZE: u32 = 512;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct Pose {
+    pub eyeballs: [EyeballPose; MOST_EYEBALLS],
     /// Four weights a row.
-    pub weights: [[f32; 4]; MAX_SHAPES / 4],
-    pub eyeballs: [EyeballPose; MAX_EYEBALLS],
+    pub weights: [[f32; 4]; MOST_SHAPES / 4],
+}
+
+/// Constants that WebGL2 gives a shader at least, bytes; no frame may need more.
+const LEAST_CONSTANTS: usize = 16 << 10;
+const _: () = assert!(size_of::<Pose>() <= LEAST_CONSTANTS && MOST_SHAPES.is_multiple_of(4));
+
+impl Pose {
+    /// The bytes that `shapes` weights take from the start; what is behind them stays 0.
+    pub fn bytes(&self, shapes: usize) -> &[u8] {
+        let rows = shapes.div_ceil(4).min(self.weights.len());
+        let end = size_of_val(&self.eyeballs) + rows * size_of_val(&self.weights[0]);
+        &bytemuck::bytes_of(self)[..end]
+    }
 }
 
 /// `deform.wgsl`: struct `EyeballPose`.
@@ -52,7 +62,7 @@ pub(crate) struct Scene {
     pub brows: [f32; 4],
     /// Exposure.
     pub light: [f32; 4],
-    pub gaze: [Gaze; MAX_EYEBALLS],
+    pub gaze: [Gaze; MOST_EYEBALLS],
 }
 
 /// `scene.wgsl`: struct `Gaze`. Rows that take a point about the eye's centre to the eye's own

@@ -16,6 +16,7 @@
 //! gets one more pass (`encode.wgsl`). At loading, `occlusion.wgsl` finds how open each vertex lies.
 
 mod error;
+mod eye_guess;
 mod framing;
 mod geometry;
 mod head;

@@ -143,9 +143,12 @@ impl Renderer {
     }
 
     /// Draws `head` at `weights` (one a blendshape; missing ones are 0) into `target`, which has
-    /// the renderer's format and size. Nothing is allocated here; the frame is submitted.
+    /// the renderer's format and size. The frame is submitted. No buffer and no texture is made:
+    /// what a frame takes (a command encoder, its passes, the way of the constants to the GPU) is
+    /// given back once the GPU is done with it.
     pub fn render(&self, target: &TextureView, head: &Head, view: View, weights: &[f32]) {
-        self.queue.write_buffer(&head.pose_buffer, 0, bytemuck::bytes_of(&head.pose(weights)));
+        let pose = head.pose(weights);
+        self.queue.write_buffer(&head.pose_buffer, 0, pose.bytes(head.shape_count));
         self.queue.write_buffer(
             &head.scene_buffer,
             0,
@@ -177,7 +180,7 @@ impl Renderer {
     /// Looks at the neutral head from many sides and sums up where each vertex is seen from.
     fn find_occlusions(&self, head: &Head) {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("occlusions") };
-        self.queue.write_buffer(&head.pose_buffer, 0, bytemuck::bytes_of(&head.pose(&[])));
+        self.queue.write_buffer(&head.pose_buffer, 0, head.pose(&[]).bytes(head.shape_count));
         for (i, towards) in sky().enumerate() {
             let mut scene = self.scene(head, View::FRONT, &[]);
             scene.light_from_world = Camera::light(&head.landmarks, towards).to_cols_array_2d();

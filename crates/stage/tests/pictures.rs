@@ -154,10 +154,47 @@ fn malformed_avatars_are_refused_by_name() {
     let damaged = refuse(&|a| a.textures = vec![mimique_face::Texture::default()]);
     assert!(damaged.to_string().contains("avatar, texture 0: a JPEG picture"), "{damaged}");
     let many = refuse(&|a| {
-        a.shape_names = (0..300).map(|k| format!("s{k}")).collect();
-        a.meshes.iter_mut().for_each(|m| m.shapes.resize(300, Default::default()));
+        a.shape_names = (0..2049).map(|k| format!("s{k}")).collect();
+        a.meshes.iter_mut().for_each(|m| m.shapes.resize(2049, Default::default()));
     });
-    assert_eq!(many, StageError::TooManyShapes { found: 300, most: 256 });
+    assert_eq!(many, StageError::TooManyShapes { found: 2049, most: 2048 });
+    let many = refuse(&|a| {
+        let eye = a.meshes[1].clone();
+        a.meshes.extend(std::iter::repeat_n(eye, 15));
+    });
+    assert_eq!(many, StageError::TooManyEyeballs { found: 17, most: 16 });
+}
+
+#[test]
+fn the_last_of_many_shapes_and_eyes_are_drawn_as_the_first_are() {
+    let name = "the_last_of_many_shapes_and_eyes_are_drawn_as_the_first_are";
+    let Some(stage) = support::adapter(name) else { return };
+    let few = support::egg();
+    let drawn = draw(&stage, &few, Look::STIMULUS, &[0.8, 0.5, 0.7]);
+    let plain = draw(&stage, &few, Look::STIMULUS, &[]);
+    assert!(support::difference(&drawn, &plain).outliers > 0.02, "the pose shows");
+    // The same three shapes behind 2045 that move nothing, the same eyes behind 14 tiny ones.
+    let mut many = few.clone();
+    many.shape_names = (0..2048).map(|k| format!("s{k}")).collect();
+    for mesh in &mut many.meshes {
+        let mut shapes = vec![mimique_face::SparseShape::default(); 2045];
+        shapes.append(&mut mesh.shapes);
+        mesh.shapes = shapes;
+    }
+    many.eyeballs.iter_mut().flat_map(|e| &mut e.looks).for_each(|look| look.shape += 2045);
+    let mut inside = support::ball([0.0, 0.0, 0.0], [0.001; 3], 6, 4);
+    inside.part = mimique_face::Part::Other;
+    inside.shapes = vec![mimique_face::SparseShape::default(); 2048];
+    let (skin, eyes) = many.meshes.split_at(1);
+    let meshes = [skin, &vec![inside; 14], eyes].concat();
+    many.eyeballs.iter_mut().for_each(|e| e.mesh += 14);
+    let hidden = |mesh| mimique_face::Eyeball { mesh, centre: [0.0; 3], looks: vec![] };
+    many.eyeballs.extend((1..=14).map(hidden));
+    many.meshes = meshes;
+    let mut weights = vec![0.0; 2045];
+    weights.extend([0.8, 0.5, 0.7]);
+    let found = support::difference(&drawn, &draw(&stage, &many, Look::STIMULUS, &weights));
+    assert!(found.mean < 0.05 && found.outliers < 0.0005, "{found:?}");
 }
 
 /// A head as people will see it: it fills the frame, nothing burns out, the mouth opens dark.
@@ -205,4 +242,37 @@ fn builtin_head_reads_as_a_face() {
     let Some(stage) = support::adapter("builtin_head_reads_as_a_face") else { return };
     let avatar = mimique_face::build_head(&mimique_face::HeadSpec::default());
     reads_as_a_face(&stage, &avatar, "jawOpen");
+}
+
+#[test]
+fn eyes_in_one_mesh_of_a_file_are_drawn_as_two() {
+    let Some(stage) = support::adapter("eyes_in_one_mesh_of_a_file_are_drawn_as_two") else {
+        return;
+    };
+    let head = mimique_face::build_head(&mimique_face::HeadSpec::default());
+    let read = |avatar: &Avatar| {
+        let glb = mimique_face::write_glb(avatar, &[], 60.0).expect("a file");
+        let read = mimique_face::read_avatar_bytes(glb, "head", None, None).expect("it is read");
+        read.avatar
+    };
+    // The left eye's vertices behind the right eye's.
+    let mut joined = head.clone();
+    let at = |avatar: &Avatar, part| {
+        avatar.meshes.iter().position(|m| m.part == part).expect("the head has eyes")
+    };
+    let left = joined.meshes.remove(at(&joined, mimique_face::Part::EyeLeft));
+    let right = at(&joined, mimique_face::Part::EyeRight);
+    let both = &mut joined.meshes[right];
+    let first = both.positions.len() as u32;
+    both.name = "Eyes".to_owned();
+    both.positions.extend(left.positions);
+    both.vertex_colours.extend(left.vertex_colours);
+    both.triangles.extend(left.triangles.iter().map(|t| t.map(|v| v + first)));
+    let gaze = |avatar: &Avatar| {
+        let look = avatar.shape_names.iter().map(|n| if n == "eyeLookInLeft" { 0.8 } else { 0.0 });
+        draw(&stage, avatar, Look::STIMULUS, &look.collect::<Vec<f32>>())
+    };
+    let (apart, joined) = (gaze(&read(&head)), gaze(&read(&joined)));
+    let found = support::difference(&apart, &joined);
+    assert!(found.mean < 0.05 && found.outliers < 0.0005, "{found:?}");
 }

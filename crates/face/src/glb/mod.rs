@@ -148,6 +148,7 @@ fn joined(
         .map(|s| PartName {
             names: [&s.node_name, &s.mesh_name, &s.material_name],
             positions: &s.positions,
+            shapes: s.shapes.iter().filter(|shape| !shape.vertices.is_empty()).count(),
             moved: s.shapes.iter().map(|shape| shape.vertices.len()).sum(),
         })
         .collect();

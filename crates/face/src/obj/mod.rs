@@ -191,19 +191,24 @@ impl Poses {
                 vertices_of(g).iter().map(|&v| single(self.neutral.positions[v])).collect()
             })
             .collect();
-        let moved = |g: &Group| -> usize {
-            let still = |v: usize| {
-                self.posed.values().filter(|p| p[v] != self.neutral.positions[v]).count()
+        let moved = |g: &Group| -> Vec<usize> {
+            let vertices = vertices_of(g);
+            let by = |p: &Vec<[f64; 3]>| {
+                vertices.iter().filter(|v| p[**v] != self.neutral.positions[**v]).count()
             };
-            vertices_of(g).into_iter().map(still).sum()
+            self.posed.values().map(by).collect()
         };
         let named: Vec<PartName<'_>> = groups
             .iter()
             .zip(&points)
-            .map(|((g, _), positions)| PartName {
-                names: [&g.group, &g.object, &g.material],
-                positions,
-                moved: moved(g),
+            .map(|((g, _), positions)| {
+                let moved = moved(g);
+                PartName {
+                    names: [&g.group, &g.object, &g.material],
+                    positions,
+                    shapes: moved.iter().filter(|n| **n > 0).count(),
+                    moved: moved.iter().sum(),
+                }
             })
             .collect();
         let parts = assign_parts(&named, settings)?;

@@ -6,8 +6,8 @@ struct EyeballPose {
 }
 
 struct Pose {
-    weights: array<vec4f, 64>,
-    eyeballs: array<EyeballPose, 4>,
+    eyeballs: array<EyeballPose, 16>,
+    weights: array<vec4f, 512>,
 }
 
 @group(0) @binding(0) var<uniform> pose: Pose;

@@ -17,7 +17,7 @@ struct Scene {
     skin: vec4f,
     brows: vec4f,
     light: vec4f,
-    gaze: array<Gaze, 4>,
+    gaze: array<Gaze, 16>,
 }
 
 // The key light stands above, in front and to the person's right.
