@@ -1,12 +1,16 @@
-// Which marker sits where: the list, the neutral head, a click.
+// Which marker sits where: the list, the neutral head, a click or keys.
 import { openStage, putClip } from "./stage-host.js";
 import { made } from "./stage-player.js";
 import { desk } from "./studio-desk.js";
-import { drawMap } from "./studio-overlay.js";
+import { drawMap, project } from "./studio-overlay.js";
 
 const $ = (id) => document.getElementById(id);
 const CLIP = "studio-neutral";
 const STEP = 0.12;
+/// How far a key moves a marker, CSS pixels, and how often it goes on until another vertex is met.
+const NUDGE = 3;
+const NUDGES = 20;
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Matching {
   #page;
@@ -26,10 +30,10 @@ export class Matching {
     });
     const overlay = $("match-overlay");
     overlay.tabIndex = 0;
-    overlay.setAttribute("aria-label", "Click where the chosen marker sits; arrow keys turn the head");
+    overlay.setAttribute("aria-label", "Click where the chosen marker sits, or Enter puts it in the middle and Shift with an arrow key moves it; arrow keys turn the head");
     overlay.setAttribute("role", "application");
     overlay.addEventListener("click", (event) => this.#click(event).catch(page.report));
-    overlay.addEventListener("keydown", (event) => this.#key_(event));
+    overlay.addEventListener("keydown", (event) => this.#keyed(event)?.catch(page.report));
     for (const id of ["neutral-first", "neutral-end"]) $(id).addEventListener("change", () => this.#neutral());
     addEventListener("resize", () => this.#turn(this.#view));
   }
@@ -67,7 +71,7 @@ export class Matching {
   }
 
   #place(label, vertex, head) {
-    desk("place", label, vertex ?? undefined, head)
+    return desk("place", label, vertex ?? undefined, head)
       .then((state) => (this.put(state), this.#page.mapChanged(state)))
       .catch(this.#page.report);
   }
@@ -109,21 +113,50 @@ export class Matching {
   }
 
   async #click(event) {
-    if (!this.#stage || this.#chosen === null) return;
-    const { left, top, width, height } = $("match-overlay").getBoundingClientRect();
-    const camera = this.#stage.camera(CLIP);
-    const [x, y] = [event.clientX - left, event.clientY - top];
-    const vertex = await desk("pick", camera, Math.round(width), Math.round(height), x, y);
-    if (vertex === undefined) return;
-    const { head } = this.#state.markers.find(({ label }) => label === this.#chosen);
-    this.#place(this.#chosen, vertex, head);
+    const { left, top } = $("match-overlay").getBoundingClientRect();
+    await this.#put([event.clientX - left, event.clientY - top], () => true);
   }
 
-  #key_(event) {
-    const turns = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] };
-    const turn = turns[event.key];
-    if (!turn) return;
+  /// Puts the chosen marker on the vertex under a place of the picture, if `wanted`; whether it did.
+  async #put([x, y], wanted) {
+    if (!this.#stage || this.#chosen === null) return false;
+    const { width, height } = $("match-overlay").getBoundingClientRect();
+    const label = this.#chosen;
+    const vertex = await desk("pick", this.#stage.camera(CLIP), Math.round(width), Math.round(height), x, y);
+    if (vertex === undefined || !wanted(vertex)) return false;
+    await this.#place(label, vertex, this.#marker(label).head);
+    return true;
+  }
+
+  #marker(label) {
+    return this.#state.markers.find((marker) => marker.label === label);
+  }
+
+  #keyed(event) {
+    const way = WAYS[event.key];
+    if (!way && event.key !== "Enter") return null;
     event.preventDefault();
-    this.#turn({ yaw: this.#view.yaw + turn[0], pitch: Math.min(1.2, Math.max(-1.2, this.#view.pitch + turn[1])) });
+    if (!way) return this.#middle();
+    if (event.shiftKey) return this.#nudge(way);
+    const pitch = Math.min(1.2, Math.max(-1.2, this.#view.pitch - way[1] * STEP));
+    this.#turn({ yaw: this.#view.yaw + way[0] * STEP, pitch });
+    return null;
+  }
+
+  async #middle() {
+    const { width, height } = $("match-overlay").getBoundingClientRect();
+    await this.#put([width / 2, height / 2], () => true);
+  }
+
+  /// Moves the chosen marker to the next vertex on the way.
+  async #nudge([right, down]) {
+    const { position, vertex } = (this.#stage && this.#chosen !== null && this.#marker(this.#chosen)) || {};
+    if (!position) return;
+    const { width, height } = $("match-overlay").getBoundingClientRect();
+    const [x, y] = project(this.#stage.camera(CLIP), position, width, height);
+    for (let step = 1; step <= NUDGES; step++) {
+      const at = [x + right * NUDGE * step, y + down * NUDGE * step];
+      if (await this.#put(at, (met) => met !== vertex)) return;
+    }
   }
 }

@@ -3,12 +3,13 @@
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { binary, root } from "./lib/server.mjs";
+import { binary, mimique, root } from "./lib/server.mjs";
 
 const require = createRequire(import.meta.url);
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -160,6 +161,119 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
   }
 });
 
+test("studio: by keyboard; loop, slow motion, and files dropped on the page", { skip: noBrowser, timeout: 600_000 }, async () => {
+  const server = await preview([]);
+  const browser = await open("webgl2");
+  const { page } = browser;
+  const value = (id) => page.locator(`#${id}`).evaluate((control) => Number(control.value));
+  const checked = (id) => page.locator(`#${id}`).isChecked();
+  const key = (name) => page.keyboard.press(name);
+  try {
+    await page.goto(`${server.url}?backend=webgl2`);
+    await page.click("#avatar-built-in");
+    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("51 shapes"));
+    await page.click("#take-built-in");
+    await fact(page, "A", "Residual");
+
+    // The keys of the page, with the focus on no control.
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.locator("#scrub").fill("5000");
+    await page.evaluate(() => document.activeElement?.blur());
+    await key(" ");
+    await page.waitForFunction(() => document.querySelector("#play").textContent === "Pause");
+    await page.waitForFunction(() => Number(document.querySelector("#scrub").value) > 5100);
+    await key(" ");
+    await page.waitForFunction(() => document.querySelector("#play").textContent === "Play");
+    const still = await value("scrub");
+    await key(".");
+    await key(".");
+    const later = await value("scrub");
+    assert.ok(later > still && later < still + 100, `${still} ms, two frames on ${later} ms`);
+    await key(",");
+    await key(",");
+    assert.ok(Math.abs((await value("scrub")) - still) <= 1, `${still} ms, there and back ${await value("scrub")} ms`);
+    for (const [name, id] of [["l", "loop"], ["m", "show-markers"]]) {
+      const before = await checked(id);
+      await key(name);
+      assert.equal(await checked(id), !before, `${name} turns ${id}`);
+      await key(name);
+      assert.equal(await checked(id), before, `${name} turns ${id} back`);
+    }
+    await key("v");
+    assert.equal(await page.locator("#view").inputValue(), "0.61,0");
+    await key("s");
+    assert.equal(await value("speed"), 0.5);
+
+    // Slow motion: the clip's time runs at half the wall's.
+    const [began, from] = [Date.now(), await value("scrub")];
+    await key(" ");
+    await page.waitForTimeout(4000);
+    await key(" ");
+    await page.waitForFunction(() => document.querySelector("#play").textContent === "Play");
+    const pace = ((await value("scrub")) - from) / (Date.now() - began);
+    assert.ok(pace > 0.3 && pace < 0.55, `${pace} of the wall's time`);
+    await page.selectOption("#speed", "1");
+    await page.evaluate(() => document.activeElement?.blur());
+
+    // The end: with the loop from the start again, without it there.
+    const end = await page.locator("#scrub").evaluate((scrub) => Number(scrub.max));
+    await page.locator("#scrub").fill(String(end - 200));
+    await page.evaluate(() => document.activeElement?.blur());
+    await key(" ");
+    await page.waitForFunction(() => Number(document.querySelector("#scrub").value) < 20_000, null, { timeout: 20_000 });
+    assert.equal(await page.locator("#play").textContent(), "Pause");
+    await key(" ");
+    await key("l");
+    await page.locator("#scrub").fill(String(end - 200));
+    await page.evaluate(() => document.activeElement?.blur());
+    await key(" ");
+    await page.waitForFunction(() => document.querySelector("#play").textContent === "Play", null, { timeout: 20_000 });
+    assert.ok((await value("scrub")) >= end - 1);
+
+    // A marker placed and moved by keys alone.
+    await unfold(page, "matching");
+    await page.waitForTimeout(3000);
+    const row = page.locator('#markers tr[data-label="chin"]');
+    const vertex = () => row.locator("td").nth(1).textContent();
+    await row.getByRole("button", { name: "Take chin off" }).focus();
+    await key("Enter");
+    await page.waitForFunction(() => document.querySelector('#markers tr[data-label="chin"] td.unplaced'));
+    await row.getByRole("button", { name: "chin", exact: true }).focus();
+    await key("Enter");
+    await page.locator("#match-overlay").focus();
+    await key("Enter");
+    await page.waitForFunction(() => !document.querySelector('#markers tr[data-label="chin"] td.unplaced'), null, { timeout: 30_000 });
+    const places = [await vertex()];
+    for (const way of ["ArrowDown", "ArrowRight"]) {
+      await key(`Shift+${way}`);
+      await page.waitForFunction((old) => document.querySelector('#markers tr[data-label="chin"]').cells[1].textContent !== old, places.at(-1), { timeout: 30_000 });
+      places.push(await vertex());
+    }
+    assert.equal(new Set(places).size, 3, places.join(", "));
+
+    // The weights that were saved, dropped on the page, are a take.
+    await unfold(page, "exports");
+    const weights = await download(page, () => page.click("#export-weights"));
+    const drop = (name, text) =>
+      page.evaluate(([name, text]) => {
+        const dataTransfer = new DataTransfer();
+        dataTransfer.items.add(new File([text], name));
+        const event = (type) => new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true });
+        document.body.dispatchEvent(event("dragover"));
+        document.body.dispatchEvent(event("drop"));
+      }, [name, text]);
+    await drop("dropped-weights.csv", String(weights));
+    await page.waitForFunction(() => document.querySelector("#take-facts").textContent.includes("dropped-weights"), null, { timeout: 60_000 });
+    assert.equal(await page.locator("#problem").isVisible(), false);
+    await drop("broken.glb", "no head");
+    await page.waitForFunction(() => document.querySelector("#problem").textContent.includes("broken.glb"));
+    assert.deepEqual(browser.errors, [], "the console is clean");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
+
 test("studio: a real capture is matched and solved; what is broken is said", { skip: noData, timeout: 600_000 }, async () => {
   const take = join(data, "animface/JawMoCap.c3d");
   const server = await preview([head, "--mocap", take, "--markers", join(data, "animface/markers-ict-facekit.json")]);
@@ -177,6 +291,13 @@ test("studio: a real capture is matched and solved; what is broken is said", { s
     await unfold(page, "matching");
     await page.waitForTimeout(6000);
     await page.screenshot({ path: join(shots, "real.png"), fullPage: true });
+    // The map that is saved is the one that `mimique solve` takes.
+    const folder = mkdtempSync(join(tmpdir(), "mimique-studio-"));
+    const [map, out] = [join(folder, "markers.json"), join(folder, "w.csv")];
+    writeFileSync(map, await download(page, () => page.click("#map-save")));
+    mimique(["solve", "--avatar", head, "--mocap", take, "--markers", map, "--method", "lsts", "--out", out]);
+    const [columns, ...frames] = readFileSync(out, "utf8").trim().split("\n");
+    assert.ok(columns.startsWith("frame,time,") && frames.length === 1590, `${frames.length} frames`);
     await page.setInputFiles("#take-file", { name: "take.c3d", mimeType: "application/octet-stream", buffer: Buffer.from("no capture") });
     await page.waitForFunction(() => document.querySelector("#problem").textContent.includes("take.c3d"));
     assert.deepEqual(browser.errors, [], "the console is clean");

@@ -541,3 +541,31 @@ fn marker_sites_name_the_same_places_on_everyone() {
         }
     }
 }
+
+#[test]
+fn the_docs_give_every_shape_its_unit_and_muscle() {
+    let table = include_str!("../src/facs.md");
+    let docs = include_str!("../../../docs/avatars.md");
+    assert!(docs.contains(table), "docs/avatars.md lacks the table of crates/face/src/facs.md");
+    let mut named: Vec<String> = Vec::new();
+    for row in table.lines().skip(2) {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let [names, unit, muscle] = cells[..] else { panic!("{row}") };
+        assert!(unit.starts_with("AU ") || unit.starts_with("AD "), "{row}");
+        assert!(!muscle.is_empty(), "{row}");
+        for name in names.split(", ") {
+            match (name.strip_suffix("Left/Right"), name.strip_suffix('*')) {
+                (Some(stem), _) => named.extend([format!("{stem}Left"), format!("{stem}Right")]),
+                (_, Some(stem)) => {
+                    let all = SHAPE_NAMES.iter().filter(|n| n.starts_with(stem));
+                    named.extend(all.map(|n| (*n).to_owned()));
+                }
+                _ => named.push(name.to_owned()),
+            }
+        }
+    }
+    named.sort_unstable();
+    let mut all = SHAPE_NAMES.map(str::to_owned);
+    all.sort_unstable();
+    assert_eq!(named, all);
+}

@@ -274,6 +274,37 @@ fn welding_keeps_touching_lips_apart() {
     assert_eq!(welded.mesh.shapes[0].vertices, [1]);
 }
 
+/// An exporter rounds the deltas of a seam's two sides each by itself.
+#[test]
+fn welding_closes_a_seam_whose_deltas_differ_in_the_last_bit() {
+    let next = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() + 1));
+    let mesh = |other: f64| SkinMesh {
+        positions: vec![
+            [0.0; 3],
+            [0.1, 0.0, 0.0],
+            [0.0, 0.2, 0.0],
+            [0.0; 3],
+            [0.1, 0.0, 0.0],
+            [0.0, -0.2, 0.0],
+        ],
+        triangles: vec![[0, 1, 2], [3, 5, 4]],
+        shapes: vec![
+            SparseDeltas { vertices: vec![1, 4], deltas: vec![[0.01, 0.0, 0.02], [0.01, 0.0, other]] },
+            // What one side rounds to nothing is no movement of the other.
+            SparseDeltas { vertices: vec![4], deltas: vec![[0.0, 1e-12, 0.0]] },
+        ],
+    };
+    let close = mesh(next(0.02)).weld().unwrap();
+    assert!(next(0.02) != 0.02 && (next(0.02) - 0.02).abs() < 1e-8);
+    assert_eq!(close.index_of, [0, 1, 2, 0, 1, 3]);
+    assert_eq!(close.mesh.triangles, [[0, 1, 2], [0, 3, 1]]);
+    // The first of the twins counts, with the bits that it has.
+    assert_eq!(close.mesh.shapes[0].deltas, [[0.01, 0.0, 0.02]]);
+    // A micrometre on 0.41 m is more than a millionth: such a seam is meant.
+    let open = mesh(0.02 + 1e-6).weld().unwrap();
+    assert_eq!(open.index_of, [0, 1, 2, 0, 3, 4]);
+}
+
 #[test]
 fn wrong_meshes_and_parts_are_refused_in_words() {
     let mut mesh = SkinMesh {

@@ -30,13 +30,11 @@ fn skins(avatar: &Avatar) -> impl Iterator<Item = &Mesh> {
 
 /// Middle of what the shapes called blink move on either side of the face.
 fn lids(avatar: &Avatar) -> Option<(Vec3, Vec3)> {
-    let blinks: Vec<usize> = (avatar.shape_names.iter().enumerate())
-        .filter(|(_, name)| name.to_lowercase().contains("blink"))
-        .map(|(shape, _)| shape)
-        .collect();
+    let blink = |name: &str| name.as_bytes().windows(5).any(|w| w.eq_ignore_ascii_case(b"blink"));
+    let blinks = || avatar.shape_names.iter().enumerate().filter(|(_, name)| blink(name));
     let mut moved: Vec<(Vec3, f32)> = Vec::new();
     for mesh in skins(avatar) {
-        for shape in blinks.iter().filter_map(|k| mesh.shapes.get(*k)) {
+        for shape in blinks().filter_map(|(k, _)| mesh.shapes.get(k)) {
             let way = |d: &[f32; 3]| Vec3::from(*d).length();
             let least = LID_TRAVEL * shape.deltas.iter().map(way).fold(0.0, f32::max);
             let all = shape.vertices.iter().zip(&shape.deltas).map(|(v, d)| (*v, way(d)));

@@ -8,7 +8,7 @@ use super::rng::Rng;
 pub struct Identity {
     /// 0 = female-typical, 1 = male-typical: brow ridge, jaw, neck, lips, brows.
     pub masculinity: f64,
-    /// 0 = about twenty, 1 = about seventy: sagging, thinner lips, deeper folds, greying hair.
+    /// 0 = about twenty, 1 = about seventy: sagging, thinner lips, greying hair.
     pub age: f64,
     /// Breadth of the face.
     pub face_width: f64,
