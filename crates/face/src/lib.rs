@@ -53,15 +53,13 @@ pub use texture::TextureError;
 #[cfg(feature = "parametric")]
 mod parametric_head;
 #[cfg(feature = "parametric")]
-pub use parametric_head::{
-    Density, HeadSpec, Identity, MarkerSites, build_head, marker_sites,
-};
-#[cfg(feature = "parametric")]
 /// The built-in head's shapes, and what each is of a face (`Left/Right` are two shapes):
 ///
 #[doc = include_str!("facs.md")]
 ///
 pub use parametric_head::SHAPE_NAMES;
+#[cfg(feature = "parametric")]
+pub use parametric_head::{Density, HeadSpec, Identity, MarkerSites, build_head, marker_sites};
 #[cfg(feature = "parametric")]
 mod performance;
 #[cfg(feature = "parametric")]

@@ -289,7 +289,10 @@ fn welding_closes_a_seam_whose_deltas_differ_in_the_last_bit() {
         ],
         triangles: vec![[0, 1, 2], [3, 5, 4]],
         shapes: vec![
-            SparseDeltas { vertices: vec![1, 4], deltas: vec![[0.01, 0.0, 0.02], [0.01, 0.0, other]] },
+            SparseDeltas {
+                vertices: vec![1, 4],
+                deltas: vec![[0.01, 0.0, 0.02], [0.01, 0.0, other]],
+            },
             // What one side rounds to nothing is no movement of the other.
             SparseDeltas { vertices: vec![4], deltas: vec![[0.0, 1e-12, 0.0]] },
         ],
