@@ -140,7 +140,7 @@ export const viewport = () => [innerWidth, innerHeight, devicePixelRatio];
 /** Status and text of an answer; throws where none has come whole in `patience` ms. */
 export async function request(method, address, type, body, patience) {
   const headers = type ? { "content-type": type } : {};
-  const answer = await fetch(address, { method, headers, body, signal: AbortSignal.timeout(patience) });
+  const answer = await fetch(address, { method, headers, body, signal: AbortSignal.timeout?.(patience) });
   return [answer.status, await answer.text()];
 }
 
