@@ -32,7 +32,7 @@ const BUDGETS: [Budget; 4] = [
             "app.js",
             "app_bg.wasm",
         ],
-        // It weighs 148.9; the paths of the sources, which depend on the machine, are part of it.
+        // It weighs 149.9.
         kilobytes: 150.0,
         target: 150.0,
     },
@@ -57,7 +57,7 @@ const BUDGETS: [Budget; 4] = [
     Budget {
         name: "the WebGPU canvas",
         files: &["stage_webgpu.js", "stage_webgpu_bg.wasm"],
-        kilobytes: 122.0,
+        kilobytes: 123.0,
         target: 50.0,
     },
     Budget {

@@ -16,6 +16,7 @@ mod tally;
 mod test;
 mod wasm_names;
 mod wasm_order;
+mod wasm_paths;
 mod web;
 
 use clap::{Parser, Subcommand};

@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
 use crate::process::{cargo, locked, root, run as run_program, say, target};
-use crate::{wasm_names, wasm_order};
+use crate::{wasm_names, wasm_order, wasm_paths};
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
@@ -212,7 +212,7 @@ impl Module {
                 run_program(command.arg(&wasm).arg("-o").arg(&wasm))
             };
             wasm_opt(&[&[self.opt_level], &WASM_OPT[..]].concat())?;
-            fs::write(&wasm, wasm_order::named_by_place(&fs::read(&wasm)?)?)?;
+            fs::write(&wasm, wasm_order::named_by_place(&wasm_paths::dotted(&fs::read(&wasm)?))?)?;
             wasm_opt(&["--reorder-functions-by-name"])?;
         }
         fs::write(&stamp, mark)?;
@@ -229,6 +229,7 @@ impl Module {
         FEATURES.iter().chain(&WASM_OPT).for_each(|option| hash.update(option));
         hash.update(include_bytes!("wasm_order.rs"));
         hash.update(include_bytes!("wasm_names.rs"));
+        hash.update(include_bytes!("wasm_paths.rs"));
         Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
     }
 }

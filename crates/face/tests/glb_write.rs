@@ -22,6 +22,14 @@ fn the_head_comes_back_with_its_shapes() {
             assert_eq!(a.positions, b.positions, "{}", a.name);
             assert_eq!(a.triangles, b.triangles, "{}", a.name);
         }
+        // Hair and skin keep what is painted on them.
+        if a.vertex_colours.is_empty() {
+            assert_eq!(a.base_colour, b.base_colour, "{}", a.name);
+        }
+        assert_eq!(a.vertex_colours.len(), b.vertex_colours.len(), "{}", a.name);
+        for (x, y) in a.vertex_colours.iter().zip(&b.vertex_colours) {
+            assert_eq!(x.map(|c| c.clamp(0.0, 1.0)), *y, "{}", a.name);
+        }
         for (name, (x, y)) in head.shape_names.iter().zip(a.shapes.iter().zip(&b.shapes)) {
             assert_eq!(x, y, "{} {name}", a.name);
         }

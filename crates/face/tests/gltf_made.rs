@@ -93,6 +93,43 @@ fn dense_and_sparse_shapes_colours_and_names_are_read() {
 }
 
 #[test]
+fn colours_of_vertices_are_multiplied_with_the_materials() {
+    let (mut document, mut binary) = triangle();
+    let at = binary.len();
+    binary.resize(at.next_multiple_of(4), 0);
+    let at = binary.len();
+    binary.extend([255u8, 0, 0, 255, 0, 255, 0, 9, 51, 51, 51, 0]);
+    document["buffers"][0]["byteLength"] = json!(binary.len());
+    let views = document["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": at, "byteLength": 12}));
+    let view = views.len() - 1;
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": view, "componentType": 5121, "normalized": true,
+        "count": 3, "type": "VEC4"}));
+    let accessor = accessors.len() - 1;
+    let primitive = &mut document["meshes"][0]["primitives"][0];
+    primitive["attributes"]["COLOR_0"] = json!(accessor);
+    let colours = |document: &Value| {
+        let read = read_gltf(&glb(document, &binary), "test", None).unwrap();
+        read.avatar.meshes[0].vertex_colours.clone()
+    };
+    let near = |found: Vec<[f32; 3]>, expected: [[f32; 3]; 3]| {
+        let all = found.as_flattened().iter().zip(expected.as_flattened());
+        assert!(
+            found.len() == 3 && all.into_iter().all(|(a, b)| (a - b).abs() < 1e-6),
+            "{found:?}"
+        );
+    };
+    near(colours(&document), [[0.5, 0.0, 0.0], [0.0, 0.25, 0.0], [0.1, 0.05, 0.025]]);
+    // Without a material they stand for themselves.
+    document["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("material");
+    near(colours(&document), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2; 3]]);
+    document["accessors"][accessor]["count"] = json!(2);
+    let error = refusal(&document, &binary);
+    assert!(error.contains("COLOR_0") && error.contains("2 colours of 3"), "{error}");
+}
+
+#[test]
 fn a_plain_gltf_with_its_buffer_inside_is_read() {
     use base64::Engine as _;
     let (mut document, binary) = triangle();

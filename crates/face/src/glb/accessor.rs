@@ -92,6 +92,14 @@ impl Container {
         Ok(out)
     }
 
+    /// How many numbers each element has; nothing where the accessor does not exist or does not say.
+    pub fn components(&self, index: Index<Accessor>) -> Option<usize> {
+        match self.root.accessors.get(index.value())?.type_ {
+            Checked::Valid(kind) => Some(kind.multiplicity()),
+            Checked::Invalid => None,
+        }
+    }
+
     /// Unsigned integers of a scalar accessor (triangle indices).
     pub fn indices(&self, index: Index<Accessor>, place: &str) -> Result<Vec<u32>, ReadError> {
         let accessor = self.accessor(index, 1, place)?;

@@ -166,6 +166,7 @@ fn joined(
             positions: surface.positions,
             triangles: surface.triangles,
             base_colour: surface.base_colour,
+            vertex_colours: surface.colours,
             shapes,
             ..Mesh::default()
         };

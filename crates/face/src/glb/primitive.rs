@@ -22,6 +22,8 @@ pub(super) struct Surface {
     pub positions: Vec<[f32; 3]>,
     pub triangles: Vec<[u32; 3]>,
     pub base_colour: [f32; 3],
+    /// A colour a vertex, linear, the base colour in it; none where the file has none.
+    pub colours: Vec<[f32; 3]>,
     /// Whether it is placed inside out, so that its triangles are turned.
     pub mirrored: bool,
     /// As many as `shapes`.
@@ -117,6 +119,13 @@ pub(super) fn surfaces(
         let triangles = triangles(container, primitive, local.len(), mirrored, &place)?;
         budget.take(3 * triangles.len(), &place)?;
         let paint = Paint::of(container, primitive, material, local.len(), &place)?;
+        let base_colour = material.map_or(NO_MATERIAL, |m| {
+            let [r, g, b, _] = m.pbr_metallic_roughness.base_color_factor.0;
+            [r, g, b].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
+        });
+        // Colours stand for themselves where there is no material.
+        let factor = if material.is_some() { base_colour } else { [1.0; 3] };
+        let colours = colours(container, primitive, local.len(), factor, budget, &place)?;
         by_vertices.insert(key, out.len());
         out.push(Surface {
             node,
@@ -127,15 +136,42 @@ pub(super) fn surfaces(
             mirrored,
             paint,
             triangles,
-            base_colour: material.map_or(NO_MATERIAL, |m| {
-                let [r, g, b, _] = m.pbr_metallic_roughness.base_color_factor.0;
-                [r, g, b].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
-            }),
+            base_colour,
+            colours,
             shape_names: shape_names[..shapes.len()].to_vec(),
             shapes,
         });
     }
     Ok(out)
+}
+
+/// `COLOR_0` times the material's colour, each from 0 to 1; its alpha is not read.
+fn colours(
+    container: &Container,
+    primitive: &Primitive,
+    count: usize,
+    factor: [f32; 3],
+    budget: &mut Budget,
+    place: &str,
+) -> Result<Vec<[f32; 3]>, ReadError> {
+    let Some(accessor) = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) else {
+        return Ok(Vec::new());
+    };
+    let place = format!("{place}.attributes.COLOR_0");
+    budget.take(3 * count, &place)?;
+    let colours: Vec<[f32; 3]> = match container.components(*accessor) {
+        Some(4) => {
+            let four = container.floats::<4>(*accessor, &place)?;
+            four.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()
+        }
+        _ => container.floats::<3>(*accessor, &place)?,
+    };
+    if colours.len() != count {
+        let what = format!("{} colours of {count} vertices", colours.len());
+        return Err(ReadError::damaged(place, what));
+    }
+    let of = |colour: [f32; 3]| [0, 1, 2].map(|c| colour[c].clamp(0.0, 1.0) * factor[c]);
+    Ok(colours.into_iter().map(of).collect())
 }
 
 /// The names of a mesh's morph targets: `extras.targetNames`, or `shape_0`, `shape_1`...

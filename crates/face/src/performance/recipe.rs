@@ -70,7 +70,7 @@ impl Emotion {
                 ("noseSneer", 1.0),
                 ("mouthUpperUp", 0.45),
                 ("mouthFrown", 0.80),
-                ("mouthLowerDown", 0.10),
+                ("mouthLowerDown", 0.18),
                 ("mouthShrugLower", 0.75),
                 ("browDown", 0.15),
                 ("eyeSquint", 1.0),
