@@ -55,7 +55,7 @@ fn middle_plane(mesh: &Mesh) -> Option<f32> {
     }
     let wider = (widest.start - all.start).max(all.end - widest.end);
     let parted = widest.end - widest.start > LEAST_GAP * wider && wider > 0.0;
-    parted.then(|| 0.5 * (widest.start + widest.end))
+    parted.then_some(0.5 * (widest.start + widest.end))
 }
 
 /// From where to where each piece of the mesh reaches in x. Vertices in one place hang together, as
