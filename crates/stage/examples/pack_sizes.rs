@@ -144,7 +144,7 @@ fn study(file: &str, folder: &Path) -> Result<(Study, Places)> {
         "components": {}, "sequence": {"order": "fixed", "components": []},
         "stimuli": {
             "avatars": {"ict": {"file": data.join("ict-facekit/ict-facekit.glb")}},
-            "captures": {"take": {"file": data.join("lsts/take_n01.csv"), "markers": folder.join("map.json")}},
+            "captures": {"take": {"file": data.join("lsts/take_n01.csv"), "markers": folder.join("map.json"), "rateHz": 60.0}},
             "segments": segments,
             "methods": {"lsts30": lsts(0.3), "lsts50": lsts(0.5), "lsts70": lsts(0.7)},
         },
