@@ -49,7 +49,8 @@ test(`nothing lost: ${sessions} sessions over a bad network`, { skip: unable, ti
           if (here.view === "end") break;
           if (here.view === "receipt" || here.view === "opening") {
             proxy.calm();
-            await page.waitForTimeout(300);
+            // A request that was swallowed before is given up only after the page's patience.
+            await page.waitForFunction((view) => document.querySelector("main[data-view]")?.dataset.view !== view, here.view, { timeout: 200_000 });
             continue;
           }
           if (here.view === "failure") {
