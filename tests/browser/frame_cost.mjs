@@ -4,25 +4,14 @@
 //
 //   node frame_cost.mjs [frames]          (MIMIQUE_DATA for ICT-FaceKit, else the built-in head alone)
 
-import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { open } from "./lib/browser.mjs";
-import { binary, root } from "./lib/server.mjs";
+import { preview, root } from "./lib/server.mjs";
 
 const frames = Number(process.argv[2] ?? 300);
 const ict = join(process.env.MIMIQUE_DATA ?? join(root, "../shared/data"), "ict-facekit/ict-facekit.glb");
 const heads = [["built-in head", []], ...(existsSync(ict) ? [["ICT-FaceKit", [ict]]] : [])];
-
-async function preview(args) {
-  const web = process.env.MIMIQUE_WEB_DIR ? ["--web-dir", process.env.MIMIQUE_WEB_DIR] : [];
-  const child = spawn(binary, ["preview", ...args, "--listen", "127.0.0.1:0", "--json", ...web], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
-  const line = await new Promise((resolve, reject) => {
-    child.stdout.once("data", (text) => resolve(String(text)));
-    child.once("exit", (code) => reject(new Error(`mimique preview ended (${code})`)));
-  });
-  return { url: JSON.parse(line).url, stop: () => child.kill("SIGTERM") };
-}
 
 // In the page: the canvas module by itself, on a canvas of its own, with the head that the desk has.
 async function measure(frames) {
@@ -68,7 +57,7 @@ for (const backend of ["webgl2", "webgpu"]) {
       console.log(`${backend}, ${name} (${shapes} shapes): call to draw ${at(0.5)} ms median, ${mean} ms mean, ${at(0.95)} ms at 95 %; ${rate.toFixed(1)} frames a second at 1280 x 720 on ${adapter || "a software adapter"}`);
     } finally {
       await browser.close();
-      server.stop();
+      await server.stop();
     }
   }
 }

@@ -2,14 +2,13 @@
 // preview` was given; markers, methods, curves, expressions, exports; wide, narrow, dark.
 
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { binary, mimique, root } from "./lib/server.mjs";
+import { mimique, preview, root } from "./lib/server.mjs";
 
 const require = createRequire(import.meta.url);
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -17,18 +16,6 @@ const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
 const head = join(data, "ict-facekit/ict-facekit.glb");
 const noBrowser = skip(!executable && "Chromium not found");
 const noData = noBrowser || skip(!existsSync(head) && `real data not found: ${head}`);
-
-/** A running `mimique preview`: `{url, stop()}`. */
-async function preview(args) {
-  const web = process.env.MIMIQUE_WEB_DIR ? ["--web-dir", process.env.MIMIQUE_WEB_DIR] : [];
-  const child = spawn(binary, ["preview", ...args, "--listen", "127.0.0.1:0", "--json", ...web], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
-  const line = await new Promise((resolve, reject) => {
-    child.stdout.once("data", (text) => resolve(String(text)));
-    child.once("exit", (code) => reject(new Error(`mimique preview ended (${code})`)));
-  });
-  const ended = new Promise((resolve) => child.once("exit", resolve));
-  return { url: JSON.parse(line).url, stop: async () => (child.kill("SIGTERM"), ended) };
-}
 
 /** The number in a fact of a panel, such as its residual. */
 async function fact(page, panel, name) {

@@ -1,4 +1,4 @@
-// Starts `mimique serve` on a free port of the loopback interface, with its data in a new folder.
+// Starts `mimique serve` and `mimique preview` on the loopback interface, the server with its data in a new folder.
 
 import { spawn, execFileSync } from "node:child_process";
 import { mkdtempSync } from "node:fs";
@@ -78,4 +78,16 @@ function freePort() {
       probe.close(() => done(port));
     });
   });
+}
+
+/** A running `mimique preview`: `{url, stop()}`. */
+export async function preview(args) {
+  const web = process.env.MIMIQUE_WEB_DIR ? ["--web-dir", process.env.MIMIQUE_WEB_DIR] : [];
+  const child = spawn(binary, ["preview", ...args, "--listen", "127.0.0.1:0", "--json", ...web], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
+  const line = await new Promise((resolve, reject) => {
+    child.stdout.once("data", (text) => resolve(String(text)));
+    child.once("exit", (code) => reject(new Error(`mimique preview ended (${code})`)));
+  });
+  const ended = new Promise((resolve) => child.once("exit", resolve));
+  return { url: JSON.parse(line).url, stop: async () => (child.kill("SIGTERM"), ended) };
 }
