@@ -31,9 +31,9 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static HEAP: Counting = Counting;
 
-/// Frames drawn, and bytes by which the heap may grow meanwhile: less than 1 byte a frame.
-const FRAMES: usize = 1_000;
-const MOST_GROWTH: isize = 999;
+/// Frames drawn in one go. Each number doubles all frames before it, so that a list that grows by
+/// something a frame must grow in each of them, even one that doubles its room.
+const FRAMES: [usize; 4] = [100, 200, 400, 800];
 
 #[test]
 fn a_thousand_frames_leave_nothing_behind() {
@@ -76,9 +76,18 @@ fn a_thousand_frames_leave_nothing_behind() {
         (kept, IN_USE.load(Ordering::Relaxed))
     };
     // Pools of the first frames grow to their size.
-    let (kept, in_use) = frames(100);
-    let (kept_after, in_use_after) = frames(FRAMES);
-    assert_eq!(kept_after, kept, "buffers, textures, views, groups");
-    let growth = in_use_after - in_use;
-    assert!(growth <= MOST_GROWTH, "{growth} bytes more after {FRAMES} frames");
+    let (kept, mut in_use) = frames(100);
+    let growth = FRAMES.map(|count| {
+        let (kept_after, in_use_after) = frames(count);
+        assert_eq!(kept_after, kept, "buffers, textures, views, groups");
+        let growth = in_use_after - in_use;
+        in_use = in_use_after;
+        growth
+    });
+    // What a frame leaves behind is there after every number of frames. A pool may still grow once,
+    // when the driver is late and a second encoder is needed.
+    assert!(
+        growth.iter().zip(FRAMES).any(|(&bytes, count)| bytes < count as isize),
+        "bytes more after each of {FRAMES:?} frames: {growth:?}"
+    );
 }
