@@ -89,10 +89,12 @@ export async function prepareClip(clip, source, progress) {
 // The two places where clips are shown: "clip", and "beside" it.
 const places = new Map();
 
-/** Puts a stage on the canvas of a place; it opens when a clip is first shown there. */
+/** Puts a stage on the canvas of a place; it opens while the clip is loaded. Should it fail, it is opened
+    again, and says why, when a clip is shown. */
 export function attachStage(place, canvas, look) {
   detachStage(place);
   places.set(place, { canvas, look: JSON.parse(look), opening: null });
+  stage(place).catch(() => {});
 }
 
 /** Takes the stage off a place's canvas. */

@@ -100,12 +100,12 @@ async function prepare(clipId, source, onProgress) {
     const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
     return { clip: clipId, film, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
   }
-  // The solver comes beside the packs, the canvas after them while the solver works.
+  // The solver and the canvas come beside the packs.
   worker ??= startWorker();
+  loadAhead();
   const [avatar, operators, take] = await Promise.all(
     [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count)),
   );
-  loadAhead();
   report(0.9);
   const [solved, pictures] = await Promise.all([
     solve(operators, take, source.method),

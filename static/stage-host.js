@@ -15,9 +15,9 @@ export { backend, prepareClip, preparedClip, putClip };
 /// "stimulus" (or left out) | "reference"}; a clip's own look goes before the variant.
 export async function openStage(canvas, look) {
   const stage = new Stage(canvas, look);
-  await stage.reopen();
-  // Measured while nothing is drawn, so that plays know when a frame is late.
-  await refreshPeriod();
+  // Measured before anything is drawn, so that plays know when a frame is late. Opening blocks a frame
+  // or two of the 24, which their median does not see.
+  await Promise.all([stage.reopen(), refreshPeriod()]);
   return stage;
 }
 
@@ -124,7 +124,10 @@ class Stage {
     if (clip.film) return;
     if (this.#lost !== null) await this.reopen();
     this.#fit();
-    this.#load(clip);
+    if (this.#gpu.hasAvatar(clip.avatarHash)) return;
+    // The first frame of a head takes longest. It is drawn before the play, like the one that is shown
+    // while a play is waited for.
+    while (!this.#draw(clip, 0)) await new Promise(requestAnimationFrame);
   }
 
   /// Aborts the play in progress.

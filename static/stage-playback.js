@@ -2,8 +2,9 @@
 //
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
-// refresh periods after the one before. Where one of the two is a film, the film sets the time; of a
-// film alone the log has its own frames.
+// refresh periods after the one before. The first is one that the display began after the play: on a page
+// that was busy, the frame that it is told of may have begun long before. Where one of the two is a film,
+// the film sets the time; of a film alone the log has its own frames.
 import { refreshPeriod } from "./stage-clock.js";
 
 const LATE = 1.5;
@@ -98,6 +99,7 @@ export class Playback {
   }
 
   #loop(durationMs, resolve) {
+    const began = performance.now();
     let request = 0;
     this.#finish = () => {
       cancelAnimationFrame(request);
@@ -106,7 +108,8 @@ export class Playback {
     const tick = (now) => {
       if (this.#aborted !== null) return;
       const frames = this.#frames;
-      const time = this.#clock ? this.#clock.at(now) : frames.length === 0 ? 0 : now - frames[0][0];
+      const sinceOnset = () => (frames.length > 0 ? now - frames[0][0] : now < began ? null : 0);
+      const time = this.#clock ? this.#clock.at(now) : sinceOnset();
       if (time === null) {
         request = requestAnimationFrame(tick);
         return;

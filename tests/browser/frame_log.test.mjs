@@ -7,6 +7,8 @@ import { beforeEach, test } from "node:test";
 
 let asked = [];
 let hidden;
+let clock = 0;
+globalThis.performance = { now: () => clock };
 globalThis.requestAnimationFrame = (call) => asked.push(call);
 globalThis.cancelAnimationFrame = () => (asked = []);
 globalThis.document = {
@@ -22,6 +24,7 @@ const settle = () => new Promise(setImmediate);
 
 /** The display begins a frame. */
 async function frame(now) {
+  clock = now;
   const calls = asked;
   asked = [];
   for (const call of calls) call(now);
@@ -36,6 +39,7 @@ beforeEach(async () => {
   const period = refreshPeriod(true);
   for (let i = 0; i <= 24; i++) await frame((now += i % 9 === 4 ? 60 : 20));
   assert.equal(await period, 20);
+  clock = 0;
 });
 
 /** Plays `durationMs` by frames at these times; the clip times drawn and the log. */
@@ -69,6 +73,16 @@ test("frame log: the onset is the first frame that the display was given", async
   assert.equal(log.onset_ms, 140);
   assert.deepEqual(drawn, [0, 0, 0, 20, 40, 60]);
   assert.deepEqual(log.frames, [[140, 0, 0], [180, 40, 1], [200, 60, 0]]);
+});
+
+test("frame log: a frame that the display began before the play is not the onset", async () => {
+  const play = new Playback([{ draw: () => true }]);
+  clock = 500;
+  const log = play.run(40);
+  await settle();
+  // The page was busy while the display began these.
+  for (const time of [100, 499, 510, 530, 550]) await frame(time);
+  assert.deepEqual((await log).frames, [[510, 0, 0], [530, 20, 0], [550, 40, 0]]);
 });
 
 test("frame log: a hidden page ends the play, and what was shown stays", async () => {

@@ -26,7 +26,7 @@ const server = await serve([join(folder, "speed.json")]);
 // When each view or phase first stood there; and a participant who presses at once.
 const watcher = () => {
   window.__seen = {};
-  // A frame of the clip that goes to the display after "play" was pressed.
+  // The first command to the graphics driver after "play" was pressed: all has arrived, is solved and loaded.
   const drawing = (prototype, names) => {
     for (const name of names) {
       const draw = prototype?.[name];
@@ -77,11 +77,19 @@ for (const backend of ["webgl2", "webgpu"]) {
       await cdp.send("Network.emulateNetworkConditions", { offline: false, latency: 40, downloadThroughput: 1.25e6, uploadThroughput: 1.25e6 });
       await cdp.send("Emulation.setCPUThrottlingRate", { rate: 4 });
       await page.addInitScript(watcher);
+      // The page's own log says when the first frame of the play was presented.
+      const onset = new Promise((logged) => {
+        page.on("request", (request) => {
+          const found = /"onset_ms":([0-9.]+)/.exec(request.postData() ?? "");
+          if (found && Number(found[1]) > 0) logged(Number(found[1]));
+        });
+      });
       await page.goto(`${server.url}/s/speed/?backend=${backend}`);
       await page.waitForFunction(() => window.__seen?.drawn > 0, undefined, { timeout: 120_000 });
+      const shown = (await onset) - (await page.evaluate(() => performance.timeOrigin));
       const seen = await page.evaluate(() => window.__seen);
       const bytes = await page.evaluate(() => performance.getEntriesByType("resource").reduce((sum, each) => sum + each.transferSize, 0));
-      results.push({ backend, consent: seen.consent, question: seen.questions, ready: seen["trial ready"], playing: seen.drawn, bytes });
+      results.push({ backend, consent: seen.consent, question: seen.questions, ready: seen["trial ready"], drawn: seen.drawn, shown, bytes });
     } finally {
       await browser.close();
     }
@@ -92,5 +100,5 @@ const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 for (const backend of ["webgl2", "webgpu"]) {
   const of = (key) => results.filter((each) => each.backend === backend).map((each) => each[key]);
   const seconds = (key) => (median(of(key)) / 1000).toFixed(2);
-  console.log(`${backend}: first page ${seconds("consent")} s, first question ${seconds("question")} s, clip ready ${seconds("ready")} s, first frame of the clip ${seconds("playing")} s; ${(median(of("bytes")) / 1e6).toFixed(2)} MB (median of ${times})`);
+  console.log(`${backend}: first page ${seconds("consent")} s, first question ${seconds("question")} s, clip ready ${seconds("ready")} s, first drawing command ${seconds("drawn")} s, first frame of the play shown ${seconds("shown")} s; ${(median(of("bytes")) / 1e6).toFixed(2)} MB (median of ${times})`);
 }
