@@ -8,6 +8,8 @@
 import { refreshPeriod } from "./stage-clock.js";
 
 const LATE = 1.5;
+// So long an adapter that is busy at the end may take for the last frame.
+const LAST_FRAME_MS = 500;
 
 export class Playback {
   #parts;
@@ -115,8 +117,9 @@ export class Playback {
         return;
       }
       const clipMs = Math.min(time, durationMs);
+      let shown;
       try {
-        const shown = this.#show(clipMs);
+        shown = this.#show(clipMs);
         if (shown !== null) {
           const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
           frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
@@ -126,7 +129,9 @@ export class Playback {
         this.abort(`renderer lost: ${this.#failure}`);
         return;
       }
-      if (clipMs >= durationMs && frames.length > 0) {
+      // A film has no frame for the end.
+      const ended = shown !== null || this.#clock || time >= durationMs + LAST_FRAME_MS;
+      if (clipMs >= durationMs && frames.length > 0 && ended) {
         this.#endMs = now;
         resolve();
         return;

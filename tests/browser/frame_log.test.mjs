@@ -44,6 +44,7 @@ beforeEach(async () => {
 
 /** Plays `durationMs` by frames at these times; the clip times drawn and the log. */
 async function played(times, durationMs, draw = () => true) {
+  clock = 0;
   const drawn = [];
   const play = new Playback([{ draw: (ms) => (drawn.push(ms), draw(drawn.length)) }]);
   const log = play.run(durationMs);
@@ -83,6 +84,15 @@ test("frame log: a frame that the display began before the play is not the onset
   // The page was busy while the display began these.
   for (const time of [100, 499, 510, 530, 550]) await frame(time);
   assert.deepEqual((await log).frames, [[510, 0, 0], [530, 20, 0], [550, 40, 0]]);
+});
+
+test("frame log: a busy adapter gets the last frame later, but is not waited for long", async () => {
+  const later = await played([0, 20, 40, 60, 80], 40, (count) => ![3, 4].includes(count));
+  assert.deepEqual(later.drawn, [0, 20, 40, 40, 40]);
+  assert.deepEqual(later.log.frames, [[0, 0, 0], [20, 20, 0], [80, 40, 1]]);
+  assert.equal(later.log.end_ms, 80);
+  const never = await played([0, 20, 40, 539, 540], 40, (count) => count < 3);
+  assert.deepEqual([never.log.frames.length, never.log.end_ms], [2, 540]);
 });
 
 test("frame log: a hidden page ends the play, and what was shown stays", async () => {
