@@ -81,16 +81,15 @@ impl Geometry {
         }
         let mut out = Self { shape_count, ..Self::default() };
         let eye_of_mesh = out.measure_eyes(avatar)?;
-        // Shading shells over the eye belong to other renderers; this one shades the eye itself.
-        let mut order: Vec<usize> = (0..avatar.meshes.len())
-            .filter(|&m| avatar.meshes[m].part != Part::EyeOverlay)
-            .collect();
-        // Closed surfaces first and the skin first of all: it hides most of what follows.
-        order.sort_unstable_by_key(|&m| {
-            (layer(avatar.meshes[m].part), avatar.meshes[m].part != Part::Skin, m)
-        });
-        for m in order {
-            out.add_mesh(avatar, &avatar.meshes[m], eye_of_mesh[m], landmarks)?;
+        // Closed surfaces first and the skin first of all: it hides most of what follows. Shading shells
+        // over the eye belong to other renderers; this one shades the eye itself.
+        let turn = |part: Part| 2 * layer(part) as usize + usize::from(part != Part::Skin);
+        for now in 0..=turn(Part::Lashes) {
+            for (mesh, &eye) in avatar.meshes.iter().zip(&eye_of_mesh) {
+                if mesh.part != Part::EyeOverlay && turn(mesh.part) == now {
+                    out.add_mesh(avatar, mesh, eye, landmarks)?;
+                }
+            }
         }
         if out.indices.is_empty() {
             return Err(StageError::NothingToDraw);
@@ -336,12 +335,15 @@ fn weld(mesh: &Mesh, starts: &[u32], entries: &[[f32; 4]]) -> Vec<u32> {
 }
 
 fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye {
-    let mut distances: Vec<f32> =
-        mesh.positions.iter().map(|&p| (Vec3::from(p) - centre).length()).collect();
-    distances.sort_unstable_by(f32::total_cmp);
-    let radius = distances[distances.len() / 2].max(1e-5);
+    // Lengths have the order of their bits.
+    let mut lengths: Vec<u64> = (mesh.positions.iter())
+        .map(|&p| (Vec3::from(p) - centre).length().to_bits().into())
+        .collect();
+    lengths.sort_unstable();
+    let length = |rank: usize| f32::from_bits(lengths[rank] as u32);
+    let radius = length(lengths.len() / 2).max(1e-5);
     // A cornea bulges: the pupil looks towards the mean of the farthest points. A plain ball looks ahead.
-    let far = distances[distances.len() - 1 - distances.len() / 50];
+    let far = length(lengths.len() - 1 - lengths.len() / 50);
     let bulge: Vec3 = (mesh.positions.iter().map(|&p| Vec3::from(p) - centre))
         .filter(|d| d.length() >= far)
         .fold(Vec3::ZERO, |sum, d| sum + d.normalize_or_zero());

@@ -8,6 +8,13 @@ use wgpu::{
 
 use crate::geometry::Layer;
 
+/// The text of a shader of `shaders`, bare of comments (`build.rs`).
+macro_rules! bare {
+    ($name:literal) => {
+        include_str!(concat!(env!("OUT_DIR"), "/", $name))
+    };
+}
+
 /// Samples a pixel.
 pub(crate) const SAMPLES: u32 = 4;
 /// Depth of the picture and of the key light's view.
@@ -48,11 +55,11 @@ impl Pipelines {
     /// For pictures of the given colour format.
     pub fn new(device: &Device, format: TextureFormat) -> Self {
         let module = |label, source| shader(device, label, source);
-        let deform_module = module("deform.wgsl", include_str!("shaders/deform.wgsl"));
-        let surface_module = module("surface.wgsl", include_str!("shaders/surface.wgsl"));
-        let soften_module = module("soften.wgsl", include_str!("shaders/soften.wgsl"));
-        let occlusion_module = module("occlusion.wgsl", include_str!("shaders/occlusion.wgsl"));
-        let shade_module = module("shade.wgsl", include_str!("shaders/shade.wgsl"));
+        let deform_module = module("deform.wgsl", bare!("deform.wgsl"));
+        let surface_module = module("surface.wgsl", bare!("surface.wgsl"));
+        let soften_module = module("soften.wgsl", bare!("soften.wgsl"));
+        let occlusion_module = module("occlusion.wgsl", bare!("occlusion.wgsl"));
+        let shade_module = module("shade.wgsl", bare!("shade.wgsl"));
 
         let (float, integer) =
             (TextureSampleType::Float { filterable: false }, TextureSampleType::Uint);
@@ -179,13 +186,13 @@ pub(crate) fn encode_pass(
     group: &BindGroupLayout,
     format: TextureFormat,
 ) -> RenderPipeline {
-    let module = shader(device, "encode.wgsl", include_str!("shaders/encode.wgsl"));
+    let module = shader(device, "encode.wgsl", bare!("encode.wgsl"));
     table_pass(device, &module, group, ["cover_picture", "encode"], &format.into())
 }
 
 /// A shader module, with the shared declarations before it.
 fn shader(device: &Device, label: &str, source: &str) -> ShaderModule {
-    let scene = include_str!("shaders/scene.wgsl");
+    let scene = bare!("scene.wgsl");
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl([scene, source].concat().into()),

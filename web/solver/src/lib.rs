@@ -14,6 +14,10 @@ use mimique_stimulus::{FrameStatistics, SolvedTake, solve_packs};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
+#[cfg(target_arch = "wasm32")]
+#[global_allocator]
+static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+
 /// The weights of one clip.
 #[wasm_bindgen]
 #[derive(Debug)]

@@ -4,7 +4,6 @@
 //! answers; `static/stage-host.js` drives it.
 #![cfg(target_arch = "wasm32")]
 
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,6 +14,9 @@ use mimique_stage::{Head, Look, Renderer, View};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 use wgpu::CurrentSurfaceTexture as Frame;
+
+#[global_allocator]
+static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
 
 /// Why the canvas shows nothing any more, written by the browser's callbacks.
 type Lost = Arc<Mutex<Option<String>>>;
@@ -27,7 +29,8 @@ pub struct Canvas {
     device: wgpu::Device,
     queue: wgpu::Queue,
     renderer: Renderer,
-    heads: HashMap<String, Head>,
+    /// A few at most, by their keys.
+    heads: Vec<(String, Head)>,
     adapter: String,
     lost: Lost,
     /// Frames given to the graphics adapter that it has not finished.
@@ -101,7 +104,7 @@ impl Canvas {
             device,
             queue,
             renderer,
-            heads: HashMap::new(),
+            heads: Vec::new(),
             adapter: info.name,
             lost,
             in_flight: Arc::default(),
@@ -134,14 +137,15 @@ impl Canvas {
         let pictures = pictures.collect::<Result<_, JsError>>()?;
         let head = self.renderer.load_with(&avatar, pictures).map_err(error)?;
         let count = head.shape_count();
-        self.heads.insert(key, head);
+        self.drop_avatar(&key);
+        self.heads.push((key, head));
         Ok(count)
     }
 
     /// Whether a head is kept under `key`.
     #[wasm_bindgen(js_name = hasAvatar)]
     pub fn has_avatar(&self, key: &str) -> bool {
-        self.heads.contains_key(key)
+        self.heads.iter().any(|(own, _)| own == key)
     }
 
     /// Draws one frame of the head under `key`; `yaw` and `pitch` in radians, `zoom` 1 for the
@@ -161,8 +165,7 @@ impl Canvas {
         if let Some(why) = self.lost() {
             return Err(JsError::new(&why));
         }
-        let head = (self.heads.get(key))
-            .ok_or_else(|| JsError::new(&format!("avatar {key}: not loaded; load it first")))?;
+        let head = head(&self.heads, key)?;
         // WebGL2 tells of finished work only when asked.
         let _ = self.device.poll(wgpu::PollType::Poll);
         if self.in_flight.load(Ordering::Relaxed) >= MOST_IN_FLIGHT {
@@ -195,15 +198,14 @@ impl Canvas {
     /// # Errors
     /// When there is no such head.
     pub fn camera(&self, key: &str, yaw: f32, pitch: f32, zoom: f32) -> Result<Vec<f32>, JsError> {
-        let head = (self.heads.get(key))
-            .ok_or_else(|| JsError::new(&format!("avatar {key}: not loaded; load it first")))?;
+        let head = head(&self.heads, key)?;
         Ok(self.renderer.camera(head, View { yaw, pitch, zoom }).to_vec())
     }
 
     /// Gives a head back.
     #[wasm_bindgen(js_name = dropAvatar)]
     pub fn drop_avatar(&mut self, key: &str) {
-        self.heads.remove(key);
+        self.heads.retain(|(own, _)| own != key);
     }
 
     /// Changes the size in device pixels.
@@ -257,6 +259,13 @@ fn watch(device: &wgpu::Device) -> Lost {
 /// Keeps the first reason.
 fn note(lost: &Lost, why: &str) {
     lost.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| why.to_owned());
+}
+
+fn head<'a>(heads: &'a [(String, Head)], key: &str) -> Result<&'a Head, JsError> {
+    let found = heads.iter().find(|(own, _)| own == key);
+    found
+        .map(|(_, head)| head)
+        .ok_or_else(|| JsError::new(&format!("avatar {key}: not loaded; load it first")))
 }
 
 fn look(background: &str, variant: &str) -> Result<Look, JsError> {

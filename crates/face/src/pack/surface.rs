@@ -94,7 +94,8 @@ pub(super) fn mesh_from(r: &mut PackReader<'_>, shapes: usize) -> Result<Mesh, P
     let base_colour = [r.f32()?, r.f32()?, r.f32()?];
     let step = r.f32()?;
     if !(step > 0.0 && step <= COARSEST_STEP as f32) {
-        return r.refuse(format!("displacements in steps of {step:e} m"));
+        let nanometres = (f64::from(step) * 1e9) as i64;
+        return r.refuse(format!("displacements in steps of {nanometres} nm"));
     }
     let coloured = match r.u8()? {
         0 => false,
@@ -142,11 +143,14 @@ pub(super) fn mesh_from(r: &mut PackReader<'_>, shapes: usize) -> Result<Mesh, P
         if coder.spent() {
             break;
         }
-        let mut moved: Vec<(u32, [i32; 3])> =
-            visits.iter().map(|&i| prediction.order[i as usize]).zip(moved).collect();
-        moved.sort_unstable_by_key(|(v, _)| *v);
-        let (vertices, deltas) =
-            moved.into_iter().map(|(v, q)| (v, q.map(|x| x as f32 * step))).unzip();
+        // The vertex, and which of the displacements is its.
+        let mut order: Vec<u64> = (visits.iter().zip(0..))
+            .map(|(&i, k): (_, u64)| u64::from(prediction.order[i as usize]) << 32 | k)
+            .collect();
+        order.sort_unstable();
+        let (vertices, deltas) = (order.iter())
+            .map(|&at| ((at >> 32) as u32, moved[at as u32 as usize].map(|x| x as f32 * step)))
+            .unzip();
         read.push(SparseShape { vertices, deltas });
     }
     if coder.spent() {
