@@ -181,6 +181,7 @@ impl Camera {
         let span = landmarks.eye_span().max(1e-4);
         let eyes = Vec3::from(landmarks.eyes_middle());
         let chin = Vec3::from(landmarks.chin);
+        // Not `clamp`: its panic prints numbers, which is 10 KB of the canvas module.
         let drop = (eyes.y - chin.y).max(1.3 * span).min(2.6 * span);
         let (top, bottom) = (eyes.y + 2.25 * span, eyes.y - drop - 0.75 * span);
         let half_height = (top - bottom) * 0.5;
