@@ -48,6 +48,7 @@ test("site: a study on a plain web host, downloaded, posted and imported", { ski
   const study = small("plain", {
     recruitment: { completionCode: "PLAIN", urlParameters: ["PROLIFIC_PID"], redirect: "https://example.org/?cc={code}&who={PROLIFIC_PID}" },
     demographics: { questions: [{ ...rating, id: "mood" }] },
+    screening: [{ if: { question: "mood", atMost: 1 }, reason: text("Not today.") }],
     questions: [rating],
     components: { faces: trials(["joy2.box"], ["rating"]) },
     sequence: { order: "fixed", components: ["faces"] },
@@ -114,6 +115,19 @@ test("site: a study on a plain web host, downloaded, posted and imported", { ski
       assert.match(error.stderr, /posted\.jsonl: line \d+: .*; .*/);
       return true;
     });
+    // Who is screened out has no code here, and so no way back as one who has finished.
+    const second = await open("webgl2", {});
+    try {
+      await second.page.goto(`${base}/study/?backend=webgl2&PROLIFIC_PID=c`);
+      await second.page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });
+      await go(second.page, "mouse");
+      await second.page.locator("fieldset[data-question=mood] label:has(input[value='1'])").click();
+      await go(second.page, "mouse");
+      await second.page.waitForSelector("main[data-outcome=screened_out]", { timeout: 60_000 });
+      assert.equal(await second.page.locator("[data-code=completion], a.button.primary").count(), 0);
+    } finally {
+      await second.close();
+    }
     const unexpected = browser.errors.filter((text) => !/503/.test(text));
     assert.deepEqual(unexpected, [], "the console is clean");
   } finally {

@@ -12,6 +12,7 @@ use mimique_study::wire::{
 };
 use mimique_study::{SessionFile, SortedMap, StaticHosting, json_text};
 
+use crate::address::Address;
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
 use crate::outbox::put;
@@ -187,7 +188,9 @@ pub async fn complete(events: u64) -> Result<Receipt, Failure> {
         }
     }
     let code = site.codes.get(status).cloned();
-    let redirect = site.redirect.map(|address| filled(&address, code.as_deref()));
+    // As the server does: who has no code does not go back as somebody who has finished.
+    let back = site.redirect.filter(|_| code.is_some() || status == "completed");
+    let redirect = back.map(|address| filled(&address, code.as_deref()));
     Ok(Receipt { receipt: hash, stored, completion_code: code, redirect })
 }
 
@@ -214,8 +217,7 @@ pub fn ending() -> Option<(bool, bool, String)> {
 
 /// The way back, with the code and the arrival's parameters.
 fn filled(address: &str, code: Option<&str>) -> String {
-    let query = page::place().get(1).as_string().unwrap_or_default();
-    let arrival = crate::address::Address::of_study("", &query);
+    let arrival = Address::of_this_page();
     let encoded = page::encode;
     let mut filled = address.replace("{code}", &encoded(code.unwrap_or_default()));
     for (name, value) in &arrival.recruitment {

@@ -59,16 +59,20 @@ pub struct ContactPerson {
 pub struct Recruitment {
     /// Shown at the end, once every answer is stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub completion_code: Option<String>,
     /// For those whom the study cannot take.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub screened_out_code: Option<String>,
     /// For those who failed the attention checks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub failed_checks_code: Option<String>,
     /// Address to go back to; `{code}` stands for the completion code and `{NAME}` for a URL
     /// parameter of the arrival.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub redirect: Option<String>,
     /// Parameters of the address that are kept, apart from the answers: `PROLIFIC_PID`...
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
