@@ -61,7 +61,9 @@ async function fetchOnce(address, hash, tell) {
     const answer = await fetch(address, { signal: stalled.signal });
     if (!answer.ok) {
       const refused = new Error(`the server answered ${answer.status}`);
-      refused.final = answer.status >= 400 && answer.status < 500 && answer.status !== 408 && answer.status !== 429;
+      // This server refuses in JSON and means it; what somebody on the way says may be over soon.
+      const own = /json/.test(answer.headers.get("content-type"));
+      refused.final = own && answer.status >= 400 && answer.status < 500 && answer.status !== 408 && answer.status !== 429;
       throw refused;
     }
     const pieces = [];

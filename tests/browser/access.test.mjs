@@ -1,21 +1,34 @@
-// Every page for everybody: axe finds nothing against WCAG 2.2 AA, in light and dark, on a screen of
-// 320 px, with text of 200 %; every type of question among them. What a screen reader finds there is
-// what the snapshots say.
+// Every page for everybody: axe finds nothing against WCAG 2.2 AA, in light and dark, on screens of 320,
+// 768 and 1280 px, with text of 200 %; every type of question among them, signed. Nothing is cut off or
+// beyond the window. What a screen reader finds there is what the snapshots say.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { test } from "node:test";
 import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { questions, study, written } from "./lib/every_question.mjs";
+import { study, written } from "./lib/every_question.mjs";
 import { go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { heard } from "./lib/snapshot.mjs";
-import { text } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
+
+/** Waits until as many signed videos as here can be played in each question, and so many pictures are seen. */
+function signs(page, videos, pictures) {
+  const there = ([videos, pictures]) => {
+    const all = document.querySelectorAll("video");
+    const every = (list, seen) => [...list].every(seen);
+    const images = document.querySelectorAll(".question img");
+    return (
+      every(Object.entries(videos), ([id, count]) => document.querySelectorAll(`[data-question=${id}] video`).length === count) &&
+      all.length === Object.values(videos).reduce((sum, count) => sum + count, 0) &&
+      every(all, (video) => video.readyState >= 1 && video.videoWidth > 0) &&
+      images.length === pictures &&
+      every(images, (image) => image.naturalWidth > 0)
+    );
+  };
+  return page.waitForFunction(there, [videos, pictures], { timeout: 30_000 });
+}
 
 /** One answer of each question, by the controls that people use. */
 async function answerAll(page) {
@@ -32,7 +45,13 @@ async function answerAll(page) {
   }
 }
 
-for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark", 320, 1, "fr-FR"], ["light", 1280, 2, "fr-FR"]]) {
+for (const [scheme, width, zoom, locale] of [
+  ["light", 1280, 1, "en-GB"],
+  ["dark", 320, 1, "fr-FR"],
+  ["dark", 768, 1, "en-GB"],
+  ["light", 1280, 2, "fr-FR"],
+  ["light", 320, 2, "fr-FR"],
+]) {
   test(`access: every page, ${scheme}, ${width} px, text ${zoom * 100} %`, { skip: unable, timeout: 300_000 }, async () => {
     const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
     const server = await serve([await written(browser.page, study)]);
@@ -56,7 +75,7 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
         }
         if (here.view === "questions") {
           // What is signed can be played, and a picture is there.
-          await page.waitForFunction(() => [...document.querySelectorAll("video")].length === 2 && [...document.querySelectorAll("video")].every((video) => video.readyState >= 1 && video.videoWidth > 0) && document.querySelector(".choice img").naturalWidth > 0, undefined, { timeout: 30_000 });
+          await signs(page, { single: 2, likert: 2, slider: 1, matrix: 3, ranking: 1, grid: 1 }, 2);
           const slider = page.locator("fieldset[data-question=slider] input");
           const untouched = { "en-GB": "not answered yet", "fr-FR": "pas encore de réponse" }[locale];
           assert.equal(await slider.getAttribute("aria-valuetext"), untouched, "nothing is pre-selected");
@@ -69,6 +88,7 @@ for (const [scheme, width, zoom, locale] of [["light", 1280, 1, "en-GB"], ["dark
         }
         if (here.view === "trial") {
           await phase(page, "ready", 120_000);
+          await signs(page, { nearer: 2 }, 0);
           await look("trial-ready");
           await go(page, "mouse");
           await phase(page, "answering", 120_000);
@@ -102,11 +122,8 @@ function alsoIn(language, study) {
 }
 
 test("access: a language written from right to left, 320 px", { skip: unable, timeout: 300_000 }, async () => {
-  const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
-  const simple = questions.filter(({ id }) => id !== "single");
-  writeFileSync(join(folder, "access.json"), JSON.stringify(alsoIn("he", { ...study, demographics: { title: text("About you"), questions: simple } })));
   const browser = await open("webgl2", { viewport: { width: 320, height: 900 }, locale: "he-IL" });
-  const server = await serve([join(folder, "access.json")]);
+  const server = await serve([await written(browser.page, alsoIn("he", study))]);
   const { page } = browser;
   const { look } = looker(page, screenshotFolder("access-rtl"));
   const direction = (selector) => page.locator(selector).first().evaluate((element) => getComputedStyle(element).direction);

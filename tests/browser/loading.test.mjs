@@ -101,6 +101,65 @@ test("loading: a damaged clip is asked for again by a press, and one that stalls
   }
 });
 
+test("loading: what a proxy or a captive portal answers for a clip is no refusal: it is asked for again by itself", { skip: unable, timeout: 240_000 }, async () => {
+  const { proxy, page, clips, begin, close } = await loading();
+  const take = `/packs/${clips["joy2.box"].take}`;
+  const pauses = [];
+  let asked;
+  try {
+    // Forbidden, a page that says all is well, a gateway in trouble; then the way is free.
+    const fates = ["foreign 403", "foreign 200", "foreign 502", "foreign 404"];
+    proxy.rule((_, url) => {
+      if (url !== take) return undefined;
+      if (asked !== undefined) pauses.push(Date.now() - asked);
+      asked = Date.now();
+      return fates[proxy.counts.foreign];
+    });
+    await page.addInitScript(() => {
+      globalThis.failures = 0;
+      new MutationObserver(() => (globalThis.failures += document.querySelectorAll(".notice.bad, [data-phase=failed]").length)).observe(document, { subtree: true, childList: true, attributes: true });
+    });
+    let here = await begin();
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.equal(here.view, "trial");
+    await phase(page, "ready", 60_000);
+    assert.equal(proxy.counts.foreign, fates.length);
+    assert.equal(pauses.length, fates.length, "asked for once more than it was refused");
+    for (const [again, least] of [400, 900, 1900, 3900].entries()) assert.ok(pauses[again] >= least, `${pauses} ms between the tries`);
+    assert.equal(await page.evaluate(() => globalThis.failures), 0, "nobody was asked to press a button");
+  } finally {
+    await close();
+  }
+});
+
+test("loading: a pack that the server itself refuses is asked for once, until somebody asks again", { skip: unable, timeout: 240_000 }, async () => {
+  const { proxy, page, clips, begin, close } = await loading();
+  const take = `/packs/${clips["joy2.box"].take}`;
+  try {
+    let tries = 0;
+    await page.route(`**${take}`, (route) => {
+      tries++;
+      return route.fulfill({ status: 404, contentType: "application/json", body: JSON.stringify({ code: "not-found", message: "gone", remedy: "reload" }) });
+    });
+    let here = await begin();
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    await phase(page, "failed", 60_000);
+    const once = tries;
+    await page.waitForTimeout(3_000);
+    assert.equal(tries, once, "no try by itself");
+    await page.unroute(`**${take}`);
+    await page.locator("[data-action=retry]").click();
+    await phase(page, "ready", 60_000);
+    assert.equal(here.view, "trial");
+  } finally {
+    await close();
+  }
+});
+
 test("loading: no trial starts without its pictures, and a page says which is missing", { skip: unable, timeout: 240_000 }, async () => {
   const { proxy, page, clips, begin, close } = await loading();
   const pack = (path) => `/packs/${clips[`media:${path}`].avatar}`;

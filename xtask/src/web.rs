@@ -7,6 +7,7 @@
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
 //! | `desk` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
+//! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
 //!
 //! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
 //! binaryen) and `esbuild` make the files smaller where node is there.
@@ -26,7 +27,8 @@ use crate::{wasm_names, wasm_order, wasm_paths};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (app, stage_webgpu, stage_webgl, solver, desk); static files always
+    /// Build only these modules (app, orders, stage_webgpu, stage_webgl, solver, desk); static files
+    /// always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
     /// Leave out wasm-opt: a quicker build of larger files
@@ -38,16 +40,28 @@ struct Module {
     name: &'static str,
     package: &'static str,
     library: &'static str,
+    /// Whether it is an example: built as the page is, for a test, and gathered nowhere.
+    example: bool,
     features: Option<&'static str>,
     profile: &'static str,
     opt_level: &'static str,
 }
 
-const MODULES: [Module; 5] = [
+const MODULES: [Module; 6] = [
     Module {
         name: "app",
         package: "mimique-app",
         library: "mimique_app",
+        example: false,
+        features: None,
+        profile: "web",
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "orders",
+        package: "mimique-app",
+        library: "golden_orders",
+        example: true,
         features: None,
         profile: "web",
         opt_level: "-Oz",
@@ -56,6 +70,7 @@ const MODULES: [Module; 5] = [
         name: "solver",
         package: "mimique-web-solver",
         library: "mimique_web_solver",
+        example: false,
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
@@ -64,6 +79,7 @@ const MODULES: [Module; 5] = [
         name: "desk",
         package: "mimique-web-studio",
         library: "mimique_web_studio",
+        example: false,
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
@@ -72,6 +88,7 @@ const MODULES: [Module; 5] = [
         name: "stage_webgpu",
         package: "mimique-web-stage",
         library: "mimique_web_stage",
+        example: false,
         features: Some("webgpu"),
         profile: "web",
         opt_level: "-Oz",
@@ -80,6 +97,7 @@ const MODULES: [Module; 5] = [
         name: "stage_webgl",
         package: "mimique-web-stage",
         library: "mimique_web_stage",
+        example: false,
         features: Some("webgl"),
         profile: "web",
         opt_level: "-Oz",
@@ -126,7 +144,7 @@ pub fn run(args: &Args) -> Result<()> {
     for name in &args.only {
         if !MODULES.iter().any(|m| m.name == name) {
             bail!(
-                "no module is called {name}; there are: app, solver, desk, stage_webgpu, stage_webgl"
+                "no module is called {name}; there are: app, orders, solver, desk, stage_webgpu, stage_webgl"
             );
         }
     }
@@ -169,7 +187,11 @@ impl Module {
     fn build(&self, optimiser: Option<&Path>) -> Result<()> {
         say(&format!("building {}", self.name));
         let mut command = cargo();
-        command.arg("build").args(locked()).args(["--target", "wasm32-unknown-unknown", "--lib"]);
+        command.arg("build").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
+        match self.example {
+            true => command.args(["--example", self.library]),
+            false => command.arg("--lib"),
+        };
         command.args(["--package", self.package, "--profile", self.profile]);
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
@@ -178,6 +200,7 @@ impl Module {
         let raw = target()
             .join("wasm32-unknown-unknown")
             .join(self.profile)
+            .join(if self.example { "examples" } else { "" })
             .join(format!("{}.wasm", self.library));
 
         let out = self.out();
@@ -247,7 +270,7 @@ fn wasm_bindgen_cli_support_version() -> String {
 /// files untouched, so that a build that changed nothing embeds nothing anew; then prints the sizes.
 fn gather(esbuild: Option<&Path>) -> Result<()> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
-    for module in &MODULES {
+    for module in MODULES.iter().filter(|module| !module.example) {
         for suffix in [".js", "_bg.wasm"] {
             let name = format!("{}{suffix}", module.name);
             if let Ok(bytes) = fs::read(module.out().join(&name)) {

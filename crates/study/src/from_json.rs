@@ -79,15 +79,18 @@ impl Faults {
 
     /// Lets the next object have these keys too.
     pub fn besides(&mut self, keys: &'static [&'static str]) {
-        self.besides = keys;
+        if !cfg!(target_arch = "wasm32") {
+            self.besides = keys;
+        }
     }
 
-    /// The value must be an object; where `keys` are given, with no others.
+    /// The value must be an object; where `keys` are given, with no others. The page takes others,
+    /// too: the server has refused them.
     #[inline(never)]
     pub fn object(&mut self, value: &Value, keys: &[&str]) {
         let besides = std::mem::take(&mut self.besides);
         let Value::Object(map) = value else { return self.note(value, &["an object is missing"]) };
-        if keys.is_empty() {
+        if keys.is_empty() || cfg!(target_arch = "wasm32") {
             return;
         }
         for key in map.keys().map(String::as_str) {

@@ -18,6 +18,23 @@ export async function violations(page) {
   }, standards);
 }
 
+/** What sticks out of the window, or is cut off where it cannot be scrolled to: a tag and its text each. */
+export function lost(page) {
+  return page.evaluate(() => {
+    const wide = document.documentElement.clientWidth;
+    const named = (element) => `${element.tagName.toLowerCase()}.${element.className}: ${(element.textContent || element.ariaLabel || "").trim().slice(0, 60)}`;
+    const outside = ({ left, right, width }) => width > 1 && (left < -1 || right > wide + 1);
+    const cut = (element) => {
+      const { overflowX, overflowY } = getComputedStyle(element);
+      const hides = (overflow) => overflow === "hidden" || overflow === "clip";
+      return (hides(overflowX) && element.scrollWidth > element.clientWidth + 1) || (hides(overflowY) && element.scrollHeight > element.clientHeight + 1);
+    };
+    // What nobody sees, and the card that may be larger than the screen.
+    const meant = (element) => element.closest(".visually-hidden, .skip-link, .bank-card-frame, dialog:not([open])");
+    return [...document.body.querySelectorAll("*")].filter((element) => !meant(element) && (outside(element.getBoundingClientRect()) || cut(element))).map(named);
+  });
+}
+
 /** A function that looks at the page as it stands, keeps a picture of it, and names it in `seen`. */
 export function looker(page, folder, zoom = 1) {
   const seen = [];
@@ -28,6 +45,7 @@ export function looker(page, folder, zoom = 1) {
     assert.deepEqual(await violations(page), [], `${name}: axe`);
     const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
     assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px`);
+    assert.deepEqual(await lost(page), [], `${name}: cut off, or beyond the window`);
     const headings = await page.locator("h1").count();
     assert.equal(headings, 1, `${name}: one main heading`);
   };

@@ -7,23 +7,25 @@ import { film } from "./film.mjs";
 import { small, stimuli, text, trials } from "./small_study.mjs";
 
 const option = (value) => ({ value, label: text(value) });
+const video = { en: "sign.webm", fr: "sign.webm" };
+const signed = (value) => ({ ...option(value), video });
 const scale = { numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") };
 export const questions = [
-  { id: "single", type: "singleChoice", prompt: text("One of these?"), video: { en: "sign.webm", fr: "sign.webm" }, options: [{ ...option("a"), video: { en: "sign.webm", fr: "sign.webm" } }, { ...option("b"), image: "dot.svg" }, option("c")] },
+  { id: "single", type: "singleChoice", prompt: text("One of these?"), video, options: [signed("a"), { ...option("b"), image: "dot.svg" }, option("c")] },
   { id: "several", type: "multipleChoice", prompt: text("Any of these?"), help: text("Choose some."), options: ["a", "b", "c"].map(option) },
-  { id: "likert", type: "likert", prompt: text("How strong?"), ...scale },
-  { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") },
-  { id: "matrix", type: "matrix", prompt: text("How often?"), rows: ["play", "call"].map(option), options: ["never", "sometimes", "often"].map(option) },
+  { id: "likert", type: "likert", prompt: text("How strong?"), ...scale, signs: [signed("weak"), signed("strong")] },
+  { id: "slider", type: "slider", prompt: text("How tired?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very"), signs: [signed("not"), { ...option("very"), image: "dot.svg" }] },
+  { id: "matrix", type: "matrix", prompt: text("How often?"), rows: [signed("play"), option("call")], options: [signed("never"), option("sometimes"), option("often")] },
   { id: "number", type: "number", prompt: text("How old?"), minimum: 0, maximum: 120, integer: true, unit: text("years") },
   { id: "short", type: "shortText", prompt: text("In a word?") },
   { id: "long", type: "longText", prompt: text("In some words?"), required: false },
-  { id: "ranking", type: "ranking", prompt: text("In which order?"), options: ["eyes", "mouth", "skin"].map(option) },
-  { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited") },
+  { id: "ranking", type: "ranking", prompt: text("In which order?"), options: [signed("eyes"), option("mouth"), option("skin")] },
+  { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited"), signs: [signed("bad")] },
 ];
 export const study = small("access", {
   demographics: { title: text("About you"), questions },
   instructions: [{ heading: text("Before you begin"), text: text("Watch.") }],
-  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is nearer?"), allowSame: true }, { id: "rating", type: "likert", prompt: text("How strong is it?"), ...scale }],
+  questions: [{ id: "nearer", type: "comparison", prompt: text("Which is nearer?"), allowSame: true, signs: [signed("left"), signed("right")] }, { id: "rating", type: "likert", prompt: text("How strong is it?"), ...scale }],
   components: { pairs: { ...trials(["joy2.box.head"], ["nearer", "rating"]), beside: { avatar: "actor", method: "real", caption: text("The person") } } },
   sequence: { order: "fixed", components: ["pairs"] },
   debriefing: [{ heading: text("What it was about"), text: text("Faces.") }],

@@ -36,7 +36,7 @@ pub(super) fn examine(
     for language in &subject.study.languages {
         let words = subject.study.words(language);
         let prompt = question.prompt.in_language(language);
-        let untold = told(&question.kind, &check.expected, language, &words)
+        let untold = told(question, &check.expected, language, &words)
             .into_iter()
             .find(|ways| !ways.iter().any(|way| says(prompt, way)));
         if let Some(wanted) = untold.as_ref().and_then(|ways| ways.first()) {
@@ -50,14 +50,18 @@ pub(super) fn examine(
 }
 
 /// What the prompt must say for an answer, each thing in one of several ways.
-fn told(kind: &QuestionKind, answer: &Value, language: &str, words: &Words) -> Vec<Vec<String>> {
+fn told(asked: &Question, answer: &Value, language: &str, words: &Words) -> Vec<Vec<String>> {
+    let kind = &asked.kind;
     let label = |options: &[Choice], value: &str| {
         let option = options.iter().find(|option| option.value == value);
         vec![option.map_or(value, |option| option.label.in_language(language)).to_owned()]
     };
     let each = |value: &Value| value.as_str().map(|word| label(kind.options(), word));
     match (kind, answer) {
-        (QuestionKind::Comparison(_), Value::String(side)) => vec![side_in_words(side, words)],
+        (QuestionKind::Comparison(_), Value::String(side)) => vec![match asked.sign(side) {
+            Some(own) => vec![own.label.in_language(language).to_owned()],
+            None => side_in_words(side, words),
+        }],
         (QuestionKind::Matrix(matrix), Value::Object(rows)) => rows
             .iter()
             .flat_map(|(row, chosen)| {

@@ -22,6 +22,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         for (index, question) in questions.iter().enumerate() {
             let place = below(pointer, index);
             videos(&question.video, &below(&place, "video"), &mut named);
+            choices(&question.signs, &below(&place, "signs"), &mut named);
             choices(question.kind.options(), &below(&place, "options"), &mut named);
             if let QuestionKind::Matrix(matrix) = &question.kind {
                 choices(&matrix.rows, &below(&place, "rows"), &mut named);

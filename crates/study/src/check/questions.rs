@@ -30,6 +30,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
                 issues.error(below(&place, "id"), "duplicate", message, "give it another one");
             }
             kind(question, &place, issues);
+            signs(question, &place, issues);
             attention::examine(subject, question, &place, issues);
         }
     }
@@ -131,6 +132,26 @@ fn kind(question: &Question, place: &str, issues: &mut Issues) {
         }
         QuestionKind::ValenceArousal(grid) => points(grid.num_items, place, issues),
         QuestionKind::Comparison(_) => {}
+    }
+}
+
+fn signs(question: &Question, place: &str, issues: &mut Issues) {
+    options(&question.signs, place, "signs", 0, issues);
+    for (index, sign) in question.signs.iter().enumerate() {
+        let pointer = below(&below(place, "signs"), index);
+        if sign.video.is_none() && sign.image.is_none() {
+            let message = format!("\"{}\" has neither a signed video nor a picture", sign.value);
+            let hint = "add \"video\": \"FILE.mp4\", or remove it";
+            issues.error(pointer, "empty", message, hint);
+        } else if let QuestionKind::Comparison(comparison) = &question.kind {
+            let mut sides = vec!["left", "right"];
+            sides.extend(comparison.allow_same.then_some("same"));
+            if !sides.contains(&sign.value.as_str()) {
+                let message = format!("\"{}\" is no option of this comparison", sign.value);
+                let hint = suggestion(&sign.value, &sides);
+                issues.error(below(&pointer, "value"), "unknown-reference", message, hint);
+            }
+        }
     }
 }
 

@@ -289,6 +289,10 @@ impl Screen<'_> {
             prompt: self.text(&question.prompt),
             help: question.help.as_ref().map(|help| self.text(help)),
             video: question.video.as_ref().map(|path| self.path(path)),
+            signs: match question.kind {
+                QuestionKind::Comparison(_) => Vec::new(),
+                _ => question.signs.iter().map(|sign| self.choice(sign)).collect(),
+            },
             required: question.required,
             optional_mark: (!question.required).then(|| self.words.optional().to_owned()),
             kind: self.kind(question),
@@ -345,16 +349,26 @@ impl Screen<'_> {
             },
             QuestionKind::Ranking(_) => QuestionKindView::Ranking { options: options() },
             QuestionKind::Comparison(comparison) => {
-                let option = |value: &str, label: &str| ChoiceView {
-                    value: value.to_owned(),
-                    label: label.to_owned(),
-                    image: None,
-                    video: None,
-                };
-                let same = comparison.allow_same.then(|| option("same", self.words.both_alike()));
-                let mut options = vec![option("left", self.words.left_one())];
-                options.extend(same);
-                options.push(option("right", self.words.right_one()));
+                let words = self.words;
+                let sides = [
+                    ("left", words.left_one()),
+                    ("same", words.both_alike()),
+                    ("right", words.right_one()),
+                ];
+                let mut options = Vec::new();
+                for (value, label) in sides {
+                    if value != "same" || comparison.allow_same {
+                        options.push(match question.sign(value) {
+                            Some(sign) => self.choice(sign),
+                            None => ChoiceView {
+                                value: value.to_owned(),
+                                label: label.to_owned(),
+                                image: None,
+                                video: None,
+                            },
+                        });
+                    }
+                }
                 QuestionKindView::SingleChoice { options }
             }
             QuestionKind::ValenceArousal(grid) => QuestionKindView::ValenceArousal {

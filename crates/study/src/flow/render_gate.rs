@@ -12,7 +12,7 @@ use super::view::{
     StageSize,
 };
 use crate::answer::alike;
-use crate::study_file::{Calibration, FullscreenRule, Question, QuestionKind};
+use crate::study_file::{Calibration, FullscreenRule, Question};
 
 /// Width at which the picture of the card stands before it is adjusted: that of a card on a display
 /// of 96 CSS pixels an inch.
@@ -145,18 +145,14 @@ impl Screen<'_> {
             let mut known = options.filter(|option| option.value == word);
             known.next().map_or_else(|| word.to_owned(), |option| self.text(&option.label))
         };
-        match (answer, &question.kind) {
-            (Value::String(word), QuestionKind::Comparison(_)) => match word.as_str() {
-                "left" => self.words.left_one().to_owned(),
-                "right" => self.words.right_one().to_owned(),
-                _ => self.words.both_alike().to_owned(),
-            },
-            (Value::String(word), _) => label(word),
-            (Value::Array(items), _) => {
+        // A comparison is never practised: practice shows one clip.
+        match answer {
+            Value::String(word) => label(word),
+            Value::Array(items) => {
                 let words = items.iter().map(|each| each.as_str().map_or(String::new(), label));
                 words.collect::<Vec<_>>().join(", ")
             }
-            (other, _) => crate::json_text::write(other),
+            other => crate::json_text::write(other),
         }
     }
 

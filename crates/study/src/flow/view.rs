@@ -385,6 +385,8 @@ pub struct QuestionView {
     pub help: Option<String>,
     /// A signed video of the prompt.
     pub video: Option<String>,
+    /// What else is signed or has a picture, above the answers.
+    pub signs: Vec<ChoiceView>,
     /// Whether the page waits for an answer.
     pub required: bool,
     /// Marks a question that may be left out.

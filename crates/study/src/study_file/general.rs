@@ -14,18 +14,22 @@ pub struct Metadata {
     /// Title as participants see it.
     pub title: LocalText,
     /// Version of the study file, for people: `1.0.0`.
+    #[from_json(off_page)]
     pub version: String,
     /// Who made it.
     #[serde(default)]
+    #[from_json(off_page)]
     pub authors: Vec<String>,
     /// `YYYY-MM-DD`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub date: Option<String>,
     /// One or two sentences.
     #[serde(default)]
     pub description: LocalText,
     /// Where it is made.
     #[serde(default)]
+    #[from_json(off_page)]
     pub organizations: Vec<String>,
 }
 
@@ -145,6 +149,7 @@ pub struct Consent {
     /// Days after the end of a session at which the server deletes its answers; for ever if not
     /// given. It should say the same as `retention`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub retention_days: Option<u32>,
     /// The text.
     pub sections: Vec<Section>,

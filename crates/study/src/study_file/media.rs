@@ -1,6 +1,6 @@
 //! The pictures and signed videos that questions and their options show.
 
-use super::{LocalText, Question, QuestionKind, Study};
+use super::{Choice, LocalText, Question, QuestionKind, Study};
 use crate::sorted_map::SortedMap;
 
 /// What the key of such a file in [`crate::wire::Bundle::clips`] begins with: it is served like a film.
@@ -35,13 +35,8 @@ impl Study {
             paths.insert(path, ());
         };
         for question in self.all_questions() {
-            let Question { video, kind, .. } = question;
-            video.iter().flat_map(videos).for_each(&mut found);
-            let rows = match kind {
-                QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
-                _ => &[],
-            };
-            for choice in kind.options().iter().chain(rows) {
+            question.video.iter().flat_map(videos).for_each(&mut found);
+            for choice in question.choices().into_iter().flatten() {
                 choice.video.iter().flat_map(videos).for_each(&mut found);
                 choice.image.as_deref().into_iter().for_each(&mut found);
             }
@@ -51,17 +46,30 @@ impl Study {
 }
 
 impl Question {
-    /// The paths of the pictures and signed videos that it shows in a language.
-    pub fn media<'a>(&'a self, language: &'a str) -> impl Iterator<Item = &'a str> {
+    /// All of it that can have a picture or a signed video: options, rows, ends.
+    fn choices(&self) -> [&[Choice]; 3] {
         let rows = match &self.kind {
             QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
             _ => &[],
         };
-        let choices = self.kind.options().iter().chain(rows);
-        let of_choices = choices.flat_map(move |choice| {
-            let video = choice.video.as_ref().map(|video| video.in_language(language));
-            video.into_iter().chain(choice.image.as_deref())
-        });
-        self.video.iter().map(move |video| video.in_language(language)).chain(of_choices)
+        [self.kind.options(), rows, &self.signs]
+    }
+
+    /// The option of a comparison (`left`, `same`, `right`) as the study has it.
+    pub fn sign(&self, value: &str) -> Option<&Choice> {
+        self.signs.iter().find(|sign| sign.value == value)
+    }
+
+    /// The paths of the pictures and signed videos that it shows in a language.
+    pub fn media<'a>(&'a self, language: &'a str) -> Vec<&'a str> {
+        let mut paths: Vec<&str> = Vec::new();
+        paths.extend(self.video.as_ref().map(|video| video.in_language(language)));
+        for choices in self.choices() {
+            for choice in choices {
+                paths.extend(choice.video.as_ref().map(|video| video.in_language(language)));
+                paths.extend(choice.image.as_deref());
+            }
+        }
+        paths
     }
 }

@@ -45,18 +45,19 @@ impl MethodEntry {
     }
 }
 
+/// What no page asks for.
+fn off_page<T: FromJson>(value: &Value, key: &str, faults: &mut Faults) -> Option<T> {
+    if cfg!(target_arch = "wasm32") { None } else { from_json::required(value, key, faults) }
+}
+
 impl FromJson for MethodEntry {
     fn from_json(value: &Value, faults: &mut Faults) -> Self {
         faults.besides(&["factors", "label", "training"]);
         Self {
             spec: MethodSpec::from_json(value, faults),
             factors: from_json::or_else(value, "factors", faults, Factors::default),
-            label: from_json::required(value, "label", faults),
-            training: if cfg!(target_arch = "wasm32") {
-                None
-            } else {
-                from_json::required(value, "training", faults)
-            },
+            label: off_page(value, "label", faults),
+            training: off_page(value, "training", faults),
         }
     }
 }

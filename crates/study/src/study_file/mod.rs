@@ -59,6 +59,7 @@ pub use tables::{Layout, TableLayout};
 pub struct Study {
     /// Where the JSON Schema is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub schema: Option<String>,
     /// Identifier used in addresses and file names: lower-case letters, digits, `-`.
     pub id: String,

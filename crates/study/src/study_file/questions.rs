@@ -28,6 +28,11 @@ pub struct Question {
     /// A signed video of the prompt: an MP4 or WebM file, or one a language.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub video: Option<LocalText>,
+    /// What else is signed, or has a picture, each with its words: the ends of a scale, its points,
+    /// the edges of a grid. They stand above the answers in this order. In a comparison `left`,
+    /// `same` and `right` stand in the place of the page's own options.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub signs: Vec<Choice>,
     /// Whether the page waits for an answer.
     #[serde(default = "yes")]
     pub required: bool,
@@ -56,6 +61,8 @@ struct Common {
     help: Option<LocalText>,
     #[serde(default)]
     video: Option<LocalText>,
+    #[serde(default)]
+    signs: Vec<Choice>,
     #[serde(default = "yes")]
     required: bool,
     #[serde(default)]
@@ -66,8 +73,8 @@ struct Common {
 
 impl Common {
     fn with(self, kind: QuestionKind) -> Question {
-        let Self { id, prompt, help, video, required, show_if, attention_check } = self;
-        Question { id, prompt, help, video, required, show_if, attention_check, kind }
+        let Self { id, prompt, help, video, signs, required, show_if, attention_check } = self;
+        Question { id, prompt, help, video, signs, required, show_if, attention_check, kind }
     }
 }
 

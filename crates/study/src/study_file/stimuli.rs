@@ -63,6 +63,7 @@ pub struct Avatar {
     pub factors: Factors,
     /// Name for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub label: Option<LocalText>,
 }
 
@@ -215,12 +216,15 @@ pub struct Segment {
     /// Identifier: `joy2`.
     pub id: String,
     /// Which capture.
+    #[from_json(off_page)]
     pub capture: String,
     /// First frame, counted from 0 at the capture's own rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub first: Option<usize>,
     /// Frame after the last one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[from_json(off_page)]
     pub end: Option<usize>,
     /// What a built-in actor performs.
     #[serde(default, skip_serializing_if = "Option::is_none")]

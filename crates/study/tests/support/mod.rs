@@ -1,6 +1,7 @@
 //! The studies of `study-config`, and a participant who goes through one.
 #![allow(dead_code)]
 
+pub mod golden;
 pub mod small;
 
 use std::path::PathBuf;

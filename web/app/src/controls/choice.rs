@@ -62,6 +62,11 @@ pub fn tile(field: Element, option: &ChoiceView) -> Element {
     el("div", "option-box").key(&option.value).option(video_of(option)).with(label)
 }
 
+/// The words of a scale's end or point, below their signed video.
+pub fn signed(sign: &ChoiceView) -> Element {
+    el("div", "option-box").key(&sign.value).option(video_of(sign)).all(label(sign))
+}
+
 /// What an option shows: its picture and its label.
 pub fn label(option: &ChoiceView) -> Vec<Element> {
     let picture = option.image.as_ref().map(|path| picture(path));

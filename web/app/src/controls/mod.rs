@@ -136,6 +136,10 @@ pub fn question(engine: &Engine, name: &str, question: &QuestionView) -> Element
     if let Some(text) = &question.help {
         set = set.with(words("p", "hint", text).key("help").set("id", &answering.element("help")));
     }
+    if !question.signs.is_empty() {
+        let signs = question.signs.iter().map(choice::signed).collect();
+        set = set.with(el("div", "choices").key("signs").all(signs));
+    }
     let problem = wrong.map(|text| {
         words("p", "problem", text).key("problem").set("id", &answering.element("problem"))
     });
