@@ -51,13 +51,14 @@ const people = {
 async function takePart(address, { age, colour, slow }) {
   const browser = await open("webgl2", { viewport: { width: 900, height: 900 } });
   const { page } = browser;
-  const end = async () => ({
-    view: await page.locator("main").getAttribute("data-view"),
-    outcome: await page.locator("main").getAttribute("data-outcome"),
-    code: await page.locator("[data-code=completion]").textContent({ timeout: 1 }).catch(() => null),
-    back: await page.locator("a.button.primary").getAttribute("href", { timeout: 1 }).catch(() => null),
-    again: await page.locator("[data-action=another-person]").count(),
-  });
+  const end = () =>
+    page.evaluate(() => {
+      const one = (selector) => document.querySelector(selector);
+      const { view, outcome = null } = one("main").dataset;
+      const code = one("[data-code=completion]")?.textContent ?? null;
+      const back = one("a.button.primary")?.getAttribute("href") ?? null;
+      return { view, outcome, code, back, again: document.querySelectorAll("[data-action=another-person]").length };
+    });
   try {
     await page.goto(address);
     await page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });

@@ -1,12 +1,13 @@
 //! Who goes on: the device gate, calibration, time limits, and the ends of a session before its
 //! last page.
 
+use super::allowed::shown_questions;
 use super::clock;
 use super::device::Unmet;
 use super::effect::Effect;
 use super::plan::{Plan, Step, StepKind};
 use super::state::{Play, State, Status};
-use super::update::{Turn, shown_questions};
+use super::update::Turn;
 use crate::event::{Answers, Calibrated, Display, EventKind};
 use crate::study_file::{
     AfterTraining, AttentionEnd, Calibration, FullscreenRule, ScreeningRule, Study,

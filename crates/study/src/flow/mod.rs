@@ -12,6 +12,7 @@
 //! then:        render view(plan, state); wait; update(input); carry out effects; again
 //! ```
 
+mod allowed;
 mod clock;
 mod device;
 mod effect;
@@ -21,9 +22,12 @@ mod needs;
 mod plan;
 mod render;
 mod render_gate;
+mod render_question;
 mod state;
 mod update;
 mod view;
+mod view_gate;
+mod view_question;
 
 pub use device::Unmet;
 pub use effect::Effect;
@@ -35,7 +39,10 @@ pub use render::view;
 pub use state::{Live, Play, Progress, Record, State, Status};
 pub use update::update;
 pub use view::{
-    BesideView, ButtonView, CalibrationView, CardView, ChoiceView, ClockView, ContactView,
-    DeviceView, DistanceView, EndView, FailedView, FeedbackItem, FeedbackView, Phase, ProgressView,
-    QuestionKindView, QuestionView, SectionView, StageSize, TrialView, View,
+    BesideView, ButtonView, ClockView, ContactView, EndView, FailedView, Phase, ProgressView,
+    SectionView, StageSize, TrialView, View,
 };
+pub use view_gate::{
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
+};
+pub use view_question::{ChoiceView, QuestionKindView, QuestionView};

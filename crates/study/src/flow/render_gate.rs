@@ -7,9 +7,9 @@ use super::gate::{self, CARD_HEIGHT_MM, CARD_WIDTH_MM, DISTANCES_CM};
 use super::plan::Step;
 use super::render::Screen;
 use super::state::Status;
-use super::view::{
-    CalibrationView, CardView, ClockView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
-    StageSize,
+use super::view::{ClockView, StageSize};
+use super::view_gate::{
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
 };
 use crate::answer::alike;
 use crate::study_file::{Calibration, FullscreenRule, Question};
