@@ -88,10 +88,10 @@ for (const [scheme, width, zoom, locale] of [
         }
         if (here.view === "trial") {
           await phase(page, "ready", 120_000);
-          await signs(page, { nearer: 2 }, 0);
           await look("trial-ready");
           await go(page, "mouse");
           await phase(page, "answering", 120_000);
+          await signs(page, { nearer: 2 }, 0);
           await answerAll(page);
         }
         await look(here.view);
