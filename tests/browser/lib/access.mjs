@@ -18,12 +18,23 @@ export async function violations(page) {
   }, standards);
 }
 
-/** What sticks out of the window, or is cut off where it cannot be scrolled to: a tag and its text each. */
+/** What sticks out of the window or its card, is cut off, or stands letter below letter: a tag and its text each. */
 export function lost(page) {
   return page.evaluate(() => {
     const wide = document.documentElement.clientWidth;
     const named = (element) => `${element.tagName.toLowerCase()}.${element.className}: ${(element.textContent || element.ariaLabel || "").trim().slice(0, 60)}`;
-    const outside = ({ left, right, width }) => width > 1 && (left < -1 || right > wide + 1);
+    const outside = (element) => {
+      const { left, right, width } = element.getBoundingClientRect();
+      const card = element.parentElement?.closest(".card")?.getBoundingClientRect() ?? { left: 0, right: wide };
+      return width > 1 && (left < card.left - 1 || right > card.right + 1);
+    };
+    // Four lines and more of words for which there is no room.
+    const squeezed = (element) => {
+      const { width, height } = element.getBoundingClientRect();
+      const size = parseFloat(getComputedStyle(element).fontSize);
+      const words = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim().length >= 4);
+      return words && width < 2 * size && height > 4 * size;
+    };
     const cut = (element) => {
       const { overflowX, overflowY } = getComputedStyle(element);
       const hides = (overflow) => overflow === "hidden" || overflow === "clip";
@@ -31,7 +42,7 @@ export function lost(page) {
     };
     // What nobody sees, and the card that may be larger than the screen.
     const meant = (element) => element.closest(".visually-hidden, .skip-link, .bank-card-frame, dialog:not([open])");
-    return [...document.body.querySelectorAll("*")].filter((element) => !meant(element) && (outside(element.getBoundingClientRect()) || cut(element))).map(named);
+    return [...document.body.querySelectorAll("*")].filter((element) => !meant(element) && (outside(element) || cut(element) || squeezed(element) || (element.localName === "video" && element.clientWidth < 100))).map(named);
   });
 }
 
@@ -45,7 +56,7 @@ export function looker(page, folder, zoom = 1) {
     assert.deepEqual(await violations(page), [], `${name}: axe`);
     const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
     assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px`);
-    assert.deepEqual(await lost(page), [], `${name}: cut off, or beyond the window`);
+    assert.deepEqual(await lost(page), [], `${name}: no room for it`);
     const headings = await page.locator("h1").count();
     assert.equal(headings, 1, `${name}: one main heading`);
   };

@@ -4,8 +4,6 @@
 
 use mimique_study::SortedMap;
 
-use crate::page;
-
 /// What the address says.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Address {
@@ -29,11 +27,6 @@ impl Address {
             return None;
         }
         Some(Self::of_study(&decode(parts.next()?), query))
-    }
-
-    /// The parameters of the address that this page has.
-    pub fn of_this_page() -> Self {
-        Self::of_study("", &page::place().get(1).as_string().unwrap_or_default())
     }
 
     /// The address of a study whose name the page itself gives (hosted without the server).

@@ -4,6 +4,8 @@ use js_sys::{Array, Function};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
+use crate::address::Address;
+
 #[wasm_bindgen(raw_module = "./page.js")]
 extern "C" {
     /// The place of the pages, emptied.
@@ -101,4 +103,9 @@ extern "C" {
     /// The values of a range of keys.
     #[wasm_bindgen(catch)]
     pub async fn all(store: &str, first: &str, last: &str) -> Result<JsValue, JsValue>;
+}
+
+/// The parameters with which the participant arrived.
+pub fn arrival() -> Address {
+    Address::of_study("", &place().get(1).as_string().unwrap_or_default())
 }

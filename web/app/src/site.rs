@@ -12,7 +12,6 @@ use mimique_study::wire::{
 };
 use mimique_study::{SessionFile, SortedMap, StaticHosting, json_text};
 
-use crate::address::Address;
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
 use crate::outbox::put;
@@ -217,7 +216,7 @@ pub fn ending() -> Option<(bool, bool, String)> {
 
 /// The way back, with the code and the arrival's parameters.
 fn filled(address: &str, code: Option<&str>) -> String {
-    let arrival = Address::of_this_page();
+    let arrival = page::arrival();
     let encoded = page::encode;
     let mut filled = address.replace("{code}", &encoded(code.unwrap_or_default()));
     for (name, value) in &arrival.recruitment {

@@ -3,7 +3,6 @@
 use mimique_study::RepeatPrevention;
 
 use super::{button, heading, main};
-use crate::address::Address;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
 use crate::memory::Identity;
@@ -39,7 +38,7 @@ pub fn declined(engine: &Engine, title: &str, text: &str) -> Element {
 pub fn another_person(engine: &Engine) -> Option<Element> {
     let recruitment = &engine.plan.study.recruitment;
     // Whoever was sent here by a recruiting site goes back there.
-    let sent = Address::of_this_page().recruitment;
+    let sent = page::arrival().recruitment;
     let offered = matches!(recruitment.repeat_prevention, RepeatPrevention::None)
         && !recruitment.url_parameters.iter().any(|name| sent.contains_key(name));
     offered.then(|| {
