@@ -111,22 +111,22 @@ export function draw(canvas, { lines, log = false, unit, low, high }, part) {
   let [from, to] = [Infinity, -Infinity];
   for (const { values } of lines) for (const x of values) if (Number.isFinite(x)) [from, to] = [Math.min(from, value(x)), Math.max(to, value(x))];
   if (from > to) return;
-  if (!log) from = Math.min(from, low ?? 0);
+  if (log) [from, to] = [Math.floor(from), Math.max(Math.ceil(to), Math.floor(from) + 1)];
+  else from = Math.min(from, low ?? 0);
   to = Math.max(to, high ?? -Infinity, from + 1e-9);
   const [left, top, bottom] = [46, 8, 6];
   const y = (x) => height - bottom - ((value(x) - from) / (to - from)) * (height - top - bottom);
   context.font = "12px system-ui, sans-serif";
   context.textBaseline = "middle";
-  for (let i = 0; i <= 4; i++) {
-    const at = from + ((to - from) * i) / 4;
-    const row = height - bottom - ((height - top - bottom) * i) / 4;
+  for (const at of ticks(from, to, log)) {
+    const row = height - bottom - ((at - from) / (to - from)) * (height - top - bottom);
     context.strokeStyle = soft;
     context.beginPath();
     context.moveTo(left, row);
     context.lineTo(width, row);
     context.stroke();
     context.fillStyle = ink;
-    context.fillText(log ? `1e${at.toFixed(0)}` : `${Number(at.toPrecision(2))} ${i === 4 ? unit : ""}`, 2, Math.max(row, 8));
+    context.fillText(log ? `1e${at.toFixed(0)}` : `${Number(at.toPrecision(2))} ${at === to ? unit : ""}`, 2, Math.max(row, 8));
   }
   lines.forEach(({ values }, index) => {
     const { colour, dash } = style(index);
@@ -160,6 +160,13 @@ export function draw(canvas, { lines, log = false, unit, low, high }, part) {
   context.stroke();
   const words = lines.map(({ name, values }) => `${name}: highest ${Math.max(...sampled(values)).toPrecision(3)} ${unit}`);
   canvas.setAttribute("aria-label", words.join("; "));
+}
+
+// Four parts of the way; of a logarithmic axis whole powers of ten, five of them at most.
+function ticks(from, to, log) {
+  if (!log) return [0, 1, 2, 3, 4].map((i) => (i === 4 ? to : from + ((to - from) * i) / 4));
+  const step = Math.ceil((to - from) / 4);
+  return Array.from({ length: Math.floor((to - from) / step) + 1 }, (_, i) => from + i * step);
 }
 
 // Math.max takes no more arguments than the stack holds.

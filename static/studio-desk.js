@@ -3,6 +3,7 @@
 const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
   "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
+  "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
 ]);
 
 let worker = null;

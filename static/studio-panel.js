@@ -3,30 +3,16 @@ import { openStage, preparedClip, putClip } from "./stage-host.js";
 import { made } from "./stage-player.js";
 import { desk } from "./studio-desk.js";
 import { drawMatch } from "./studio-overlay.js";
+import { Parameters } from "./studio-parameters.js";
 
 const LOOK = { background: "#808080", width: 480, height: 480 };
 // A change waits so long for the next one before it is solved.
 const SETTLE_MS = 180;
 
-const NUMBERS = {
-  kappa: ["κ, priors against data", { min: 0, step: 0.01, placeholder: "0.1" }],
-  kS: ["k_s, stretching", { min: 0, step: 0.1, placeholder: "1" }],
-  kB: ["k_b, bending", { min: 0, step: 0.1, placeholder: "1" }],
-  s: ["s, softness of the bounds", { min: 0.01, step: 0.01, placeholder: "0.1" }],
-  eps: ["ε, smoothing of the norms", { min: 0, step: "any", placeholder: "default" }],
-  sigma: ["σ, zones, m", { min: 0.001, step: 0.001, placeholder: "0.012" }],
-  boundsWeight: ["Weight of the bounds", { min: 0, step: "any", placeholder: "0.001" }],
-  stiffness: ["Stiffness", { min: 0, step: 0.01, placeholder: "0" }],
-  headLowpassHz: ["Head low-pass, Hz", { min: 0.1, step: 0.1, placeholder: "none" }],
-};
-const WORDS = {
-  laplacian: ["Laplacian", ["uniform", "umbrella", "cotan-clamped", "cotan-literal"]],
-  association: ["Association", ["points", "zones", "triangles"]],
-  unit: ["Unit", ["m", "cm", "mm"]],
-  hold: ["At rest", ["unmoved", "nothing"]],
-};
 /// Names that the desk gives to methods that need recorded weights.
 const RECORDED = "recorded";
+/// The one that learns from a take of its own.
+const REGRESSION = "regression";
 
 export class MethodPanel {
   #slot;
@@ -40,6 +26,7 @@ export class MethodPanel {
   #notices;
   #select;
   #parameters;
+  #saveSettings;
   #compare;
   #scale;
   #stage = null;
@@ -52,7 +39,8 @@ export class MethodPanel {
   facts = null;
   drawn = 0;
 
-  /// `page`: {methods, player, avatarShapes(), showMarkers(), changed(panel), remove(panel), report(error)}
+  /// `page`: {methods, player, avatar(), faceMarkers(), trainingMissing(), showMarkers(), name(), save(name, text),
+  /// changed(panel), remove(panel), report(error)}
   constructor(slot, page, method, removable) {
     this.#slot = slot;
     this.#page = page;
@@ -61,14 +49,16 @@ export class MethodPanel {
     for (const { name } of page.methods) this.#select.append(new Option(name, name));
     this.#select.value = method;
     this.#select.addEventListener("change", () => (this.#controls(), this.solveSoon()));
+    this.trainingChanged();
     const head = made("div", { className: "studio-panel-head" }, made("strong", {}, letter), this.#select);
     if (removable) {
       const remove = made("button", { type: "button", ariaLabel: `Remove method ${letter}` }, "✕");
       remove.addEventListener("click", () => page.remove(this));
       head.append(remove);
     }
-    this.#parameters = made("div", { className: "parameters" });
-    const options = made("details", {}, made("summary", {}, "Parameters"), this.#parameters);
+    this.#parameters = new Parameters(slot, () => this.solveSoon());
+    this.#saveSettings = made("button", { type: "button", disabled: true, ariaLabel: `Save settings of method ${letter}` }, "Save settings");
+    this.#saveSettings.addEventListener("click", () => this.#settings().catch(page.report));
     this.#canvas = made("canvas", { role: "img" });
     this.#heat = made("canvas", { className: "studio-overlay", hidden: true });
     this.#overlay = made("canvas", { className: "studio-overlay" });
@@ -77,7 +67,7 @@ export class MethodPanel {
     this.#facts = made("dl", { className: "preview-clip" });
     this.#notices = made("div", { role: "status" });
     this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
-    this.#element.append(made("div", { className: "studio-method" }, head, options), frame);
+    this.#element.append(made("div", { className: "studio-method" }, head, ...this.#parameters.elements, made("div", { className: "row" }, this.#saveSettings)), frame);
     if (removable) {
       this.#compare = made("input", { type: "checkbox" });
       this.#compare.addEventListener("change", () => page.player.draw());
@@ -90,6 +80,7 @@ export class MethodPanel {
     }
     this.#element.append(this.#facts, this.#notices);
     this.#controls();
+    this.sourcesChanged();
   }
 
   get element() {
@@ -118,45 +109,30 @@ export class MethodPanel {
 
   // The parameters that the method has.
   #controls() {
-    const { parameters } = this.#page.methods.find(({ name }) => name === this.#select.value);
-    const rows = [];
-    const change = () => this.solveSoon();
-    if (parameters.includes("alpha")) {
-      const value = this.#select.value === "lsts" ? 0.3 : 0.5;
-      const slider = made("input", { type: "range", min: 0, max: 1, step: 0.05, value, name: "alpha" });
-      const shown = made("output", { className: "number" }, value.toFixed(2));
-      slider.addEventListener("input", () => ((shown.textContent = Number(slider.value).toFixed(2)), change()));
-      rows.push(made("label", {}, made("span", {}, "α, thin shell against bounds ", shown), slider));
-    }
-    for (const [name, [label, options]] of Object.entries(NUMBERS)) {
-      if (!parameters.includes(name)) continue;
-      const field = made("input", { type: "number", name, ...options });
-      field.addEventListener("input", change);
-      rows.push(made("label", {}, label, field));
-    }
-    for (const [name, [label, words]] of Object.entries(WORDS)) {
-      if (!parameters.includes(name)) continue;
-      const select = made("select", { name }, new Option("default", ""), ...words.map((word) => new Option(word, word)));
-      select.addEventListener("change", change);
-      rows.push(made("label", {}, label, select));
-    }
-    if (parameters.includes("locked")) {
-      this.#hold = made("input", { type: "checkbox", checked: true });
-      this.#hold.addEventListener("change", change);
-      rows.push(made("label", { className: "preview-check" }, this.#hold, " Hold what no marker sees at 0"));
-    } else this.#hold = null;
-    this.#parameters.replaceChildren(...rows);
-    this.#parameters.parentElement.hidden = rows.length === 0;
+    this.#parameters.choose(this.#page.methods.find(({ name }) => name === this.#select.value));
   }
 
-  /// The method as a study file writes it.
-  spec() {
-    const spec = { method: this.#select.value };
-    for (const field of this.#parameters.querySelectorAll("[name]")) {
-      if (field.value === "" || !field.checkValidity()) continue;
-      spec[field.name] = field.tagName === "SELECT" ? field.value : Number(field.value);
-    }
-    return spec;
+  /// Another avatar, take or map: other blendshapes, other markers.
+  sourcesChanged() {
+    const avatar = this.#page.avatar();
+    if (avatar) this.#parameters.put(avatar, this.#page.faceMarkers());
+  }
+
+  /// The method that learns can be chosen once there is something to learn from.
+  trainingChanged() {
+    const missing = this.#page.trainingMissing();
+    const option = [...this.#select.options].find(({ value }) => value === REGRESSION);
+    option.disabled = missing !== null;
+    option.textContent = missing === null ? REGRESSION : `${REGRESSION} (under Files: ${missing})`;
+    if (this.#select.value === REGRESSION) this.solveSoon();
+  }
+
+  // The method as it was solved last, for a study file and `mimique solve --settings`.
+  async #settings() {
+    if (this.#timer !== null) await this.solve();
+    if (!this.facts) throw new Error(`method ${this.#slot.toUpperCase()}: nothing is solved; mend its parameters first`);
+    const text = `${JSON.stringify(this.facts.settings, null, 2)}\n`;
+    this.#page.save(`${this.#page.name()}-${this.#slot}-settings.json`, text);
   }
 
   /// Takes the method `recorded`, for takes that are weights; or the one before.
@@ -178,11 +154,13 @@ export class MethodPanel {
   /// Solves and shows; resolves when the face stands.
   async solve() {
     const run = ++this.#run;
+    clearTimeout(this.#timer);
+    this.#timer = null;
     this.#veil.hidden = this.facts !== null;
     this.#veil.textContent = "Solving";
     try {
       const started = performance.now();
-      const facts = await desk("solve", this.#slot, JSON.stringify(this.spec()), this.#hold?.checked ?? true);
+      const facts = await desk("solve", this.#slot, JSON.stringify(this.#parameters.spec()), this.#parameters.hold);
       const took = performance.now() - started;
       if (run !== this.#run) return;
       const [weights, pack] = await Promise.all([desk("weights", this.#slot), desk("slotPack", this.#slot)]);
@@ -196,6 +174,9 @@ export class MethodPanel {
       });
       if (run !== this.#run) return;
       this.facts = facts;
+      this.#parameters.problem(null);
+      this.#parameters.solved(facts);
+      this.#saveSettings.disabled = false;
       this.#opening ??= openStage(this.#canvas, LOOK);
       this.#stage = await this.#opening;
       this.#canvas.setAttribute("aria-label", `Animated face, method ${this.#select.value}`);
@@ -207,6 +188,8 @@ export class MethodPanel {
     } catch (error) {
       if (run !== this.#run) return;
       this.facts = null;
+      this.#saveSettings.disabled = true;
+      this.#parameters.problem(String(error.message ?? error));
       this.#veil.hidden = false;
       this.#veil.textContent = String(error.message ?? error);
       this.#facts.replaceChildren();
@@ -216,7 +199,6 @@ export class MethodPanel {
   }
 
   #lastOwn = false;
-  #hold = null;
 
   turn() {
     const [yaw, pitch] = document.getElementById("view").value.split(",").map(Number);

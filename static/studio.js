@@ -6,13 +6,14 @@ import { save, wireExports } from "./studio-export.js";
 import { Matching } from "./studio-matching.js";
 import { MethodPanel } from "./studio-panel.js";
 import { Timeline } from "./studio-timeline.js";
+import { TrainingFiles } from "./studio-training.js";
 
 const $ = (id) => document.getElementById(id);
 const SLOTS = ["a", "b", "c", "d"];
 const SECOND_METHODS = ["box", "lsts-norm", "kouadio"];
 
 const player = new Player();
-const here = { avatar: null, avatars: 0, take: null, map: null, methods: [], segments: [] };
+const here = { avatar: null, avatars: 0, take: null, map: null, methods: [], segments: [], training: null };
 
 const methods = desk("methods").then((all) => (here.methods = all));
 
@@ -43,7 +44,10 @@ const page = {
   report,
   save,
   avatarKey: () => (here.avatar ? `studio-avatar-${here.avatars}` : null),
+  avatar: () => here.avatar,
   avatarShapes: () => here.avatar.shapes.length,
+  faceMarkers: () => (here.map?.markers ?? []).filter(({ vertex }) => vertex !== null).map(({ label }) => label),
+  trainingMissing: () => (here.training ? here.training.missing : "open a range of motion and its weights"),
   showMarkers: () => $("show-markers").checked,
   first: () => player.panels[0],
   panels: () => player.panels,
@@ -58,8 +62,17 @@ const page = {
   mapChanged(state) {
     here.map = state;
     mapFacts();
-    for (const panel of player.panels) panel.solveSoon();
+    for (const panel of player.panels) {
+      panel.sourcesChanged();
+      panel.solveSoon();
+    }
   },
+  trainingChanged(state) {
+    here.training = state;
+    for (const panel of player.panels) panel.trainingChanged();
+  },
+  captureOptions: () => [$("take-unit").value || undefined, Number($("take-rate").value) || undefined],
+  busy,
   changed() {
     const solved = player.panels.filter((panel) => panel.facts);
     $("transport").hidden = $("curves").hidden = $("exports").hidden = solved.length === 0;
@@ -88,6 +101,7 @@ const timeline = new Timeline({
   },
 });
 wireExports(page);
+new TrainingFiles(page);
 
 function choosePart() {
   const segment = here.segments[Number($("range").value)];
@@ -150,6 +164,7 @@ async function sourcesChanged() {
   if (player.panels.length === 0) addPanel(recorded ? "recorded" : "lsts");
   for (const panel of player.panels) {
     if (recorded !== panel.isRecorded()) panel.choose(recorded ? "recorded" : "lsts");
+    panel.sourcesChanged();
   }
   $("add-panel").hidden = player.panels.length >= SLOTS.length;
   await Promise.all(player.panels.map((panel) => panel.solve()));
@@ -188,9 +203,7 @@ async function openFiles(files, as) {
     if (isMap) await openMap(file);
     else if (/\.eaf$/i.test(file.name)) report(new Error(`${file.name}: open it under Expressions`));
     else {
-      const unit = $("take-unit").value || undefined;
-      const rate = Number($("take-rate").value) || undefined;
-      await takeHere(await busy(`Reading ${file.name}`, async () => desk("takeFile", file.name, await bytes(file), unit, rate)));
+      await takeHere(await busy(`Reading ${file.name}`, async () => desk("takeFile", file.name, await bytes(file), ...page.captureOptions())));
     }
   }
 }

@@ -72,6 +72,42 @@ impl Studio {
         text(self.desk.built_in_take(u64::from(actor)))
     }
 
+    /// [`Desk::training_take`].
+    #[wasm_bindgen(js_name = trainingTake)]
+    pub fn training_take(
+        &mut self,
+        file: &str,
+        bytes: &[u8],
+        unit: Option<String>,
+        rate_hz: Option<f64>,
+    ) -> Result<String, JsError> {
+        self.desk.training_take(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
+    }
+
+    /// [`Desk::training_weights`].
+    #[wasm_bindgen(js_name = trainingWeights)]
+    pub fn training_weights(&mut self, file: &str, bytes: &[u8]) -> Result<String, JsError> {
+        self.desk.training_weights(file, bytes).map(text).map_err(error)
+    }
+
+    /// [`Desk::built_in_training`].
+    #[wasm_bindgen(js_name = builtInTraining)]
+    pub fn built_in_training(&mut self, actor: u32) -> String {
+        text(self.desk.built_in_training(u64::from(actor)))
+    }
+
+    /// [`Desk::set_training_neutral`].
+    #[wasm_bindgen(js_name = setTrainingNeutral)]
+    pub fn set_training_neutral(&mut self, first: usize, end: usize) -> Result<String, JsError> {
+        self.desk.set_training_neutral(first, end).map(text).map_err(error)
+    }
+
+    /// [`Desk::training_state`].
+    #[wasm_bindgen(js_name = trainingState)]
+    pub fn training_state(&self) -> String {
+        text(self.desk.training_state())
+    }
+
     /// [`Desk::map_file`].
     #[wasm_bindgen(js_name = mapFile)]
     pub fn map_file(&mut self, file: &str, map: &str) -> Result<String, JsError> {
@@ -228,7 +264,7 @@ impl Studio {
     }
 }
 
-/// Every method that the studio solves by, with the names of its parameters, as JSON:
+/// Every method with the names of its parameters, as JSON:
 /// `[{"name": "lsts", "parameters": ["alpha", ...]}, ...]`.
 #[wasm_bindgen]
 pub fn methods() -> String {

@@ -14,6 +14,7 @@ use mimique_stimulus::{
 use serde_json::{Value, json};
 
 use crate::solved::Solved;
+use crate::training::TrainingFiles;
 
 /// What is wrong: file or part, place, value, remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +42,7 @@ pub struct Desk {
     pub(crate) map: MarkerMap,
     pub(crate) solved: BTreeMap<String, Solved>,
     pub(crate) segments: Vec<TakeSegment>,
+    pub(crate) training: TrainingFiles,
 }
 
 /// An avatar and its skin.
@@ -61,16 +63,16 @@ pub(crate) enum Take {
     Weights { name: String, table: WeightsTable },
 }
 
-/// The methods that need nothing but an avatar, a take and a map.
+/// Every method with its parameters.
 pub fn methods() -> Value {
-    let methods = Method::ALL.iter().filter(|m| **m != Method::Regression);
+    let methods = Method::ALL.iter();
     methods.map(|m| json!({"name": m.to_string(), "parameters": m.parameters()})).collect()
 }
 
 /// Seeds of actors, so that the actor is never the avatar's own person.
-const ACTORS: u64 = 0x6163_746f_7273_0000;
+pub(crate) const ACTORS: u64 = 0x6163_746f_7273_0000;
 /// Noise of the built-in actor's sensors, millimetres.
-const NOISE_MM: f64 = 0.1;
+pub(crate) const NOISE_MM: f64 = 0.1;
 
 impl Desk {
     /// An empty desk.
@@ -175,16 +177,7 @@ impl Desk {
             let table = WeightsTable::from_recording(bytes).map_err(|e| Problem::of(file, e))?;
             return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
         }
-        let unit = unit
-            .map(|word| match word {
-                "mm" => Ok(LengthUnit::Millimetre),
-                "cm" => Ok(LengthUnit::Centimetre),
-                "m" => Ok(LengthUnit::Metre),
-                _ => Err(Problem::of("unit", format!("{word:?}; use m, cm or mm"))),
-            })
-            .transpose()?;
-        let recording = mimique_mocap::read_recording(bytes, &ReadOptions { unit, rate_hz })
-            .map_err(|e| Problem::of(file, e))?;
+        let recording = read_capture(file, bytes, unit, rate_hz)?;
         let take = Take::Markers { name: file.to_owned(), recording, head: Vec::new() };
         Ok(self.put_take(take))
     }
@@ -278,4 +271,23 @@ impl Desk {
             None => Err(Problem("no capture yet; open one first".to_owned())),
         }
     }
+}
+
+/// The capture of a file; `unit` and `rate_hz` are for files that do not say them.
+pub(crate) fn read_capture(
+    file: &str,
+    bytes: &[u8],
+    unit: Option<&str>,
+    rate_hz: Option<f64>,
+) -> Result<Recording, Problem> {
+    let unit = unit
+        .map(|word| match word {
+            "mm" => Ok(LengthUnit::Millimetre),
+            "cm" => Ok(LengthUnit::Centimetre),
+            "m" => Ok(LengthUnit::Metre),
+            _ => Err(Problem::of("unit", format!("{word:?}; use m, cm or mm"))),
+        })
+        .transpose()?;
+    mimique_mocap::read_recording(bytes, &ReadOptions { unit, rate_hz })
+        .map_err(|e| Problem::of(file, e))
 }

@@ -20,6 +20,7 @@ mod expressions;
 mod markers;
 mod picture;
 mod solved;
+mod training;
 
 pub use bindings::Studio;
 pub use desk::{Desk, Problem};

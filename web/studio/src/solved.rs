@@ -31,7 +31,9 @@ pub(crate) struct Solved {
 
 impl Desk {
     /// Solves the take by a method (a `MethodSpec` as JSON) and keeps it under `slot`; answers facts
-    /// and the report's summary. With `hold_unseen`, shapes that move no marker stay at 0.
+    /// and the report's summary. With `hold_unseen`, shapes that move no marker stay at 0, except
+    /// those that the method bounds. `settings` of the facts are the method as it was solved, with
+    /// every shape that was held: what `mimique solve --settings` takes.
     ///
     /// # Errors
     /// [`Problem`]: avatar, take or map are missing or do not fit, or the method does not solve.
@@ -41,7 +43,7 @@ impl Desk {
         spec.validate().map_err(|e| Problem::of("method", e))?;
         let face = self.face()?;
         lock_shapes(&mut spec, &face.read.locked);
-        let (solved, facts) = match (&self.take, spec.method) {
+        let (solved, mut facts) = match (&self.take, spec.method) {
             (Some(Take::Weights { name, table }), Method::Recorded) => recorded(face, name, table)?,
             (Some(Take::Weights { name, .. }), _) => {
                 let what = "holds weights, no markers; take the method recorded";
@@ -52,18 +54,16 @@ impl Desk {
                     "recorded needs weights; open a Live Link Face file, or a CSV of weights";
                 return Err(Problem::of("method", what));
             }
-            (_, Method::Regression) => {
-                let what = "regression needs a take to learn from; use mimique solve --training";
-                return Err(Problem::of("method", what));
-            }
             _ => {
-                let unseen = if hold_unseen { self.unseen(face)? } else { Vec::new() };
+                let mut unseen = if hold_unseen { self.unseen(face)? } else { Vec::new() };
+                unseen.retain(|shape| !spec.bounds.contains_key(shape));
                 lock_shapes(&mut spec, &unseen);
                 let (solved, mut facts) = self.fitted(face, &spec)?;
                 facts["held"] = json!(unseen);
                 (solved, facts)
             }
         };
+        facts["settings"] = json!(spec);
         self.solved.insert(slot.to_owned(), solved);
         Ok(facts)
     }
@@ -91,9 +91,13 @@ impl Desk {
             let what = "empty; suggest one, or open one";
             return Err(Problem::of("marker map", what));
         }
-        let done =
-            solve_take(&face.skin, capture, &self.map, spec, &TakeOptions::default(), &mut || 0.0)
-                .map_err(|e| Problem::of("solve", e))?;
+        let training = match spec.method {
+            Method::Regression => Some(Box::new(self.training()?)),
+            _ => None,
+        };
+        let options = TakeOptions { training, ..TakeOptions::default() };
+        let done = solve_take(&face.skin, capture, &self.map, spec, &options, &mut || 0.0)
+            .map_err(|e| Problem::of("solve", e))?;
         let SolvedCapture { table, surface, report, sites, displacements } = done;
         let avatar = match &surface {
             None => None,

@@ -1,5 +1,8 @@
 //! The studio's desk as the page uses it.
 
+use mimique_face::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
+use mimique_mocap::{Capture, LengthUnit};
+use mimique_stimulus::WeightsTable;
 use mimique_test_support::real_data;
 use mimique_web_studio::Desk;
 use serde_json::Value;
@@ -91,7 +94,7 @@ fn the_map_goes_out_and_comes_back() {
         (desk.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
         (
             desk.solve("a", r#"{"method": "regression"}"#, true).unwrap_err(),
-            "mimique solve --training",
+            "training: open a range of motion and its weights",
         ),
         (desk.solve("a", r#"{"method": "lasso"}"#, true).unwrap_err(), "method: "),
         (desk.weights("c").unwrap_err(), "c: nothing is solved"),
@@ -148,6 +151,103 @@ fn what_is_exported_is_what_was_solved() {
     let (a, b) = (desk.weights("a").unwrap(), again.weights("a").unwrap());
     assert_eq!(a.len(), b.len());
     assert!(a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-6));
+}
+
+#[test]
+fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
+    let mut desk = built_in();
+    let plain = desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let shapes: Vec<&str> =
+        plain["shapes"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect();
+    let column = |weights: &[f32], name: &str| -> Vec<f32> {
+        let k = shapes.iter().position(|s| *s == name).unwrap();
+        weights.iter().skip(k).step_by(shapes.len()).copied().collect()
+    };
+    let before = column(&desk.weights("a").unwrap(), "jawOpen");
+    assert!(before.iter().any(|&w| w > 0.3) && before.iter().any(|&w| w < 0.1));
+
+    // Gaze moves no marker, but its bounds were given: it is not held.
+    let method = r#"{"method": "lsts", "locked": ["mouthPucker"], "importance": {"chin": 0.0},
+        "bounds": {"jawOpen": [0.1, 0.2], "eyeLookInLeft": [0.25, 0.25]}}"#;
+    let facts = desk.solve("b", method, true).unwrap();
+    let weights = desk.weights("b").unwrap();
+    assert!(column(&weights, "jawOpen").iter().all(|w| (0.1..=0.2).contains(w)));
+    assert!(column(&weights, "mouthPucker").iter().all(|&w| w == 0.0));
+    assert!(column(&weights, "eyeLookInLeft").iter().all(|&w| w == 0.25));
+    let settings = &facts["settings"];
+    let locked = settings["locked"].as_array().unwrap();
+    assert!(locked.contains(&"mouthPucker".into()) && locked.contains(&"eyeLookInRight".into()));
+    assert!(!locked.contains(&"eyeLookInLeft".into()), "{settings}");
+    // Without the studio's own holding they are the whole method.
+    let again = desk.solve("c", &settings.to_string(), false).unwrap();
+    assert_eq!(again["weights_hash"], facts["weights_hash"]);
+    assert_ne!(again["weights_hash"], plain["weights_hash"]);
+
+    for (method, part) in [
+        (
+            r#"{"method": "lsts", "bounds": {"jawOpen": [1, 0]}}"#,
+            "method: bounds.jawOpen: is [1, 0]",
+        ),
+        (r#"{"method": "lsts", "importance": {"chin": -1}}"#, "method: importance.chin: is -1"),
+        (r#"{"method": "lsts", "bounds": {"jaw": [0, 1]}}"#, "jaw"),
+    ] {
+        let problem = desk.solve("a", method, true).unwrap_err();
+        assert!(problem.0.contains(part), "{problem}");
+    }
+}
+
+#[test]
+fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
+    let mut desk = built_in();
+    let method = r#"{"method": "regression", "basisVectors": 40}"#;
+    assert_eq!(desk.training_state()["missing"], "open a range of motion and its weights");
+    let state = desk.built_in_training(1);
+    assert_eq!(state["missing"], Value::Null);
+    let facts = desk.solve("a", method, true).unwrap();
+    let built_in_weights = desk.weights("a").unwrap();
+    assert!(number(&facts["summary"]["residual_rms_mm"]) < 5.0, "{}", facts["summary"]);
+
+    // The same actor's range of motion as files.
+    let spec = HeadSpec {
+        identity: Identity::from_seed(1 ^ 0x6163_746f_7273_0000),
+        density: Density::default(),
+    };
+    let sites = marker_sites(&spec);
+    let take = range_of_motion_take(&build_head(&spec), &sites, 1 ^ 0x726f_6d00_0000_0000, 0.1);
+    let frames = take.frames();
+    let table = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
+    let capture = Capture {
+        labels: take.labels,
+        rate_hz: take.rate_hz,
+        first_frame: 0,
+        unit: LengthUnit::Millimetre,
+        positions: take.positions,
+        notes: vec![],
+    };
+    let text = mimique_mocap::write_csv(&capture).unwrap();
+    let mut desk = built_in();
+    let short: String = table.to_csv().lines().take(100).map(|line| format!("{line}\n")).collect();
+    let state = desk.training_weights("rom-weights.csv", short.as_bytes()).unwrap();
+    assert_eq!(state["missing"], "open the capture that these weights belong to");
+    let state = desk.training_take("rom.csv", text.as_bytes(), None, None).unwrap();
+    let missing = format!("rom.csv has {frames} frames, rom-weights.csv 99; give a row");
+    assert!(state["missing"].as_str().unwrap().starts_with(&missing), "{state}");
+    assert!(desk.solve("a", method, true).unwrap_err().0.contains("rom-weights.csv 99"));
+    let state = desk.training_weights("rom-weights.csv", table.to_csv().as_bytes()).unwrap();
+    assert_eq!((&state["missing"], &state["neutral"]), (&Value::Null, &serde_json::json!([0, 60])));
+    desk.set_training_neutral(take.neutral[0], take.neutral[1]).unwrap();
+    desk.solve("a", method, true).unwrap();
+    let weights = desk.weights("a").unwrap();
+    assert_eq!(weights, built_in_weights);
+    assert!(weights.iter().any(|&w| w > 0.3));
+
+    for (problem, part) in [
+        (desk.set_training_neutral(5, 5).unwrap_err(), "rom.csv: neutral frames 5:5 of"),
+        (desk.training_weights("w.csv", b"frame,time\n").unwrap_err(), "w.csv: "),
+        (desk.training_take("t.c3d", b"", None, None).unwrap_err(), "t.c3d: "),
+    ] {
+        assert!(problem.0.contains(part), "{problem}");
+    }
 }
 
 #[test]

@@ -34,6 +34,14 @@ pub struct Args {
     /// recorded
     #[arg(long, default_value = "lsts")]
     pub(super) method: String,
+    /// Method and all its parameters as JSON, as the studio saves them, instead of the options below
+    /// that say one parameter each
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = [
+        "method", "alpha", "kappa", "k_s", "k_b", "s", "soft_bounds", "eps", "unit", "laplacian",
+        "association", "sigma", "bounds_weight", "stiffness", "hold", "inference", "basis_vectors",
+        "length_scale", "signal", "noise", "head_lowpass", "lock", "bounds", "importance",
+    ])]
+    pub(super) settings: Option<PathBuf>,
     /// Weight of the thin shell against the bounds, 0 to 1 (by default 0.3 for lsts, else 0.5)
     #[arg(long)]
     pub(super) alpha: Option<f64>,

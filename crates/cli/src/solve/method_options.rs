@@ -1,8 +1,9 @@
-//! The method and its parameters, from the options.
+//! The method and its parameters, from the options or from a file of settings.
 
+use std::path::Path;
 use std::str::FromStr as _;
 
-use anyhow::anyhow;
+use anyhow::{Context as _, anyhow};
 use mimique_solver::{Method, MethodSpec};
 use serde_json::json;
 
@@ -11,6 +12,9 @@ use super::values::unique;
 
 /// The method that the options name, checked.
 pub(super) fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
+    if let Some(file) = &args.settings {
+        return settings(file);
+    }
     let option =
         |e: mimique_solver::SpecError| anyhow!("--{}: {}", option_name(&e.field), e.message);
     let method = Method::from_str(&args.method).map_err(option)?;
@@ -68,6 +72,16 @@ pub(super) fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
         );
     }
     spec.validate().map_err(option)?;
+    Ok(spec)
+}
+
+/// The method of a file of settings, checked.
+fn settings(file: &Path) -> anyhow::Result<MethodSpec> {
+    let text = std::fs::read_to_string(file)
+        .with_context(|| format!("{}: cannot be read; check the path", file.display()))?;
+    let spec: MethodSpec = serde_json::from_str(&text)
+        .map_err(|e| anyhow!("{}: {e}; save the settings again in the studio", file.display()))?;
+    spec.validate().map_err(|e| anyhow!("{}: {e}", file.display()))?;
     Ok(spec)
 }
 
@@ -149,6 +163,37 @@ mod tests {
         let words = ["--method", "regression", "--basis-vectors", "50", "--noise", "0.02"];
         let learnt = spec(&words).unwrap();
         assert_eq!((learnt.basis_vectors, learnt.noise), (Some(50), Some(0.02)));
+    }
+
+    #[test]
+    fn settings_of_a_file_are_the_whole_method() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.json");
+        let path = file.to_str().unwrap();
+        let of = |text: &str, more: &[&str]| {
+            std::fs::write(&file, text).unwrap();
+            spec(&[&["--settings", path], more].concat())
+        };
+        let text = r#"{"method": "box", "locked": ["a, b"], "bounds": {"jawOpen": [0.1, 0.5]}}"#;
+        let found = of(text, &[]).unwrap();
+        assert_eq!(
+            (found.method, found.locked.as_slice()),
+            (Method::Box, &["a, b".to_owned()][..])
+        );
+        assert_eq!(found.bounds.get("jawOpen"), Some(&[0.1, 0.5]));
+        for (text, part) in [
+            (r#"{"method": "box", "alpha": 0.3}"#, "a.json: alpha: 'box' does not use it"),
+            (r#"{"method": "box", "lock": []}"#, "a.json: unknown field `lock`"),
+            (r#"{"method": "box", "bounds": {"a": [1, 0]}}"#, "a.json: bounds.a: is [1, 0]"),
+        ] {
+            let error = of(text, &[]).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        }
+        let error = of(text, &["--alpha", "0.3"]).unwrap_err().to_string();
+        assert!(error.contains("--settings"), "{error}");
+        std::fs::remove_file(&file).unwrap();
+        let error = spec(&["--settings", path]).unwrap_err().to_string();
+        assert!(error.contains("a.json: cannot be read"), "{error}");
     }
 
     #[test]

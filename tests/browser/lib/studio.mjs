@@ -1,0 +1,68 @@
+// The studio's page in tests: facts of a panel, sections, downloads, what axe finds.
+
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+
+const require = createRequire(import.meta.url);
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+
+/** A row of facts of a panel. */
+function row(page, panel, name) {
+  return page.locator(`section[aria-label="Method ${panel}"] .preview-clip div`, { hasText: name }).first();
+}
+
+/** The number in a fact of a panel, such as its residual. */
+export async function fact(page, panel, name) {
+  await row(page, panel, name).waitFor({ timeout: 120_000 });
+  return Number.parseFloat(await row(page, panel, name).locator("dd").textContent());
+}
+
+/** The hash of a panel's weights, once it is another than `old`. */
+export async function weightsHash(page, panel, old = "") {
+  const shown = await page.waitForFunction(
+    ([panel, old]) => {
+      const rows = [...document.querySelectorAll(`section[aria-label="Method ${panel}"] .preview-clip div`)];
+      const text = rows.find((each) => each.textContent.startsWith("Weights"))?.lastChild.textContent;
+      return text && text !== old ? text : null;
+    },
+    [panel, old],
+    { timeout: 120_000 },
+  );
+  return shown.jsonValue();
+}
+
+/** The bytes of a file that `act` saves. */
+export async function download(page, act) {
+  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 180_000 }), act()]);
+  return readFileSync(await file.path());
+}
+
+/** What axe finds against WCAG 2.2 AA. */
+export async function violations(page) {
+  await page.evaluate(axe);
+  return page.evaluate(async () => {
+    const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
+    const { violations } = await globalThis.axe.run(document, { runOnly: tags });
+    // On a narrow screen an expression's box is narrow; the table below it does the same (WCAG 2.5.8,
+    // exception "equivalent").
+    const small = (id, node) => id === "target-size" && /class="segment"/.test(node.html);
+    return violations
+      .map(({ id, nodes }) => ({ id, nodes: nodes.filter((node) => !small(id, node)) }))
+      .filter(({ nodes }) => nodes.length > 0)
+      .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
+  });
+}
+
+/** Opens a section that is folded. */
+export async function unfold(page, id) {
+  if (!(await page.locator(`#${id}`).evaluate((section) => section.open))) await page.locator(`#${id} > summary`).click();
+}
+
+/** The built-in head and actor, solved. */
+export async function builtIn(page, server) {
+  await page.goto(`${server.url}?backend=webgl2`);
+  await page.click("#avatar-built-in");
+  await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("51 shapes"));
+  await page.click("#take-built-in");
+  await fact(page, "A", "Residual");
+}

@@ -1,0 +1,161 @@
+//! What `regression` learns from: a range of motion, and the weights that were played in it.
+
+use std::ops::Range;
+
+use mimique_face::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
+use mimique_mocap::{Capture, LengthUnit};
+use mimique_stimulus::{Training, WeightsTable};
+use serde_json::{Value, json};
+
+use crate::desk::{ACTORS, Desk, NOISE_MM, Problem, read_capture};
+
+/// Neutral frames of a training take where nobody names others, as in `mimique solve`.
+const NEUTRAL: Range<usize> = 0..60;
+/// A range of motion has noise of its own.
+const TRAINING: u64 = 0x726f_6d00_0000_0000;
+
+/// The two files, each with its name.
+#[derive(Debug, Default)]
+pub(crate) struct TrainingFiles {
+    take: Option<(String, Capture)>,
+    weights: Option<(String, WeightsTable)>,
+    neutral: Option<Range<usize>>,
+    /// Labels of the head markers, of the built-in actor; else those of the take to be solved.
+    head: Option<Vec<String>>,
+}
+
+impl Desk {
+    /// Takes the capture that `regression` learns from.
+    ///
+    /// # Errors
+    /// [`Problem`] with the file's name.
+    pub fn training_take(
+        &mut self,
+        file: &str,
+        bytes: &[u8],
+        unit: Option<&str>,
+        rate_hz: Option<f64>,
+    ) -> Result<Value, Problem> {
+        let capture = read_capture(file, bytes, unit, rate_hz)?.capture;
+        self.training.take = Some((file.to_owned(), capture));
+        self.training.neutral = None;
+        self.training.head = None;
+        Ok(self.training_state())
+    }
+
+    /// Takes the weights that were played in it: CSV or Live Link Face, a row a frame.
+    ///
+    /// # Errors
+    /// [`Problem`] with the file's name.
+    pub fn training_weights(&mut self, file: &str, bytes: &[u8]) -> Result<Value, Problem> {
+        let table = WeightsTable::from_recording(bytes).map_err(|e| Problem::of(file, e))?;
+        self.training.weights = Some((file.to_owned(), table));
+        Ok(self.training_state())
+    }
+
+    /// Takes the built-in actor's range of motion, two minutes with every shape in it.
+    pub fn built_in_training(&mut self, actor: u64) -> Value {
+        let spec =
+            HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() };
+        let take = range_of_motion_take(
+            &build_head(&spec),
+            &marker_sites(&spec),
+            actor ^ TRAINING,
+            NOISE_MM,
+        );
+        let weights = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
+        let capture = Capture {
+            labels: take.labels,
+            rate_hz: take.rate_hz,
+            first_frame: 0,
+            unit: LengthUnit::Millimetre,
+            positions: take.positions,
+            notes: Vec::new(),
+        };
+        let name = || "built-in actor".to_owned();
+        self.training = TrainingFiles {
+            take: Some((name(), capture)),
+            weights: Some((name(), weights)),
+            neutral: Some(take.neutral[0]..take.neutral[1]),
+            head: Some(take.head_labels),
+        };
+        self.training_state()
+    }
+
+    /// Names the neutral frames of the training take, counted from 0, `end` not included.
+    ///
+    /// # Errors
+    /// [`Problem`]: no training take yet, or not frames of it.
+    pub fn set_training_neutral(&mut self, first: usize, end: usize) -> Result<Value, Problem> {
+        let Some((name, capture)) = &self.training.take else {
+            return Err(Problem::of("training", "no take yet; open one first"));
+        };
+        let frames = capture.frames();
+        if first >= end || end > frames {
+            let what =
+                format!("neutral frames {first}:{end} of {frames}; give a range inside the take");
+            return Err(Problem::of(name, what));
+        }
+        self.training.neutral = Some(first..end);
+        Ok(self.training_state())
+    }
+
+    /// What is there to learn from; `missing` says what is not, null once a regression can learn.
+    pub fn training_state(&self) -> Value {
+        let TrainingFiles { take, weights, .. } = &self.training;
+        let neutral = take.as_ref().map(|(_, capture)| self.training_neutral(capture));
+        json!({
+            "take": take.as_ref().map(|(name, capture)| json!({
+                "file": name,
+                "markers": capture.labels.len(),
+                "frames": capture.frames(),
+                "rate_hz": capture.rate_hz,
+            })),
+            "weights": weights.as_ref().map(|(name, table)| json!({
+                "file": name,
+                "frames": table.frames.len(),
+                "columns": table.shape_names.len(),
+            })),
+            "neutral": neutral.map(|n| [n.start, n.end]),
+            "missing": self.missing_training(),
+        })
+    }
+
+    fn missing_training(&self) -> Option<String> {
+        match (&self.training.take, &self.training.weights) {
+            (None, None) => Some("open a range of motion and its weights".to_owned()),
+            (None, Some(_)) => Some("open the capture that these weights belong to".to_owned()),
+            (Some(_), None) => Some("open the weights that were played in it".to_owned()),
+            (Some((take, capture)), Some((name, table))) => {
+                let (frames, rows) = (capture.frames(), table.frames.len());
+                (frames != rows).then(|| {
+                    format!(
+                        "{take} has {frames} frames, {name} {rows}; give a row of weights a frame"
+                    )
+                })
+            }
+        }
+    }
+
+    fn training_neutral(&self, capture: &Capture) -> Range<usize> {
+        self.training.neutral.clone().unwrap_or(NEUTRAL.start..NEUTRAL.end.min(capture.frames()))
+    }
+
+    /// What a regression learns from.
+    pub(crate) fn training(&self) -> Result<Training, Problem> {
+        if let Some(missing) = self.missing_training() {
+            return Err(Problem::of("training", missing));
+        }
+        let TrainingFiles { take: Some((_, capture)), weights: Some((_, weights)), .. } =
+            &self.training
+        else {
+            return Err(Problem::of("training", "open a range of motion and its weights"));
+        };
+        Ok(Training {
+            capture: capture.clone(),
+            weights: weights.clone(),
+            neutral: self.training.neutral.clone(),
+            head: self.training.head.clone(),
+        })
+    }
+}
