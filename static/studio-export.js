@@ -1,5 +1,6 @@
 // What leaves the studio: tables, animations, pictures, films. All of it is made in the browser.
 import { desk } from "./studio-desk.js";
+import { filmed } from "./studio-webm.js";
 
 const $ = (id) => document.getElementById(id);
 const SHEET_FRAMES = 8;
@@ -14,6 +15,10 @@ export function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }
 
+/// An export that was asked to stop.
+class Stopped extends Error {}
+let isStopped = false;
+
 /// `page`: {panel(slot), panels(), part() -> [ms, ms], pause(), name(), report(error)}
 export function wireExports(page) {
   const on = (id, act) => {
@@ -21,18 +26,21 @@ export function wireExports(page) {
       const panel = page.panel($("export-slot").value);
       if (!panel?.facts) return page.report(new Error("export: nothing is solved yet"));
       page.pause();
-      const buttons = [...$("exports").querySelectorAll("button")];
+      const buttons = [...$("exports").querySelectorAll("button:not(#export-stop)")];
       for (const button of buttons) button.disabled = true;
+      isStopped = false;
       try {
         await act(panel);
       } catch (error) {
-        page.report(error);
+        if (!(error instanceof Stopped)) page.report(error);
       } finally {
-        progress(null);
+        $("export-running").hidden = true;
         for (const button of buttons) button.disabled = false;
+        $(id).focus();
       }
     });
   };
+  $("export-stop").addEventListener("click", () => (isStopped = true));
   const frames = (panel) => {
     const [from, to] = page.part();
     return [panel.frameAt(from), panel.frameAt(to) + 1];
@@ -44,9 +52,11 @@ export function wireExports(page) {
   on("export-sheet", () => sheet(page));
 }
 
+// Tells how much is done, and ends the work if somebody wants it to end.
 function progress(part) {
-  $("export-progress").hidden = part === null;
-  $("export-progress").value = part ?? 0;
+  if (isStopped) throw new Stopped();
+  $("export-running").hidden = false;
+  $("export-progress").value = part;
 }
 
 function times(page) {
@@ -62,11 +72,20 @@ async function picture(panel, timeMs) {
   return await createImageBitmap(panel.canvas);
 }
 
-async function png(bitmaps, columns, size) {
+async function png(bitmaps, columns, size, captions = []) {
   const [width, height] = size;
   const canvas = new OffscreenCanvas(width * columns, height * Math.ceil(bitmaps.length / columns));
   const context = canvas.getContext("2d");
   bitmaps.forEach((bitmap, i) => context.drawImage(bitmap, (i % columns) * width, Math.floor(i / columns) * height, width, height));
+  context.font = "13px system-ui, sans-serif";
+  context.lineWidth = 3;
+  context.strokeStyle = "rgb(0 0 0 / 70%)";
+  context.fillStyle = "#ffffff";
+  captions.forEach((words, i) => {
+    const at = [(i % columns) * width + 6, Math.floor(i / columns) * height + 17];
+    context.strokeText(words, ...at);
+    context.fillText(words, ...at);
+  });
   const blob = await canvas.convertToBlob({ type: "image/png" });
   return new Uint8Array(await blob.arrayBuffer());
 }
@@ -87,56 +106,26 @@ async function pictures(panel, page) {
 async function sheet(page) {
   const [from, to] = page.part();
   const panels = page.panels().filter((panel) => panel.facts);
-  const bitmaps = [];
+  const [bitmaps, captions] = [[], []];
   for (const panel of panels) {
     for (let i = 0; i < SHEET_FRAMES; i++) {
-      bitmaps.push(await picture(panel, from + ((to - from) * i) / (SHEET_FRAMES - 1)));
+      const timeMs = from + ((to - from) * i) / (SHEET_FRAMES - 1);
+      bitmaps.push(await picture(panel, timeMs));
+      captions.push(`${i === 0 ? `${panel.title()}, ` : ""}${(timeMs / 1000).toFixed(2)} s`);
       progress(bitmaps.length / (panels.length * SHEET_FRAMES));
     }
   }
-  save(`${page.name()}-sheet.png`, await png(bitmaps, SHEET_FRAMES, [240, 240]));
+  save(`${page.name()}-sheet.png`, await png(bitmaps, SHEET_FRAMES, [240, 240], captions));
   for (const bitmap of bitmaps) bitmap.close();
 }
 
-// The browser's own encoder, each picture for its time: the film keeps its rate however long a
-// picture takes to draw.
 async function film(panel, page) {
-  if (!globalThis.MediaRecorder) throw new Error("film: this browser has no encoder; export pictures instead");
   const at = times(page);
-  const bitmap = await picture(panel, at[0]);
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
-  const context = canvas.getContext("2d");
-  context.drawImage(bitmap, 0, 0);
-  const stream = canvas.captureStream(0);
-  const [track] = stream.getVideoTracks();
-  const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each));
-  if (!type) throw new Error("film: this browser encodes no WebM; export pictures instead");
-  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8_000_000 });
-  const parts = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
-  const ended = new Promise((resolve, reject) => {
-    recorder.onstop = resolve;
-    recorder.onerror = ({ error }) => reject(new Error(`film: ${error?.message ?? "the encoder failed"}`));
+  const bytes = await filmed({
+    count: at.length,
+    rate: Number($("export-rate").value),
+    picture: (i) => picture(panel, at[i]),
+    done: (i) => progress((i + 1) / at.length),
   });
-  // Drawn ahead, so that the recording runs at the film's own pace.
-  const bitmaps = [bitmap];
-  for (const [i, timeMs] of at.entries()) {
-    if (i > 0) bitmaps.push(await picture(panel, timeMs));
-    progress(0.7 * ((i + 1) / at.length));
-  }
-  recorder.start();
-  const started = performance.now();
-  for (const [i, each] of bitmaps.entries()) {
-    const due = started + at[i] - at[0];
-    while (performance.now() < due) await new Promise((resolve) => setTimeout(resolve, Math.max(0, due - performance.now())));
-    context.drawImage(each, 0, 0);
-    track.requestFrame();
-    each.close();
-    progress(0.7 + 0.3 * ((i + 1) / at.length));
-  }
-  await new Promise((resolve) => setTimeout(resolve, 1000 / Number($("export-rate").value)));
-  recorder.stop();
-  await ended;
-  save(`${page.name()}-${panel.slot}.webm`, new Blob(parts, { type }));
+  save(`${page.name()}-${panel.slot}.webm`, bytes);
 }

@@ -67,7 +67,7 @@ export class MethodPanel {
     this.#facts = made("dl", { className: "preview-clip" });
     this.#notices = made("div", { role: "status" });
     this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
-    this.#element.append(made("div", { className: "studio-method" }, head, ...this.#parameters.elements, made("div", { className: "row" }, this.#saveSettings)), frame);
+    this.#element.append(made("div", { className: "studio-method" }, head, this.#parameters.element), frame);
     if (removable) {
       this.#compare = made("input", { type: "checkbox" });
       this.#compare.addEventListener("change", () => page.player.draw());
@@ -78,7 +78,9 @@ export class MethodPanel {
         made("div", { className: "studio-heat-scale" }, "0", made("i", {}), this.#scale, "mm"),
       );
     }
-    this.#element.append(this.#facts, this.#notices);
+    // The tables stand below the face, so that it is seen while they are filled in.
+    const save = made("div", { className: "row" }, this.#saveSettings);
+    this.#element.append(made("div", { className: "studio-method" }, ...this.#parameters.tables, save), this.#facts, this.#notices);
     this.#controls();
     this.sourcesChanged();
   }

@@ -33,7 +33,6 @@ export class Parameters {
   #method = "";
   #parameters = [];
   #fields = made("div", { className: "parameters" });
-  #folded;
   #shapes;
   #markers;
   #hold = null;
@@ -46,8 +45,8 @@ export class Parameters {
     const owner = `method ${slot.toUpperCase()}`;
     this.#shapes = new ShapeTable(owner, changed);
     this.#markers = new MarkerTable(owner, changed);
-    this.#folded = made("details", {}, made("summary", {}, "Parameters"), this.#fields);
-    this.elements = [this.#folded, this.#shapes.element, this.#markers.element];
+    this.element = made("details", {}, made("summary", {}, "Parameters"), this.#fields);
+    this.tables = [this.#shapes.element, this.#markers.element];
   }
 
   /// Whether what no marker sees is held at 0.
@@ -79,7 +78,7 @@ export class Parameters {
       rows.push(made("label", { className: "preview-check" }, this.#hold, " Hold what no marker sees at 0"));
     } else this.#hold = null;
     this.#fields.replaceChildren(...rows);
-    this.#folded.hidden = rows.length === 0;
+    this.element.hidden = rows.length === 0;
     this.#shapes.choose(parameters, this.#ends());
     this.#markers.choose(parameters);
   }
@@ -161,7 +160,7 @@ export class Parameters {
       problem.textContent = own ? text.slice(field.dataset.parameter.length + 2) : "";
       problem.hidden = !own;
       for (const input of field.querySelectorAll("[name]")) describe(input, problem, own);
-      if (own) this.#folded.open = true;
+      if (own) this.element.open = true;
     }
     this.#shapes.problem(text);
     this.#markers.problem(text);

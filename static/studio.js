@@ -150,6 +150,7 @@ async function takeHere(facts) {
 async function sourcesChanged() {
   $("matching").hidden = !here.avatar || here.take?.kind !== "markers";
   $("expressions").hidden = !here.take;
+  $("next").textContent = here.avatar ? (here.take ? "" : "Now open a capture, or take the built-in actor.") : "Now open an avatar, or take the built-in head.";
   if (!here.avatar) return;
   if (here.take?.kind === "markers") {
     here.map = await desk("mapState");

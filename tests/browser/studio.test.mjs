@@ -3,51 +3,17 @@
 
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { mimique, preview, root } from "./lib/server.mjs";
+import { builtIn, download, fact, unfold, violations, weightsHash } from "./lib/studio.mjs";
 
-const require = createRequire(import.meta.url);
-const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
 const head = join(data, "ict-facekit/ict-facekit.glb");
 const noBrowser = skip(!executable && "Chromium not found");
 const noData = noBrowser || skip(!existsSync(head) && `real data not found: ${head}`);
-
-/** The number in a fact of a panel, such as its residual. */
-async function fact(page, panel, name) {
-  const row = page.locator(`section[aria-label="Method ${panel}"] .preview-clip div`, { hasText: name }).first();
-  await row.waitFor({ timeout: 120_000 });
-  return Number.parseFloat(await row.locator("dd").textContent());
-}
-
-async function download(page, act) {
-  const [file] = await Promise.all([page.waitForEvent("download", { timeout: 180_000 }), act()]);
-  return readFileSync(await file.path());
-}
-
-async function violations(page) {
-  await page.evaluate(axe);
-  return page.evaluate(async () => {
-    const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
-    const { violations } = await globalThis.axe.run(document, { runOnly: tags });
-    // On a narrow screen an expression's box is narrow; the table below it does the same (WCAG 2.5.8,
-    // exception "equivalent").
-    const small = (id, node) => id === "target-size" && /class="segment"/.test(node.html);
-    return violations
-      .map(({ id, nodes }) => ({ id, nodes: nodes.filter((node) => !small(id, node)) }))
-      .filter(({ nodes }) => nodes.length > 0)
-      .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
-  });
-}
-
-/** Opens a section that is folded. */
-async function unfold(page, id) {
-  if (!(await page.locator(`#${id}`).evaluate((section) => section.open))) await page.locator(`#${id} > summary`).click();
-}
 
 test("studio: the built-in head and actor, from nothing to every export", { skip: noBrowser, timeout: 900_000 }, async () => {
   const server = await preview([]);
@@ -55,23 +21,15 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
   const { page } = browser;
   const shots = screenshotFolder("studio");
   try {
-    await page.goto(`${server.url}?backend=webgl2`);
-    await page.click("#avatar-built-in");
-    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("51 shapes"));
-    await page.click("#take-built-in");
+    await builtIn(page, server);
     assert.ok((await fact(page, "A", "Residual")) < 3);
     assert.equal(await page.locator("#problem").isVisible(), false);
 
     // A parameter changes the weights; a second method stands beside.
-    const hash = async (panel) => page.locator(`section[aria-label="Method ${panel}"] .preview-clip div`, { hasText: "Weights" }).locator("dd").textContent();
-    const before = await hash("A");
-    await page.locator('section[aria-label="Method A"] summary').click();
+    const before = await weightsHash(page, "A");
+    await page.locator('section[aria-label="Method A"] summary', { hasText: "Parameters" }).click();
     await page.locator('section[aria-label="Method A"] input[name=alpha]').fill("0.9");
-    await page.waitForFunction((old) => {
-      const rows = [...document.querySelectorAll('section[aria-label="Method A"] .preview-clip div')];
-      const row = rows.find((each) => each.textContent.startsWith("Weights"));
-      return row && !row.textContent.includes(old);
-    }, before, { timeout: 60_000 });
+    await weightsHash(page, "A", before);
     await page.click("#add-panel");
     await fact(page, "B", "Residual");
     await page.locator("#scrub").fill("6000");
@@ -156,11 +114,7 @@ test("studio: by keyboard; loop, slow motion, and files dropped on the page", { 
   const checked = (id) => page.locator(`#${id}`).isChecked();
   const key = (name) => page.keyboard.press(name);
   try {
-    await page.goto(`${server.url}?backend=webgl2`);
-    await page.click("#avatar-built-in");
-    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("51 shapes"));
-    await page.click("#take-built-in");
-    await fact(page, "A", "Residual");
+    await builtIn(page, server);
 
     // The keys of the page, with the focus on no control.
     await page.evaluate(() => document.activeElement?.blur());

@@ -114,8 +114,11 @@ test("studio: blendshapes locked and bounded, markers weighed; `mimique solve` t
     assert.equal(solve(["--settings", file("settings.json")]), own, "the same text");
     assert.notEqual(solve([]), own);
     // A study file takes the same JSON as a method.
-    const study = JSON.parse(mimique(["check", "--json", join(root, "study-config/demo.json")]));
-    assert.ok(study);
+    const text = readFileSync(join(root, "study-config/animface.json"), "utf8");
+    const study = text.replace('"box": { "method": "box" }', `"box": ${settings}`).replaceAll("./schema", join(root, "study-config/schema"));
+    assert.notEqual(study, text);
+    writeFileSync(file("study.json"), study);
+    assert.match(mimique(["check", file("study.json")], { env: { ...process.env, MIMIQUE_DATA: data } }), /no errors/);
 
     // Other methods keep what was typed and take what they use; soft bounds stand in the same columns.
     await page.locator(PANEL).getByLabel("Method A", { exact: true }).selectOption("lsts-soft");
