@@ -66,21 +66,22 @@ export class MethodPanel {
     const frame = made("div", { className: "stage studio-stage" }, this.#canvas, this.#heat, this.#overlay, this.#veil);
     this.#facts = made("dl", { className: "preview-clip" });
     this.#notices = made("div", { role: "status" });
-    this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
-    this.#element.append(made("div", { className: "studio-method" }, head, this.#parameters.element), frame);
+    const below = made("div", { className: "studio-below" });
     if (removable) {
       this.#compare = made("input", { type: "checkbox" });
       this.#compare.addEventListener("change", () => page.player.draw());
       this.#scale = made("input", { type: "number", min: 0.1, step: 0.1, value: 1, ariaLabel: "Brightest colour, mm" });
       this.#scale.addEventListener("change", () => page.player.draw());
-      this.#element.append(
+      below.append(
         made("label", { className: "preview-check" }, this.#compare, " Difference from A"),
         made("div", { className: "studio-heat-scale" }, "0", made("i", {}), this.#scale, "mm"),
       );
     }
     // The tables stand below the face, so that it is seen while they are filled in.
     const save = made("div", { className: "row" }, this.#saveSettings);
-    this.#element.append(made("div", { className: "studio-method" }, ...this.#parameters.tables, save), this.#facts, this.#notices);
+    below.append(made("div", { className: "studio-method" }, ...this.#parameters.tables, save), this.#facts, this.#notices);
+    this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
+    this.#element.append(made("div", { className: "studio-method" }, head, this.#parameters.element), frame, below);
     this.#controls();
     this.sourcesChanged();
   }
