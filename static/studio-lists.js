@@ -57,6 +57,13 @@ class NamedTable {
     return this.values.get(name) ?? {};
   }
 
+  /// Takes what a file says, name by name, in place of all that was typed; answers the names that are not here.
+  take(values) {
+    this.values = new Map([...values].filter(([name]) => this.#names.includes(name)));
+    this.fill();
+    return [...values.keys()].filter((name) => !this.#names.includes(name));
+  }
+
   /// Something was typed.
   set(name, change) {
     this.values.set(name, { ...this.of(name), ...change });
@@ -223,6 +230,13 @@ export class ShapeTable extends NamedTable {
     return [[lock], ...bounds.map((input) => [input])];
   }
 
+  /// Takes a method's lists; answers the names that the avatar does not have.
+  takeSpec({ locked = [], bounds = {} }) {
+    const values = new Map(Object.entries(bounds).map(([name, [lower, upper]]) => [name, { lower: { text: String(lower) }, upper: { text: String(upper) } }]));
+    for (const name of locked) if (!this.#own.has(name)) values.set(name, { ...values.get(name), locked: true });
+    return this.take(values);
+  }
+
   /// Adds to a method what it takes of the table.
   spec(spec) {
     const bounds = {};
@@ -270,6 +284,11 @@ export class MarkerTable extends NamedTable {
     const input = made("input", { type: "number", min: 0, step: 0.1, value: this.of(name).text ?? "", placeholder: "1", ariaLabel: `Importance of ${name}` });
     input.addEventListener("input", () => this.set(name, typed(input)));
     return [[input]];
+  }
+
+  /// Takes a method's importances; answers the labels that are on no face.
+  takeSpec({ importance = {} }) {
+    return this.take(new Map(Object.entries(importance).map(([name, value]) => [name, { text: String(value) }])));
   }
 
   spec(spec) {

@@ -78,7 +78,10 @@ export class MethodPanel {
       );
     }
     // The tables stand below the face, so that it is seen while they are filled in.
-    const save = made("div", { className: "row" }, this.#saveSettings);
+    const file = made("input", { type: "file", className: "visually-hidden", accept: ".json" });
+    file.addEventListener("change", () => this.#openSettings(file));
+    const openSettings = made("label", { className: "button" }, "Open settings… ", made("span", { className: "visually-hidden" }, `of method ${letter}`), file);
+    const save = made("div", { className: "row" }, this.#saveSettings, openSettings);
     below.append(made("div", { className: "studio-method" }, ...this.#parameters.tables, save), this.#facts, this.#notices);
     this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
     this.#element.append(made("div", { className: "studio-method" }, head, this.#parameters.element), frame, below);
@@ -128,6 +131,26 @@ export class MethodPanel {
     option.disabled = missing !== null;
     option.textContent = missing === null ? REGRESSION : `${REGRESSION} (under Files: ${missing})`;
     if (this.#select.value === REGRESSION) this.solveSoon();
+  }
+
+  // A method as #settings wrote it, or as it stands in a study file.
+  async #openSettings(input) {
+    const [file] = input.files;
+    if (!file) return;
+    try {
+      const { factors, label, training, ...spec } = JSON.parse(await file.text());
+      if (!this.#page.methods.some(({ name }) => name === spec.method)) {
+        throw new Error(`method ${JSON.stringify(spec.method)}: there is none of that name; open a file that a panel saved`);
+      }
+      this.choose(spec.method);
+      this.#controls();
+      this.#parameters.take(spec);
+    } catch (error) {
+      this.#page.report(new Error(`${file.name}: ${error.message}`));
+    } finally {
+      input.value = "";
+    }
+    await this.solve();
   }
 
   // The method as it was solved last, for a study file and `mimique solve --settings`.

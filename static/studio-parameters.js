@@ -151,6 +151,23 @@ export class Parameters {
     return spec;
   }
 
+  /// Takes the parameters of a method that was saved. Throws where this page has no place for one of them.
+  take({ method, softBounds, locked, bounds, importance, ...single }) {
+    const field = (name) => this.#fields.querySelector(`[name="${CSS.escape(name)}"]`);
+    const strange = Object.keys(single).filter((name) => !field(name));
+    if (strange.length > 0) throw new Error(`${strange.join(", ")}: ${method} takes no such parameter here; remove it from the file`);
+    for (const [name, value] of Object.entries(single)) {
+      field(name).value = value;
+      if (name === "alpha") field(name).previousElementSibling.querySelector("output").textContent = Number(value).toFixed(2);
+    }
+    for (const [i, input] of [...this.#fields.querySelectorAll("[name=softBounds]")].entries()) input.value = softBounds?.[i] ?? "";
+    const missing = [
+      ...this.#shapes.takeSpec({ locked, bounds }).map((name) => `no blendshape ${name}`),
+      ...this.#markers.takeSpec({ importance }).map((label) => `no marker ${label}`),
+    ];
+    if (missing.length > 0) throw new Error(`${missing.join(", ")} here: left out`);
+  }
+
   /// Shows an error of the solver beside the control that it is about; null takes it away.
   problem(message) {
     const text = message?.replace(/^(method|solve): /, "") ?? null;

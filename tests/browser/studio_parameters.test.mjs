@@ -135,12 +135,34 @@ test("studio: blendshapes locked and bounded, markers weighed; `mimique solve` t
 
     // Reset forgets it all.
     await page.locator(PANEL).getByLabel("Method A", { exact: true }).selectOption("lsts");
-    await page.getByRole("button", { name: "Reset blendshapes, method A" }).click();
-    await page.getByRole("button", { name: "Reset importance of markers, method A" }).click();
-    await weightsHash(page, "A", hash);
+    hash = await weightsHash(page, "A", hash);
+    for (const title of ["blendshapes", "importance of markers"]) {
+      await page.getByRole("button", { name: `Reset ${title}, method A` }).click();
+      hash = await weightsHash(page, "A", hash);
+    }
     const plain = JSON.parse(String(await download(page, () => page.getByRole("button", { name: "Save settings of method A" }).click())));
     assert.deepEqual([plain.bounds, plain.importance, plain.locked], [undefined, undefined, undefined]);
     assert.equal((await rows()).length, 53);
+
+    // What was saved comes back: method, numbers and lists.
+    await page.locator(PANEL).getByLabel("Method A", { exact: true }).selectOption("box");
+    hash = await weightsHash(page, "A", hash);
+    const settingsFile = page.locator(PANEL).getByLabel("Open settings… of method A");
+    await settingsFile.setInputFiles(file("settings.json"));
+    await page.waitForFunction(() => document.querySelector("select[aria-label='Method A']").value === "lsts");
+    await weightsHash(page, "A", hash);
+    assert.equal(await csv(), own, "the same weights as when it was saved");
+    assert.equal(await page.locator(PANEL).getByLabel("κ, priors against data", { exact: true }).inputValue(), "0.125");
+    assert.ok(await page.getByLabel("jawForward locked at 0", { exact: true }).isChecked());
+    for (const [text, part] of [
+      ['{"method": "lasso"}', 'other.json: method "lasso": there is none of that name'],
+      ['{"method": "box", "alpha": 0.3}', "other.json: alpha: box takes no such parameter"],
+      ['{"method": "box", "locked": ["tail"]}', "other.json: no blendshape tail here"],
+      ["{", "other.json: "],
+    ]) {
+      await settingsFile.setInputFiles({ name: "other.json", mimeType: "application/json", buffer: Buffer.from(text) });
+      await page.waitForFunction((part) => document.querySelector("#problem").textContent.includes(part), part);
+    }
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();
