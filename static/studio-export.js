@@ -1,6 +1,7 @@
 // What leaves the studio: tables, animations, pictures, films. All of it is made in the browser.
 import { desk } from "./studio-desk.js";
 import { filmed } from "./studio-webm.js";
+import { Zip } from "./studio-zip.js";
 
 const $ = (id) => document.getElementById(id);
 const SHEET_FRAMES = 8;
@@ -92,15 +93,14 @@ async function png(bitmaps, columns, size, captions = []) {
 
 async function pictures(panel, page) {
   const at = times(page);
-  const [names, files] = [[], []];
+  const zip = new Zip();
   for (const [i, timeMs] of at.entries()) {
     const bitmap = await picture(panel, timeMs);
-    names.push(`${page.name()}-${panel.slot}-${String(i).padStart(5, "0")}.png`);
-    files.push(await png([bitmap], 1, [bitmap.width, bitmap.height]));
+    zip.add(`${page.name()}-${panel.slot}-${String(i).padStart(5, "0")}.png`, await png([bitmap], 1, [bitmap.width, bitmap.height]));
     bitmap.close();
     progress((i + 1) / at.length);
   }
-  save(`${page.name()}-${panel.slot}.zip`, await desk("zip", names, files));
+  save(`${page.name()}-${panel.slot}.zip`, zip.finish());
 }
 
 async function sheet(page) {

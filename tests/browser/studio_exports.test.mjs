@@ -14,17 +14,36 @@ const noBrowser = skip(!executable && "Chromium not found");
 const RATE = 25;
 const CELL = 240;
 
-/** The files of an archive that is not compressed: [[name, bytes]]. */
+/** The files of an archive that is not compressed, by the list at its end: [[name, bytes]]. */
 function unzipped(zip) {
+  const end = zip.length - 22;
+  assert.equal(zip.readUInt32LE(end), 0x06054b50);
   const files = [];
-  for (let at = 0; zip.readUInt32LE(at) === 0x04034b50; ) {
-    const [size, name, extra] = [zip.readUInt32LE(at + 18), zip.readUInt16LE(at + 26), zip.readUInt16LE(at + 28)];
-    assert.equal(zip.readUInt16LE(at + 8), 0, "stored as it is");
-    const start = at + 30 + name + extra;
-    files.push([String(zip.subarray(at + 30, at + 30 + name)), zip.subarray(start, start + size)]);
-    at = start + size;
+  let at = zip.readUInt32LE(end + 16);
+  for (let i = 0; i < zip.readUInt16LE(end + 10); i++) {
+    assert.equal(zip.readUInt32LE(at), 0x02014b50);
+    const [size, length, start] = [zip.readUInt32LE(at + 24), zip.readUInt16LE(at + 28), zip.readUInt32LE(at + 42)];
+    const name = String(zip.subarray(at + 46, at + 46 + length));
+    // The same stands before the file itself.
+    assert.equal(zip.readUInt32LE(start), 0x04034b50);
+    assert.deepEqual(zip.subarray(start + 4, start + 28), zip.subarray(at + 6, at + 30), name);
+    const bytes = zip.subarray(start + 30 + length, start + 30 + length + size);
+    assert.equal(zip.readUInt32LE(at + 16), checksum(bytes), name);
+    files.push([name, bytes]);
+    at += 46 + length;
   }
+  assert.equal(at, end);
   return files;
+}
+
+// CRC-32, bit by bit.
+function checksum(bytes) {
+  let value = -1;
+  for (const byte of bytes) {
+    value ^= byte;
+    for (let bit = 0; bit < 8; bit++) value = (value >>> 1) ^ (value & 1 ? 0xedb88320 : 0);
+  }
+  return ~value >>> 0;
 }
 
 /** The animation of a binary glTF file: times, and for each mesh its targets' names and weights. */

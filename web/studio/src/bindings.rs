@@ -1,10 +1,6 @@
 //! What JavaScript calls.
 
-use std::io::{Cursor, Write as _};
-
 use wasm_bindgen::prelude::*;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipWriter};
 
 use crate::desk::{Desk, Problem};
 
@@ -269,39 +265,4 @@ impl Studio {
 #[wasm_bindgen]
 pub fn methods() -> String {
     text(crate::desk::methods())
-}
-
-/// Files put into one archive, as they are: pictures do not get smaller.
-#[wasm_bindgen]
-pub struct Archive {
-    writer: ZipWriter<Cursor<Vec<u8>>>,
-}
-
-impl std::fmt::Debug for Archive {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Archive")
-    }
-}
-
-#[wasm_bindgen]
-impl Archive {
-    /// An empty archive.
-    #[wasm_bindgen(constructor)]
-    #[allow(clippy::new_without_default, reason = "JavaScript's constructor")]
-    pub fn new() -> Self {
-        Self { writer: ZipWriter::new(Cursor::new(Vec::new())) }
-    }
-
-    /// Adds a file.
-    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), JsError> {
-        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-        self.writer.start_file(name, options)?;
-        self.writer.write_all(bytes)?;
-        Ok(())
-    }
-
-    /// The zip file.
-    pub fn finish(self) -> Result<Vec<u8>, JsError> {
-        Ok(self.writer.finish()?.into_inner())
-    }
 }
