@@ -24,6 +24,7 @@ const PANEL = 'section[aria-label="Method A"]';
 async function table(page, title) {
   const details = page.locator(`${PANEL} details.studio-named`, { has: page.locator("summary", { hasText: title }) });
   if (!(await details.evaluate((each) => each.open))) await details.locator("summary").click();
+  await details.locator("tbody tr").first().waitFor();
   return details;
 }
 
