@@ -86,6 +86,137 @@ fn each_emotion_uses_its_action_units_and_grows_with_intensity() {
     }
 }
 
+fn course(p: &Performance, shape: &str) -> Vec<f64> {
+    let k = SHAPE_NAMES.iter().position(|s| *s == shape).expect("shape exists");
+    (0..p.frames()).map(|f| p.frame(f)[k]).collect()
+}
+
+/// When a course first is above a share of its peak and when it last is, seconds.
+fn above(course: &[f64], share: f64, rate_hz: f64) -> [f64; 2] {
+    let most = course.iter().copied().fold(0.0, f64::max);
+    let first = course.iter().position(|w| *w >= share * most).expect("a peak");
+    let last = course.iter().rposition(|w| *w >= share * most).expect("a peak");
+    [first, last].map(|f| f as f64 / rate_hz)
+}
+
+/// A shape of each emotion that neither blinks nor gaze touch.
+const LEADING: [(Emotion, &str); 6] = [
+    (Emotion::Joy, "mouthSmile"),
+    (Emotion::Sadness, "mouthFrown"),
+    (Emotion::Fear, "mouthStretch"),
+    (Emotion::Anger, "browDown"),
+    (Emotion::Disgust, "noseSneer"),
+    (Emotion::Surprise, "browOuterUp"),
+];
+
+#[test]
+fn faces_come_faster_than_they_go() {
+    for (emotion, stem) in LEADING {
+        let [mut up, mut down] = [0.0, 0.0];
+        for seed in 0..20 {
+            let clip = Clip { emotion, intensity: 3, seed };
+            let p = performance_weights(&names(), &clip, 400.0, 4.0);
+            let left = course(&p, &format!("{stem}Left"));
+            let (low, high) = (above(&left, 0.1, 400.0), above(&left, 0.9, 400.0));
+            let (attack, release) = (high[0] - low[0], low[1] - high[1]);
+            assert!(release > attack, "{clip:?}: up in {attack} s, down in {release} s");
+            assert!((0.05..0.8).contains(&attack), "{clip:?}: up in {attack} s");
+            (up, down) = (up + attack / 20.0, down + release / 20.0);
+        }
+        assert!(down > 1.15 * up, "{emotion:?}: up in {up} s, down in {down} s on average");
+    }
+}
+
+#[test]
+fn one_side_leads_by_a_few_hundredths_of_a_second() {
+    for (emotion, stem) in LEADING {
+        let mut left_leads = 0;
+        for seed in 0..20 {
+            let clip = Clip { emotion, intensity: 3, seed };
+            let p = performance_weights(&names(), &clip, 1000.0, 4.0);
+            let begins = |side| above(&course(&p, &format!("{stem}{side}")), 0.5, 1000.0)[0];
+            let lead = begins("Right") - begins("Left");
+            assert!((0.004..0.045).contains(&lead.abs()), "{clip:?}: a lead of {lead} s");
+            left_leads += usize::from(lead > 0.0);
+        }
+        assert!((4..=18).contains(&left_leads), "{emotion:?}: left leads {left_leads} of 20");
+    }
+}
+
+#[test]
+fn blinks_are_as_long_and_as_many_as_people_s() {
+    const RATE: f64 = 200.0;
+    let (mut blinks, mut seconds) = (0, 0.0);
+    for seed in 0..40 {
+        for clip in all_clips(seed) {
+            let p = performance_weights(&names(), &clip, RATE, 4.0);
+            seconds += 4.0;
+            let [left, right] = ["eyeBlinkLeft", "eyeBlinkRight"].map(|lid| course(&p, lid));
+            let shut = |f: &usize| left[*f] > 0.5;
+            let begins = (1..p.frames()).filter(|f| shut(f) && !shut(&(f - 1)));
+            for first in begins {
+                let end = (first..p.frames()).find(|f| !shut(f)).expect("it opens again");
+                let long = (end - first) as f64 / RATE;
+                // Above half its height for half of 90 ms, 30 ms and half of 170 ms.
+                assert!((0.14..0.20).contains(&long), "{clip:?}: half shut for {long} s");
+                assert!((first..end).any(|f| left[f] > 0.95), "{clip:?}: it does not shut");
+                let both = (first..end).all(|f| (left[f] - right[f]).abs() < 0.2);
+                assert!(both, "{clip:?}: one eye blinks alone");
+                blinks += 1;
+            }
+        }
+    }
+    // People blink 10 to 25 times a minute.
+    let rate = f64::from(blinks) / (seconds / 60.0);
+    assert!((10.0..25.0).contains(&rate), "{rate} blinks a minute");
+}
+
+#[test]
+fn eyes_move_together_and_little() {
+    let mut moved = 0;
+    for seed in 0..20 {
+        for clip in all_clips(seed) {
+            let p = performance_weights(&names(), &clip, 60.0, 4.0);
+            for (left, right) in
+                [("eyeLookOutLeft", "eyeLookInRight"), ("eyeLookInLeft", "eyeLookOutRight")]
+            {
+                assert_eq!(course(&p, left), course(&p, right), "{clip:?}: {left}, {right}");
+                let most = peak(&p, left);
+                // A weight of 1 is a turn of 32 degrees: 0.2 is a glance at the other eye of a face.
+                assert!(most < 0.2, "{clip:?}: {left} {most}");
+                moved += usize::from(most > 0.01);
+            }
+        }
+    }
+    // Of 720 courses.
+    assert!(moved > 500, "{moved} gazes move");
+}
+
+#[test]
+fn the_head_sways_within_its_amplitudes() {
+    // 6 degrees of sadness and 8 mm of fear, 1.2 times as large at most, and waves of 1.3 times
+    // 0.014 radians and 1.4 mm on top of them.
+    for seed in 0..20 {
+        for clip in all_clips(seed) {
+            let p = performance_weights(&names(), &clip, 60.0, 4.0);
+            let most = |value: &dyn Fn(&mimique_face::HeadPose) -> [f64; 3]| {
+                let all = p.head.iter().flat_map(value);
+                all.fold(0.0, |m: f64, v| m.max(v.abs()))
+            };
+            let (turn, shift) = (most(&|h| h.rotation).to_degrees(), most(&|h| h.translation));
+            assert!((0.3..8.5).contains(&turn), "{clip:?}: turns by {turn} degrees");
+            assert!((0.4..11.5).contains(&shift), "{clip:?}: shifts by {shift} mm");
+            // Only disgust turns aside: in the others it is the sway alone.
+            let aside = most(&|h| [h.rotation[1], 0.0, 0.0]).to_degrees();
+            let alone = clip.emotion == Emotion::Disgust || (0.1..1.1).contains(&aside);
+            assert!(alone, "{clip:?}: sways by {aside} degrees");
+            let end = p.head[p.frames() - 1];
+            let left = end.rotation.iter().chain(&end.translation).map(|v| v.abs());
+            assert!(left.fold(0.0, f64::max) < 0.01, "{clip:?} ends at {end:?}");
+        }
+    }
+}
+
 #[test]
 fn seeds_vary_the_timing_and_repeat_exactly() {
     let clip = |seed| Clip { emotion: Emotion::Joy, intensity: 3, seed };
