@@ -53,15 +53,14 @@ fn each_way_out_has_the_code_that_the_page_says() {
         ["completed", "screened_out", "failed_checks", "declined", "withdrawn", "started"]
             .map(|status| study.recruitment.code_for(status).map(str::to_owned))
     };
-    let all = sections("recruitment.md");
-    let named = |index: usize, name: &str| {
-        all[index]["recruitment"].get(name).and_then(Value::as_str).map(str::to_owned)
-    };
-    for index in 0..all.len() {
-        let [completed, screened_out, failed_checks, rest @ ..] = codes(&all[index]);
-        assert_eq!(completed, named(index, "completionCode"));
-        assert_eq!(screened_out, named(index, "screenedOutCode"));
-        assert_eq!(failed_checks, named(index, "failedChecksCode"));
+    for section in sections("recruitment.md") {
+        let named = |name: &str| {
+            section["recruitment"].get(name).and_then(Value::as_str).map(str::to_owned)
+        };
+        let [completed, screened_out, failed_checks, rest @ ..] = codes(&section);
+        assert_eq!(completed, named("completionCode"));
+        assert_eq!(screened_out, named("screenedOutCode"));
+        assert_eq!(failed_checks, named("failedChecksCode"));
         assert_eq!(json!(rest), json!([null, null, null]));
     }
 }
