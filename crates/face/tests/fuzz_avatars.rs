@@ -303,8 +303,8 @@ fn next(random: &mut Random, seeds: &Seeds) -> (Kind, Vec<u8>) {
             (Kind::Gltf, glb(&document, &binary))
         }
         4 => {
-            let archives = [&seeds.zip, &seeds.tar, &seeds.tar_gz];
-            let mut bytes = archives[random.below(3)].clone();
+            let archives = [&seeds.zip, &seeds.tar, &seeds.tar_gz, &seeds.tar_xz];
+            let mut bytes = archives[random.below(4)].clone();
             mutate_bytes(&mut bytes, random);
             (Kind::Bank, bytes)
         }
@@ -319,7 +319,11 @@ fn next(random: &mut Random, seeds: &Seeds) -> (Kind, Vec<u8>) {
         6 => {
             let mut value: Value = serde_json::from_str(SETTINGS).unwrap();
             mutate_json(&mut value, random);
-            (Kind::Settings, value.to_string().into_bytes())
+            let mut bytes = value.to_string().into_bytes();
+            if random.below(4) == 0 {
+                mutate_bytes(&mut bytes, random);
+            }
+            (Kind::Settings, bytes)
         }
         _ => {
             let mut bytes = [&seeds.pack, &seeds.pack_body][random.below(2)].clone();
@@ -335,6 +339,7 @@ struct Seeds {
     zip: Vec<u8>,
     tar: Vec<u8>,
     tar_gz: Vec<u8>,
+    tar_xz: Vec<u8>,
     pack: Vec<u8>,
     pack_body: Vec<u8>,
 }
@@ -348,7 +353,9 @@ impl Seeds {
         assert_eq!((avatar.textures.len(), avatar.shape_names.len()), (2, 2));
         let tar = tar_of(&bank());
         let zip = zip_of(&bank());
-        for seed in [&tar, &zip] {
+        // Packed by XZ Utils; its poses are those of the others.
+        let tar_xz = include_bytes!("../../../fuzz/corpus/avatar_file/seed-tar-xz").to_vec();
+        for seed in [&tar, &zip, &tar_xz] {
             let read = read_avatar_bytes(seed.clone(), "seed", None, None).unwrap();
             assert_eq!(read.locked, ["AU12"]);
         }
@@ -358,7 +365,7 @@ impl Seeds {
         let files = avatar.textures.iter().map(|t| t.jpeg.len() + t.mask_jpeg.len() + 8);
         let behind = files.sum::<usize>() + 4;
         let pack_body = open_pack("MMAV", 3, &pack[..pack.len() - behind]).unwrap();
-        Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), pack, pack_body }
+        Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), tar_xz, pack, pack_body }
     }
 }
 
@@ -367,7 +374,11 @@ impl Seeds {
 #[test]
 fn the_corpus_of_the_fuzzer_is_replayed() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
-    let folders = [("avatar_file", Kind::Gltf), ("avatar_pack", Kind::Pack)];
+    let folders = [
+        ("avatar_file", Kind::Gltf),
+        ("avatar_pack", Kind::Pack),
+        ("avatar_settings", Kind::Settings),
+    ];
     if std::env::var_os("MIMIQUE_FUZZ_WRITE").is_some() {
         let seeds = Seeds::new();
         for (name, bytes) in [
@@ -375,6 +386,8 @@ fn the_corpus_of_the_fuzzer_is_replayed() {
             ("avatar_file/seed-zip", &seeds.zip),
             ("avatar_file/seed-tar", &seeds.tar),
             ("avatar_file/seed-tar-gz", &seeds.tar_gz),
+            ("avatar_settings/seed-all-keys", &SETTINGS.as_bytes().to_vec()),
+            ("avatar_settings/seed-one-pattern", &br#"{"parts": {"h*d": "eyeLeft"}}"#.to_vec()),
             ("avatar_pack/seed-pack", &seeds.pack),
             ("avatar_pack/seed-body", &seeds.pack_body),
         ] {

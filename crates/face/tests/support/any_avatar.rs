@@ -3,6 +3,9 @@
 use mimique_face::pack::{decode_pack, encode_pack, seal_pack};
 use mimique_face::{Avatar, AvatarSettings, Image, read_avatar_bytes};
 
+/// Poses with settings of their own, to which other settings are applied.
+const BANK: &[u8] = include_bytes!("../../../../fuzz/corpus/avatar_file/seed-tar");
+
 /// A kind of file and how it is read.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -15,20 +18,11 @@ pub enum Kind {
 /// Reads a file and everything in it.
 pub fn consume(kind: Kind, bytes: &[u8]) {
     match kind {
-        Kind::Gltf | Kind::Bank => {
-            let settings = AvatarSettings::default();
-            match read_avatar_bytes(bytes.to_vec(), "fuzz", None, Some(settings)) {
-                Ok(read) => sound(&read.avatar),
-                Err(error) => {
-                    let text = error.to_string();
-                    assert!(
-                        text.contains(": ") && text.contains("; "),
-                        "no place or remedy: {text}"
-                    );
-                }
-            }
-        }
-        Kind::Settings => drop(AvatarSettings::from_json("avatar.json", bytes)),
+        Kind::Gltf | Kind::Bank => read(bytes, AvatarSettings::default()),
+        Kind::Settings => match AvatarSettings::from_json("avatar.json", bytes) {
+            Ok(settings) => read(BANK, settings),
+            Err(error) => explained(&error.to_string()),
+        },
         Kind::Pack => {
             // A body as it is, in a pack without pictures.
             let sealed = [seal_pack("MMAV", 3, bytes), vec![0; 4]].concat();
@@ -39,6 +33,17 @@ pub fn consume(kind: Kind, bytes: &[u8]) {
             }
         }
     }
+}
+
+fn read(bytes: &[u8], settings: AvatarSettings) {
+    match read_avatar_bytes(bytes.to_vec(), "fuzz", None, Some(settings)) {
+        Ok(read) => sound(&read.avatar),
+        Err(error) => explained(&error.to_string()),
+    }
+}
+
+fn explained(text: &str) {
+    assert!(text.contains(": ") && text.contains("; "), "no place or remedy: {text}");
 }
 
 /// No index leads outside, every number is finite, and the pack takes it.
