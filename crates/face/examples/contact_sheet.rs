@@ -1,7 +1,7 @@
 //! Renders the built-in head to PNG without a GPU, to look at while its shape is worked on.
 //!
 //! `contact_sheet OUT.png [key=value ...] [/ key=value ...]...` draws one cell for each `/`; what
-//! stands before the first `/` holds for all of them. Keys: `seed`, `density` (0-3), `yaw`, `pitch`
+//! stands before the first `/` holds for all of them. Keys: `seed`, `density` (skin vertices), `yaw`, `pitch`
 //! (degrees), `zoom`, `cx`, `cy` (mm), `size` (pixels), `columns`, `grid=1` for mesh lines, and any
 //! blendshape (`mouthSmile=1` moves both sides), or `emotion=joy3` for a performance at its apex. `sheet=3` draws
 //! the six emotions at intensity 3, from the front and three-quarter.
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (key, value) = arg.split_once('=').ok_or("arguments are key=value")?;
         match key {
             "seed" => cell.spec.identity = Identity::from_seed(value.parse()?),
-            "density" => cell.spec.density = Density::ALL[value.parse::<usize>()?.min(3)],
+            "density" => cell.spec.density = Density::nearest(value.parse()?),
             "yaw" => cell.camera.yaw = value.parse()?,
             "pitch" => cell.camera.pitch = value.parse()?,
             "zoom" => cell.camera.zoom = value.parse()?,

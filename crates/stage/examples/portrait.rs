@@ -1,9 +1,9 @@
 //! Draws an avatar file or the built-in head (or packs it, when OUT ends in `.mmav`):
-//! `portrait AVATAR.glb|builtin[:SEED] OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [shape=weight ...]`.
+//! `portrait AVATAR.glb|builtin[:SEED] OUT.png [WIDTHxHEIGHT] [yaw=RADIANS] [vertices=COUNT] [shape=weight ...]`.
 
 use std::path::Path;
 
-use mimique_face::{HeadSpec, Identity};
+use mimique_face::{Density, HeadSpec, Identity};
 use mimique_stage::offscreen::Offscreen;
 use mimique_stage::{Look, View};
 
@@ -15,12 +15,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 .into(),
         );
     };
+    let vertices = rest.iter().find_map(|word| word.strip_prefix("vertices="));
+    let density = match vertices {
+        Some(count) => Density::nearest(count.parse()?),
+        None => Density::default(),
+    };
     let avatar = match file.as_str() {
-        "builtin" => mimique_face::build_head(&HeadSpec::default()),
+        "builtin" => mimique_face::build_head(&HeadSpec { density, ..HeadSpec::default() }),
         file => match file.strip_prefix("builtin:") {
             Some(seed) => mimique_face::build_head(&HeadSpec {
                 identity: Identity::from_seed(seed.parse()?),
-                ..HeadSpec::default()
+                density,
             }),
             None => mimique_face::read_avatar(Path::new(file))?.avatar,
         },
@@ -43,6 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "yaw" => view.yaw = value,
                 "pitch" => view.pitch = value,
                 "zoom" => view.zoom = value,
+                "vertices" => {}
                 "repeat" => repeat = value as u32,
                 "reference" => look = Look::REFERENCE,
                 _ => {

@@ -23,7 +23,7 @@ struct Scene {
 }
 
 fn head(seed: u64) -> (Avatar, MarkerSites) {
-    let spec = HeadSpec { identity: Identity::from_seed(seed), density: Density::Coarse };
+    let spec = HeadSpec { identity: Identity::from_seed(seed), density: Density::COARSE };
     (build_head(&spec), marker_sites(&spec))
 }
 

@@ -15,6 +15,7 @@ mod lips;
 mod mouth_parts;
 mod muscles;
 mod nose;
+mod resample;
 pub(crate) mod rng;
 mod sculpt;
 mod sites;
@@ -29,6 +30,7 @@ pub use sites::{MarkerSites, marker_sites};
 use crate::avatar::{Avatar, Mesh, Part, SparseShape};
 use eyelids::Eye;
 use hair::SkinLayer;
+use resample::Resampled;
 use sculpt::{Landmarks, Sculpt};
 use subdivide::Step;
 use topology::Topology;
@@ -43,42 +45,59 @@ pub struct HeadSpec {
     pub density: Density,
 }
 
-/// Density of the mesh: one topology, each step splits every quad of the cage in four.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Density {
-    /// The cage itself: about 2,000 skin vertices.
-    Coarse,
-    /// One subdivision: about 8,000. The solver runs on this one.
-    #[default]
-    Standard,
-    /// Two subdivisions: about 33,000.
-    Fine,
-    /// Three subdivisions: about 130,000.
-    Finest,
-}
+/// Density of the mesh: one topology, each quad of the cage in `k x k`, `k` from 1 to 8.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Density(u8);
 
 impl Density {
+    /// The cage's quads: about 2,300 skin vertices.
+    pub const COARSE: Density = Density(1);
+    /// 2 x 2: about 9,200. The solver runs on this one.
+    pub const STANDARD: Density = Density(2);
+    /// 4 x 4: about 37,000.
+    pub const FINE: Density = Density(4);
+    /// 8 x 8: about 146,000.
+    pub const FINEST: Density = Density(8);
+
     /// All densities, coarsest first.
-    pub const ALL: [Density; 4] =
-        [Density::Coarse, Density::Standard, Density::Fine, Density::Finest];
+    pub const ALL: [Density; 8] = [
+        Density(1),
+        Density(2),
+        Density(3),
+        Density(4),
+        Density(5),
+        Density(6),
+        Density(7),
+        Density(8),
+    ];
 
     /// The density whose number of skin vertices comes nearest in ratio to `vertices`.
     pub fn nearest(vertices: usize) -> Density {
-        match vertices {
-            0..=4_200 => Density::Coarse,
-            4_201..=17_000 => Density::Standard,
-            17_001..=68_000 => Density::Fine,
-            _ => Density::Finest,
-        }
+        let topology = Topology::new();
+        let off = |density: &Density| {
+            let count = topology.skin_vertices(density.across()) as f64;
+            (count / vertices.max(1) as f64).ln().abs()
+        };
+        Density::ALL.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_default()
     }
 
+    /// Quads along the side of a quad of the cage.
+    fn across(self) -> usize {
+        usize::from(self.0)
+    }
+
+    /// Halvings of the cage's quads: as many as it takes, or all where none leads there. The cage itself
+    /// stands off the surface and pinches where that is bent.
     fn steps(self) -> usize {
-        match self {
-            Density::Coarse => 0,
-            Density::Standard => 1,
-            Density::Fine => 2,
-            Density::Finest => 3,
-        }
+        let across = self.across();
+        let halved = across.is_power_of_two() && across > 1;
+        (if halved { self } else { Density::FINEST }).across().ilog2() as usize
+    }
+}
+
+impl Default for Density {
+    fn default() -> Density {
+        Density::STANDARD
     }
 }
 
@@ -117,6 +136,8 @@ pub(crate) struct Subdivided {
     quads: Vec<[u32; 4]>,
     is_socket: Vec<bool>,
     cage_vertices: usize,
+    /// Where the quads' sides are no halvings of the cage's: how to get from those to these.
+    resampled: Option<Resampled>,
 }
 
 impl Subdivided {
@@ -131,18 +152,39 @@ impl Subdivided {
             is_socket = is_socket.iter().flat_map(|&s| [s; 4]).collect();
             steps.push(step);
         }
-        Subdivided { steps, quads, is_socket, cage_vertices }
+        let across = density.across();
+        let halved = 1 << density.steps();
+        let resampled = (across != halved).then(|| {
+            let resampled = Resampled::new(cage_vertices, &topology.quads, &quads, halved, across);
+            quads.clone_from(&resampled.quads);
+            is_socket = (topology.quad_is_socket.iter())
+                .flat_map(|&socket| std::iter::repeat_n(socket, across * across))
+                .collect();
+            resampled
+        });
+        Subdivided { steps, quads, is_socket, cage_vertices, resampled }
     }
 
     /// A channel of the cage on the finest vertices.
     pub(crate) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
-        self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values))
+        let halved = self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values));
+        match &self.resampled {
+            Some(resampled) => resampled.values(&halved),
+            None => halved,
+        }
+    }
+
+    /// Number of finest vertices.
+    fn len(&self) -> usize {
+        match &self.resampled {
+            Some(resampled) => resampled.len(),
+            None => self.steps.last().map_or(self.cage_vertices, Step::len),
+        }
     }
 
     /// Vertices of one part, in the order in which its quads name them.
     fn part_vertices(&self, want_socket: bool) -> Vec<u32> {
-        let count = self.steps.last().map_or(self.cage_vertices, Step::len);
-        let mut seen = vec![false; count];
+        let mut seen = vec![false; self.len()];
         let mut from = Vec::new();
         for (quad, _) in self.quads.iter().zip(&self.is_socket).filter(|q| *q.1 == want_socket) {
             for &v in quad {

@@ -3,6 +3,7 @@
 //! nostrils and the ears. Every hole's corner is a pole of valence five, as in hand-made heads.
 
 use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 /// Columns round the head: 0 is the front midline, positive ones are on the person's left.
 pub(crate) const COLUMNS: i32 = 48;
@@ -133,6 +134,16 @@ pub(crate) struct Topology {
 }
 
 impl Topology {
+    /// Vertices of the skin when each of its quads is split in `across x across`.
+    pub(crate) fn skin_vertices(&self, across: usize) -> usize {
+        let skin = || self.quads.iter().zip(&self.quad_is_socket).filter(|q| !q.1).map(|q| q.0);
+        let corners: BTreeSet<u32> = skin().flatten().copied().collect();
+        let sides = |q: &[u32; 4]| [0, 1, 2, 3].map(|k| (q[k], q[(k + 1) % 4]));
+        let edges: BTreeSet<(u32, u32)> =
+            skin().flat_map(sides).map(|(a, b)| (a.min(b), a.max(b))).collect();
+        corners.len() + edges.len() * (across - 1) + skin().count() * (across - 1) * (across - 1)
+    }
+
     pub(crate) fn new() -> Topology {
         let mut t = Topology {
             sites: Vec::new(),
