@@ -49,7 +49,7 @@ test("keyboard: every type of question, videos and a comparison", { skip: unable
     await press("ArrowRight", "ArrowRight", "ArrowLeft");
     await to("matrix", "[role=radiogroup]:nth-of-type(1) input");
     await press("Space");
-    await press("Tab");
+    await to("matrix", "[role=radiogroup]:nth-of-type(2) input");
     await press("Space", "ArrowRight");
     await to("number", "input");
     await page.keyboard.type("30");
