@@ -70,7 +70,7 @@ pub fn methods() -> Value {
 }
 
 /// Seeds of actors, so that the actor is never the avatar's own person.
-pub(crate) const ACTORS: u64 = 0x6163_746f_7273_0000;
+const ACTORS: u64 = 0x6163_746f_7273_0000;
 /// Noise of the built-in actor's sensors, millimetres.
 pub(crate) const NOISE_MM: f64 = 0.1;
 
@@ -184,31 +184,15 @@ impl Desk {
 
     /// Takes the built-in actor's performance of six emotions, each weak, middling and strong.
     pub fn built_in_take(&mut self, actor: u64) -> Value {
-        let spec =
-            HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() };
-        let emotions = [
-            Emotion::Anger,
-            Emotion::Disgust,
-            Emotion::Fear,
-            Emotion::Joy,
-            Emotion::Sadness,
-            Emotion::Surprise,
-        ];
-        let clips: Vec<Clip> = emotions
+        let spec = built_in_actor(actor);
+        let clips: Vec<Clip> = Emotion::ALL
             .iter()
             .flat_map(|&emotion| (1..=3).map(move |intensity| (emotion, intensity)))
             .map(|(emotion, intensity)| Clip { emotion, intensity, seed: actor })
             .collect();
         let take =
             synthetic_take(&build_head(&spec), &marker_sites(&spec), &clips, actor, NOISE_MM);
-        let capture = Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: Vec::new(),
-        };
+        let capture = performed(take.labels, take.rate_hz, take.positions);
         let recording = Recording {
             capture,
             format: Format::WideCsv,
@@ -271,6 +255,18 @@ impl Desk {
             None => Err(Problem("no capture yet; open one first".to_owned())),
         }
     }
+}
+
+/// The person who performs as the built-in actor of that number.
+pub(crate) fn built_in_actor(actor: u64) -> HeadSpec {
+    HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() }
+}
+
+/// What the built-in actor performed, as a capture from its first frame on. `positions` as in
+/// [`Capture`], millimetres.
+pub(crate) fn performed(labels: Vec<String>, rate_hz: f64, positions: Vec<[f64; 3]>) -> Capture {
+    let unit = LengthUnit::Millimetre;
+    Capture { labels, rate_hz, first_frame: 0, unit, positions, notes: Vec::new() }
 }
 
 /// The capture of a file; `unit` and `rate_hz` are for files that do not say them.

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use mimique_face::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
-use mimique_mocap::{Capture, LengthUnit};
+use mimique_face::{build_head, marker_sites, range_of_motion_take};
+use mimique_mocap::Capture;
 use mimique_stimulus::{Training, WeightsTable};
 use serde_json::{Value, json};
 
-use crate::desk::{ACTORS, Desk, NOISE_MM, Problem, read_capture};
+use crate::desk::{Desk, NOISE_MM, Problem, built_in_actor, performed, read_capture};
 
 /// Neutral frames of a training take where nobody names others, as in `mimique solve`.
 const NEUTRAL: Range<usize> = 0..60;
@@ -55,8 +55,7 @@ impl Desk {
 
     /// Takes the built-in actor's range of motion, two minutes with every shape in it.
     pub fn built_in_training(&mut self, actor: u64) -> Value {
-        let spec =
-            HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() };
+        let spec = built_in_actor(actor);
         let take = range_of_motion_take(
             &build_head(&spec),
             &marker_sites(&spec),
@@ -64,14 +63,7 @@ impl Desk {
             NOISE_MM,
         );
         let weights = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
-        let capture = Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: Vec::new(),
-        };
+        let capture = performed(take.labels, take.rate_hz, take.positions);
         let name = || "built-in actor".to_owned();
         self.training = TrainingFiles {
             take: Some((name(), capture)),
