@@ -364,7 +364,7 @@ impl Seeds {
         let pack = encode_pack(&avatar).bytes;
         let files = avatar.textures.iter().map(|t| t.jpeg.len() + t.mask_jpeg.len() + 8);
         let behind = files.sum::<usize>() + 4;
-        let pack_body = open_pack("MMAV", 3, &pack[..pack.len() - behind]).unwrap();
+        let pack_body = open_pack("MMAV", 4, &pack[..pack.len() - behind]).unwrap();
         Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), tar_xz, pack, pack_body }
     }
 }

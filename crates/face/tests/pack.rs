@@ -1,7 +1,10 @@
 //! The avatar pack: what goes in comes out, within the bound; damage is refused, never a panic.
 
 use mimique_face::pack::{decode_pack, encode_pack};
-use mimique_face::{Avatar, Eyeball, Look, Mesh, Part, SparseShape, Texture, Textured};
+use mimique_face::{
+    Avatar, Density, Eyeball, HeadSpec, Look, Mesh, Part, SparseShape, Texture, Textured,
+    build_head,
+};
 use proptest::prelude::*;
 
 /// A curved sheet with `n` shapes, and a ball that turns.
@@ -139,7 +142,7 @@ fn another_kind_or_version_is_refused() {
 
 /// A pack around a body, so that damage goes past the inflater.
 fn sealed(body: &[u8]) -> Vec<u8> {
-    let mut bytes = mimique_face::pack::seal_pack("MMAV", 3, body);
+    let mut bytes = mimique_face::pack::seal_pack("MMAV", 4, body);
     bytes.extend([0; 4]);
     bytes
 }
@@ -152,7 +155,7 @@ proptest! {
         let bytes = encode_pack(&avatar(8, 7, 3, 0.02)).bytes;
         // Behind the body lie pictures of 304 bytes, four lengths and their number.
         let sealed_end = bytes.len() - 304 - 16 - 4;
-        let body = mimique_face::pack::open_pack("MMAV", 3, &bytes[..sealed_end]).unwrap();
+        let body = mimique_face::pack::open_pack("MMAV", 4, &bytes[..sealed_end]).unwrap();
         for whole in [bytes, body] {
             let mut damaged = whole.clone();
             let at = at % damaged.len();
@@ -174,5 +177,87 @@ proptest! {
     fn noise_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         prop_assert!(decode_pack(&bytes).is_err());
         let _ = decode_pack(&sealed(&bytes));
+    }
+}
+
+/// The built-in head, small.
+fn head() -> Avatar {
+    let spec = HeadSpec { density: Density::COARSE, ..HeadSpec::default() };
+    build_head(&spec)
+}
+
+#[test]
+fn no_pose_of_a_head_is_further_off_than_the_pack_says() {
+    let head = head();
+    let pack = encode_pack(&head);
+    let back = decode_pack(&pack.bytes).unwrap();
+    assert!(pack.error_bound <= 1e-5, "{}", pack.error_bound);
+    let mut seed = 1u32;
+    let mut most = 0f64;
+    for pose in 0..40 {
+        let mut weight = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let w = f64::from(seed >> 8) / f64::from(1 << 24);
+            // Half of the poses at the corners, where the bound is met.
+            if pose % 2 == 0 { w.round() } else { w }
+        };
+        let weights: Vec<f64> = head.shape_names.iter().map(|_| weight()).collect();
+        most = most.max(apart(&head, &back, &weights));
+    }
+    // Poses are summed in single precision: 1e-7 m of their own rounding.
+    assert!(most <= pack.error_bound + 1e-7, "{most}");
+    assert!(most > 1e-6, "nothing was rounded: {most}");
+}
+
+#[test]
+fn the_other_half_of_a_face_costs_little() {
+    let head = head();
+    let whole = encode_pack(&head).bytes.len() as f64;
+    let changed = |change: &dyn Fn(usize, &mut [f32; 3])| {
+        let mut changed = head.clone();
+        for mesh in &mut changed.meshes {
+            for (v, p) in mesh.positions.iter_mut().enumerate() {
+                change(v, p);
+            }
+            for shape in &mut mesh.shapes {
+                for (&v, d) in shape.vertices.iter().zip(&mut shape.deltas) {
+                    change(v as usize, d);
+                }
+            }
+        }
+        encode_pack(&changed).bytes.len() as f64
+    };
+    // Half of its vertices moved to where no other is the image, a tenth of a millimetre about.
+    let scatter = |v: usize, p: &mut [f32; 3]| {
+        if p[0] < 0.0 {
+            p[1] += 2e-4 * ((v as f32 * 0.7).sin() + 0.5 * p[0].signum());
+        }
+    };
+    let alone = changed(&scatter);
+    assert!(whole < 0.7 * alone, "{whole} and {alone} bytes");
+
+    // The mirror need not stand at 0: the first mesh says where it is.
+    let mut beside = head.clone();
+    for mesh in &mut beside.meshes {
+        mesh.positions.iter_mut().for_each(|p| p[0] += 0.25);
+    }
+    let beside = encode_pack(&beside).bytes.len() as f64;
+    assert!(beside < 1.1 * whole, "{beside} and {whole} bytes");
+}
+
+#[test]
+fn shapes_find_their_twins_in_any_order() {
+    let head = head();
+    let mut turned = head.clone();
+    for mesh in &mut turned.meshes {
+        mesh.shapes.reverse();
+    }
+    let (a, b) = (encode_pack(&head), encode_pack(&turned));
+    let ratio = a.bytes.len() as f64 / b.bytes.len() as f64;
+    assert!((0.95..1.05).contains(&ratio), "{ratio}");
+    let (a, b) = (decode_pack(&a.bytes).unwrap(), decode_pack(&b.bytes).unwrap());
+    for (a, b) in a.meshes.iter().zip(&b.meshes) {
+        assert_eq!(a.positions, b.positions);
+        assert!(a.shapes.iter().eq(b.shapes.iter().rev()));
     }
 }

@@ -1,9 +1,9 @@
 //! The take pack (`MMTK`): the markers of one segment, or weights that were recorded.
 //!
-//! Markers: the columns that are needed, in metres, in steps of a hundredth of a millimetre (a
-//! sensor's noise is ten times that), with a margin of frames on both sides for filters to settle;
-//! the head's reference, the neutral face of the whole capture, scale factors and the surface that
-//! gives a flat capture its depth as f64. Recorded weights: in steps that keep every vertex within a
+//! Markers: the columns that are needed, in metres, in steps of 0.01 to 0.05 mm, by what is new in
+//! each frame (mostly the sensor's noise), with a margin of frames on both sides for filters to settle;
+//! the head's reference and the neutral face of the whole capture in steps of a micrometre; scale
+//! factors and the surface that gives a flat capture its depth as f64. Recorded weights: in steps that keep every vertex within a
 //! hundredth of a millimetre (`weight_steps`), or 0.0001 where none are asked for. Coordinates and weights are stored by `tracks`.
 
 use std::ops::Range;
@@ -11,12 +11,14 @@ use std::ops::Range;
 use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
 use mimique_solver::{FanTriangle, MarkerScales, SurfaceDepth};
 
-use crate::tracks::{tracks_from, tracks_to};
+use crate::tracks::{noise, tracks_from, tracks_to};
 
 const KIND: &str = "MMTK";
-const VERSION: u32 = 3;
-/// Step of the markers' coordinates, metres.
-const STEP_M: f64 = 1e-5;
+const VERSION: u32 = 4;
+/// Finest and coarsest step of the markers' coordinates, micrometres.
+const STEPS_UM: [f64; 2] = [10.0, 50.0];
+/// Step of the points that all frames are compared with, metres.
+const STEP_STILL_M: f64 = 1e-6;
 /// Step of weights where no other is asked for.
 const STEP_WEIGHT: f64 = 1e-4;
 
@@ -92,10 +94,15 @@ pub fn encode_take_in_steps(take: &TakePack, steps: &[f64]) -> Vec<u8> {
             w.texts(&m.labels);
             columns_to(&mut w, Some(&m.face));
             columns_to(&mut w, m.head.as_ref());
-            m.head_reference.iter().chain(&m.neutral).flatten().for_each(|&x| w.f64(x));
+            let still: Vec<f64> =
+                m.head_reference.iter().chain(&m.neutral).flatten().copied().collect();
+            tracks_to(&mut w, &still, &vec![STEP_STILL_M; still.len()]);
             scales_to(&mut w, m.scales.as_ref());
             depth_to(&mut w, m.depth.as_ref());
-            tracks_to(&mut w, &m.positions, &vec![STEP_M; 3 * m.labels.len()]);
+            let columns = 3 * m.labels.len();
+            let step = marker_step(noise(&m.positions, columns));
+            w.f64(step);
+            tracks_to(&mut w, &m.positions, &vec![step; columns]);
             w.texts(&m.driven_shapes);
             if !m.driven_shapes.is_empty() {
                 tracks_to(&mut w, &m.driven_weights, &vec![STEP_WEIGHT; m.driven_shapes.len()]);
@@ -111,6 +118,12 @@ pub fn encode_take_in_steps(take: &TakePack, steps: &[f64]) -> Vec<u8> {
         }
     }
     seal_pack(KIND, VERSION, &w.into_bytes())
+}
+
+/// The step of coordinates, metres: as large as what is typically new in a frame, which rounding then
+/// spreads 2 % wider, and within bounds.
+fn marker_step(noise_m: f64) -> f64 {
+    (1e6 * noise_m).round().clamp(STEPS_UM[0], STEPS_UM[1]) / 1e6
 }
 
 /// Unpacks a take.
@@ -135,12 +148,21 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             };
             let head = columns_from(&mut r, labels.len())?;
             let heads = head.as_ref().map_or(0, Vec::len);
-            let head_reference = points(&mut r, heads)?;
-            let neutral = points(&mut r, face.len())?;
+            let still = tracks_from(&mut r, &vec![STEP_STILL_M; 3 * (heads + face.len())])?;
+            if still.len() != 3 * (heads + face.len()) {
+                return r.refuse("points of the neutral face that are not one a marker");
+            }
+            let mut points = still.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
+            let head_reference = points.by_ref().take(heads).collect();
+            let neutral = points.collect();
             let scales = scales_from(&mut r, face.len())?;
             let depth = depth_from(&mut r, face.len())?;
             let columns = 3 * labels.len();
-            let positions = tracks_from(&mut r, &vec![STEP_M; columns])?;
+            let step = r.f64()?;
+            if !(step.is_finite() && step > 0.0) {
+                return r.refuse(format!("markers in steps of {step} m"));
+            }
+            let positions = tracks_from(&mut r, &vec![step; columns])?;
             let frames = positions.len() / columns.max(1);
             let driven_shapes = r.texts()?;
             let driven_weights = match driven_shapes.len() {
@@ -215,7 +237,7 @@ fn columns_from(r: &mut PackReader<'_>, of: usize) -> Result<Option<Vec<usize>>,
     Ok(Some(columns))
 }
 
-/// Points, finite or (a head marker not seen in the first frame) all NaN.
+/// Points.
 fn points(r: &mut PackReader<'_>, count: usize) -> Result<Vec<[f64; 3]>, PackError> {
     if count.saturating_mul(24) > r.left() {
         return r.refuse(format!("{count} points, {} bytes left", r.left()));

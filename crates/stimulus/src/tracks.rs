@@ -71,6 +71,33 @@ pub(crate) fn tracks_to(w: &mut PackWriter, values: &[f64], steps: &[f64]) {
     w.raw(&coded);
 }
 
+/// How far a column typically is, for reasons of its own, from where the frames before it promise: the
+/// median over the columns of the median distance, in the unit of the values; 0 where there are too
+/// few frames to tell.
+pub(crate) fn noise(values: &[f64], columns: usize) -> f64 {
+    let frames = values.len() / columns.max(1);
+    let of_column = |column: usize| {
+        let track: Vec<f64> = (0..frames)
+            .map(|f| values[f * columns + column])
+            .filter(|value| value.is_finite())
+            .collect();
+        let of_guess = |factors: &[i64; 4]| {
+            let off = track.windows(5).map(|w| {
+                let promised = w[..4].iter().rev().zip(factors).map(|(v, f)| v * *f as f64);
+                (w[4] - promised.sum::<f64>() / 6.0).abs()
+            });
+            median(off.collect())
+        };
+        GUESSES.iter().filter_map(of_guess).min_by(f64::total_cmp)
+    };
+    median((0..columns).filter_map(of_column).collect()).unwrap_or(0.0)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
 /// Reads what [`tracks_to`] wrote.
 pub(crate) fn tracks_from(r: &mut PackReader<'_>, steps: &[f64]) -> Result<Vec<f64>, PackError> {
     let columns = steps.len();

@@ -43,14 +43,22 @@ fn operators(linked: bool) -> Operators {
 
 /// A take of the same markers that all sway, one with a gap.
 fn take() -> TakePack {
+    take_with_noise(0.0)
+}
+
+/// The same with every coordinate off by up to so much, metres.
+fn take_with_noise(noise_m: f64) -> TakePack {
     let labels: Vec<String> = (0..5).map(|m| format!("M{m}")).collect();
     let rest = operators(false).parts().marker_positions.clone();
     let mut positions = Vec::new();
     for frame in 0..40 {
         for (m, p) in rest.iter().enumerate() {
-            let sway = 0.004 * (f64::from(frame) * 0.2 + m as f64).sin();
+            let sway = 0.004 * (f64::from(frame) * 0.1 + m as f64).sin();
             let hidden = m == 2 && (10..15).contains(&frame);
-            positions.extend(p.map(|x| if hidden { f64::NAN } else { x + sway }));
+            positions.extend(p.map(|x| {
+                let off = noise_m * (1e6 * (x + f64::from(frame) + sway)).sin();
+                if hidden { f64::NAN } else { x + sway + off }
+            }));
         }
     }
     TakePack {
@@ -85,23 +93,41 @@ fn operators_keep_every_bit() {
     }
 }
 
-#[test]
-fn takes_keep_their_markers_to_a_two_hundredth_of_a_millimetre() {
-    let take = take();
-    let back = decode_take(&encode_take(&take)).unwrap();
+/// What is in a pack, but for rounding, is what went in; answers the largest rounding, metres.
+fn rounding(take: &TakePack) -> f64 {
+    let back = decode_take(&encode_take(take)).unwrap();
     assert_eq!((back.rate_hz, back.first_frame, &back.played), (59.94, 705, &(5..35)));
     let (TakeContent::Markers(a), TakeContent::Markers(b)) = (&take.content, &back.content) else {
         panic!("markers became weights");
     };
-    assert_eq!(
-        (&a.labels, &a.face, &a.head, &a.neutral),
-        (&b.labels, &b.face, &b.head, &b.neutral)
-    );
-    assert_eq!(a.head_reference[..2], b.head_reference[..2]);
+    assert_eq!((&a.labels, &a.face, &a.head), (&b.labels, &b.face, &b.head));
     assert!(b.head_reference[2].iter().all(|x| x.is_nan()));
-    for (x, y) in a.positions.iter().zip(&b.positions) {
-        assert!(x.is_nan() == y.is_nan() && (x.is_nan() || (x - y).abs() <= 0.500001e-5));
+    let still = |m: &SegmentMarkers| [&m.head_reference[..2], &m.neutral].concat().concat();
+    for (x, y) in still(a).iter().zip(still(b)) {
+        assert!((x - y).abs() <= 0.500001e-6, "{x} {y}");
     }
+    let off = a.positions.iter().zip(&b.positions).map(|(x, y)| {
+        assert_eq!(x.is_nan(), y.is_nan());
+        if x.is_nan() { 0.0 } else { (x - y).abs() }
+    });
+    off.fold(0.0, f64::max)
+}
+
+#[test]
+fn takes_keep_their_markers_to_a_two_hundredth_of_a_millimetre() {
+    assert!(rounding(&take()) <= 0.500001e-5);
+}
+
+#[test]
+fn noise_is_kept_in_steps_of_its_own_size() {
+    let sizes = [0.0, 2e-5, 1e-3].map(|noise| encode_take(&take_with_noise(noise)).len());
+    // Half of what is typically new in a frame, which is somewhat more than the noise itself.
+    let off = rounding(&take_with_noise(2e-5));
+    assert!((0.7e-5..2e-5).contains(&off), "{off}");
+    // However much there is: a fortieth of a millimetre.
+    let most = rounding(&take_with_noise(1e-3));
+    assert!((2e-5..=2.500001e-5).contains(&most), "{most}");
+    assert!(sizes[1] < sizes[2], "{sizes:?}");
 }
 
 #[test]
@@ -139,7 +165,7 @@ proptest! {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
         let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
-            let version = if *kind == "MMTK" { 3 } else { 2 };
+            let version = if *kind == "MMTK" { 4 } else { 2 };
             let body = open_pack(kind, version, whole).unwrap();
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;

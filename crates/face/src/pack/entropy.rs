@@ -9,7 +9,7 @@
 /// Bits of a probability.
 const PRECISION: u32 = 16;
 /// A probability learns from at most about so many bits.
-const MEMORY: u16 = 200;
+const MEMORY: u16 = 80;
 /// No probability falls below this: no bit costs nothing, none more than 10.
 const LEAST: u16 = 1 << (PRECISION - 10);
 /// Bits after the leading one that are learnt.
@@ -25,6 +25,9 @@ pub trait Integers {
 
     /// Whether more was read than was ever written: damage.
     fn spent(&self) -> bool;
+
+    /// Whether values go in and not out.
+    fn writes(&self) -> bool;
 }
 
 /// The probability that a bit is 0.
@@ -192,6 +195,10 @@ impl Integers for IntegerWriter {
     fn spent(&self) -> bool {
         false
     }
+
+    fn writes(&self) -> bool {
+        true
+    }
 }
 
 /// Reads what an [`IntegerWriter`] wrote.
@@ -242,6 +249,10 @@ impl Integers for IntegerReader<'_> {
     fn integer(&mut self, model: &mut Model, context: usize, value: i32) -> i32 {
         let _ = value;
         integer(self, model, context, 0)
+    }
+
+    fn writes(&self) -> bool {
+        false
     }
 
     fn spent(&self) -> bool {

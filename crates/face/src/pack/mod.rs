@@ -1,26 +1,33 @@
 //! The avatar pack (`MMAV`): what the stage loads of an avatar, small enough to send to a browser.
 //!
-//! Positions and displacements are integers in steps of about a micrometre; what is stored is how
-//! far each lies from the guess of its neighbours (`predict`), at the length that its frequency
-//! deserves (`entropy`). Normals are not stored: they follow from the surface. The pictures of
-//! surfaces lie behind all this as they are, so that a browser can decode them.
+//! Positions are integers in steps of two micrometres, displacements in steps that each vertex has of
+//! its own (`steps`). What is stored is how far each lies from a guess, at the length that its frequency
+//! deserves (`entropy`): the guess of its neighbours (`predict`), or that of its mirror image on the
+//! other side of the face (`mirror`). Normals are not stored: they follow from the surface. The
+//! pictures of surfaces lie behind all this as they are, so that a browser can decode them.
 //!
 //! | field | form |
 //! |---|---|
-//! | `MMAV`, version 3, length of the body | 4 bytes, u32, u32 |
+//! | `MMAV`, version 4, length of the body | 4 bytes, u32, u32 |
 //! | body | raw deflate |
 //! | avatar's name, shape names | texts |
 //! | error bound in metres | f32 |
-//! | meshes: name, part, base colour, step, colours?, pictures' triangles, V, T, integers | see `mesh_to` |
+//! | number of meshes, mirror?, twice its x in steps | varint, u8, varint |
+//! | meshes: name, part, base colour, unit of displacements, colours?, pictures' triangles, V, T, integers | see `mesh_to` |
 //! | eyeballs: mesh, centre, looks (shape, axis, radians) | |
 //! | after the body: JPEG file and JPEG mask of each texture | bytes |
 //! | their lengths, the number of textures | u32 each |
 
 mod bytes;
+mod connectivity;
 mod entropy;
 mod envelope;
+mod mirror;
 mod predict;
+mod shapes;
+mod steps;
 mod surface;
+mod values;
 
 pub use bytes::{PackError, PackReader, PackWriter};
 pub use entropy::{IntegerReader, IntegerWriter, Integers, Model};
@@ -30,7 +37,7 @@ pub use envelope::{open_pack, pack_kind, seal_pack};
 use crate::{Avatar, Eyeball, Look, Mesh, Texture};
 
 const KIND: &str = "MMAV";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Least bytes of a mesh, an eyeball and a look, for [`PackReader::count`].
 const LEAST: [usize; 3] = [20, 14, 17];
 
@@ -49,8 +56,12 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
     let mut meshes = PackWriter::new();
     let mut error_bound = 0f64;
     meshes.varint(avatar.meshes.len() as u32);
+    let plane = mirror::plane(avatar.meshes.iter().map(surface::neutral));
+    meshes.u8(u8::from(plane.is_some()));
+    plane.iter().for_each(|&plane| meshes.varint(plane as u32));
+    let mut places = mirror::Places::new(plane);
     for mesh in &avatar.meshes {
-        error_bound = error_bound.max(surface::mesh_to(&mut meshes, mesh));
+        error_bound = error_bound.max(surface::mesh_to(&mut meshes, mesh, &mut places));
     }
     let mut body = PackWriter::new();
     body.text(&avatar.name);
@@ -90,8 +101,14 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
     let shape_names = r.texts()?;
     r.f32()?;
     let count = r.count(LEAST[0])?;
+    let plane = match r.u8()? {
+        0 => None,
+        1 => Some(r.varint()? as i32),
+        other => return r.refuse(format!("mirror flag {other}")),
+    };
+    let mut places = mirror::Places::new(plane);
     let meshes = (0..count)
-        .map(|_| surface::mesh_from(&mut r, shape_names.len()))
+        .map(|_| surface::mesh_from(&mut r, shape_names.len(), &mut places))
         .collect::<Result<Vec<_>, _>>()?;
     let vector = |r: &mut PackReader<'_>| Ok([r.f32()?, r.f32()?, r.f32()?]);
     let mut eyeballs = Vec::new();

@@ -38,18 +38,20 @@ impl Prediction {
         this
     }
 
-    /// The guess of the visit, rounded to the nearest integer.
-    pub fn at(&self, visit: usize, values: &[i32]) -> i32 {
+    /// The guess of the visit, rounded to the nearest integers.
+    pub fn at(&self, visit: usize, values: &[[i32; 3]]) -> [i32; 3] {
         let start = if visit == 0 { 0 } else { self.ends[visit - 1] as usize };
         let terms = &self.terms[start..self.ends[visit] as usize];
         if terms.is_empty() {
-            return 0;
+            return [0; 3];
         }
-        let value = |v: u32| i64::from(values[v as usize]);
-        let sum: i64 = terms.iter().map(|&[a, b, c]| value(a) + value(b) - value(c)).sum();
         let n = terms.len() as i64;
-        // Damaged packs reach any sum; wrapping keeps both sides alike and never panics.
-        (2 * sum + n).div_euclid(2 * n) as i32
+        std::array::from_fn(|axis| {
+            let value = |v: u32| i64::from(values[v as usize][axis]);
+            let sum: i64 = terms.iter().map(|&[a, b, c]| value(a) + value(b) - value(c)).sum();
+            // Damaged packs reach any sum; wrapping keeps both sides alike and never panics.
+            (2 * sum + n).div_euclid(2 * n) as i32
+        })
     }
 
     /// Visits the unknown neighbours of `v`: first those whose triangle is otherwise known, since
@@ -168,10 +170,12 @@ mod tests {
         sorted.sort_unstable();
         assert_eq!(sorted, (0..n as u32).collect::<Vec<_>>());
 
-        let values: Vec<i32> =
-            (0..n as i32).map(|v| 40 * (v % w as i32) - 7 * (v / w as i32)).collect();
+        let value = |v: i32| 40 * (v % w as i32) - 7 * (v / w as i32);
+        let values: Vec<[i32; 3]> = (0..n as i32).map(|v| [value(v), -value(v), v % 5]).collect();
         let wrong = (0..n)
-            .filter(|&i| prediction.at(i, &values) != values[prediction.order[i] as usize])
+            .filter(|&i| {
+                prediction.at(i, &values)[..2] != values[prediction.order[i] as usize][..2]
+            })
             .count();
         // Only the first vertices of the sheet and the two loose ones have no parallelogram.
         assert!(wrong <= 8, "{wrong}");

@@ -25,7 +25,7 @@ pub fn consume(kind: Kind, bytes: &[u8]) {
         },
         Kind::Pack => {
             // A body as it is, in a pack without pictures.
-            let sealed = [seal_pack("MMAV", 3, bytes), vec![0; 4]].concat();
+            let sealed = [seal_pack("MMAV", 4, bytes), vec![0; 4]].concat();
             for bytes in [bytes.to_vec(), sealed] {
                 if let Ok(avatar) = decode_pack(&bytes) {
                     sound(&avatar);
