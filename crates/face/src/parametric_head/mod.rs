@@ -138,6 +138,8 @@ pub(crate) struct Subdivided {
     cage_vertices: usize,
     /// Where the quads' sides are no halvings of the cage's: how to get from those to these.
     resampled: Option<Resampled>,
+    /// Puts the vertices of a coarse density on the smooth surface, which the first halvings only near.
+    onto: Option<Step>,
 }
 
 impl Subdivided {
@@ -162,15 +164,19 @@ impl Subdivided {
                 .collect();
             resampled
         });
-        Subdivided { steps, quads, is_socket, cage_vertices, resampled }
+        let vertices = steps.last().map_or(cage_vertices, Step::len);
+        let onto =
+            (across == halved && density < Density::FINEST).then(|| Step::new(vertices, &quads));
+        Subdivided { steps, quads, is_socket, cage_vertices, resampled, onto }
     }
 
     /// A channel of the cage on the finest vertices.
     pub(crate) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
         let halved = self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values));
-        match &self.resampled {
-            Some(resampled) => resampled.values(&halved),
-            None => halved,
+        match (&self.resampled, &self.onto) {
+            (Some(resampled), _) => resampled.values(&halved),
+            (None, Some(step)) => step.limit(&halved),
+            (None, None) => halved,
         }
     }
 
