@@ -43,6 +43,17 @@ pub struct Capture {
 }
 
 impl Capture {
+    /// What a capture system delivers: frames from 0 on, nothing to note. `positions` frame-major,
+    /// as many a frame as there are labels.
+    pub fn new(
+        labels: Vec<String>,
+        rate_hz: f64,
+        unit: LengthUnit,
+        positions: Vec<[f64; 3]>,
+    ) -> Self {
+        Self { labels, rate_hz, first_frame: 0, unit, positions, notes: vec![] }
+    }
+
     /// Number of frames.
     pub fn frames(&self) -> usize {
         if self.labels.is_empty() { 0 } else { self.positions.len() / self.labels.len() }

@@ -42,14 +42,7 @@ fn scene() -> Scene {
         skin: AvatarSkin::of(&avatar).unwrap(),
         avatar,
         map,
-        capture: Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: vec![],
-        },
+        capture: Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions),
     }
 }
 

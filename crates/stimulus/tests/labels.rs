@@ -41,14 +41,7 @@ fn built_in() -> Scene {
         neutral: Some(take.neutral[0]..take.neutral[1]),
         ..MarkerMap::default()
     };
-    let capture = Capture {
-        labels: take.labels,
-        rate_hz: take.rate_hz,
-        first_frame: 0,
-        unit: LengthUnit::Millimetre,
-        positions: take.positions,
-        notes: vec![],
-    };
+    let capture = Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions);
     Scene { skin: AvatarSkin::of(&build_head(&avatar)).unwrap(), map, capture }
 }
 

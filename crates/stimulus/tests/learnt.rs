@@ -28,14 +28,7 @@ fn head(seed: u64) -> (Avatar, MarkerSites) {
 }
 
 fn capture(take: &SyntheticTake) -> Capture {
-    Capture {
-        labels: take.labels.clone(),
-        rate_hz: take.rate_hz,
-        first_frame: 0,
-        unit: LengthUnit::Millimetre,
-        positions: take.positions.clone(),
-        notes: vec![],
-    }
+    Capture::new(take.labels.clone(), take.rate_hz, LengthUnit::Millimetre, take.positions.clone())
 }
 
 /// An actor's range of motion and two emotions, and an avatar (another person) for them.

@@ -438,14 +438,12 @@ fn labelled_take(folder: &Path, swapped: std::ops::Range<usize>) -> [String; 2] 
         map += &format!("{label},head,\n");
     }
     std::fs::write(folder.join("map.csv"), map).unwrap();
-    let mut capture = mimique_mocap::Capture {
-        labels: take.labels,
-        rate_hz: take.rate_hz,
-        first_frame: 0,
-        unit: mimique_mocap::LengthUnit::Millimetre,
-        positions: take.positions,
-        notes: vec![],
-    };
+    let mut capture = mimique_mocap::Capture::new(
+        take.labels,
+        take.rate_hz,
+        mimique_mocap::LengthUnit::Millimetre,
+        take.positions,
+    );
     // Two neighbours: the first face marker and the one nearest to it.
     let labels = capture.labels.clone();
     let place = |m: usize| capture.positions[m];

@@ -57,14 +57,12 @@ fn the_built_in_actor_s_markers_are_found_on_another_person_whatever_way_up() {
         seed: 5,
     });
     let take = synthetic_take(&build_head(&actor), &marker_sites(&actor), &clips, 9, 0.1);
-    let capture = Capture {
-        labels: take.labels.clone(),
-        rate_hz: take.rate_hz,
-        first_frame: 0,
-        unit: LengthUnit::Millimetre,
-        positions: take.positions.clone(),
-        notes: vec![],
-    };
+    let capture = Capture::new(
+        take.labels.clone(),
+        take.rate_hz,
+        LengthUnit::Millimetre,
+        take.positions.clone(),
+    );
     let head = build_head(&avatar);
     let skin = AvatarSkin::of(&head).unwrap();
     let sites = marker_sites(&avatar);
@@ -132,14 +130,12 @@ fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
 fn too_little_is_refused_with_a_remedy() {
     let spec = HeadSpec::default();
     let skin = AvatarSkin::of(&build_head(&spec)).unwrap();
-    let capture = Capture {
-        labels: (0..4).map(|i| format!("M{i}")).collect(),
-        rate_hz: 100.0,
-        first_frame: 0,
-        unit: LengthUnit::Millimetre,
-        positions: (0..400).map(|i| [f64::from(i % 4), f64::from(i % 4 % 2), 0.0]).collect(),
-        notes: vec![],
-    };
+    let capture = Capture::new(
+        (0..4).map(|i| format!("M{i}")).collect(),
+        100.0,
+        LengthUnit::Millimetre,
+        (0..400).map(|i| [f64::from(i % 4), f64::from(i % 4 % 2), 0.0]).collect(),
+    );
     let error = suggest_map(&skin, &capture, None).unwrap_err();
     assert!(matches!(error, SuggestMapError::TooFew { seen: 4, .. }), "{error}");
     let error = suggest_map(&skin, &capture, Some(90..200)).unwrap_err();

@@ -216,14 +216,7 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     let take = range_of_motion_take(&build_head(&spec), &sites, 1 ^ 0x726f_6d00_0000_0000, 0.1);
     let frames = take.frames();
     let table = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
-    let capture = Capture {
-        labels: take.labels,
-        rate_hz: take.rate_hz,
-        first_frame: 0,
-        unit: LengthUnit::Millimetre,
-        positions: take.positions,
-        notes: vec![],
-    };
+    let capture = Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions);
     let text = mimique_mocap::write_csv(&capture).unwrap();
     let mut desk = built_in();
     let short: String = table.to_csv().lines().take(100).map(|line| format!("{line}\n")).collect();

@@ -60,14 +60,7 @@ pub(super) fn take(actor: &BuiltinCapture, what: mimique_study::Performance) -> 
         played: played(&take),
         head: take.head_labels,
         neutral: first..end,
-        capture: Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: vec![],
-        },
+        capture: Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions),
     }
 }
 
@@ -111,14 +104,7 @@ pub(super) fn training(actor: &BuiltinCapture) -> Training {
     let [first, end] = take.neutral;
     Training {
         weights: WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz),
-        capture: Capture {
-            labels: take.labels,
-            rate_hz: take.rate_hz,
-            first_frame: 0,
-            unit: LengthUnit::Millimetre,
-            positions: take.positions,
-            notes: vec![],
-        },
+        capture: Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions),
         neutral: Some(first..end),
         head: Some(take.head_labels),
     }
