@@ -266,7 +266,7 @@ pub(crate) fn built_in_actor(actor: u64) -> HeadSpec {
 /// [`Capture`], millimetres.
 pub(crate) fn performed(labels: Vec<String>, rate_hz: f64, positions: Vec<[f64; 3]>) -> Capture {
     let unit = LengthUnit::Millimetre;
-    Capture { labels, rate_hz, first_frame: 0, unit, positions, notes: Vec::new() }
+    Capture::new(labels, rate_hz, unit, positions)
 }
 
 /// The capture of a file; `unit` and `rate_hz` are for files that do not say them.

@@ -6,8 +6,8 @@
 
 use super::predict::Prediction;
 
-/// Edge of a cell in which places are looked up, steps of positions: 2 mm.
-const CELL: i32 = 1000;
+/// Edge of a cell in which places are looked up, steps of positions: 3 mm.
+const CELL: i32 = 1500;
 /// Most places of a bucket that are looked at: a damaged pack may have all vertices in one.
 const MOST_IN_A_BUCKET: usize = 512;
 
@@ -44,13 +44,14 @@ impl Places {
     }
 
     /// The mirror image of the place nearest to where `guess` has its own image, and its number; none
-    /// where no place from number `first` on is within `reach` (at most a cell) of it on every axis.
+    /// where no place from number `first` on is within `reach` (at most a cell) of it, the distances on
+    /// the three axes added up.
     pub fn across(&self, guess: [i32; 3], first: usize, reach: i32) -> Option<([i32; 3], usize)> {
         let plane = self.plane?;
         let sought = Self::image(guess, plane);
         let [low, high] =
             [-reach, reach].map(|r| sought.map(|x| x.wrapping_add(r).div_euclid(CELL)));
-        let mut best = None;
+        let mut best = (reach as u32 + 1, 0);
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
@@ -60,21 +61,17 @@ impl Places {
                         if at <= first {
                             break;
                         }
-                        let off = std::array::from_fn::<i64, 3, _>(|k| {
-                            i64::from(self.positions[at - 1][k]) - i64::from(sought[k])
-                        });
-                        let distance = off.iter().map(|d| d * d).sum::<i64>();
-                        if off.iter().all(|d| d.abs() <= i64::from(reach))
-                            && best.is_none_or(|least| (distance, at) < least)
-                        {
-                            best = Some((distance, at));
-                        }
+                        let place = self.positions[at - 1].iter().zip(&sought);
+                        let off =
+                            place.fold(0u32, |sum, (a, b)| sum.saturating_add(a.abs_diff(*b)));
+                        best = best.min((off, at));
                         at = self.before[at - 1] as usize;
                     }
                 }
             }
         }
-        best.map(|(_, at)| (Self::image(self.positions[at - 1], plane), at - 1))
+        let at = best.1.checked_sub(1)?;
+        Some((Self::image(self.positions[at], plane), at))
     }
 
     fn bucket(&self, cell: [i32; 3]) -> usize {

@@ -74,12 +74,8 @@ impl<'p> Shapes<'p> {
         residuals.vertices(coder, self.prediction, &visits, &self.steps, &mut own, &guess);
         (self.own, self.residuals) = (own, residuals);
         self.clear(twin);
-        let mut moved: Moved = Vec::with_capacity(visits.len());
-        for &i in &visits {
-            let v = self.prediction.order[i as usize];
-            moved.push((v, std::mem::take(&mut self.own[v as usize])));
-        }
-        moved.sort_unstable_by_key(|m| m.0);
+        let own = self.own.iter_mut().zip(0u32..).filter(|(d, _)| **d != [0; 3]);
+        let moved: Moved = own.map(|(d, v)| (v, std::mem::take(d))).collect();
         self.so_far.push(moved);
         (!coder.spent()).then_some(())
     }

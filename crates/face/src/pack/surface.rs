@@ -18,8 +18,9 @@ const UV_STEP: f32 = 1.0 / 16384.0;
 const COARSEST_UNIT: f32 = 4e-6;
 /// Most that the two halves of a vertex differ on an axis, steps of positions: a rounding.
 const SAME: u32 = 8;
-/// How far from its guess a vertex's mirror image is looked for, steps of positions: two millimetres.
-const REACH: i32 = 1000;
+/// How far from its guess a vertex's mirror image is looked for, steps of positions: three millimetres
+/// along the axes together.
+const REACH: i32 = 1500;
 
 const PARTS: [Part; 10] = [
     Part::Skin,
@@ -165,16 +166,14 @@ pub(super) fn mesh_from(
         let step = |q: &[i32; 3]| STEPS[(q[0].max(0) as usize).min(STEPS.len() - 1)];
         let mut shapes = Shapes::new(&prediction, &halves, values.iter().map(step).collect());
         for _ in 0..shape_count {
-            let Some(moved) = shapes.read(&mut coder) else {
-                return r.refuse(format!("mesh {name} is damaged in shape {}", read.len()));
-            };
+            let Some(moved) = shapes.read(&mut coder) else { break };
             let (vertices, deltas) =
                 moved.into_iter().map(|(v, q)| (v, q.map(|x| x as f32 * unit))).unzip();
             read.push(SparseShape { vertices, deltas });
         }
     }
-    if coder.spent() {
-        return r.refuse(format!("mesh {name} ends after {length} bytes"));
+    if coder.spent() || read.len() < shape_count {
+        return r.refuse(format!("mesh {name} is damaged within {length} bytes"));
     }
     Ok(Mesh {
         name,
