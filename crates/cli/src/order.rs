@@ -17,6 +17,9 @@ pub struct Args {
     /// where nobody was replaced)
     #[arg(long, short = 'k', visible_alias = "slot")]
     participant: u64,
+    /// Condition, as in the export's column `assigned_condition`; needed where the study has conditions
+    #[arg(long)]
+    condition: Option<String>,
     /// Seed instead of the study's own
     #[arg(long)]
     seed: Option<u64>,
@@ -28,7 +31,17 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let (value, study) = load(&args.study)?;
     let config_hash = mimique_study::config_hash(&value);
     let seed = args.seed.unwrap_or(study.seed);
-    let draw = Draw { seed, config_hash: &config_hash, participant: args.participant };
+    let conditions =
+        study.conditions_for(args.condition.as_deref()).with_context(|| format!("{file}"))?;
+    let condition = match conditions.as_slice() {
+        [] => None,
+        [only] => Some(*only),
+        several => anyhow::bail!(
+            "{file}: /sequence: the order depends on the participant's condition; add --condition {}",
+            several.join(" or --condition ")
+        ),
+    };
+    let draw = Draw { seed, config_hash: &config_hash, participant: args.participant, condition };
     let items = order(&study, draw).with_context(|| format!("{file}"))?;
 
     let mut out = std::io::stdout().lock();
@@ -38,6 +51,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "seed": seed,
             "config_hash": config_hash,
             "participant": args.participant,
+            "condition": condition,
             "order": items,
         });
         writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;

@@ -45,6 +45,7 @@ impl Kept {
                     client: "{}".into(),
                     recruitment: [("PROLIFIC_PID".to_owned(), format!("prolific-{person}"))].into(),
                     marks: Vec::new(),
+                    conditions: Vec::new(),
                     places: None,
                     reservation_ms: 3_600_000,
                     now_ms: 1_700_000_000_000,

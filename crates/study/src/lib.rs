@@ -30,7 +30,7 @@ pub use check::{
 pub use event::{Answers, Calibrated, Client, Display, EventKind, PlayLog, ShownBeside};
 pub use instant::instant_ms;
 pub use number_text::number_text;
-pub use order::{Draw, OrderError, OrderedItem, Stream, option_order, order};
+pub use order::{Draw, OrderError, OrderedItem, Stream, drawn_condition, option_order, order};
 pub use session_file::{SessionFile, SessionFileError};
 pub use sorted_map::SortedMap;
 pub use study_file::*;

@@ -100,6 +100,9 @@ pub struct StartSession {
     /// Recruitment parameters of the address (`PROLIFIC_PID`...), stored apart.
     #[serde(default)]
     pub recruitment: SortedMap<String, String>,
+    /// Condition that the address names (`?condition=`); the server gives one if it names none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<String>,
     /// Language of the pages.
     pub language: String,
     /// Browser name, its major version, platform class: nothing finer.
@@ -120,6 +123,10 @@ pub struct SessionStarted {
     /// the next participant takes it. 0 in sessions of before there were slots: see [`Self::slot`].
     #[serde(default)]
     pub slot: u64,
+    /// The participant's condition, for good; none in a study without conditions. Each condition has
+    /// slots of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<String>,
     /// Seed of the study's random streams.
     pub seed: u64,
     /// `pilot` or `live`.

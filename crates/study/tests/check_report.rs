@@ -210,6 +210,7 @@ mod changed_studies {
                 participant_id: "p1".into(),
                 participant: 1,
                 slot: 1,
+                condition: None,
                 seed: study.seed,
                 stage: "live".into(),
                 config_hash: checked.config_hash().to_owned(),

@@ -191,6 +191,7 @@ fn samples_beyond_proof_are_refused_with_a_number_that_can_be_taken() {
     sequence["numSamples"] = 253.into();
     let report = of(&sequence);
     let checked = report.study.expect("4 samples are proved");
-    let draw = Draw { seed: 1, config_hash: checked.config_hash(), participant: 1_000 };
+    let draw =
+        Draw { seed: 1, config_hash: checked.config_hash(), participant: 1_000, condition: None };
     assert!(order(checked.study(), draw).is_ok());
 }

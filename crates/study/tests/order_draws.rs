@@ -11,7 +11,7 @@ use support::study_text;
 
 /// The clips in the order of a participant.
 fn clips(study: &Study, hash: &str, participant: u64) -> Vec<String> {
-    let draw = Draw { seed: study.seed, config_hash: hash, participant };
+    let draw = Draw { seed: study.seed, config_hash: hash, participant, condition: None };
     let items = order(study, draw).unwrap();
     items
         .into_iter()
@@ -56,7 +56,7 @@ fn small_study(segments: &[(&str, &str)], methods: &[&str], sequence: &str) -> S
 #[test]
 fn order_depends_on_seed_hash_and_participant() {
     let study = Study::from_text(&study_text("demo.json")).unwrap();
-    let draw = Draw { seed: 1, config_hash: "a", participant: 1 };
+    let draw = Draw { seed: 1, config_hash: "a", participant: 1, condition: None };
     let first = order(&study, draw).unwrap();
     assert_eq!(order(&study, draw).unwrap(), first);
     assert_ne!(order(&study, Draw { seed: 2, ..draw }).unwrap(), first);
@@ -127,7 +127,7 @@ fn impossible_constraints_are_an_error_and_no_hang() {
         &["box"],
         "{ order: 'random', components: ['faces'], constraints: [{ factor: 'kind', atMostAlike: 1 }] }",
     );
-    let draw = Draw { seed: 1, config_hash: "h", participant: 1 };
+    let draw = Draw { seed: 1, config_hash: "h", participant: 1, condition: None };
     let error = order(&study, draw).unwrap_err().to_string();
     assert!(error.starts_with("/sequence/constraints: no order of its 4 parts"), "{error}");
 }
@@ -262,7 +262,7 @@ fn a_million_orders_keep_their_constraints() {
         let study = small_study(&segments, methods, &sequence);
         let kind_of: BTreeMap<&str, &str> = segments.iter().copied().collect();
         for participant in 0..50 {
-            let draw = Draw { seed: design, config_hash: "h", participant };
+            let draw = Draw { seed: design, config_hash: "h", participant, condition: None };
             let begun = std::time::Instant::now();
             let ordered = order(&study, draw);
             longest = longest.max(begun.elapsed());
@@ -324,7 +324,7 @@ fn nested_sequences_stay_together_and_breaks_come_between() {
     );
     let mut beginnings = std::collections::BTreeSet::new();
     for participant in 0..40 {
-        let draw = Draw { seed: 5, config_hash: "h", participant };
+        let draw = Draw { seed: 5, config_hash: "h", participant, condition: None };
         let items = order(&study, draw).unwrap();
         let mut line = String::new();
         for item in &items {
@@ -364,7 +364,7 @@ proptest! {
                {{ factor: 'method', atMostAlike: {alike} }} ] }}"
         );
         let study = small_study(&segments, &["m0", "m1", "m2"][..methods], &sequence);
-        let draw = Draw { seed: 3, config_hash: "h", participant };
+        let draw = Draw { seed: 3, config_hash: "h", participant, condition: None };
         let Ok(items) = order(&study, draw) else { return Ok(()) };
         let kind_of: BTreeMap<&str, &str> = segments.iter().copied().collect();
         let trials: Vec<(&str, String)> = items.iter().filter_map(|item| match item {

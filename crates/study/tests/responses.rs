@@ -236,6 +236,7 @@ fn questions_of_many_cells_become_rows_of_their_own() {
         participant_id: "p1".into(),
         participant: 1,
         slot: 1,
+        condition: None,
         seed: 0,
         stage: "pilot".into(),
         config_hash: "h".into(),

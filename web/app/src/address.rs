@@ -1,6 +1,7 @@
-//! What the address of the page says: which study, which language, who recruited the participant.
+//! What the address of the page says: which study, which language, which condition, who recruited the
+//! participant.
 //!
-//! `/s/demo/?lang=fr&PROLIFIC_PID=…&STUDY_ID=…&SESSION_ID=…`
+//! `/s/demo/?lang=fr&condition=…&PROLIFIC_PID=…&STUDY_ID=…&SESSION_ID=…`
 
 use mimique_study::SortedMap;
 
@@ -11,6 +12,8 @@ pub struct Address {
     pub study: String,
     /// Language asked for (`?lang=`).
     pub language: Option<String>,
+    /// Condition of the participant (`?condition=`); named twice it is both, with a comma.
+    pub condition: Option<String>,
     /// Every other parameter, as recruiting sites add them.
     pub recruitment: SortedMap<String, String>,
 }
@@ -37,6 +40,13 @@ impl Address {
             let (name, value) = (decode(name), decode(value));
             match name.as_str() {
                 "lang" => address.language = Some(value),
+                "condition" => {
+                    let value: String = value.chars().take(MOST_CHARACTERS).collect();
+                    address.condition = Some(match address.condition {
+                        Some(before) => [before, value].join(","),
+                        None => value,
+                    });
+                }
                 "backend" => {}
                 _ if name.chars().count() > MOST_CHARACTERS
                     || address.recruitment.len() >= MOST_PARAMETERS => {}
@@ -84,6 +94,19 @@ mod tests {
         assert_eq!(address.recruitment["PROLIFIC_PID"], "a/b c");
         assert_eq!(address.recruitment["x"], "");
         assert_eq!(address.recruitment.len(), 2);
+    }
+
+    #[test]
+    fn address_that_names_a_condition() {
+        let condition = |query| Address::of_study("a", query).condition;
+        assert_eq!(condition("?x=1"), None);
+        assert_eq!(condition("?condition=with+hint%21").as_deref(), Some("with hint!"));
+        assert_eq!(condition("?condition").as_deref(), Some(""));
+        // However many parameters stand before it, and never one of two.
+        let many: String = (0..100).map(|i| format!("p{i}=1&")).collect();
+        let address = Address::of_study("a", &format!("{many}condition=a&condition=b"));
+        assert_eq!(address.condition.as_deref(), Some("a,b"));
+        assert!(!address.recruitment.contains_key("condition"));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use js_sys::Array;
+use mimique_study::Study;
 use mimique_study::from_json::FromJson;
 use mimique_study::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Refusal, Resume, SessionStarted,
@@ -45,11 +46,11 @@ pub async fn bundle(study: &str, config_hash: Option<&str>) -> Result<Bundle, Fa
 }
 
 /// `POST /api/studies/{study}/sessions`
-pub async fn start(study: &str, body: &StartSession) -> Result<SessionStarted, Failure> {
+pub async fn start(study: &Study, body: &StartSession) -> Result<SessionStarted, Failure> {
     if site::is_site() {
-        return site::start(body);
+        return site::start(study, body);
     }
-    post(&format!("/api/studies/{study}/sessions"), body).await
+    post(&format!("/api/studies/{}/sessions", study.id), body).await
 }
 
 /// `GET /api/sessions/{session}`

@@ -10,7 +10,9 @@ use mimique_study::responses::session_status;
 use mimique_study::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
 };
-use mimique_study::{SessionFile, SortedMap, StaticHosting, json_text};
+use mimique_study::{
+    Draw, SessionFile, SortedMap, StaticHosting, Study, drawn_condition, json_text,
+};
 
 use crate::memory::{ANSWERS, Identity, Keep};
 use crate::network::{self, Bundle, Failure, unreachable};
@@ -74,8 +76,14 @@ pub async fn bundle() -> Result<Bundle, Failure> {
     Ok(bundle)
 }
 
-/// Begins a session: everything comes of the nonce, so that a repeated start is the same session.
-pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
+/// Begins a session: everything comes of nonce and address, so that a repeated start is the same
+/// session. Where the address names no condition, one is drawn: nobody counts here.
+pub fn start(study: &Study, body: &StartSession) -> Result<SessionStarted, Failure> {
+    let conditions = study.conditions_for(body.condition.as_deref()).map_err(|unknown| {
+        let (message, remedy) = study.words(&body.language).unknown_condition(&unknown);
+        let code = "unknown-condition".to_owned();
+        Failure::Refused(Refusal { code, message, remedy, sequences: Vec::new() })
+    })?;
     let nonce = &body.nonce;
     let number = nonce.get(..12).and_then(|digits| u64::from_str_radix(digits, 16).ok());
     let (Some(number), Some(name), Some(code)) = (number, nonce.get(12..20), nonce.get(20..))
@@ -84,7 +92,14 @@ pub fn start(body: &StartSession) -> Result<SessionStarted, Failure> {
     };
     let started = FILE.with(|file| {
         file.borrow().as_ref().map(|site| {
+            let draw = Draw {
+                seed: site.seed,
+                config_hash: &site.bundle.config_hash,
+                participant: number,
+                condition: None,
+            };
             json_text::object([
+                ("condition", drawn_condition(draw, &conditions).into()),
                 ("session", nonce.as_str().into()),
                 ("participant_id", ["s", name].concat().into()),
                 // Nobody counts here: the place in squares and subsets is drawn.

@@ -78,7 +78,7 @@ async fn begin(fixed: &mut Words) -> Result<Rc<Engine>, Trouble> {
     let known = resume(&address).await?;
     let (started, events) = match known {
         Some(known) => known,
-        None => (begin_session(&address, &language).await?, Vec::new()),
+        None => (begin_session(&address, &study, &language).await?, Vec::new()),
     };
     let keep = Keep::open(&started.session).await;
     let stored =
@@ -139,7 +139,11 @@ async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)
     }
 }
 
-async fn begin_session(address: &Address, language: &str) -> Result<SessionStarted, Trouble> {
+async fn begin_session(
+    address: &Address,
+    study: &Study,
+    language: &str,
+) -> Result<SessionStarted, Trouble> {
     let mut identity = Identity::load(&address.study)
         .filter(|identity| identity.started.is_none())
         .unwrap_or_else(|| Identity { nonce: page::nonce(16), started: None });
@@ -148,10 +152,11 @@ async fn begin_session(address: &Address, language: &str) -> Result<SessionStart
     let body = StartSession {
         nonce: identity.nonce.clone(),
         recruitment: address.recruitment.clone(),
+        condition: address.condition.clone(),
         language: language.to_owned(),
         client: about(),
     };
-    let started = persist(|| network::start(&address.study, &body)).await?;
+    let started = persist(|| network::start(study, &body)).await?;
     identity.started = Some(started.clone());
     identity.save(&address.study);
     Ok(started)

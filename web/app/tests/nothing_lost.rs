@@ -401,6 +401,7 @@ fn plan() -> Plan {
         participant_id: "p1".to_owned(),
         participant: 1,
         slot: 1,
+        condition: None,
         seed: 5,
         stage: "live".to_owned(),
         config_hash: "h".to_owned(),

@@ -302,6 +302,7 @@ pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
         participant_id: crate::participant_id(session.participant),
         participant: session.participant,
         slot: session.slot,
+        condition: session.condition.clone(),
         seed: session.seed,
         stage: session.stage.clone(),
         config_hash: session.config_hash.clone(),

@@ -61,11 +61,18 @@ pub(crate) struct Frames {
     pub late: u64,
 }
 
-/// Where people are and where they leave, in the order of the pages; sessions of other versions are
-/// left out, since their pages may be others.
-pub(crate) fn stops(version: &Version, sessions: &[Viewed], now_ms: i64) -> Vec<Stop> {
-    let own: Vec<_> =
-        sessions.iter().filter(|(s, _)| s.config_hash == version.config_hash).collect();
+/// Where people of a condition are and where they leave, in the order of the pages; sessions of other
+/// versions and conditions are left out, since their pages may be others.
+pub(crate) fn stops(
+    version: &Version,
+    sessions: &[Viewed],
+    condition: Option<&str>,
+    now_ms: i64,
+) -> Vec<Stop> {
+    let is_own = |session: &SessionRecord| {
+        session.config_hash == version.config_hash && session.condition.as_deref() == condition
+    };
+    let own: Vec<_> = sessions.iter().filter(|(session, _)| is_own(session)).collect();
     let Some((first, _)) = own.first() else { return Vec::new() };
     let Ok(plan) = Plan::new(version.study.clone(), as_started(first)) else { return Vec::new() };
     let labels = plan.steps.iter().map(|step| match &step.kind {

@@ -29,8 +29,11 @@ pub(crate) struct Overview {
     /// one level are left out.
     pub balance: BTreeMap<String, BTreeMap<String, u64>>,
     pub distributions: Vec<Distribution>,
-    /// Where people are and where they leave.
-    pub stops: Vec<Stop>,
+    /// Each condition between participants: how many have completed, how many are under way. Of this
+    /// version; empty in a study without.
+    pub conditions: Vec<(String, [usize; 2])>,
+    /// Where people are and where they leave, by condition; empty where nobody is.
+    pub stops: Vec<(Option<String>, Vec<Stop>)>,
     /// How long trials took.
     pub times: Vec<Times>,
     /// Late frames by class of device.
@@ -80,10 +83,36 @@ impl Overview {
         balance.retain(|_, levels| levels.len() > 1);
         let distributions =
             distributions(study.study(), language, used().flat_map(|view| &view.answers));
-        let stops = match sources.version(study.config_hash()) {
-            Ok(version) => figures::stops(version, &sessions, now_ms()),
-            Err(_) => Vec::new(),
+        let names: Vec<String> =
+            study.study().conditions().into_iter().map(str::to_owned).collect();
+        let in_condition = |name: &str, standing| {
+            let own = sessions.iter().filter(|(session, view)| {
+                session.config_hash == study.config_hash()
+                    && session.condition.as_deref() == Some(name)
+                    && view.standing == standing
+            });
+            own.count()
         };
+        let conditions = names
+            .iter()
+            .map(|name| {
+                let counts = [Standing::Completed, Standing::Active];
+                (name.clone(), counts.map(|standing| in_condition(name, standing)))
+            })
+            .collect();
+        let mut stops = Vec::new();
+        if let Ok(version) = sources.version(study.config_hash()) {
+            let mut groups: Vec<Option<String>> = names.iter().cloned().map(Some).collect();
+            if groups.is_empty() {
+                groups.push(None);
+            }
+            for group in groups {
+                let own = figures::stops(version, &sessions, group.as_deref(), now_ms());
+                if !own.is_empty() {
+                    stops.push((group, own));
+                }
+            }
+        }
         let times = figures::trial_times(used());
         let frames = figures::frames(used());
         let checks = figures::checks(used());
@@ -94,6 +123,7 @@ impl Overview {
             standings: standings.to_vec(),
             balance,
             distributions,
+            conditions,
             stops,
             times,
             frames,

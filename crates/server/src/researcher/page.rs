@@ -5,7 +5,7 @@ use axum::response::Response;
 use maud::{Markup, html};
 
 use super::distribution::{Distribution, Shape};
-use super::figures::{StopLabel, Times};
+use super::figures::{Stop, StopLabel, Times};
 use super::frame::{Frame, time};
 use super::overview::Overview;
 use super::session_view::{SessionView, Standing};
@@ -45,6 +45,7 @@ pub(crate) fn study_page(
         div data-live={ (address) "/live" } {
             (counts(frame, study, overview))
             (participants(frame, id, overview))
+            @if !overview.conditions.is_empty() { (conditions(frame, overview)) }
             (stops(frame, overview))
             @if !overview.balance.is_empty() { (balance(frame, overview)) }
             (times(frame, &overview.times))
@@ -240,37 +241,81 @@ pub(super) fn status(
 }
 
 fn stops(frame: &Frame, overview: &Overview) -> Markup {
-    let title = frame
-        .say("Where people are and where they leave", "Où en sont les personnes, où elles partent");
-    let all = overview.stops.first().map_or(0, |stop| stop.reached).max(1);
     html! {
-        @if !overview.stops.is_empty() {
-            div.card {
-                h2 { (title) }
-                p.soft {
-                    (frame.say(
-                        "Of this version’s participants. Whoever has declined, or given no sign for half an hour, has left.",
-                        "Participants de cette version. Est parti qui a refusé, ou n’a donné aucun signe depuis une demi-heure.",
-                    ))
+        @for (condition, stops) in &overview.stops {
+            (stops_of(frame, condition.as_deref(), stops))
+        }
+    }
+}
+
+fn stops_of(frame: &Frame, condition: Option<&str>, stops: &[Stop]) -> Markup {
+    let mut title = frame
+        .say("Where people are and where they leave", "Où en sont les personnes, où elles partent")
+        .to_owned();
+    if let Some(name) = condition {
+        title = format!("{title} ({name})");
+    }
+    let all = stops.first().map_or(0, |stop| stop.reached).max(1);
+    html! {
+        div.card {
+            h2 { (title) }
+            p.soft {
+                (frame.say(
+                    "Of this version’s participants. Whoever has declined, or given no sign for half an hour, has left.",
+                    "Participants de cette version. Est parti qui a refusé, ou n’a donné aucun signe depuis une demi-heure.",
+                ))
+            }
+            div.table-scroll.tall tabindex="0" role="region" aria-label=(title) {
+                table {
+                    thead { tr {
+                        th scope="col" { (frame.say("Page", "Page")) }
+                        th scope="col" aria-hidden="true" {}
+                        th.number scope="col" { (frame.say("Reached", "Atteinte")) }
+                        th.number scope="col" { (frame.say("Here now", "Ici maintenant")) }
+                        th.number scope="col" { (frame.say("Left here", "Partis ici")) }
+                    } }
+                    tbody {
+                        @for stop in stops {
+                            tr {
+                                th scope="row" { (stop_label(frame, &stop.label)) }
+                                td.bar { progress aria-hidden="true" max=(all) value=(stop.reached) {} }
+                                td.number { (stop.reached) }
+                                td.number { (some(stop.here)) }
+                                td.number { (some(stop.left)) }
+                            }
+                        }
+                    }
                 }
-                div.table-scroll.tall tabindex="0" role="region" aria-label=(title) {
-                    table {
-                        thead { tr {
-                            th scope="col" { (frame.say("Page", "Page")) }
-                            th scope="col" aria-hidden="true" {}
-                            th.number scope="col" { (frame.say("Reached", "Atteinte")) }
-                            th.number scope="col" { (frame.say("Here now", "Ici maintenant")) }
-                            th.number scope="col" { (frame.say("Left here", "Partis ici")) }
-                        } }
-                        tbody {
-                            @for stop in &overview.stops {
-                                tr {
-                                    th scope="row" { (stop_label(frame, &stop.label)) }
-                                    td.bar { progress aria-hidden="true" max=(all) value=(stop.reached) {} }
-                                    td.number { (stop.reached) }
-                                    td.number { (some(stop.here)) }
-                                    td.number { (some(stop.left)) }
-                                }
+            }
+        }
+    }
+}
+
+/// How many there are in each condition between participants.
+fn conditions(frame: &Frame, overview: &Overview) -> Markup {
+    let title = frame.say("Conditions between participants", "Conditions entre participants");
+    html! {
+        div.card {
+            h2 { (title) }
+            p.soft {
+                (frame.say(
+                    "Of this version’s participants. Whoever comes without a condition in the address goes where the fewest have finished or are on their way.",
+                    "Participants de cette version. Qui arrive sans condition dans l’adresse va là où le moins de personnes ont fini ou sont en route.",
+                ))
+            }
+            div.table-scroll tabindex="0" role="region" aria-label=(title) {
+                table {
+                    thead { tr {
+                        th scope="col" { (frame.say("Condition", "Condition")) }
+                        th.number scope="col" { (Standing::Completed.word(frame.tongue)) }
+                        th.number scope="col" { (Standing::Active.word(frame.tongue)) }
+                    } }
+                    tbody {
+                        @for (name, [completed, active]) in &overview.conditions {
+                            tr {
+                                th scope="row" { (name) }
+                                td.number { (completed) }
+                                td.number { (active) }
                             }
                         }
                     }

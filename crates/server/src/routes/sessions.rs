@@ -59,6 +59,7 @@ pub(super) async fn start(
     let marks = marks(&app, study, &recruitment, browser_mark.as_deref(), &headers)
         .ok_or_else(|| cannot_begin(study.study(), "no-identifier", &language))?;
     refuse_outside_hours(&app, study, &token, &language).await?;
+    let conditions = conditions(&app, study, request.condition, &token, &language).await?;
     let session = NewSession {
         token_hash: secret::hash(&token),
         withdrawal_hash: withdrawal_hash(&code),
@@ -70,6 +71,7 @@ pub(super) async fn start(
         client: serde_json::to_string(&client).unwrap_or_default(),
         recruitment,
         marks,
+        conditions,
         places: study.study().recruitment.participants,
         reservation_ms: study.study().recruitment.reservation_ms(),
         now_ms: now_ms(),
@@ -115,10 +117,36 @@ async fn refuse_outside_hours(
     } else {
         return Ok(());
     };
+    match has_begun(app, token).await? {
+        true => Ok(()),
+        false => Err(cannot_begin(study.study(), code, language)),
+    }
+}
+
+async fn has_begun(app: &App, token: &str) -> Result<bool, Error> {
     match app.storage.session(&secret::hash(token)).await {
-        Ok(_) => Ok(()),
-        Err(StorageError::UnknownSession) => Err(cannot_begin(study.study(), code, language)),
+        Ok(_) => Ok(true),
+        Err(StorageError::UnknownSession) => Ok(false),
         Err(error) => Err(error.into()),
+    }
+}
+
+/// The conditions between which the participant is put: the one that the address names, or all. A
+/// session that has begun keeps its own, whatever the address says now.
+async fn conditions(
+    app: &App,
+    study: &HostedStudy,
+    asked: Option<String>,
+    token: &str,
+    language: &str,
+) -> Result<Vec<String>, Error> {
+    match study.study().conditions_for(asked.as_deref()) {
+        Ok(names) => Ok(names.into_iter().map(str::to_owned).collect()),
+        Err(_) if has_begun(app, token).await? => Ok(Vec::new()),
+        Err(unknown) => {
+            let (message, remedy) = study.study().words(language).unknown_condition(&unknown);
+            Err(Error::CannotBegin { code: "unknown-condition", message, remedy })
+        }
     }
 }
 
@@ -308,6 +336,7 @@ fn started(app: &App, token: String, record: &SessionRecord) -> SessionStarted {
         participant_id: crate::participant_id(record.participant),
         participant: record.participant,
         slot: record.slot,
+        condition: record.condition.clone(),
         seed: record.seed,
         stage: record.stage.clone(),
         config_hash: record.config_hash.clone(),

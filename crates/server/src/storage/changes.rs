@@ -14,7 +14,7 @@ use crate::receipt::ReceiptHasher;
 
 /// A change to make.
 pub(super) enum Change {
-    Start(NewSession),
+    Start(Box<NewSession>),
     Append(Append),
     Complete { token_hash: String, events: u64, receipt_key: Vec<u8>, now_ms: i64 },
     Withdraw { token_hash: String, withdrawal_hash: String, now_ms: i64 },

@@ -1,8 +1,11 @@
-//! The start of a session: its participant number, its slot, and who cannot begin.
+//! The start of a session: its participant number, its condition, its slot, and who cannot begin.
 //!
-//! The study's row is locked first, so that numbers, slots, places and marks are given to one
-//! participant after the other, on one server or several.
+//! The study's row is locked first, so that numbers, conditions, slots, places and marks are given to
+//! one participant after the other, on one server or several.
 
+use std::collections::BTreeMap;
+
+use mimique_study::{Draw, drawn_condition};
 use sqlx::{AssertSqlSafe, Row};
 
 use super::super::super::StorageError;
@@ -32,7 +35,9 @@ pub(super) async fn start(
     let participant: i64 = study.try_get("next_participant")?;
     refuse_repeats(connection, session).await?;
     refuse_beyond_places(connection, session).await?;
-    let slot = take_slot(connection, session).await?;
+    let condition =
+        choose_condition(connection, session, unsigned("studies", participant)?).await?;
+    let slot = take_slot(connection, session, condition).await?;
     sqlx::query("UPDATE studies SET next_participant = $1 WHERE study_id = $2")
         .bind(participant + 1)
         .bind(&session.study_id)
@@ -42,8 +47,8 @@ pub(super) async fn start(
     let row = sqlx::query(
         "INSERT INTO sessions (token_hash, study_id, participant, config_hash, seed, stage, \
          language, client, withdrawal_hash, status, started_ms, event_count, next_sequence, \
-         slot, slot_expires_ms, slot_lasts_ms) \
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'started', $10, 0, 0, $11, $12, $13) \
+         slot, slot_expires_ms, slot_lasts_ms, assigned_condition) \
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'started', $10, 0, 0, $11, $12, $13, $14) \
          RETURNING session_key",
     )
     .bind(&session.token_hash)
@@ -59,6 +64,7 @@ pub(super) async fn start(
     .bind(slot)
     .bind(expires_ms)
     .bind(session.reservation_ms)
+    .bind(condition)
     .fetch_one(&mut *connection)
     .await?;
     let key: i64 = row.try_get("session_key")?;
@@ -86,6 +92,7 @@ pub(super) async fn start(
         study_id: session.study_id.clone(),
         participant: unsigned("sessions", participant)?,
         slot: unsigned("sessions", slot)?,
+        condition: Some(condition.to_owned()).filter(|name| !name.is_empty()),
         slot_expires_ms: Some(expires_ms),
         slot_lasts_ms: session.reservation_ms,
         finished: false,
@@ -144,15 +151,61 @@ async fn refuse_beyond_places(
     if taken < places { Ok(()) } else { Err(StorageError::StudyFull) }
 }
 
-/// The lowest slot that was given back or whose reservation has run out, else the next new one.
-async fn take_slot(connection: &mut Connection, session: &NewSession) -> Result<i64, StorageError> {
-    let free = sqlx::query(
-        "SELECT session_key, slot FROM sessions WHERE study_id = $1 AND config_hash = $2 \
-         AND stage = $3 AND slot_expires_ms <= $4 ORDER BY slot LIMIT 1",
+/// The condition in which the fewest have finished or are on their way; drawn where several have as
+/// few. Empty in a study without conditions.
+async fn choose_condition<'s>(
+    connection: &mut Connection,
+    session: &'s NewSession,
+    participant: u64,
+) -> Result<&'s str, StorageError> {
+    let names: Vec<&str> = session.conditions.iter().map(String::as_str).collect();
+    if let [] | [_] = names[..] {
+        return Ok(names.first().copied().unwrap_or_default());
+    }
+    let rows = sqlx::query(
+        "SELECT assigned_condition, COUNT(*) AS taken FROM sessions WHERE study_id = $1 \
+         AND config_hash = $2 AND stage = $3 AND (finished = 1 OR slot_expires_ms > $4) \
+         GROUP BY assigned_condition",
     )
     .bind(&session.study_id)
     .bind(&session.config_hash)
     .bind(&session.stage)
+    .bind(session.now_ms)
+    .fetch_all(connection)
+    .await?;
+    let mut taken: BTreeMap<String, i64> = BTreeMap::new();
+    for row in &rows {
+        taken.insert(row.try_get("assigned_condition")?, row.try_get("taken")?);
+    }
+    let count = |name: &&str| taken.get(*name).copied().unwrap_or(0);
+    let fewest = names.iter().map(count).min();
+    let names: Vec<&str> =
+        names.iter().filter(|name| Some(count(name)) == fewest).copied().collect();
+    let draw = Draw {
+        seed: session.seed,
+        config_hash: &session.config_hash,
+        participant,
+        condition: None,
+    };
+    Ok(drawn_condition(draw, &names).unwrap_or_default())
+}
+
+/// The condition's lowest slot that was given back or whose reservation has run out, else its next
+/// new one.
+async fn take_slot(
+    connection: &mut Connection,
+    session: &NewSession,
+    condition: &str,
+) -> Result<i64, StorageError> {
+    let free = sqlx::query(
+        "SELECT session_key, slot FROM sessions WHERE study_id = $1 AND config_hash = $2 \
+         AND stage = $3 AND assigned_condition = $4 AND slot_expires_ms <= $5 \
+         ORDER BY slot LIMIT 1",
+    )
+    .bind(&session.study_id)
+    .bind(&session.config_hash)
+    .bind(&session.stage)
+    .bind(condition)
     .bind(session.now_ms)
     .fetch_optional(&mut *connection)
     .await?;
@@ -168,11 +221,12 @@ async fn take_slot(connection: &mut Connection, session: &NewSession) -> Result<
     }
     let row = sqlx::query(
         "SELECT COALESCE(MAX(slot), 0) + 1 AS slot FROM sessions WHERE study_id = $1 \
-         AND config_hash = $2 AND stage = $3",
+         AND config_hash = $2 AND stage = $3 AND assigned_condition = $4",
     )
     .bind(&session.study_id)
     .bind(&session.config_hash)
     .bind(&session.stage)
+    .bind(condition)
     .fetch_one(connection)
     .await?;
     Ok(row.try_get("slot")?)

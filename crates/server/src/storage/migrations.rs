@@ -26,6 +26,11 @@ pub(super) const MIGRATIONS: &[Migration] = &[
         sqlite: include_str!("migrations/sqlite/0003_slots.sql"),
         postgres: include_str!("migrations/postgres/0003_slots.sql"),
     },
+    Migration {
+        version: 4,
+        sqlite: include_str!("migrations/sqlite/0004_conditions.sql"),
+        postgres: include_str!("migrations/postgres/0004_conditions.sql"),
+    },
 ];
 
 /// The version of today's schema.

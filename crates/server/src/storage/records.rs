@@ -78,6 +78,8 @@ pub struct NewSession {
     /// Keyed hashes of what tells a second participation of one person; none where the study does
     /// not ask.
     pub marks: Vec<String>,
+    /// The conditions between which the participant is put; none in a study without.
+    pub conditions: Vec<String>,
     /// How many participants the study takes.
     pub places: Option<u64>,
     /// How long the place in the balance is kept after the last sign of life, milliseconds.
@@ -95,8 +97,11 @@ pub struct SessionRecord {
     pub study_id: String,
     /// Participant number within the study.
     pub participant: u64,
-    /// Place in the balance of conditions, from 1 in each version and stage.
+    /// Place in the balance of conditions, from 1 in each version, stage and condition between
+    /// participants.
     pub slot: u64,
+    /// The participant's condition, for good; none in a study without.
+    pub condition: Option<String>,
     /// Until when the place is kept unless a sign of life comes; none when it is kept for good or
     /// somebody else has it.
     pub slot_expires_ms: Option<i64>,

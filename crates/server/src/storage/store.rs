@@ -36,7 +36,7 @@ use writer::Writer;
 const SESSION_COLUMNS: &str = "session_key, study_id, participant, config_hash, seed, stage, \
      language, client, withdrawal_hash, status, started_ms, last_event_ms, ended_ms, \
      event_count, next_sequence, receipt, receipt_events, slot, slot_expires_ms, slot_lasts_ms, \
-     finished";
+     finished, assigned_condition";
 
 /// Readers and writer of one database.
 #[derive(Clone)]
@@ -292,7 +292,7 @@ impl Store {
 
     pub async fn start(&self, session: NewSession) -> Result<SessionRecord, StorageError> {
         let route = session.token_hash.clone();
-        match self.writer.commit(&route, Change::Start(session)).await? {
+        match self.writer.commit(&route, Change::Start(Box::new(session))).await? {
             Outcome::Started(record) => Ok(*record),
             _ => Err(StorageError::Stopping),
         }
@@ -395,6 +395,8 @@ fn session_record(row: &<Db as sqlx::Database>::Row) -> Result<SessionRecord, St
         study_id: row.try_get("study_id")?,
         participant: unsigned(TABLE, row.try_get("participant")?)?,
         slot: unsigned(TABLE, row.try_get("slot")?)?,
+        condition: Some(row.try_get("assigned_condition")?)
+            .filter(|name: &String| !name.is_empty()),
         slot_expires_ms: row.try_get("slot_expires_ms")?,
         slot_lasts_ms: row.try_get("slot_lasts_ms")?,
         finished: row.try_get::<i64, _>("finished")? != 0,

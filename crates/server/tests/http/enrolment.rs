@@ -280,3 +280,116 @@ pub async fn a_clock_that_jumps_back_loses_nothing(server: &TestServer) {
     assert_eq!(record.participant, 2);
     assert_eq!(server.resume(&started.session).await.events, crate::client::events(0..4));
 }
+
+/// A study of two conditions between participants.
+fn two_conditions() -> HostedStudy {
+    let mut file = study::file();
+    file["components"]["hint"] = json!({"type": "page", "heading": {"en": "Hint", "fr": "Indice"},
+        "text": {"en": "Look.", "fr": "Regardez."}});
+    file["sequence"] = json!({"order": "fixed", "components": [
+        {"id": "hinted", "conditional": true, "order": "fixed", "components": ["hint", "how"]},
+        {"id": "plain", "conditional": true, "order": "fixed", "components": ["how"]},
+    ]});
+    study::host(file)
+}
+
+async fn arrive(
+    server: &TestServer,
+    nonce: u64,
+    condition: Option<&str>,
+    language: &str,
+) -> Answer {
+    let mut body = json!({"nonce": format!("{nonce:032x}"), "language": language});
+    if let Some(name) = condition {
+        body["condition"] = name.into();
+    }
+    server.post("/api/studies/faces/sessions", body).await
+}
+
+async fn arrived(server: &TestServer, nonce: u64, condition: Option<&str>) -> SessionStarted {
+    arrive(server, nonce, condition, "en").await.ok()
+}
+
+pub async fn the_address_puts_a_participant_into_a_condition(server: &TestServer) {
+    // Nor is a condition passed over in a study that has none.
+    let refusal = arrive(server, 1, Some("plain"), "en").await;
+    refusal.refused(StatusCode::FORBIDDEN, "unknown-condition");
+    assert_eq!(server.start(1).await.condition, None);
+    let server = server.restart_with(vec![two_conditions()]).await;
+    let mut slots = Vec::new();
+    for nonce in 2..5 {
+        let started = arrived(&server, nonce, Some("plain")).await;
+        assert_eq!(started.condition.as_deref(), Some("plain"));
+        slots.push(started.slot);
+        // Neither a repeated request, nor another address, nor one that names nothing known changes it.
+        for address in [Some("plain"), Some("hinted"), Some("nonsense"), None] {
+            assert_eq!(arrived(&server, nonce, address).await, started);
+        }
+        assert_eq!(server.resume(&started.session).await.started, started);
+    }
+    assert_eq!(slots, [1, 2, 3]);
+    // Each condition has slots of its own.
+    assert_eq!(arrived(&server, 5, Some("hinted")).await.slot, 1);
+    for (name, language, message) in [
+        ("Plain", "en", "The address names the condition “Plain”"),
+        ("plain,hinted", "fr", "L’adresse nomme la condition «\u{a0}plain,hinted\u{a0}»"),
+        ("", "en", "The address names the condition “”"),
+    ] {
+        let refusal = arrive(&server, 6, Some(name), language).await;
+        let refusal = refusal.refused(StatusCode::FORBIDDEN, "unknown-condition");
+        assert!(refusal.message.starts_with(message), "{refusal:?}");
+        assert!(refusal.message.ends_with("hinted, plain."), "{refusal:?}");
+    }
+    assert_eq!(server.storage.sessions("faces").await.unwrap().len(), 5, "nothing was written");
+    // A withdrawal keeps the row's condition, and gives its slot back to that condition alone.
+    let second = arrived(&server, 3, None).await;
+    server.withdrawn(&second.session, &second.withdrawal_code).await;
+    assert_eq!(arrived(&server, 7, Some("hinted")).await.slot, 2);
+    assert_eq!(arrived(&server, 8, Some("plain")).await.slot, 2);
+    server.storage.close().await;
+}
+
+pub async fn conditions_are_balanced_over_those_who_finish(server: &TestServer) {
+    let server = server.restart_with(vec![two_conditions()]).await;
+    let conditions = async |nonces: std::ops::Range<u64>| {
+        let mut counts = std::collections::BTreeMap::new();
+        for nonce in nonces {
+            let condition = arrived(&server, nonce, None).await.condition.unwrap();
+            *counts.entry(condition).or_insert(0) += 1;
+        }
+        counts.into_values().collect::<Vec<i32>>()
+    };
+    // Reservations count; after each two there are as many in both.
+    for nonce in [1, 3, 5] {
+        assert_eq!(conditions(nonce..nonce + 2).await, [1, 1]);
+    }
+    // All who are in one condition drop out, those in the other finish: the next three replace them.
+    let mut left = Vec::new();
+    for nonce in 1..7 {
+        let started = arrived(&server, nonce, None).await;
+        match started.condition.as_deref() {
+            Some("plain") => end(&server, &started, "finished").await,
+            _ => {
+                left.push(started.slot);
+                end(&server, &started, "declined").await;
+            }
+        }
+    }
+    let mut slots = Vec::new();
+    for nonce in 7..10 {
+        let started = arrived(&server, nonce, None).await;
+        assert_eq!(started.condition.as_deref(), Some("hinted"));
+        slots.push(started.slot);
+    }
+    assert_eq!(slots, left);
+    // Who was sent by an address counts as others do.
+    arrived(&server, 10, Some("plain")).await;
+    arrived(&server, 11, Some("plain")).await;
+    assert_eq!(arrived(&server, 12, None).await.condition.as_deref(), Some("hinted"));
+    // A session keeps its condition when it ends.
+    let sessions = server.storage.sessions("faces").await.unwrap();
+    let finished = sessions.iter().filter(|session| session.finished);
+    let finished: Vec<_> = finished.map(|session| session.condition.clone()).collect();
+    assert_eq!(finished, vec![Some("plain".to_owned()); 3]);
+    server.storage.close().await;
+}

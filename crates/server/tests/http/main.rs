@@ -87,6 +87,8 @@ topics! {
     enrolment::the_slot_of_a_drop_out_goes_to_the_next,
     enrolment::a_sign_of_life_keeps_the_slot,
     enrolment::slots_are_given_one_after_the_other,
+    enrolment::the_address_puts_a_participant_into_a_condition,
+    enrolment::conditions_are_balanced_over_those_who_finish,
     enrolment::the_study_closes_when_it_is_full,
     enrolment::the_study_has_hours,
     enrolment::an_identifier_takes_part_once,

@@ -13,7 +13,7 @@ use crate::postgres::Cluster;
 use crate::study::sha256;
 
 /// Version that this binary writes.
-const LATEST: usize = 3;
+const LATEST: usize = 4;
 
 fn dump(kind: &str, version: usize) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -60,6 +60,13 @@ async fn is_all_there(url: &str, version: usize) {
     let slots: Vec<u64> = sessions.iter().map(|session| session.slot).collect();
     // Before version 3 the number was the place in the balance; then the third was replaced.
     assert_eq!(slots, if version < 3 { [1, 2, 3, 4, 5] } else { [1, 2, 3, 4, 3] });
+    let conditions: Vec<Option<&str>> =
+        sessions.iter().map(|session| session.condition.as_deref()).collect();
+    let (plain, named) = (Some("plain"), Some("named"));
+    assert_eq!(
+        conditions,
+        if version < 4 { [None; 5] } else { [plain, named, plain, named, plain] }
+    );
     let finished: Vec<bool> = sessions.iter().map(|session| session.finished).collect();
     assert_eq!(finished, [true, false, false, false, false]);
     let standing: Vec<Status> = sessions.iter().map(|session| session.status).collect();
@@ -78,7 +85,13 @@ async fn is_all_there(url: &str, version: usize) {
     storage.append(&sha256("token12"), vec![crate::client::event(2)], 0).await.unwrap();
     let mut next = crate::storage::session("faces", "9".repeat(64));
     next.config_hash = "c1".into();
+    // From version 4 on each condition has slots of its own.
+    if version >= 4 {
+        next.conditions = vec!["plain".into()];
+    }
     let next = storage.start(next).await.unwrap();
-    assert_eq!((next.participant, next.slot), (6, if version < 3 { 6 } else { 5 }));
+    let slot = [6, 6, 5, 4][version - 1];
+    assert_eq!((next.participant, next.slot), (6, slot));
+    assert_eq!(next.condition, (version >= 4).then(|| "plain".into()));
     storage.close().await;
 }

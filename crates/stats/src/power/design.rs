@@ -3,7 +3,7 @@
 use mimique_study::{Draw, Measure, OrderError, OrderedItem, Study, order};
 
 use super::clips::{ScaledClips, scaled};
-use crate::simulate::{Draws, Model, Parameters};
+use crate::simulate::{Draws, Model, Parameters, condition_and_slot};
 
 /// What participants go through, the same in every run.
 pub(crate) struct Design<'s> {
@@ -41,9 +41,11 @@ impl<'s> Design<'s> {
     ) -> Result<Self, OrderError> {
         let own = study.clips().len();
         let clips = scaled(study, clips.unwrap_or(own));
+        let conditions = study.conditions();
         let mut walks = Vec::with_capacity(participants);
         for number in 1..=participants as u64 {
-            let draw = Draw { seed: study.seed, config_hash, participant: number };
+            let (condition, slot) = condition_and_slot(&conditions, number);
+            let draw = Draw { seed: study.seed, config_hash, participant: slot, condition };
             let mut walk = Vec::new();
             for item in order(study, draw)? {
                 match item {

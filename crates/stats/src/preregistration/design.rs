@@ -1,7 +1,7 @@
 //! Design and variables in words.
 
 use mimique_study::{
-    Component, Constraint, OrderRule, Question, QuestionKind, Sequence, SequenceItem, Study,
+    Clip, Component, Constraint, OrderRule, Question, QuestionKind, Sequence, SequenceItem, Study,
 };
 
 use super::{Preregistration, Text};
@@ -23,13 +23,9 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         "Les participants ne savent ni par quelle méthode un extrait a été produit, ni ce qui est comparé, avant la dernière réponse. Les analyses sont calculées par un programme fixé d’avance.",
     );
     text.heading(3, "Study design", "Plan");
-    let shown: Vec<usize> = blocks(study)
-        .map(|block| {
-            let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
-            chosen * block.repetitions as usize
-        })
-        .collect();
-    let (trials, sampled) = (shown.iter().sum::<usize>(), samples(&study.sequence));
+    let conditions = study.conditions();
+    let trials = trials_in(study, &study.sequence, &clips, None);
+    let sampled = samples(&study.sequence);
     let segments = study.stimuli.segments.len();
     let (methods, avatars) = (study.stimuli.methods.len(), study.stimuli.avatars.len());
     let words = language.pick(
@@ -43,7 +39,23 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         ),
     );
     text.line(&words);
+    for name in &conditions {
+        let trials = trials_in(study, &study.sequence, &clips, Some(name));
+        let words = language.pick(
+            format!("Between participants: the condition `{name}`, of {trials} trials."),
+            format!("Inter-participants : la condition `{name}`, de {trials} essais."),
+        );
+        text.line(&words);
+    }
     let words = match sampled {
+        true if !conditions.is_empty() => language.pick(
+            "Each participant sees a sample of them; over the participants of a condition each is shown equally often.".to_owned(),
+            "Chaque participant en voit une partie ; sur l’ensemble des participants d’une condition, chacun est montré aussi souvent.".to_owned(),
+        ),
+        false if !conditions.is_empty() => language.pick(
+            "Each participant sees those of one condition.".to_owned(),
+            "Chaque participant voit ceux d’une condition.".to_owned(),
+        ),
         true => language.pick(
             format!("Each participant sees a sample of the {trials} trials; over participants each is shown equally often."),
             format!("Chaque participant voit une partie des {trials} essais ; sur l’ensemble des participants, chacun est montré aussi souvent."),
@@ -75,6 +87,13 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         text.line("");
     }
     text.heading(3, "Randomization", "Tirage au sort");
+    if !conditions.is_empty() {
+        text.both(
+            "A participant’s condition is the one that the invitation’s address names (`?condition=`); without one, that in which the fewest have finished or are on their way, drawn where several have as few.",
+            "La condition d’un participant est celle que nomme l’adresse de l’invitation (`?condition=`) ; à défaut, celle où le moins de personnes ont fini ou sont en route, tirée au sort en cas d’égalité.",
+        );
+        text.line("");
+    }
     for line in order_in_words(study, language, naming) {
         text.line(&line);
     }
@@ -226,6 +245,22 @@ fn blocks(study: &Study) -> impl Iterator<Item = &mimique_study::TrialsComponent
     })
 }
 
+/// How many trials somebody of a condition can be shown.
+fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Option<&str>) -> usize {
+    let count = |item: &SequenceItem| match item {
+        SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
+        SequenceItem::Sequence(nested) => trials_in(study, nested, clips, condition),
+        SequenceItem::Component(name) => match study.components.get(name) {
+            Some(Component::Trials(block)) => {
+                let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
+                chosen * block.repetitions as usize
+            }
+            _ => 0,
+        },
+    };
+    sequence.components.iter().map(count).sum()
+}
+
 fn names(sequence: &Sequence, wanted: &str) -> bool {
     sequence.components.iter().any(|item| match item {
         SequenceItem::Component(name) => name == wanted,
@@ -277,8 +312,15 @@ fn sequence_in_words(
             "dans l’ordre d’un carré de Williams sur les participants",
         ),
     };
-    let name = sequence.id.as_ref().map_or(String::new(), |id| format!("`{id}`: "));
-    lines.push(format!("- {name}{} {order}", parts.join(", ")));
+    let only = match sequence.conditional {
+        true => language.pick(" (only in this condition)", " (dans cette condition seulement)"),
+        false => "",
+    };
+    let name = sequence.id.as_ref().map_or(String::new(), |id| format!("`{id}`{only}: "));
+    match parts.as_slice() {
+        [] => lines.push(format!("- {name}{}", language.pick("nothing", "rien"))),
+        parts => lines.push(format!("- {name}{} {order}", parts.join(", "))),
+    }
     for constraint in &sequence.constraints {
         lines.push(format!("  - {}", constraint_in_words(constraint, language, naming)));
     }

@@ -39,6 +39,7 @@ pub struct Simulation<'s> {
     model: Model<'s>,
     clips: ClipEffects,
     config_hash: String,
+    conditions: Vec<&'s str>,
     seed: u64,
 }
 
@@ -63,16 +64,20 @@ impl<'s> Simulation<'s> {
         parameters.check(study)?;
         let model = Model::new(study, parameters, study.clips());
         let clips = model.clip_effects(seed);
-        Ok(Self { model, clips, config_hash: config_hash.to_owned(), seed })
+        let conditions = study.conditions();
+        Ok(Self { model, clips, config_hash: config_hash.to_owned(), conditions, seed })
     }
 
-    /// The session of a participant, numbered from 1 as the server does.
+    /// The session of a participant, numbered from 1 as the server does. Conditions between
+    /// participants go round with the number.
     pub fn session(&self, participant: u64) -> Result<SimulatedSession, OrderError> {
+        let (condition, slot) = condition_and_slot(&self.conditions, participant);
         let started = SessionStarted {
             session: String::new(),
             participant_id: format!("p{participant:04}"),
             participant,
-            slot: participant,
+            slot,
+            condition: condition.map(str::to_owned),
             seed: self.model.study.seed,
             stage: "live".to_owned(),
             config_hash: self.config_hash.clone(),
@@ -80,5 +85,17 @@ impl<'s> Simulation<'s> {
         };
         let events = session::events(&self.model, &self.clips, self.seed, &started)?;
         Ok(SimulatedSession { started, events })
+    }
+}
+
+/// The condition and the slot in it of a participant, numbered from 1, where all finish.
+pub(crate) fn condition_and_slot<'c>(
+    conditions: &[&'c str],
+    participant: u64,
+) -> (Option<&'c str>, u64) {
+    let before = participant.saturating_sub(1);
+    match conditions.len() as u64 {
+        0 => (None, participant),
+        count => (Some(conditions[(before % count) as usize]), before / count + 1),
     }
 }

@@ -26,6 +26,7 @@ enum Asked<'a> {
 enum Unknown {
     AskedLater,
     PerhapsLater,
+    Elsewhere,
     NotKept,
 }
 
@@ -93,6 +94,11 @@ fn condition(
                 let hint = "put its page first, in a sequence of fixed order";
                 issues.warning(place, "perhaps-too-late", message, hint);
             }
+            Err(Unknown::Elsewhere) => {
+                let message = format!("nobody who is asked this is asked \"{wanted}\"");
+                let hint = "ask both in one condition, or that one outside of the conditions";
+                issues.error(place, "other-condition", message, hint);
+            }
             Err(Unknown::NotKept) => {
                 let message =
                     format!("\"{wanted}\" is asked in trials, whose answers are not kept");
@@ -139,23 +145,35 @@ fn known_before(
         return Err(Unknown::NotKept);
     };
     let Asked::Component(here) = here else { return Err(Unknown::AskedLater) };
-    let (there, here) = (path(&study.sequence, there), path(&study.sequence, here));
-    match there.zip(here).map(|(there, here)| first(&there, &here)) {
-        Some(Some(Ordering::Less)) => Ok(()),
-        Some(None) => Err(Unknown::PerhapsLater),
-        Some(_) | None => Err(Unknown::AskedLater),
+    let mut conditions: Vec<Option<&str>> = study.conditions().into_iter().map(Some).collect();
+    if conditions.is_empty() {
+        conditions.push(None);
     }
+    // Somebody to whom one of the two is not shown has no order of them.
+    let way = |name: &str, condition| path(&study.sequence, name, condition);
+    let both = |condition| way(there, condition).zip(way(here, condition));
+    let known =
+        conditions.into_iter().filter_map(both).map(|(there, here)| match first(&there, &here) {
+            Some(Ordering::Less) => Ok(()),
+            None => Err(Unknown::PerhapsLater),
+            Some(_) => Err(Unknown::AskedLater),
+        });
+    known.reduce(Result::and).unwrap_or(Err(match study.conditions().is_empty() {
+        true => Unknown::AskedLater,
+        false => Unknown::Elsewhere,
+    }))
 }
 
 /// The way to a component: in each sequence its order and the place in it; no place where the
 /// component interrupts the sequence.
 type Way = Vec<(OrderRule, Option<usize>)>;
 
-fn path(sequence: &Sequence, name: &str) -> Option<Way> {
+fn path(sequence: &Sequence, name: &str, condition: Option<&str>) -> Option<Way> {
     for (index, item) in sequence.components.iter().enumerate() {
         let rest = match item {
             SequenceItem::Component(other) => (other == name).then(Vec::new),
-            SequenceItem::Sequence(nested) => path(nested, name),
+            SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => None,
+            SequenceItem::Sequence(nested) => path(nested, name, condition),
         };
         if let Some(rest) = rest {
             return Some([vec![(sequence.order, Some(index))], rest].concat());

@@ -7,6 +7,7 @@
 
 mod attention;
 mod avatars;
+mod between;
 mod conditions;
 mod conduct;
 mod damage;

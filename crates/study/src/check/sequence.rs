@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Subject;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
+use super::{Subject, between};
 use crate::order::{CYCLES, Draw, Flaw, prove};
 use crate::study_file::{
     Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
@@ -41,18 +41,31 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let clips: Vec<&str> = subject.clips.iter().map(|clip| clip.id.as_str()).collect();
         references(&training.clips, &clips, "/training/clips", "clip", issues);
     }
-    let mut named = BTreeMap::new();
-    sequence(subject, &study.sequence, "/sequence", &mut named, issues);
+    let mut named = Named::new();
+    sequence(subject, &study.sequence, "/sequence", None, &mut named, issues);
+    between::examine(&study.sequence, issues);
     for name in study.components.keys().filter(|name| !named.contains_key(name.as_str())) {
         let message = format!("component \"{name}\" is never shown");
         let hint = "name it in /sequence, or remove it";
         issues.warning(below("/components", name), "unused", message, hint);
     }
-    let total = trial_count(subject, &study.sequence);
-    if total == 0 {
-        let message = "no trial is shown";
-        issues.error("/sequence", "empty", message, "name a component of type \"trials\"");
-    } else if total > MOST_TRIALS {
+    let mut conditions: Vec<Option<&str>> = study.conditions().into_iter().map(Some).collect();
+    if conditions.is_empty() {
+        conditions.push(None);
+    }
+    let mut total = 0;
+    for condition in conditions {
+        let count = trial_count(subject, &study.sequence, condition);
+        if count == 0 {
+            let message = match condition {
+                None => "no trial is shown".to_owned(),
+                Some(name) => format!("no trial is shown in the condition \"{name}\""),
+            };
+            issues.error("/sequence", "empty", message, "name a component of type \"trials\"");
+        }
+        total = total.max(count);
+    }
+    if total > MOST_TRIALS {
         let message = format!("{total} trials");
         let hint = format!("show at most {MOST_TRIALS}");
         issues.error("/sequence", "too-many", message, hint);
@@ -173,22 +186,40 @@ fn all_factors(subject: &Subject<'_>) -> BTreeMap<String, BTreeSet<String>> {
     factors
 }
 
+/// Where each component is named, and in which condition (none: in all of them).
+type Named<'a> = BTreeMap<&'a str, Vec<(Option<&'a str>, String)>>;
+
+/// Where somebody of this condition is shown the component already.
+fn shown_before(named: &Named<'_>, name: &str, condition: Option<&str>) -> Option<String> {
+    let meet = |other: &Option<&str>| other.is_none() || condition.is_none() || *other == condition;
+    let places = named.get(name)?;
+    places.iter().rev().find(|(other, _)| meet(other)).map(|(_, place)| place.clone())
+}
+
 fn sequence<'a>(
     subject: &Subject<'a>,
     here: &'a Sequence,
     pointer: &str,
-    named: &mut BTreeMap<&'a str, String>,
+    condition: Option<&'a str>,
+    named: &mut Named<'a>,
     issues: &mut Issues,
 ) {
+    // A condition without a name is said elsewhere.
+    let condition = match here.conditional {
+        true => Some(here.id.as_deref().unwrap_or_default()),
+        false => condition,
+    };
     let components: Vec<&str> = subject.study.components.keys().map(String::as_str).collect();
-    if here.components.is_empty() {
+    if here.components.is_empty() && !here.conditional {
         let message = "an empty sequence";
         issues.error(below(pointer, "components"), "empty", message, "name a component");
     }
     for (index, item) in here.components.iter().enumerate() {
         let place = format!("{pointer}/components/{index}");
         match item {
-            SequenceItem::Sequence(nested) => sequence(subject, nested, &place, named, issues),
+            SequenceItem::Sequence(nested) => {
+                sequence(subject, nested, &place, condition, named, issues);
+            }
             SequenceItem::Component(name) => {
                 if !components.contains(&name.as_str()) {
                     let message = format!("there is no component \"{name}\"");
@@ -199,11 +230,12 @@ fn sequence<'a>(
                         suggestion(name, &components),
                     );
                 }
-                if let Some(first) = named.insert(name, place.clone()) {
+                if let Some(first) = shown_before(named, name, condition) {
                     let message = format!("\"{name}\" is shown at {first} already");
                     let hint = "give its trials \"repetitions\", or write a second component";
-                    issues.error(place, "duplicate", message, hint);
+                    issues.error(&place, "duplicate", message, hint);
                 }
+                named.entry(name).or_default().push((condition, place));
             }
         }
     }
@@ -222,7 +254,9 @@ fn sequence<'a>(
                 issues.error(below(&place, "component"), "bad-interruption", message, hint);
             }
             Some(_) => {
-                named.entry(name).or_insert(place.clone());
+                if shown_before(named, name, condition).is_none() {
+                    named.entry(name).or_default().push((condition, place.clone()));
+                }
             }
         }
         if interruption.spacing == 0 {
@@ -306,9 +340,10 @@ fn constraints(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &m
     }
 }
 
-fn trial_count(subject: &Subject<'_>, sequence: &Sequence) -> usize {
+fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&str>) -> usize {
     let count = |item: &SequenceItem| match item {
-        SequenceItem::Sequence(nested) => trial_count(subject, nested),
+        SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
+        SequenceItem::Sequence(nested) => trial_count(subject, nested, condition),
         SequenceItem::Component(name) => match subject.study.components.get(name) {
             Some(Component::Trials(block)) => {
                 let chosen = subject.clips.iter().filter(|clip| block.clips.takes(clip)).count();
@@ -333,7 +368,12 @@ fn changes_order(pointer: &str) -> bool {
 
 /// Proves that an order exists for every participant, or says which constraints cannot be met.
 fn feasible(subject: &Subject<'_>, issues: &mut Issues) {
-    let draw = Draw { seed: subject.study.seed, config_hash: subject.hash, participant: 0 };
+    let draw = Draw {
+        seed: subject.study.seed,
+        config_hash: subject.hash,
+        participant: 0,
+        condition: None,
+    };
     for flaw in prove(subject.study, draw) {
         match flaw {
             Flaw::NoOrder(error) => {

@@ -111,6 +111,7 @@ impl Plan {
             seed: started.seed,
             config_hash: &started.config_hash,
             participant: started.slot(),
+            condition: started.condition.as_deref(),
         };
         let items = order(&study, draw)?;
         let mut steps = Vec::new();

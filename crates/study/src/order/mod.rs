@@ -98,6 +98,9 @@ pub struct Draw<'a> {
     pub config_hash: &'a str,
     /// The participant's slot ([`crate::wire::SessionStarted::slot`]).
     pub participant: u64,
+    /// The participant's condition ([`Study::conditions`]). It decides what is shown and no draw:
+    /// who has the same slot in another condition has the same order of what both are shown.
+    pub condition: Option<&'a str>,
 }
 
 impl<'a> Draw<'a> {
@@ -138,6 +141,12 @@ pub fn option_order(draw: Draw<'_>, question: &str, options: usize) -> Vec<usize
     order
 }
 
+/// One of these conditions, each equally likely: where nobody counts who has finished, or where some
+/// have as few. `draw` has the participant's number; its condition is not looked at.
+pub fn drawn_condition<'c>(draw: Draw<'_>, conditions: &[&'c str]) -> Option<&'c str> {
+    conditions.get(draw.stream("condition").below(conditions.len())).copied()
+}
+
 struct Context<'a> {
     study: &'a Study,
     clips: &'a [Clip],
@@ -163,9 +172,10 @@ impl Context<'_> {
                 SequenceItem::Component(name) => {
                     parts.extend(self.component(name, &place, condition)?);
                 }
-                SequenceItem::Sequence(nested) => {
+                SequenceItem::Sequence(nested) if nested.is_shown_in(self.draw.condition) => {
                     parts.push(self.sequence(nested, &place, condition)?);
                 }
+                SequenceItem::Sequence(_) => {}
             }
         }
         if let Some(samples) = sequence.num_samples {

@@ -44,7 +44,8 @@ impl Context<'_> {
                 SequenceItem::Component(name) => {
                     parts.extend(self.component(name, &place, None).unwrap_or_default());
                 }
-                // To the constraints a nested sequence is a part without values.
+                // To the constraints a nested sequence is a part without values. One of a condition is
+                // proved as the others are: no constraint and no sample reaches across its border.
                 SequenceItem::Sequence(nested) => {
                     self.prove(nested, &place, flaws);
                     parts.push(Vec::new());

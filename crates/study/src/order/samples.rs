@@ -60,6 +60,7 @@ impl Context<'_> {
                 SequenceItem::Component(name) => {
                     self.component(name, "", None).map_or(0, |each| each.len())
                 }
+                SequenceItem::Sequence(nested) if !nested.is_shown_in(self.draw.condition) => 0,
                 SequenceItem::Sequence(nested) => {
                     period = period.saturating_mul(self.all_squares(nested));
                     1

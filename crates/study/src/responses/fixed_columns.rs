@@ -5,9 +5,14 @@ use super::column::ColumnKind;
 /// What the researcher decides on, at the end of every row: whether the participant is excluded, why.
 pub const EXCLUSION_COLUMNS: [&str; 2] = ["excluded", "exclusion_reason"];
 
-/// Whether a column of every export is called so: nothing of a study may be.
+/// Which condition the participant is in; in exports of studies with conditions, after `condition`.
+pub const ASSIGNED_CONDITION: &str = "assigned_condition";
+
+/// Whether a column of exports is called so: nothing of a study may be.
 pub fn is_reserved_column(name: &str) -> bool {
-    EXCLUSION_COLUMNS.contains(&name) || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
+    name == ASSIGNED_CONDITION
+        || EXCLUSION_COLUMNS.contains(&name)
+        || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about

@@ -6,11 +6,13 @@ use serde_json::Value;
 
 use super::cells::{answer_cells, iso_time, milliseconds, number, plain};
 use super::column::{Column, ColumnKind, Table};
-use super::fixed_columns::FIXED_COLUMNS;
+use super::fixed_columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
 use super::session::{EarlyEnd, FinishedStep, SessionRecord, Walk, session_status};
 use crate::answer::alike;
 use crate::event::Answers;
-use crate::study_file::{Clip, Question, QuestionKind, SequenceItem, Study, component_of};
+use crate::study_file::{
+    Clip, Question, QuestionKind, Sequence, SequenceItem, Study, component_of,
+};
 use crate::wire::ClipSource;
 
 /// The tidy form. `clips` are the study's clips as the server prepared them; a session of another
@@ -34,7 +36,8 @@ struct Layout<'a> {
     sources: &'a BTreeMap<String, ClipSource>,
     clips: BTreeMap<String, Clip>,
     demographics: Vec<&'a Question>,
-    conditions: BTreeMap<String, String>,
+    /// Of a participant's condition (none: everybody's) and a component.
+    conditions: BTreeMap<(Option<String>, String), String>,
     columns: Vec<Column>,
 }
 
@@ -51,6 +54,9 @@ impl<'a> Layout<'a> {
             let mut column = Column::new(name, kind, description);
             column.unit = (!unit.is_empty()).then(|| unit.to_owned());
             columns.push(column);
+            if name == "condition" {
+                columns.extend(assigned_column(study));
+            }
             if name == "stimulus" {
                 columns.extend(factors.iter().map(|factor| factor_column(study, factor)));
             }
@@ -59,7 +65,7 @@ impl<'a> Layout<'a> {
             columns.extend(question_columns(question, study.default_language()));
         }
         let mut conditions = BTreeMap::new();
-        conditions_of(&study.sequence, None, &mut conditions);
+        conditions_of(&study.sequence, (None, None), &mut conditions);
         let clips = study.clips().into_iter().map(|clip| (clip.id.clone(), clip)).collect();
         Self { study, sources, clips, demographics, conditions, columns }
     }
@@ -72,6 +78,7 @@ impl<'a> Layout<'a> {
         put("participant_id", session.started.participant_id.as_str().into());
         put("participant", session.started.participant.into());
         put("slot", session.started.slot().into());
+        put(ASSIGNED_CONDITION, session.started.condition.as_deref().into());
         put("stage", session.started.stage.as_str().into());
         put("status", status.into());
         put("seed", session.started.seed.into());
@@ -135,14 +142,19 @@ impl<'a> Layout<'a> {
     }
 
     fn step_cells(&self, walk: &Walk, step: &FinishedStep, kind: StepType, cells: &mut Cells) {
+        let component = component_of(&step.id);
+        if kind == StepType::Trial {
+            let assigned = cells.get(ASSIGNED_CONDITION).and_then(Value::as_str);
+            let place = |assigned: Option<&str>| {
+                self.conditions.get(&(assigned.map(str::to_owned), component.to_owned()))
+            };
+            let condition = place(assigned).or_else(|| place(None));
+            let condition = condition.map_or(component, String::as_str).into();
+            cells.insert("condition".to_owned(), condition);
+        }
         let mut put = |name: &str, value: Value| cells.insert(name.to_owned(), value);
         put("trial_id", step.id.as_str().into());
         put("trial_type", kind.word().into());
-        let component = component_of(&step.id);
-        if kind == StepType::Trial {
-            let condition = self.conditions.get(component).map_or(component, String::as_str);
-            put("condition", condition.into());
-        }
         put("duration", milliseconds(step.end_ms - step.start_ms));
         put("time_elapsed", milliseconds(step.end_ms - walk.opened_ms));
         put("interruptions", step.interruptions.into());
@@ -357,20 +369,35 @@ fn question_columns(question: &Question, language: &str) -> Vec<Column> {
         .collect()
 }
 
-/// Component -> identifier of the nearest sequence that has one.
+/// The column of the participant's condition, where the study has conditions.
+fn assigned_column(study: &Study) -> Option<Column> {
+    let conditions = study.conditions();
+    let description =
+        "Condition of the participant: the one that the address named, or that was given";
+    let mut column = Column::new(ASSIGNED_CONDITION, ColumnKind::Text, description);
+    column.levels = conditions.iter().map(|name| ((*name).into(), String::new())).collect();
+    (!conditions.is_empty()).then_some(column)
+}
+
+/// Participant's condition and component -> identifier of the nearest sequence that has one.
+/// `enclosing` is the condition and the identifier of the sequences around.
 fn conditions_of(
-    sequence: &crate::study_file::Sequence,
-    enclosing: Option<&str>,
-    conditions: &mut BTreeMap<String, String>,
+    sequence: &Sequence,
+    enclosing: (Option<&str>, Option<&str>),
+    conditions: &mut BTreeMap<(Option<String>, String), String>,
 ) {
-    let condition = sequence.id.as_deref().or(enclosing);
+    let own = sequence.id.as_deref();
+    let assigned = if sequence.conditional { own } else { enclosing.0 };
+    let condition = own.or(enclosing.1);
     for item in &sequence.components {
         match item {
             SequenceItem::Component(name) => {
-                let condition = condition.unwrap_or(name).to_owned();
-                conditions.entry(name.clone()).or_insert(condition);
+                let key = (assigned.map(str::to_owned), name.clone());
+                conditions.entry(key).or_insert(condition.unwrap_or(name).to_owned());
             }
-            SequenceItem::Sequence(nested) => conditions_of(nested, condition, conditions),
+            SequenceItem::Sequence(nested) => {
+                conditions_of(nested, (assigned, condition), conditions);
+            }
         }
     }
 }

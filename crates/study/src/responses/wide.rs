@@ -5,16 +5,18 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::column::{Column, ColumnKind, Table};
+use super::fixed_columns::ASSIGNED_CONDITION;
 use super::session::SessionRecord;
 use super::tidy::tidy;
 use crate::study_file::Study;
 use crate::wire::ClipSource;
 
 /// Columns of the tidy form that are the same in all rows of a participant.
-const PERSONAL: [&str; 9] = [
+const PERSONAL: [&str; 10] = [
     "participant_id",
     "participant",
     "slot",
+    ASSIGNED_CONDITION,
     "stage",
     "status",
     "language",

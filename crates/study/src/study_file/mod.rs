@@ -5,6 +5,7 @@
 //! `interruptions`, `likert` with `numItems`). Derived things, such as the clips that a rule makes,
 //! are methods.
 
+mod between;
 mod clips;
 mod conduct;
 mod general;
@@ -24,6 +25,7 @@ use crate::text::{Words, primary_language, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use between::UnknownCondition;
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
 pub use conduct::{
     AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,

@@ -182,6 +182,11 @@ pub struct Sequence {
     /// Name of a nested sequence, for the export's column `condition`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
+    /// Whether a nested sequence is shown to some participants only: those whose address says
+    /// `?condition=ID`, and those who are given this condition since theirs names none. It may be
+    /// empty, for a condition with nothing of its own.
+    #[serde(default)]
+    pub conditional: bool,
     /// How the parts are ordered.
     pub order: OrderRule,
     /// Names of components, or sequences that stay together.

@@ -4,6 +4,7 @@ use super::table::{NAMES, Place};
 use super::{Shown, Words};
 use crate::answer::AnswerProblem;
 use crate::flow::Unmet;
+use crate::study_file::UnknownCondition;
 use crate::wire::Refusal;
 
 impl Words {
@@ -124,6 +125,17 @@ impl Words {
     /// Why a session ended at its attention checks.
     pub fn checks_failed_text(&self, failed: u32) -> String {
         self.fill(Place::checks_failed_text, &[("failed", &failed)])
+    }
+
+    /// Why nobody begins by this address, and what can be done.
+    pub fn unknown_condition(&self, unknown: &UnknownCondition) -> (String, String) {
+        let known = match unknown.conditions.join(", ") {
+            none if none.is_empty() => "–".to_owned(),
+            some => some,
+        };
+        let values: [(&str, &dyn Shown); 2] = [("conditions", &known), ("name", &unknown.name)];
+        let message = self.fill(Place::refused_unknown_condition, &values);
+        (message, self.at(Place::refused_unknown_condition_remedy).to_owned())
     }
 
     /// Why the server does not take a participant, and what can be done: message and remedy. `None`

@@ -18,7 +18,12 @@ pub fn check_anyhow(bytes: &[u8]) {
     let Some(checked) = report.study else { return };
     for participant in [1, 2, 9_007_199_254_740_991] {
         let study = checked.study().clone();
-        let draw = Draw { seed: study.seed, config_hash: checked.config_hash(), participant };
+        let draw = Draw {
+            seed: study.seed,
+            config_hash: checked.config_hash(),
+            participant,
+            condition: None,
+        };
         assert!(order(&study, draw).is_ok(), "a checked order exists");
         let started = serde_json::json!({
             "session": "s", "participant_id": "p", "participant": participant, "seed": study.seed,

@@ -78,8 +78,11 @@ fn order_of(study: &Study, participants: &[u64]) -> String {
     let hash = hash();
     let mut lines = String::new();
     for &participant in participants {
-        let items =
-            order(study, Draw { seed: study.seed, config_hash: &hash, participant }).unwrap();
+        let items = order(
+            study,
+            Draw { seed: study.seed, config_hash: &hash, participant, condition: None },
+        )
+        .unwrap();
         let name = |item: OrderedItem| match item {
             OrderedItem::Trial { clip, .. } => clip,
             OrderedItem::Component { component } => component,
@@ -99,7 +102,7 @@ fn options() -> String {
     let hash = hash();
     let mut lines = String::new();
     for participant in PARTICIPANTS {
-        let draw = Draw { seed: 5, config_hash: &hash, participant };
+        let draw = Draw { seed: 5, config_hash: &hash, participant, condition: None };
         writeln!(lines, "{participant}: {:?}", option_order(draw, "emotion", 6)).unwrap();
     }
     lines
@@ -115,6 +118,7 @@ fn sides() -> String {
             participant_id: String::new(),
             participant,
             slot: participant,
+            condition: None,
             seed: study.seed,
             stage: "live".into(),
             config_hash: hash(),

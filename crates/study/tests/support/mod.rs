@@ -33,6 +33,7 @@ pub fn started(text: &str, participant: u64) -> (Study, SessionStarted) {
         participant_id: format!("p{participant:04}"),
         participant,
         slot: participant,
+        condition: None,
         seed: study.seed,
         stage: "live".into(),
         config_hash: config_hash(&value),
@@ -55,7 +56,13 @@ pub struct Page {
 
 impl Page {
     pub fn open(text: &str, participant: u64) -> Self {
-        let (study, session) = started(text, participant);
+        Self::open_in(text, participant, None)
+    }
+
+    /// The page of somebody in this condition.
+    pub fn open_in(text: &str, participant: u64, condition: Option<&str>) -> Self {
+        let (study, mut session) = started(text, participant);
+        session.condition = condition.map(str::to_owned);
         let plan = Plan::new(study, session).unwrap();
         let state = State::new(&plan, "en");
         let mut page = Self {

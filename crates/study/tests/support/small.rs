@@ -44,7 +44,7 @@ pub fn small_file(seed: u64, clips: &[(&str, u8)], methods: usize, sequence: Val
 
 /// The clips of a participant, in order.
 pub fn clips(study: &Study, hash: &str, participant: u64) -> Vec<String> {
-    let draw = Draw { seed: study.seed, config_hash: hash, participant };
+    let draw = Draw { seed: study.seed, config_hash: hash, participant, condition: None };
     let clip = |item| match item {
         OrderedItem::Trial { clip, .. } => Some(clip),
         OrderedItem::Component { .. } => None,
