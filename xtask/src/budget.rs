@@ -32,7 +32,7 @@ const BUDGETS: [Budget; 4] = [
             "app.js",
             "app_bg.wasm",
         ],
-        // It weighs 148.6.
+        // It weighs 149.4.
         kilobytes: 150.0,
         target: 150.0,
     },

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use common::{mimique, ok, refused, text};
 use mimique_test_support::{real_file, repository};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Frame and weights by shape, of a CSV with a column `frame`.
 fn weights(csv: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
@@ -259,6 +259,34 @@ fn order_is_the_same_every_time_and_differs_between_participants() {
     assert_eq!(orders.len(), 5);
     let err = refused(&["order", &study, "--participant", "-1"]);
     assert!(err.contains("--participant"), "{err}");
+}
+
+#[test]
+fn order_is_that_of_the_participants_condition() {
+    let demo = repository().join("study-config/demo.json");
+    let mut file = mimique_study::parse(&std::fs::read_to_string(demo).unwrap()).unwrap();
+    let condition = |id: &str, order: &str| json!({ "id": id, "conditional": true, "order": order, "components": ["faces"] });
+    file["sequence"] = json!({ "order": "fixed",
+        "components": [condition("drawn", "random"), condition("as-listed", "fixed")] });
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("conditions.json");
+    std::fs::write(&path, file.to_string()).expect("written");
+    let study = text(&path);
+    ok(&["check", &study]);
+    let of = |participant: &str, condition: &str| {
+        ok(&["order", &study, "-k", participant, "--condition", condition])
+    };
+    assert_eq!(of("1", "as-listed"), of("2", "as-listed"));
+    assert_ne!(of("1", "drawn"), of("2", "drawn"));
+    let json = ok(&["order", &study, "-k", "1", "--condition", "drawn", "--json"]);
+    assert!(json.contains("\"condition\": \"drawn\""), "{json}");
+    let err = refused(&["order", &study, "-k", "1"]);
+    assert!(err.contains("--condition drawn or --condition as-listed"), "{err}");
+    let err = refused(&["order", &study, "-k", "1", "--condition", "Drawn"]);
+    assert!(err.contains("no condition \"Drawn\"; the study has: drawn, as-listed"), "{err}");
+    let demo = text(&repository().join("study-config/demo.json"));
+    let err = refused(&["order", &demo, "-k", "1", "--condition", "drawn"]);
+    assert!(err.contains("no condition \"drawn\"; the study has: –"), "{err}");
 }
 
 #[test]

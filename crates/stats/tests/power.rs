@@ -189,9 +189,42 @@ fn preregistration_says_what_the_file_says() {
         for hypothesis in &study.hypotheses {
             assert!(text.contains(hypothesis.statement.in_language(language)));
         }
+        assert!(!text.contains("?condition="), "{text}");
         // The parameters can be read again.
         let json = text.split("```json").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let read: Value = serde_json::from_str(json).unwrap();
         assert_eq!(read, serde_json::to_value(&parameters).unwrap());
+    }
+}
+
+#[test]
+fn a_preregistration_says_the_conditions_between_participants() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    value["sequence"] = serde_json::json!({ "order": "fixed", "components": [
+        { "id": "shown", "conditional": true, "order": "random", "components": ["faces"] },
+        { "id": "control", "conditional": true, "order": "fixed", "components": [] },
+    ] });
+    let study = Study::from_value(&value).unwrap();
+    let hash = mimique_study::config_hash(&value);
+    let parameters = Parameters::for_study(&study);
+    let power = power(&study, &hash, &parameters, &options(&[10], 4), &|| {}).unwrap();
+    let text = preregistration(&Preregistration {
+        study: &study,
+        config_hash: &hash,
+        power: &power,
+        parameters: &parameters,
+        language: mimique_stats::Language::from_code("en").unwrap(),
+        curve: None,
+    });
+    for part in [
+        "Between participants: the condition `shown`, of 12 trials.",
+        "Between participants: the condition `control`, of 0 trials.",
+        "Each participant sees those of one condition.",
+        "- `shown` (only in this condition): `faces` in an order drawn for each participant",
+        "- `control` (only in this condition): nothing",
+        "(`?condition=`)",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
     }
 }

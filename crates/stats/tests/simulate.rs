@@ -68,6 +68,44 @@ fn is_the_same_for_the_same_seed_and_other_for_another() {
     assert_eq!(trials(&first[..2]), trials(&sessions(&study, &hash, &parameters, 9, 2)));
 }
 
+/// The demonstration in two conditions: its trials in the order of the file, or drawn.
+fn in_conditions() -> (Study, String) {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let condition = |id: &str, order: &str| serde_json::json!({ "id": id, "conditional": true, "order": order, "components": ["faces"] });
+    let conditions = [condition("as-listed", "fixed"), condition("drawn", "random")];
+    value["sequence"] = serde_json::json!({ "order": "fixed", "components": conditions });
+    (Study::from_value(&value).unwrap(), mimique_study::config_hash(&value))
+}
+
+#[test]
+fn everybody_is_in_a_condition_each_as_often() {
+    let (study, hash) = in_conditions();
+    let parameters = Parameters::for_study(&study);
+    let all = sessions(&study, &hash, &parameters, 1, 6);
+    let places: Vec<_> = all
+        .iter()
+        .map(|each| (each.started.condition.as_deref().unwrap(), each.started.slot))
+        .collect();
+    let [a, b] = ["as-listed", "drawn"];
+    assert_eq!(places, [(a, 1), (b, 1), (a, 2), (b, 2), (a, 3), (b, 3)]);
+    let table = tidy(&study, &all);
+    for row in 0..table.rows.len() {
+        let number = table.cell(row, "participant").as_u64().unwrap();
+        assert_eq!(table.cell(row, "assigned_condition"), [b, a][(number % 2) as usize]);
+    }
+    // Trials of a condition come in its own order.
+    let clips = |number: u64| -> Vec<&str> {
+        let own = (0..table.rows.len()).filter(|&row| {
+            table.cell(row, "participant") == number && table.cell(row, "response_id") == "emotion"
+        });
+        own.map(|row| table.cell(row, "stimulus").as_str().unwrap()).collect()
+    };
+    let listed: Vec<String> = study.clips().into_iter().map(|clip| clip.id).collect();
+    assert!(listed.starts_with(&clips(1).iter().map(|id| (*id).to_owned()).collect::<Vec<_>>()));
+    assert_ne!(clips(2), clips(1));
+}
+
 #[test]
 fn dropout_checks_frames_and_times_are_as_planted() {
     let (study, hash) = study("template.json");

@@ -102,8 +102,8 @@ proptest! {
     }
 }
 
-/// What everybody is shown comes in the same order for the same slot, so that conditions differ in
-/// nothing else; within a condition slots are balanced as in a study without conditions.
+/// Where conditions have no squares or samples of their own, what everybody is shown comes in the same
+/// order for the same slot; within a condition slots are balanced as in a study without conditions.
 #[test]
 fn conditions_share_the_orders_of_what_they_share() {
     let square = json!({ "order": "latinSquare", "components": ["first"] });
@@ -144,11 +144,11 @@ fn an_address_can_only_name_what_there_is() {
         assert_eq!(unknown.name, name);
         assert_eq!(
             unknown.to_string(),
-            format!("there is no condition {name:?}; there is plain, with-hint")
+            format!("there is no condition {name:?}; the study has: plain, with-hint")
         );
         for (language, sentence) in [
-            ("en", "The address names the condition “{}”, which this study does not have. "),
-            ("fr", "L’adresse nomme la condition «\u{a0}{}\u{a0}», que cette étude n’a pas. "),
+            ("en", "The address asks for the condition “{}”; "),
+            ("fr", "L’adresse demande la condition «\u{a0}{}\u{a0}»"),
         ] {
             let (message, remedy) = words(language).unknown_condition(&unknown);
             assert!(message.starts_with(&sentence.replace("{}", name)), "{message}");
@@ -161,7 +161,7 @@ fn an_address_can_only_name_what_there_is() {
     let study = Study::from_value(&file).unwrap();
     assert_eq!(study.conditions_for(None).unwrap(), Vec::<&str>::new());
     let unknown = study.conditions_for(Some("plain")).unwrap_err();
-    assert!(words("en").unknown_condition(&unknown).0.ends_with("conditions: –."), "{unknown}");
+    assert!(words("en").unknown_condition(&unknown).0.ends_with("has: –."), "{unknown}");
 }
 
 #[test]

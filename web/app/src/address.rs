@@ -41,11 +41,11 @@ impl Address {
             match name.as_str() {
                 "lang" => address.language = Some(value),
                 "condition" => {
-                    let value: String = value.chars().take(MOST_CHARACTERS).collect();
-                    address.condition = Some(match address.condition {
-                        Some(before) => [before, value].join(","),
-                        None => value,
-                    });
+                    let condition = address.condition.get_or_insert_default();
+                    if !condition.is_empty() {
+                        condition.push(',');
+                    }
+                    condition.extend(value.chars().take(MOST_CHARACTERS));
                 }
                 "backend" => {}
                 _ if name.chars().count() > MOST_CHARACTERS

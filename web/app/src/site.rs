@@ -81,8 +81,7 @@ pub async fn bundle() -> Result<Bundle, Failure> {
 pub fn start(study: &Study, body: &StartSession) -> Result<SessionStarted, Failure> {
     let conditions = study.conditions_for(body.condition.as_deref()).map_err(|unknown| {
         let (message, remedy) = study.words(&body.language).unknown_condition(&unknown);
-        let code = "unknown-condition".to_owned();
-        Failure::Refused(Refusal { code, message, remedy, sequences: Vec::new() })
+        refusal("unknown-condition", message, remedy)
     })?;
     let nonce = &body.nonce;
     let number = nonce.get(..12).and_then(|digits| u64::from_str_radix(digits, 16).ok());
@@ -241,10 +240,9 @@ fn filled(address: &str, code: Option<&str>) -> String {
 }
 
 fn refused(code: &str) -> Failure {
-    Failure::Refused(Refusal {
-        code: code.to_owned(),
-        message: code.to_owned(),
-        remedy: String::new(),
-        sequences: Vec::new(),
-    })
+    refusal(code, code.to_owned(), String::new())
+}
+
+fn refusal(code: &str, message: String, remedy: String) -> Failure {
+    Failure::Refused(Refusal { code: code.to_owned(), message, remedy, sequences: Vec::new() })
 }

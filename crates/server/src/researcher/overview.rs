@@ -29,8 +29,8 @@ pub(crate) struct Overview {
     /// one level are left out.
     pub balance: BTreeMap<String, BTreeMap<String, u64>>,
     pub distributions: Vec<Distribution>,
-    /// Each condition between participants: how many have completed, how many are under way. Of this
-    /// version; empty in a study without.
+    /// Each condition between participants: how many have come to the end, how many are under way. Of
+    /// this version; empty in a study without.
     pub conditions: Vec<(String, [usize; 2])>,
     /// Where people are and where they leave, by condition; empty where nobody is.
     pub stops: Vec<(Option<String>, Vec<Stop>)>,
@@ -85,19 +85,21 @@ impl Overview {
             distributions(study.study(), language, used().flat_map(|view| &view.answers));
         let names: Vec<String> =
             study.study().conditions().into_iter().map(str::to_owned).collect();
-        let in_condition = |name: &str, standing| {
-            let own = sessions.iter().filter(|(session, view)| {
-                session.config_hash == study.config_hash()
-                    && session.condition.as_deref() == Some(name)
-                    && view.standing == standing
-            });
-            own.count()
-        };
         let conditions = names
             .iter()
             .map(|name| {
-                let counts = [Standing::Completed, Standing::Active];
-                (name.clone(), counts.map(|standing| in_condition(name, standing)))
+                let own = || {
+                    sessions.iter().filter(|(session, _)| {
+                        session.config_hash == study.config_hash()
+                            && session.condition.as_ref() == Some(name)
+                    })
+                };
+                let finished = own().filter(|(session, _)| session.finished).count();
+                let is_active = |session: &SessionRecord, view: &SessionView| {
+                    !session.finished && view.standing == Standing::Active
+                };
+                let active = own().filter(|(session, view)| is_active(session, view)).count();
+                (name.clone(), [finished, active])
             })
             .collect();
         let mut stops = Vec::new();

@@ -331,9 +331,9 @@ pub async fn the_address_puts_a_participant_into_a_condition(server: &TestServer
     // Each condition has slots of its own.
     assert_eq!(arrived(&server, 5, Some("hinted")).await.slot, 1);
     for (name, language, message) in [
-        ("Plain", "en", "The address names the condition “Plain”"),
-        ("plain,hinted", "fr", "L’adresse nomme la condition «\u{a0}plain,hinted\u{a0}»"),
-        ("", "en", "The address names the condition “”"),
+        ("Plain", "en", "The address asks for the condition “Plain”"),
+        ("plain,hinted", "fr", "L’adresse demande la condition «\u{a0}plain,hinted\u{a0}»"),
+        ("", "en", "The address asks for the condition “”"),
     ] {
         let refusal = arrive(&server, 6, Some(name), language).await;
         let refusal = refusal.refused(StatusCode::FORBIDDEN, "unknown-condition");
@@ -391,5 +391,17 @@ pub async fn conditions_are_balanced_over_those_who_finish(server: &TestServer) 
     let finished = sessions.iter().filter(|session| session.finished);
     let finished: Vec<_> = finished.map(|session| session.condition.clone()).collect();
     assert_eq!(finished, vec![Some("plain".to_owned()); 3]);
+    // The researchers' page counts them, and follows each on its own way.
+    let mut owner = crate::people::owner(&server).await;
+    let page = owner.open(&server, "/researcher/studies/faces").await.text();
+    for part in [
+        "<th scope=\"row\">hinted</th><td class=\"number\">0</td><td class=\"number\">4</td>",
+        "<th scope=\"row\">plain</th><td class=\"number\">3</td><td class=\"number\">2</td>",
+        "<h2>Where people are and where they leave (hinted)</h2>",
+        "<h2>Where people are and where they leave (plain)</h2>",
+    ] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    assert_eq!(page.matches("<th scope=\"row\">hint</th>").count(), 1, "{page}");
     server.storage.close().await;
 }

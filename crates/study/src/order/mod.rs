@@ -98,8 +98,9 @@ pub struct Draw<'a> {
     pub config_hash: &'a str,
     /// The participant's slot ([`crate::wire::SessionStarted::slot`]).
     pub participant: u64,
-    /// The participant's condition ([`Study::conditions`]). It decides what is shown and no draw:
-    /// who has the same slot in another condition has the same order of what both are shown.
+    /// The participant's condition ([`Study::conditions`]). It decides what is shown and names no
+    /// stream: a nested sequence of random order outside of conditions comes in the same order for the
+    /// same slot of each.
     pub condition: Option<&'a str>,
 }
 

@@ -4,16 +4,12 @@ use super::{Sequence, SequenceItem, Study};
 
 /// An address, or a command, names a condition that the study does not have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no condition {name:?}; there is {}", known(.conditions))]
+#[error("there is no condition {name:?}; the study has: {conditions}")]
 pub struct UnknownCondition {
     /// As it was named.
     pub name: String,
-    /// Those that the study has.
-    pub conditions: Vec<String>,
-}
-
-fn known(conditions: &[String]) -> String {
-    if conditions.is_empty() { "none".to_owned() } else { conditions.join(", ") }
+    /// Those that the study has, with commas; a dash where it has none.
+    pub conditions: String,
 }
 
 impl Sequence {
@@ -49,7 +45,7 @@ impl Study {
             Some(found) => Ok(vec![found]),
             None => Err(UnknownCondition {
                 name: name.to_owned(),
-                conditions: all.into_iter().map(str::to_owned).collect(),
+                conditions: if all.is_empty() { "–".to_owned() } else { all.join(", ") },
             }),
         }
     }

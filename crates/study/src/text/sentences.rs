@@ -129,13 +129,10 @@ impl Words {
 
     /// Why nobody begins by this address, and what can be done.
     pub fn unknown_condition(&self, unknown: &UnknownCondition) -> (String, String) {
-        let known = match unknown.conditions.join(", ") {
-            none if none.is_empty() => "–".to_owned(),
-            some => some,
-        };
-        let values: [(&str, &dyn Shown); 2] = [("conditions", &known), ("name", &unknown.name)];
-        let message = self.fill(Place::refused_unknown_condition, &values);
-        (message, self.at(Place::refused_unknown_condition_remedy).to_owned())
+        let values: [(&str, &dyn Shown); 2] =
+            [("conditions", &unknown.conditions), ("name", &unknown.name)];
+        let message = self.fill(Place::unknown_condition, &values);
+        (message, self.at(Place::unknown_condition_remedy).to_owned())
     }
 
     /// Why the server does not take a participant, and what can be done: message and remedy. `None`

@@ -421,14 +421,14 @@ made {
     refused_no_identifier_remedy:
         "Go back to the site that sent you here and follow its link.",
         "Revenez au site qui vous a adressé ici et suivez son lien.";
-    /// Why somebody cannot begin.
-    refused_unknown_condition:
-        "The address names the condition “{name}”, which this study does not have. Its conditions: {conditions}.",
-        "L’adresse nomme la condition «\u{a0}{name}\u{a0}», que cette étude n’a pas. Ses conditions\u{a0}: {conditions}.";
+    /// Why nobody begins by this address.
+    unknown_condition:
+        "The address asks for the condition “{name}”; the study has: {conditions}.",
+        "L’adresse demande la condition «\u{a0}{name}\u{a0}»\u{a0}; l’étude a\u{a0}: {conditions}.";
     /// And what can be done.
-    refused_unknown_condition_remedy:
-        "Follow the link that you were sent, or write to whoever sent it.",
-        "Suivez le lien que vous avez reçu, ou écrivez à qui vous l’a envoyé.";
+    unknown_condition_remedy:
+        "Please write to whoever sent you the link.",
+        "Écrivez à qui vous a envoyé le lien.";
     /// What the server refuses.
     refused_unknown_study:
         "There is no such study here. Check the address, or ask whoever gave it to you.",
