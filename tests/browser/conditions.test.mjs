@@ -62,7 +62,7 @@ async function finish(page) {
   }
 }
 
-const words = (page) => page.locator("main.failure").innerText();
+const words = (page) => page.locator("main[data-view=failure]").innerText();
 
 /** An address that names what there is not; then one that is right, in the same browser. */
 async function refused(base) {
@@ -73,7 +73,7 @@ async function refused(base) {
       ["fr", "L’adresse demande la condition «\u{a0}Plain\u{a0}»\u{a0}; l’étude a\u{a0}: hinted, plain. Écrivez à qui vous a envoyé le lien."],
     ]) {
       await browser.page.goto(`${base}?lang=${language}&condition=Plain`);
-      await browser.page.waitForSelector("main.failure", { timeout: 30_000 });
+      await browser.page.waitForSelector("main[data-view=failure]", { timeout: 30_000 });
       const said = (await words(browser.page)).replaceAll(/[\u{a0}\u{202f}]/gu, "\u{a0}");
       assert.ok(said.includes(sentence), said);
     }
