@@ -49,6 +49,9 @@ pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
                     div { dt { (frame.say("Steps", "Étapes")) } dd { (done) "/" (all) } }
                 }
                 div { dt { (frame.say("Events", "Événements")) } dd { (session.event_count) } }
+                @if let Some(name) = &session.condition {
+                    div { dt { "Condition" } dd { (name) } }
+                }
                 div { dt { (frame.say("Language", "Langue")) } dd { (session.language) } }
                 div { dt { (frame.say("Browser", "Navigateur")) } dd { (browser(&session.client)) } }
                 div { dt { "Version" } dd { code { (session.config_hash.get(..12).unwrap_or_default()) } } }

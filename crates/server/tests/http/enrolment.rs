@@ -403,5 +403,9 @@ pub async fn conditions_are_balanced_over_those_who_finish(server: &TestServer) 
         assert!(page.contains(part), "{part} in {page}");
     }
     assert_eq!(page.matches("<th scope=\"row\">hint</th>").count(), 1, "{page}");
+    let last = sessions.last().unwrap();
+    let page = format!("/researcher/studies/faces/participants/{}", last.participant);
+    let page = owner.open(&server, &page).await.text();
+    assert!(page.contains("<dt>Condition</dt><dd>hinted</dd>"), "{page}");
     server.storage.close().await;
 }
