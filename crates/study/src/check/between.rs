@@ -1,10 +1,34 @@
 //! Conditions between participants: each is one sequence, and everybody who is in it is shown it.
 
+use std::collections::BTreeMap;
+
 use super::issue::{Issues, below};
-use crate::study_file::{Sequence, SequenceItem};
+use crate::study_file::{Sequence, SequenceItem, Study};
 
 /// Most letters of a condition's name.
 const LONGEST: usize = 64;
+
+/// The study's conditions; none once, where everybody is shown the same.
+pub(super) fn each(study: &Study) -> Vec<Option<&str>> {
+    match study.conditions() {
+        none if none.is_empty() => vec![None],
+        some => some.into_iter().map(Some).collect(),
+    }
+}
+
+/// Where each component is named, and in which condition (none: in all of them).
+pub(super) type Named<'a> = BTreeMap<&'a str, Vec<(Option<&'a str>, String)>>;
+
+/// Where somebody of this condition is shown the component already.
+pub(super) fn shown_before(
+    named: &Named<'_>,
+    name: &str,
+    condition: Option<&str>,
+) -> Option<String> {
+    let meet = |other: &Option<&str>| other.is_none() || condition.is_none() || *other == condition;
+    let places = named.get(name)?;
+    places.iter().rev().find(|(other, _)| meet(other)).map(|(_, place)| place.clone())
+}
 
 pub(super) fn examine(sequence: &Sequence, issues: &mut Issues) {
     let mut found = Vec::new();

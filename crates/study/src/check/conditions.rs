@@ -5,9 +5,9 @@ use std::cmp::Ordering;
 
 use serde_json::Value;
 
-use super::Subject;
 use super::issue::{Issues, below, listed};
 use super::nearest::suggestion;
+use super::{Subject, between};
 use crate::study_file::{
     Component, Condition, OrderRule, Question, QuestionKind, Sequence, SequenceItem,
 };
@@ -145,18 +145,16 @@ fn known_before(
         return Err(Unknown::NotKept);
     };
     let Asked::Component(here) = here else { return Err(Unknown::AskedLater) };
-    let mut conditions: Vec<Option<&str>> = study.conditions().into_iter().map(Some).collect();
-    if conditions.is_empty() {
-        conditions.push(None);
-    }
     // Somebody to whom one of the two is not shown has no order of them.
     let way = |name: &str, condition| path(&study.sequence, name, condition);
     let both = |condition| way(there, condition).zip(way(here, condition));
     let known =
-        conditions.into_iter().filter_map(both).map(|(there, here)| match first(&there, &here) {
-            Some(Ordering::Less) => Ok(()),
-            None => Err(Unknown::PerhapsLater),
-            Some(_) => Err(Unknown::AskedLater),
+        between::each(study).into_iter().filter_map(both).map(|(there, here)| {
+            match first(&there, &here) {
+                Some(Ordering::Less) => Ok(()),
+                None => Err(Unknown::PerhapsLater),
+                Some(_) => Err(Unknown::AskedLater),
+            }
         });
     known.reduce(Result::and).unwrap_or(Err(match study.conditions().is_empty() {
         true => Unknown::AskedLater,

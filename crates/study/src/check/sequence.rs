@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Subject;
+use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
-use super::{Subject, between};
 use crate::order::{CYCLES, Draw, Flaw, prove};
 use crate::study_file::{
     Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
@@ -49,12 +50,8 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let hint = "name it in /sequence, or remove it";
         issues.warning(below("/components", name), "unused", message, hint);
     }
-    let mut conditions: Vec<Option<&str>> = study.conditions().into_iter().map(Some).collect();
-    if conditions.is_empty() {
-        conditions.push(None);
-    }
     let mut total = 0;
-    for condition in conditions {
+    for condition in between::each(study) {
         let count = trial_count(subject, &study.sequence, condition);
         if count == 0 {
             let message = match condition {
@@ -184,16 +181,6 @@ fn all_factors(subject: &Subject<'_>) -> BTreeMap<String, BTreeSet<String>> {
         }
     }
     factors
-}
-
-/// Where each component is named, and in which condition (none: in all of them).
-type Named<'a> = BTreeMap<&'a str, Vec<(Option<&'a str>, String)>>;
-
-/// Where somebody of this condition is shown the component already.
-fn shown_before(named: &Named<'_>, name: &str, condition: Option<&str>) -> Option<String> {
-    let meet = |other: &Option<&str>| other.is_none() || condition.is_none() || *other == condition;
-    let places = named.get(name)?;
-    places.iter().rev().find(|(other, _)| meet(other)).map(|(_, place)| place.clone())
 }
 
 fn sequence<'a>(
