@@ -464,8 +464,11 @@ fn density_follows_one_topology_rule() {
     assert_eq!(Density::nearest(usize::MAX), Density::FINEST);
 }
 
+/// Densities that are fewer halvings of the cage than the finest.
+const HALVED: [Density; 3] = [Density::COARSE, Density::STANDARD, Density::FINE];
+
 #[test]
-fn densities_between_the_halvings_have_the_same_surface() {
+fn every_density_has_the_same_surface() {
     let of = |density| {
         let spec = HeadSpec { density, ..HeadSpec::default() };
         (build_head(&spec), marker_sites(&spec).vertices)
@@ -473,22 +476,26 @@ fn densities_between_the_halvings_have_the_same_surface() {
     let whole = |mesh: &Mesh| mesh.triangles.iter().map(|&t| area(&mesh.positions, t)).sum::<f64>();
     let (finest, sites) = of(Density::FINEST);
     let fine = finest.skin().expect("a skin");
-    for density in [0, 2, 4, 5, 6].map(|k| Density::ALL[k]) {
-        let (head, own) = of(density);
+    for density in &Density::ALL[..7] {
+        let (head, own) = of(*density);
         let skin = head.skin().expect("a skin");
-        // The cage's own vertices, where markers stand, are where the finest has them, in every shape.
+        // The cage's own vertices, where markers stand, are where the finest has them, in every shape:
+        // to the bit where both come by the same halvings, else to the rounding of single floats.
+        let most = if HALVED.contains(density) { 1.5e-8 } else { 0.0 };
         let posed = |mesh: &Mesh, shape: usize, v: u32| {
             let at = mesh.shapes[shape].vertices.binary_search(&v);
             at.map_or([0.0; 3], |k| mesh.shapes[shape].deltas[k])
         };
         for (&v, &w) in own.iter().zip(&sites) {
-            assert_eq!(skin.positions[v as usize], fine.positions[w as usize], "{density:?}");
+            let off = length(sub(skin.positions[v as usize], fine.positions[w as usize]));
+            assert!(off <= most, "{density:?}: vertex {v} is {off} m off");
             for shape in 0..skin.shapes.len() {
-                assert_eq!(posed(skin, shape, v), posed(fine, shape, w), "{density:?}");
+                let off = length(sub(posed(skin, shape, v), posed(fine, shape, w)));
+                assert!(off <= most, "{density:?}: shape {shape} moves vertex {v} {off} m more");
             }
         }
         let ratio = whole(skin) / whole(fine);
-        let least = if density == Density::COARSE { 0.96 } else { 0.99 };
+        let least = if *density == Density::COARSE { 0.96 } else { 0.99 };
         assert!((least..1.001).contains(&ratio), "{density:?}: {ratio} of the finest's area");
     }
 }
@@ -524,7 +531,7 @@ fn the_same_spec_is_the_same_head() {
 /// test prints the new one.
 #[test]
 fn default_head_has_the_recorded_fingerprint() {
-    assert_eq!(format!("{:016x}", fingerprint(&head())), "167649badd914b2f");
+    assert_eq!(format!("{:016x}", fingerprint(&head())), "90bcd34e9beb84cd");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::muscles::SHAPE_NAMES;
 use super::sculpt::Landmarks;
 use super::topology::{Feature, Site, Topology};
 use super::vec3::{Vec3, bump, mix, smoothstep, v3};
-use super::{Subdivided, sparse};
+use super::{Subdivided, sparse, split};
 use crate::avatar::{Avatar, Mesh, Part, SparseShape};
 use std::f64::consts::{PI, TAU};
 
@@ -114,7 +114,8 @@ pub(crate) fn add_cap(
             }
             *slot
         });
-        triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        // Bent along the same diagonal as the skin under it, which would else come through.
+        triangles.extend(split(q, quad.map(|v| skin.positions[v as usize])));
     }
     let lock = |p: Vec3| {
         // Combed back from a side parting: locks run along the head.

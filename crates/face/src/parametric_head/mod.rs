@@ -1,6 +1,7 @@
 //! The built-in head, made wholly by code: a control cage with edge loops is shrink-wrapped onto a
 //! sculpt of blended volumes, lids and lips are laid into its holes, muscles act on the cage, and
-//! Catmull-Clark subdivision carries neutral and blendshapes to the wanted density.
+//! Catmull-Clark subdivision carries neutral and blendshapes to the wanted density, onto its smooth
+//! surface.
 
 mod clothes;
 mod colour;
@@ -86,12 +87,10 @@ impl Density {
         usize::from(self.0)
     }
 
-    /// Halvings of the cage's quads: as many as it takes, or all where none leads there. The cage itself
-    /// stands off the surface and pinches where that is bent.
+    /// Halvings of the cage's quads: as many as it takes, or all where none leads there.
     fn steps(self) -> usize {
         let across = self.across();
-        let halved = across.is_power_of_two() && across > 1;
-        (if halved { self } else { Density::FINEST }).across().ilog2() as usize
+        (if across.is_power_of_two() { self } else { Density::FINEST }).across().ilog2() as usize
     }
 }
 
@@ -133,13 +132,14 @@ impl Cage {
 /// The cage's connectivity carried to a density.
 pub(crate) struct Subdivided {
     steps: Vec<Step>,
+    /// The step after the last: where the smooth surface passes for the last one's vertices. They
+    /// stand off it, and pinch where that is bent.
+    next: Step,
     quads: Vec<[u32; 4]>,
     is_socket: Vec<bool>,
     cage_vertices: usize,
     /// Where the quads' sides are no halvings of the cage's: how to get from those to these.
     resampled: Option<Resampled>,
-    /// Puts the vertices of a coarse density on the smooth surface, which the first halvings only near.
-    onto: Option<Step>,
 }
 
 impl Subdivided {
@@ -154,6 +154,7 @@ impl Subdivided {
             is_socket = is_socket.iter().flat_map(|&s| [s; 4]).collect();
             steps.push(step);
         }
+        let next = Step::new(steps.last().map_or(cage_vertices, Step::len), &quads);
         let across = density.across();
         let halved = 1 << density.steps();
         let resampled = (across != halved).then(|| {
@@ -164,19 +165,16 @@ impl Subdivided {
                 .collect();
             resampled
         });
-        let vertices = steps.last().map_or(cage_vertices, Step::len);
-        let onto =
-            (across == halved && density < Density::FINEST).then(|| Step::new(vertices, &quads));
-        Subdivided { steps, quads, is_socket, cage_vertices, resampled, onto }
+        Subdivided { steps, next, quads, is_socket, cage_vertices, resampled }
     }
 
-    /// A channel of the cage on the finest vertices.
+    /// A channel of the cage on the finest vertices, which lie on the smooth surface.
     pub(crate) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
         let halved = self.steps.iter().fold(values.to_vec(), |values, step| step.refine(&values));
-        match (&self.resampled, &self.onto) {
-            (Some(resampled), _) => resampled.values(&halved),
-            (None, Some(step)) => step.limit(&halved),
-            (None, None) => halved,
+        let smooth = self.next.limit(&halved);
+        match &self.resampled {
+            Some(resampled) => resampled.values(&smooth),
+            None => smooth,
         }
     }
 
@@ -224,13 +222,7 @@ impl Subdivided {
         let mut triangles = Vec::new();
         for (quad, _) in self.quads.iter().zip(&self.is_socket).filter(|q| *q.1 == want_socket) {
             let q = quad.map(|v| own[v as usize]);
-            let at = |k: usize| neutral[quad[k] as usize];
-            // A small bias makes nearly equal diagonals fall alike on both sides of the face.
-            if (at(0) - at(2)).length() < 0.9999 * (at(1) - at(3)).length() {
-                triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-            } else {
-                triangles.extend([[q[0], q[1], q[3]], [q[1], q[2], q[3]]]);
-            }
+            triangles.extend(split(q, quad.map(|v| neutral[v as usize])));
         }
         let pick = |values: &[Vec3]| from.iter().map(|&v| values[v as usize]).collect::<Vec<_>>();
         let mesh = Mesh {
@@ -240,6 +232,16 @@ impl Subdivided {
             ..Mesh::default()
         };
         (mesh, from)
+    }
+}
+
+/// The two triangles of a quad with these corners, along its shorter diagonal.
+fn split(q: [u32; 4], at: [Vec3; 4]) -> [[u32; 3]; 2] {
+    // A small bias makes nearly equal diagonals fall alike on both sides of the face.
+    if (at[0] - at[2]).length() < 0.9999 * (at[1] - at[3]).length() {
+        [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]
+    } else {
+        [[q[0], q[1], q[3]], [q[1], q[2], q[3]]]
     }
 }
 
