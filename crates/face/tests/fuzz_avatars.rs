@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use mimique_face::pack::{encode_pack, open_pack};
+use mimique_face::pack::{encode_pack, open_plain};
 use mimique_face::read_avatar_bytes;
 use serde_json::{Value, json};
 
@@ -364,7 +364,7 @@ impl Seeds {
         let pack = encode_pack(&avatar).bytes;
         let files = avatar.textures.iter().map(|t| t.jpeg.len() + t.mask_jpeg.len() + 8);
         let behind = files.sum::<usize>() + 4;
-        let pack_body = open_pack("MMAV", 4, &pack[..pack.len() - behind]).unwrap();
+        let pack_body = open_plain("MMAV", 4, &pack[..pack.len() - behind]).unwrap().to_vec();
         Self { rich, glb, zip, tar, tar_gz: gz.finish().unwrap(), tar_xz, pack, pack_body }
     }
 }

@@ -1,4 +1,5 @@
-//! What is round every pack: four letters, a version, the length of the body, the body deflated.
+//! What is round every pack: four letters, a version, the length of the body, the body: deflated, or
+//! as it is where hardly anything would come of it.
 
 use super::bytes::{PackError, PackReader, PackWriter};
 
@@ -7,11 +8,20 @@ const LONGEST_BODY: usize = 1 << 29;
 
 /// Deflates a body and puts the four letters of its kind, a version and its length in front.
 pub fn seal_pack(kind: &'static str, version: u32, body: &[u8]) -> Vec<u8> {
+    sealed(kind, version, body.len(), &miniz_oxide::deflate::compress_to_vec(body, 9))
+}
+
+/// The same with the body as it is.
+pub fn seal_plain(kind: &'static str, version: u32, body: &[u8]) -> Vec<u8> {
+    sealed(kind, version, body.len(), body)
+}
+
+fn sealed(kind: &'static str, version: u32, length: usize, stored: &[u8]) -> Vec<u8> {
     let mut pack = PackWriter::new();
     pack.raw(kind.as_bytes());
     pack.u32(version);
-    pack.u32(body.len() as u32);
-    pack.raw(&miniz_oxide::deflate::compress_to_vec(body, 9));
+    pack.u32(length as u32);
+    pack.raw(stored);
     pack.into_bytes()
 }
 
@@ -31,6 +41,23 @@ pub fn open_pack(kind: &'static str, version: u32, bytes: &[u8]) -> Result<Vec<u
         Ok(body) => header.refuse(format!("a body of {} bytes, {length} declared", body.len())),
         Err(e) => header.refuse(format!("the body cannot be inflated: {e}")),
     }
+}
+
+/// The body of a pack of that kind and version, made by [`seal_plain`].
+///
+/// # Errors
+/// [`PackError`]: another kind or version, truncated, something behind its end.
+pub fn open_plain<'b>(
+    kind: &'static str,
+    version: u32,
+    bytes: &'b [u8],
+) -> Result<&'b [u8], PackError> {
+    let mut header = check_header(kind, version, bytes)?;
+    let (length, left) = (header.u32()? as usize, header.left());
+    if length != left {
+        return header.refuse(format!("a body of {left} bytes, {length} declared"));
+    }
+    header.raw(left)
 }
 
 /// Refuses what is not of that kind and version; otherwise reads on behind them.

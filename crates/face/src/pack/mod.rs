@@ -9,7 +9,7 @@
 //! | field | form |
 //! |---|---|
 //! | `MMAV`, version 4, length of the body | 4 bytes, u32, u32 |
-//! | body | raw deflate |
+//! | body | as it is: integers are at their length already |
 //! | avatar's name, shape names | texts |
 //! | error bound in metres | f32 |
 //! | number of meshes, mirror?, twice its x in steps | varint, u8, varint |
@@ -32,7 +32,7 @@ mod values;
 pub use bytes::{PackError, PackReader, PackWriter};
 pub use entropy::{IntegerReader, IntegerWriter, Integers, Model};
 use envelope::check_header;
-pub use envelope::{open_pack, pack_kind, seal_pack};
+pub use envelope::{open_pack, open_plain, pack_kind, seal_pack, seal_plain};
 
 use crate::{Avatar, Eyeball, Look, Mesh, Texture};
 
@@ -79,7 +79,7 @@ pub fn encode_pack(avatar: &Avatar) -> EncodedPack {
             body.f32(look.radians);
         }
     }
-    let mut bytes = seal_pack(KIND, VERSION, &body.into_bytes());
+    let mut bytes = seal_plain(KIND, VERSION, &body.into_bytes());
     let files = || avatar.textures.iter().flat_map(|t| [&t.jpeg, &t.mask_jpeg]);
     files().for_each(|file| bytes.extend(file));
     files().for_each(|file| bytes.extend((file.len() as u32).to_le_bytes()));
@@ -95,8 +95,8 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
     // Another kind or version is said before its end is misread.
     check_header(KIND, VERSION, bytes)?;
     let (sealed, textures) = pictures_of(bytes)?;
-    let body = open_pack(KIND, VERSION, sealed)?;
-    let mut r = PackReader::new(KIND, &body);
+    let body = open_plain(KIND, VERSION, sealed)?;
+    let mut r = PackReader::new(KIND, body);
     let name = r.text()?;
     let shape_names = r.texts()?;
     r.f32()?;

@@ -1,6 +1,6 @@
 //! What must hold of any bytes that are read as an avatar; shared by the tests and the fuzz targets.
 
-use mimique_face::pack::{decode_pack, encode_pack, seal_pack};
+use mimique_face::pack::{decode_pack, encode_pack, seal_plain};
 use mimique_face::{Avatar, AvatarSettings, Image, read_avatar_bytes};
 
 /// Poses with settings of their own, to which other settings are applied.
@@ -25,7 +25,7 @@ pub fn consume(kind: Kind, bytes: &[u8]) {
         },
         Kind::Pack => {
             // A body as it is, in a pack without pictures.
-            let sealed = [seal_pack("MMAV", 4, bytes), vec![0; 4]].concat();
+            let sealed = [seal_plain("MMAV", 4, bytes), vec![0; 4]].concat();
             for bytes in [bytes.to_vec(), sealed] {
                 if let Ok(avatar) = decode_pack(&bytes) {
                     sound(&avatar);
