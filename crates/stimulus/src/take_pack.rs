@@ -3,8 +3,9 @@
 //! Markers: the columns that are needed, in metres, in steps of 0.01 to 0.05 mm, by what is new in
 //! each frame (mostly the sensor's noise), with a margin of frames on both sides for filters to settle;
 //! the head's reference and the neutral face of the whole capture in steps of a micrometre; scale
-//! factors and the surface that gives a flat capture its depth as f64. Recorded weights: in steps that keep every vertex within a
-//! hundredth of a millimetre (`weight_steps`), or 0.0001 where none are asked for. Coordinates and weights are stored by `tracks`.
+//! factors and the surface that gives a flat capture its depth as f64. Recorded weights: in steps that
+//! keep every vertex within a hundredth of a millimetre (`weight_steps`), or 0.0001 where none are asked
+//! for. Coordinates and weights are stored by `tracks`.
 
 use std::ops::Range;
 
@@ -237,7 +238,7 @@ fn columns_from(r: &mut PackReader<'_>, of: usize) -> Result<Option<Vec<usize>>,
     Ok(Some(columns))
 }
 
-/// Points.
+/// Factors of a marker's three coordinates each.
 fn points(r: &mut PackReader<'_>, count: usize) -> Result<Vec<[f64; 3]>, PackError> {
     if count.saturating_mul(24) > r.left() {
         return r.refuse(format!("{count} points, {} bytes left", r.left()));

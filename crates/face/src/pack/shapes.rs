@@ -52,9 +52,9 @@ impl<'p> Shapes<'p> {
     }
 
     /// Reads the next shape; none if it is damaged.
-    pub fn read(&mut self, coder: &mut IntegerReader<'_>) -> Option<Moved> {
+    pub fn read(&mut self, coder: &mut IntegerReader<'_>) -> Option<&Moved> {
         self.through(coder, None)?;
-        self.so_far.last().cloned()
+        self.so_far.last()
     }
 
     /// Writes or reads: the twin, which vertices move, how far.
@@ -68,11 +68,17 @@ impl<'p> Shapes<'p> {
         };
         self.scatter(twin);
         let visits = self.moving(coder, twin)?;
-        let mut own = std::mem::take(&mut self.own);
-        let mut residuals = std::mem::take(&mut self.residuals);
-        let guess = |v: u32, own: &[[i32; 3]]| self.guess(twin, v, own);
-        residuals.vertices(coder, self.prediction, &visits, &self.steps, &mut own, &guess);
-        (self.own, self.residuals) = (own, residuals);
+        let halves = self.halves;
+        let other = twin.map(|t| (t < k).then_some(self.other.as_slice()));
+        let guess = |v: u32, own: &[[i32; 3]]| guess(halves, other?, v, own);
+        self.residuals.vertices(
+            coder,
+            self.prediction,
+            &visits,
+            &self.steps,
+            &mut self.own,
+            &guess,
+        );
         self.clear(twin);
         let own = self.own.iter_mut().zip(0u32..).filter(|(d, _)| **d != [0; 3]);
         let moved: Moved = own.map(|(d, v)| (v, std::mem::take(d))).collect();
@@ -109,16 +115,6 @@ impl<'p> Shapes<'p> {
             (at, odd) = (end, !odd);
         }
         Some(visits)
-    }
-
-    /// What the other side says of a vertex, where it is known already.
-    fn guess(&self, twin: Option<usize>, v: u32, own: &[[i32; 3]]) -> Option<[i32; 3]> {
-        let there = if twin? < self.so_far.len() {
-            self.other[self.halves.of(v)? as usize]
-        } else {
-            own[self.halves.known(v)? as usize]
-        };
-        Some(Places::image(there, 0))
     }
 
     fn scatter(&mut self, twin: Option<usize>) {
@@ -162,12 +158,21 @@ impl<'p> Shapes<'p> {
         }
         let twin = best?.1;
         self.scatter(Some(twin));
-        let price_of = |twin: Option<usize>| {
-            let guess = |v: u32, own: &[[i32; 3]]| self.guess(twin, v, own);
-            price(self.prediction, &visits, &self.steps, &self.own, &guess)
-        };
-        let better = price_of(Some(twin)) < price_of(None);
+        let other = (twin < k).then_some(self.other.as_slice());
+        let mirrored = |v: u32, own: &[[i32; 3]]| guess(self.halves, other, v, own);
+        let price_of = |mirrored| price(self.prediction, &visits, &self.steps, &self.own, mirrored);
+        let better = price_of(&mirrored) < price_of(&|_, _| None);
         self.clear(Some(twin));
         better.then_some(twin)
     }
+}
+
+/// What the other side says of a vertex, where it is known already: the `twin`'s vertices, or this
+/// shape's own, if it has none.
+fn guess(halves: &Halves, twin: Option<&[[i32; 3]]>, v: u32, own: &[[i32; 3]]) -> Option<[i32; 3]> {
+    let there = match twin {
+        Some(twin) => twin[halves.of(v)? as usize],
+        None => own[halves.known(v)? as usize],
+    };
+    Some(Places::image(there, 0))
 }

@@ -168,7 +168,7 @@ pub(super) fn mesh_from(
         for _ in 0..shape_count {
             let Some(moved) = shapes.read(&mut coder) else { break };
             let (vertices, deltas) =
-                moved.into_iter().map(|(v, q)| (v, q.map(|x| x as f32 * unit))).unzip();
+                moved.iter().map(|&(v, q)| (v, q.map(|x| x as f32 * unit))).unzip();
             read.push(SparseShape { vertices, deltas });
         }
     }

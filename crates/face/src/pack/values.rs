@@ -85,12 +85,6 @@ impl Residuals {
     }
 }
 
-impl Default for Residuals {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// About how many bits the values of the visits would take.
 pub(super) fn price(
     prediction: &Prediction,
