@@ -17,6 +17,7 @@ mod test;
 mod wasm_names;
 mod wasm_order;
 mod wasm_paths;
+mod wasm_silent;
 mod web;
 
 use clap::{Parser, Subcommand};

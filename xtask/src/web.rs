@@ -22,7 +22,7 @@ use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
 use crate::process::{cargo, locked, root, run as run_program, say, target};
-use crate::{wasm_names, wasm_order, wasm_paths};
+use crate::{wasm_names, wasm_order, wasm_paths, wasm_silent};
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
@@ -45,6 +45,8 @@ struct Module {
     features: Option<&'static str>,
     profile: &'static str,
     opt_level: &'static str,
+    /// Whether its panics are words that somebody hears: there is a hook that tells them.
+    speaks: bool,
 }
 
 const MODULES: [Module; 6] = [
@@ -56,6 +58,7 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
+        speaks: true,
     },
     Module {
         name: "orders",
@@ -65,6 +68,7 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
+        speaks: true,
     },
     Module {
         name: "solver",
@@ -74,6 +78,7 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
+        speaks: false,
     },
     Module {
         name: "desk",
@@ -83,6 +88,7 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
+        speaks: false,
     },
     Module {
         name: "stage_webgpu",
@@ -92,6 +98,7 @@ const MODULES: [Module; 6] = [
         features: Some("webgpu"),
         profile: "web",
         opt_level: "-Oz",
+        speaks: false,
     },
     Module {
         name: "stage_webgl",
@@ -101,6 +108,7 @@ const MODULES: [Module; 6] = [
         features: Some("webgl"),
         profile: "web",
         opt_level: "-Oz",
+        speaks: false,
     },
 ];
 
@@ -187,7 +195,7 @@ impl Module {
     fn build(&self, optimiser: Option<&Path>) -> Result<()> {
         say(&format!("building {}", self.name));
         let mut command = cargo();
-        command.arg("build").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
+        command.arg("rustc").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
         match self.example {
             true => command.args(["--example", self.library]),
             false => command.arg("--lib"),
@@ -195,6 +203,9 @@ impl Module {
         command.args(["--package", self.package, "--profile", self.profile]);
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
+        }
+        if !self.speaks {
+            command.args(["--", wasm_silent::LINKER]);
         }
         run_program(&mut command)?;
         let raw = target()
@@ -213,8 +224,14 @@ impl Module {
             fs::remove_dir_all(&out)?;
         }
         fs::create_dir_all(&out)?;
+        let linked = fs::read(&raw).with_context(|| raw.display().to_string())?;
+        let linked = match self.speaks {
+            true => linked,
+            false => wasm_silent::silenced(&linked)
+                .with_context(|| format!("words of panics in {}", raw.display()))?,
+        };
         wasm_bindgen_cli_support::Bindgen::new()
-            .input_path(&raw)
+            .input_bytes(self.name, linked)
             .out_name(self.name)
             .web(true)?
             .typescript(false)
@@ -253,6 +270,7 @@ impl Module {
         hash.update(include_bytes!("wasm_order.rs"));
         hash.update(include_bytes!("wasm_names.rs"));
         hash.update(include_bytes!("wasm_paths.rs"));
+        hash.update(include_bytes!("wasm_silent.rs"));
         Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
     }
 }
