@@ -2,6 +2,7 @@
 //   in   {id, operators: Uint8Array, take: Uint8Array, method: object (a MethodSpec)}
 //   out  {id, weights: Float32Array (frames x shapes), frames, shapes, rate_hz, weights_hash, report, solve_ms}
 //   or   {id, error: string}
+import { inflated } from "./inflated.js";
 import init, { solve } from "./solver.js";
 
 const ready = init();
@@ -11,7 +12,7 @@ self.onmessage = async ({ data }) => {
   try {
     await ready;
     const started = performance.now();
-    const solved = solve(operators, take, method);
+    const solved = solve(await inflated(operators), take, method);
     const weights = solved.weights();
     const answer = {
       id,

@@ -9,13 +9,14 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [modules, cases] = process.argv.slice(2).map((folder) => resolve(folder));
+const { inflated } = await import("../../static/inflated.js");
 const solver = await import(pathToFileURL(join(modules, "solver.js")));
 await solver.default({ module_or_path: readFileSync(join(modules, "solver_bg.wasm")) });
 
 let failed = 0;
 for (const clip of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) {
   const bytes = (name) => new Uint8Array(readFileSync(join(cases, name)));
-  const [operators, take] = [bytes(clip.operators), bytes(clip.take)];
+  const [operators, take] = [await inflated(bytes(clip.operators)), bytes(clip.take)];
   const start = performance.now();
   const solved = solver.solve(operators, take, clip.method);
   const milliseconds = performance.now() - start;
@@ -42,6 +43,18 @@ for (const wrong of [new Uint8Array(0), new Uint8Array([77, 77, 79, 80, 9, 9, 9,
       console.log(`DIFFERENT: a damaged pack says ${error}`);
       failed += 1;
     }
+  }
+}
+
+// So is what cannot be inflated.
+const [first] = JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"));
+const whole = readFileSync(join(cases, first.operators));
+const flipped = Uint8Array.from(whole, (byte, at) => (at === whole.length >> 1 ? byte ^ 255 : byte));
+for (const wrong of [whole.subarray(0, whole.length - 9), flipped]) {
+  const said = await inflated(new Uint8Array(wrong)).then(() => "nothing", (error) => error.message);
+  if (!/^MMOP pack: .*inflated/.test(said)) {
+    console.log(`DIFFERENT: damaged operators say ${said}`);
+    failed += 1;
   }
 }
 process.exit(failed === 0 ? 0 : 1);

@@ -48,6 +48,7 @@ const BUDGETS: [Budget; 4] = [
             "stage-pictures.js",
             "stage-playback.js",
             "solver-worker.js",
+            "inflated.js",
             "solver.js",
             "solver_bg.wasm",
         ],

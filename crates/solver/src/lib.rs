@@ -59,6 +59,7 @@ mod method;
 mod method_spec;
 mod named_values;
 mod newton;
+mod number_text;
 mod objective;
 mod operators;
 mod problem;
@@ -96,6 +97,7 @@ pub use marker_scales::{Extent, LEAST_RANGE_M, MarkerScales, bank_extents, motio
 pub use marker_site::{MarkerSite, SurfacePoint};
 pub use method::Method;
 pub use method_spec::{Association, Hold, Inference, LaplacianKind, MethodSpec, Unit};
+pub use number_text::number_text;
 pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use problem::FitError;
 pub use rbf::{Rbf, RbfError};

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use crate::number_text::number_text;
+
 /// A second-order Butterworth low-pass (bilinear transform), run both ways by [`Lowpass::filter`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lowpass {
@@ -14,7 +16,10 @@ pub struct Lowpass {
 
 /// Why there is no such filter.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("low-pass {cutoff_hz} Hz at {rate_hz} frames/s; give a cut-off above 0 and below {} Hz", .rate_hz / 2.0)]
+#[error(
+    "low-pass {} Hz at {} frames/s; give a cut-off above 0 and below {} Hz",
+    number_text(*.cutoff_hz), number_text(*.rate_hz), number_text(.rate_hz / 2.0)
+)]
 pub struct LowpassError {
     /// The cut-off that was asked for.
     pub cutoff_hz: f64,

@@ -4,6 +4,7 @@
 use crate::linked::{LinkedRows, Linking};
 use crate::method::Method;
 use crate::method_spec::MethodSpec;
+use crate::number_text::number_text;
 use crate::objective::{Objective, Term};
 use crate::operators::{OperatorOptions, OperatorParts, Operators};
 use crate::regression::Regression;
@@ -262,10 +263,12 @@ fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitEr
     let words = |o: &OperatorOptions| {
         let linking = match o.linking {
             None => "none".to_owned(),
-            Some(Linking::Zones { sigma }) => format!("zones of {sigma} m"),
-            Some(other) => format!("{other:?}").to_ascii_lowercase(),
+            Some(Linking::Points) => "points".to_owned(),
+            Some(Linking::Zones { sigma }) => format!("zones of {} m", number_text(sigma)),
+            Some(Linking::Triangles) => "triangles".to_owned(),
         };
-        format!("laplacian {:?}, kS {}, kB {}, association {linking}", o.laplacian, o.k_s, o.k_b)
+        let (k_s, k_b) = (number_text(o.k_s), number_text(o.k_b));
+        format!("laplacian {:?}, kS {k_s}, kB {k_b}, association {linking}", o.laplacian)
     };
     Err(FitError::OtherOperators { built: words(built), asked: words(&asked) })
 }

@@ -10,6 +10,7 @@ use crate::cholesky::Cholesky;
 use crate::dense::{axpy, mul};
 use crate::gaussian_process::{ExactProcess, Kernel, posterior};
 use crate::hyper_parameters::maximise_likelihood;
+use crate::number_text::number_text;
 use crate::sparse_process::SparseProcess;
 
 /// Frames that the hyper-parameters are found on: evenly spaced ones.
@@ -90,7 +91,8 @@ pub enum TrainingError {
     Malformed(String),
     /// The Gram matrix cannot be factored.
     #[error(
-        "training: the Gram matrix is singular to rounding with noise {0}; give a larger noise"
+        "training: the Gram matrix is singular to rounding with noise {}; give a larger noise",
+        number_text(*.0)
     )]
     Singular(f64),
 }

@@ -2,6 +2,7 @@
 
 use crate::method::Method;
 use crate::method_spec::{Association, Inference, MethodSpec};
+use crate::number_text::number_text;
 
 /// Something wrong in a [`MethodSpec`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -40,7 +41,8 @@ impl MethodSpec {
         if let (Some(association), Some(sigma)) = (self.association, self.sigma)
             && association != Association::Zones
         {
-            let message = format!("is {sigma}, but only zones have a radius; remove it");
+            let message =
+                format!("is {}, but only zones have a radius; remove it", number_text(sigma));
             found.add("sigma", message);
         }
         found.number("boundsWeight", self.bounds_weight, "above 0", |v| v > 0.0);
@@ -81,8 +83,9 @@ impl MethodSpec {
                 found.add(
                     &field,
                     format!(
-                        "is {importance}, but markers are met exactly where stiffness is 0; give \
-                         stiffness above 0, or importance 0 to leave the marker out"
+                        "is {}, but markers are met exactly where stiffness is 0; give \
+                         stiffness above 0, or importance 0 to leave the marker out",
+                        number_text(importance)
                     ),
                 );
             }
@@ -152,14 +155,17 @@ impl Problems {
         if let Some(v) = value
             && !(v.is_finite() && ok(v))
         {
-            self.add(field, format!("is {v}; give a number {range}"));
+            self.add(field, format!("is {}; give a number {range}", number_text(v)));
         }
     }
 
     fn interval(&mut self, field: &str, [lo, hi]: [f64; 2], may_be_a_point: bool) {
         let ordered = if may_be_a_point { lo <= hi } else { lo < hi };
         if !(lo.is_finite() && hi.is_finite() && ordered) {
-            self.add(field, format!("is [{lo}, {hi}]; give two numbers, the lower one first"));
+            self.add(field, {
+                let (lo, hi) = (number_text(lo), number_text(hi));
+                format!("is [{lo}, {hi}]; give two numbers, the lower one first")
+            });
         }
     }
 }

@@ -77,7 +77,7 @@ pub use marker_map::{
     Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
     REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use operators_pack::{decode_operators, encode_operators};
+pub use operators_pack::{decode_inflated_operators, decode_operators, encode_operators};
 #[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
 pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, sha256_of_file, weights_hash};
@@ -97,7 +97,7 @@ pub use segments::{
 pub use skin::{AvatarSkin, lock_shapes};
 #[cfg(feature = "prepare")]
 pub use solve_error::SolveError;
-pub use solve_packs::{SolvePacksError, SolvedTake, solve_packs, solve_segment};
+pub use solve_packs::{SolvePacksError, SolvedTake, solve_inflated, solve_packs, solve_segment};
 #[cfg(feature = "prepare")]
 pub use solve_take::{SolvedCapture, TakeOptions, solve_take};
 #[cfg(feature = "prepare")]

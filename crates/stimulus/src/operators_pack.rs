@@ -3,16 +3,16 @@
 //! Body: options (Laplacian, k_s, k_b, association, sigma), shape names, marker labels, S, marker
 //! positions, D, H as f64, then Kouadio's linked rows where they were asked for, then what
 //! `regression` has learnt where it has. l^2 and tau follow from D and H. A surface's operators are
-//! of the same form.
+//! of the same form. It is deflated; a browser inflates it before its solver reads it.
 
-use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
+use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, open_plain, seal_pack};
 use mimique_solver::{
     Kernel, LaplacianKind, LinkedRows, Linking, OperatorOptions, OperatorParts, Operators,
     Regression,
 };
 
 const KIND: &str = "MMOP";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 const LAPLACIANS: [LaplacianKind; 4] = [
     LaplacianKind::Uniform,
@@ -65,8 +65,19 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
 /// # Errors
 /// [`PackError`] for anything that [`encode_operators`] does not write.
 pub fn decode_operators(bytes: &[u8]) -> Result<Operators, PackError> {
-    let body = open_pack(KIND, VERSION, bytes)?;
-    let mut r = PackReader::new(KIND, &body);
+    operators_in(&open_pack(KIND, VERSION, bytes)?)
+}
+
+/// The same of a pack whose body is inflated already: its first twelve bytes as they were.
+///
+/// # Errors
+/// As [`decode_operators`].
+pub fn decode_inflated_operators(bytes: &[u8]) -> Result<Operators, PackError> {
+    operators_in(open_plain(KIND, VERSION, bytes)?)
+}
+
+fn operators_in(body: &[u8]) -> Result<Operators, PackError> {
+    let mut r = PackReader::new(KIND, body);
     let kind = r.u8()?;
     let Some(&laplacian) = LAPLACIANS.get(usize::from(kind)) else {
         return r.refuse(format!("Laplacian {kind}"));

@@ -1,6 +1,6 @@
 //! What a solve says of itself: per frame, over all frames, in words.
 
-use mimique_solver::{FrameReport, FrameWarning, Kernel};
+use mimique_solver::{FrameReport, FrameWarning, Kernel, number_text};
 #[cfg(feature = "prepare")]
 use mimique_solver::{Method, MethodSpec, Operators, Regression};
 use serde::Serialize;
@@ -74,10 +74,10 @@ impl FrameStatistics {
             |count: usize| if count == 1 { "1 frame".into() } else { format!("{count} frames") };
         if let Some((count, first)) = self.not_converged {
             out.push(format!(
-                "{} did not reach the tolerance (the first is {}; KKT error up to {:.1e})",
+                "{} did not reach the tolerance (the first is {}; KKT error up to {})",
                 frames(count),
                 first as u64 + first_frame,
-                self.kkt_worst
+                scientific(self.kkt_worst)
             ));
         }
         if let Some((count, first)) = self.without_markers {
@@ -103,6 +103,24 @@ impl FrameStatistics {
         }
         out
     }
+}
+
+/// A positive number as `{:.1e}` writes it, without the code that writes any number: the browser's module
+/// has none.
+fn scientific(number: f64) -> String {
+    if !(number.is_finite() && number > 0.0) {
+        return number_text(number);
+    }
+    let (mut digits, mut exponent) = (number, 0);
+    while digits >= 10.0 {
+        (digits, exponent) = (digits / 10.0, exponent + 1);
+    }
+    while digits < 1.0 {
+        (digits, exponent) = (digits * 10.0, exponent - 1);
+    }
+    let tenths = (10.0 * digits).round() as u32;
+    let (tenths, exponent) = if tenths == 100 { (10, exponent + 1) } else { (tenths, exponent) };
+    format!("{}.{}e{exponent}", tenths / 10, tenths % 10)
 }
 
 /// The seconds of each stage of a solve.
@@ -244,6 +262,15 @@ pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_written_as_others_write_them() {
+        let many = (-300..300).map(|k| 10f64.powf(f64::from(k) / 17.0));
+        for number in many.chain([0.25, 0.99, 0.9949, 0.996, 1e-10, 5e-324, f64::MAX]) {
+            assert_eq!(scientific(number), format!("{number:.1e}"));
+        }
+        assert_eq!((scientific(0.0), scientific(f64::NAN)), ("0".to_owned(), "NaN".to_owned()));
+    }
 
     #[test]
     fn frames_that_fail_are_counted_and_named() {

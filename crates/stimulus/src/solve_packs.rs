@@ -7,7 +7,7 @@ use mimique_solver::{
     MethodSpec, Operators, SurfaceDepth,
 };
 
-use crate::operators_pack::decode_operators;
+use crate::operators_pack::{decode_inflated_operators, decode_operators};
 use crate::provenance::weights_hash;
 use crate::report::FrameStatistics;
 use crate::take_pack::{SegmentMarkers, TakeContent, TakePack, decode_take};
@@ -66,11 +66,29 @@ pub fn solve_packs(
     take: &[u8],
     spec: &MethodSpec,
 ) -> Result<SolvedTake, SolvePacksError> {
+    solve_with(|| decode_operators(operators), take, spec)
+}
+
+/// The same with an operators pack whose body is inflated already, as browsers do it.
+///
+/// # Errors
+/// As [`solve_packs`].
+pub fn solve_inflated(
+    operators: &[u8],
+    take: &[u8],
+    spec: &MethodSpec,
+) -> Result<SolvedTake, SolvePacksError> {
+    solve_with(|| decode_inflated_operators(operators), take, spec)
+}
+
+fn solve_with(
+    operators: impl FnOnce() -> Result<Operators, PackError>,
+    take: &[u8],
+    spec: &MethodSpec,
+) -> Result<SolvedTake, SolvePacksError> {
     let take = decode_take(take)?;
     match &take.content {
-        TakeContent::Markers(markers) => {
-            solve_markers(&decode_operators(operators)?, &take, markers, spec)
-        }
+        TakeContent::Markers(markers) => solve_markers(&operators()?, &take, markers, spec),
         TakeContent::Weights { shape_names, weights } => {
             let n = shape_names.len();
             let weights = weights[take.played.start * n..take.played.end * n].to_vec();

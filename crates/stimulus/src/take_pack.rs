@@ -9,13 +9,13 @@
 
 use std::ops::Range;
 
-use mimique_face::pack::{PackError, PackReader, PackWriter, open_pack, seal_pack};
-use mimique_solver::{FanTriangle, MarkerScales, SurfaceDepth};
+use mimique_face::pack::{PackError, PackReader, PackWriter, open_plain, seal_plain};
+use mimique_solver::{FanTriangle, MarkerScales, SurfaceDepth, number_text};
 
 use crate::tracks::{noise, tracks_from, tracks_to};
 
 const KIND: &str = "MMTK";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 /// Finest and coarsest step of the markers' coordinates, micrometres.
 const STEPS_UM: [f64; 2] = [10.0, 50.0];
 /// Step of the points that all frames are compared with, metres.
@@ -113,12 +113,13 @@ pub fn encode_take_in_steps(take: &TakePack, steps: &[f64]) -> Vec<u8> {
             w.u8(1);
             w.texts(shape_names);
             let step = |k| steps.get(k).copied().filter(|s| *s > 0.0).unwrap_or(STEP_WEIGHT);
-            let steps: Vec<f64> = (0..shape_names.len()).map(step).collect();
-            steps.iter().for_each(|&s| w.f64(s));
+            let steps: Vec<u16> = (0..shape_names.len()).map(|k| short_step(step(k))).collect();
+            steps.iter().for_each(|&s| w.raw(&s.to_le_bytes()));
+            let steps: Vec<f64> = steps.into_iter().map(long_step).collect();
             tracks_to(&mut w, weights, &steps);
         }
     }
-    seal_pack(KIND, VERSION, &w.into_bytes())
+    seal_plain(KIND, VERSION, &w.into_bytes())
 }
 
 /// The step of coordinates, metres: as large as what is typically new in a frame, which rounding then
@@ -127,16 +128,24 @@ fn marker_step(noise_m: f64) -> f64 {
     (1e6 * noise_m).round().clamp(STEPS_UM[0], STEPS_UM[1]) / 1e6
 }
 
+/// The next step below that has eight significant bits: the upper half of an f32.
+fn short_step(step: f64) -> u16 {
+    ((step as f32).to_bits() >> 16) as u16
+}
+
+fn long_step(short: u16) -> f64 {
+    f64::from(f32::from_bits(u32::from(short) << 16))
+}
+
 /// Unpacks a take.
 ///
 /// # Errors
 /// [`PackError`] for anything that [`encode_take`] does not write.
 pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
-    let body = open_pack(KIND, VERSION, bytes)?;
-    let mut r = PackReader::new(KIND, &body);
+    let mut r = PackReader::new(KIND, open_plain(KIND, VERSION, bytes)?);
     let rate_hz = r.f64()?;
     if !(rate_hz.is_finite() && rate_hz > 0.0) {
-        return r.refuse(format!("{rate_hz} frames a second"));
+        return r.refuse(format!("{} frames a second", number_text(rate_hz)));
     }
     let first_frame = r.u64()?;
     let played = r.varint()? as usize..r.varint()? as usize;
@@ -161,7 +170,7 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
             let columns = 3 * labels.len();
             let step = r.f64()?;
             if !(step.is_finite() && step > 0.0) {
-                return r.refuse(format!("markers in steps of {step} m"));
+                return r.refuse(format!("markers in steps of {} m", number_text(step)));
             }
             let positions = tracks_from(&mut r, &vec![step; columns])?;
             let frames = positions.len() / columns.max(1);
@@ -191,9 +200,11 @@ pub fn decode_take(bytes: &[u8]) -> Result<TakePack, PackError> {
         }
         1 => {
             let shape_names = r.texts()?;
-            let steps: Vec<f64> = shape_names.iter().map(|_| r.f64()).collect::<Result<_, _>>()?;
+            let steps = shape_names.iter().map(|_| Ok([r.u8()?, r.u8()?]));
+            let steps = steps.map(|s| s.map(|s| long_step(u16::from_le_bytes(s))));
+            let steps: Vec<f64> = steps.collect::<Result<_, PackError>>()?;
             if let Some(step) = steps.iter().find(|s| !(s.is_finite() && **s > 0.0)) {
-                return r.refuse(format!("weights in steps of {step}"));
+                return r.refuse(format!("weights in steps of {}", number_text(*step)));
             }
             let weights = tracks_from(&mut r, &steps)?;
             let frames = weights.len() / shape_names.len().max(1);

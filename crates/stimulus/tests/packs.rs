@@ -1,13 +1,13 @@
 //! Operators and take packs: what goes in comes out, damage is refused and never panics.
 
-use mimique_face::pack::{open_pack, seal_pack};
+use mimique_face::pack::{open_pack, open_plain, seal_pack, seal_plain};
 use mimique_solver::{
     LinkedRows, Linking, MarkerScales, Method, MethodSpec, OperatorOptions, OperatorParts,
     Operators,
 };
 use mimique_stimulus::{
     SegmentMarkers, TakeContent, TakePack, decode_operators, decode_take, encode_operators,
-    encode_take, solve_packs,
+    encode_take, solve_inflated, solve_packs,
 };
 use proptest::prelude::*;
 
@@ -146,6 +146,21 @@ fn recorded_weights_keep_their_range() {
 }
 
 #[test]
+fn operators_that_a_browser_has_inflated_solve_with_the_same_bits() {
+    let (operators, mut take) = (encode_operators(&operators(false)), take());
+    let TakeContent::Markers(markers) = &mut take.content else { unreachable!("it is of markers") };
+    (markers.head, markers.head_reference) = (None, vec![]);
+    let take = encode_take(&take);
+    let body = open_pack("MMOP", 3, &operators).unwrap();
+    let inflated = [&operators[..12], &body].concat();
+    let spec = MethodSpec::new(Method::Lsts);
+    let solved = solve_inflated(&inflated, &take, &spec).unwrap();
+    assert_eq!(solved, solve_packs(&operators, &take, &spec).unwrap());
+    let error = solve_inflated(&operators, &take, &spec).unwrap_err().to_string();
+    assert!(error.contains("MMOP") && error.contains("declared"), "{error}");
+}
+
+#[test]
 fn packs_that_do_not_belong_together_are_refused() {
     let (operators, mut take) = (encode_operators(&operators(false)), take());
     let spec = MethodSpec::new(Method::Lsts);
@@ -165,13 +180,16 @@ proptest! {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
         let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
-            let version = if *kind == "MMTK" { 4 } else { 2 };
-            let body = open_pack(kind, version, whole).unwrap();
+            let (body, seal): (_, fn(&'static str, u32, &[u8]) -> Vec<u8>) = match *kind {
+                "MMOP" => (open_pack(kind, 3, whole).unwrap(), seal_pack),
+                _ => (open_plain(kind, 5, whole).unwrap().to_vec(), seal_plain),
+            };
+            let version = if *kind == "MMOP" { 3 } else { 5 };
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;
                 let at = at % damaged.len();
                 if cut { damaged.truncate(at) } else { damaged[at] = value }
-                let damaged = if sealed { seal_pack(kind, version, &damaged) } else { damaged };
+                let damaged = if sealed { seal(kind, version, &damaged) } else { damaged };
                 // Neither unpacking nor solving may panic, whatever comes of it.
                 let [(_, operators), (_, take)] = &packs;
                 let _ = match *kind {

@@ -12,7 +12,6 @@ pub mod from_json;
 mod instant;
 mod json_reader;
 pub mod json_text;
-mod number_text;
 mod order;
 pub mod responses;
 mod session_file;
@@ -29,7 +28,7 @@ pub use check::{
 };
 pub use event::{Answers, Calibrated, Client, Display, EventKind, PlayLog, ShownBeside};
 pub use instant::instant_ms;
-pub use number_text::number_text;
+pub use mimique_solver::number_text;
 pub use order::{Draw, OrderError, OrderedItem, Stream, drawn_condition, option_order, order};
 pub use session_file::{SessionFile, SessionFileError};
 pub use sorted_map::SortedMap;

@@ -1,18 +1,22 @@
 //! The solver's worker: operators and a take in, weights out.
 //!
 //! ```js
-//! const solved = solve(operators, take, clip.method);
+//! const solved = solve(await inflated(operators), take, clip.method); // inflated.js
 //! solved.weights();       // Float32Array, frames x shapes
 //! solved.weights_hash();  // compare with clip.weights_hash
 //! ```
 //!
-//! It is the function that the server has called before ([`mimique_stimulus::solve_packs`]), so the
+//! It is the function that the server has called before ([`mimique_stimulus::solve_inflated`]), so the
 //! weights have the same bits; they leave here in single precision, which is what is drawn.
 
-use mimique_solver::MethodSpec;
-use mimique_stimulus::{FrameStatistics, SolvedTake, solve_packs};
-use serde::Serialize;
+mod report;
+mod spec_reader;
+mod tree;
+
+use mimique_stimulus::{SolvedTake, solve_inflated};
 use wasm_bindgen::prelude::*;
+
+use crate::tree::Tree;
 
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]
@@ -25,27 +29,18 @@ pub struct Solved {
     take: SolvedTake,
 }
 
-/// Solves the take pack with the operators pack; `method` is a `MethodSpec`, as the object that its JSON
-/// is. It is the browser that reads and writes JSON here: our own way would be a fifth of the module.
+/// Solves the take pack with the operators pack, whose body is inflated already; `method` is a
+/// `MethodSpec`, as the object that its JSON is. It is the browser that inflates, and reads and writes
+/// JSON: our own ways would be a third of the module.
 ///
 /// # Errors
 /// Throws an `Error` whose message says place, what and remedy: a damaged pack, packs that do not
-/// belong together, a method that does not solve with these operators.
+/// belong together, a method that is none or does not solve with these operators.
 #[wasm_bindgen]
-pub fn solve(operators: &[u8], take: &[u8], method: JsValue) -> Result<Solved, JsError> {
-    let spec: MethodSpec = serde_wasm_bindgen::from_value(method)
-        .map_err(|e| JsError::new(&format!("method: {e}")))?;
-    let take = solve_packs(operators, take, &spec)?;
+pub fn solve(operators: &[u8], take: &[u8], method: &JsValue) -> Result<Solved, JsError> {
+    let spec = spec_reader::read_spec(&Tree::from(method)).map_err(|e| JsError::new(&e))?;
+    let take = solve_inflated(operators, take, &spec)?;
     Ok(Solved { take })
-}
-
-/// What the worker says of a clip besides its weights.
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Report<'a> {
-    shape_names: &'a [String],
-    statistics: &'a Option<FrameStatistics>,
-    warnings: &'a [String],
 }
 
 #[wasm_bindgen]
@@ -76,15 +71,7 @@ impl Solved {
     }
 
     /// `{"shapeNames": [...], "statistics": {...} or null, "warnings": [...]}`.
-    ///
-    /// # Errors
-    /// None that is known: everything in it is numbers and texts.
-    pub fn report(&self) -> Result<JsValue, JsError> {
-        let report = Report {
-            shape_names: &self.take.shape_names,
-            statistics: &self.take.statistics,
-            warnings: &self.take.warnings,
-        };
-        Ok(report.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
+    pub fn report(&self) -> JsValue {
+        JsValue::from(&report::report(&self.take))
     }
 }

@@ -1,5 +1,5 @@
-//! What is round every pack: four letters, a version, the length of the body, the body: deflated, or
-//! as it is where hardly anything would come of it.
+//! What is round every pack: four letters, a version, the length of the body, the body: deflated
+//! (zlib, RFC 1950, which browsers inflate themselves), or as it is where hardly anything would come of it.
 
 use super::bytes::{PackError, PackReader, PackWriter};
 
@@ -8,7 +8,7 @@ const LONGEST_BODY: usize = 1 << 29;
 
 /// Deflates a body and puts the four letters of its kind, a version and its length in front.
 pub fn seal_pack(kind: &'static str, version: u32, body: &[u8]) -> Vec<u8> {
-    sealed(kind, version, body.len(), &miniz_oxide::deflate::compress_to_vec(body, 9))
+    sealed(kind, version, body.len(), &miniz_oxide::deflate::compress_to_vec_zlib(body, 9))
 }
 
 /// The same with the body as it is.
@@ -36,14 +36,14 @@ pub fn open_pack(kind: &'static str, version: u32, bytes: &[u8]) -> Result<Vec<u
         return header.refuse(format!("a body of {length} bytes"));
     }
     let left = header.left();
-    match miniz_oxide::inflate::decompress_to_vec_with_limit(header.raw(left)?, length) {
+    match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(header.raw(left)?, length) {
         Ok(body) if body.len() == length => Ok(body),
         Ok(body) => header.refuse(format!("a body of {} bytes, {length} declared", body.len())),
         Err(e) => header.refuse(format!("the body cannot be inflated: {e}")),
     }
 }
 
-/// The body of a pack of that kind and version, made by [`seal_plain`].
+/// The body of a pack of that kind and version, made by [`seal_plain`] or inflated by somebody else.
 ///
 /// # Errors
 /// [`PackError`]: another kind or version, truncated, something behind its end.
@@ -69,7 +69,7 @@ pub(super) fn check_header<'b>(
     let mut header = PackReader::new(kind, bytes);
     let letters = header.raw(4)?;
     if letters != kind.as_bytes() {
-        return header.refuse(format!("it opens with {:?}", String::from_utf8_lossy(letters)));
+        return header.refuse(format!("it opens with '{}'", String::from_utf8_lossy(letters)));
     }
     let found = header.u32()?;
     if found != version {

@@ -9,7 +9,7 @@ use super::PrepareError;
 use crate::provenance::{Provenance, SOLVER_VERSION, sha256_hex};
 
 /// Changes when the same inputs give other packs: what was kept under old keys is not taken.
-const LAYOUT: &str = "4";
+const LAYOUT: &str = "5";
 
 /// A pack that lies in the folder.
 #[derive(Debug, Clone, PartialEq, Eq)]

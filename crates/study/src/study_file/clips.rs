@@ -8,9 +8,9 @@ use serde_json::Value;
 
 use super::{ClipEntry, Study};
 use crate::from_json::{Faults, FromJson};
-use crate::number_text::number_text;
 use crate::sorted_map::SortedMap;
 use crate::tagged;
+use mimique_solver::number_text;
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = SortedMap<String, FactorValue>;

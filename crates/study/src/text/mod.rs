@@ -6,8 +6,8 @@ mod table;
 mod translation;
 mod typography;
 
-use crate::number_text::number_text;
 use crate::sorted_map::SortedMap;
+use mimique_solver::number_text;
 use std::borrow::Cow;
 
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
