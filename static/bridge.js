@@ -33,7 +33,7 @@ export function about() {
 
 /** What browser and display can do, as the JSON of `study::Display`. */
 export async function measure() {
-  const [{ refreshPeriod }, { backend }] = await Promise.all([import("./stage-clock.js"), import("./stage-backend.js")]);
+  const { backend, refreshPeriod } = await stageHost();
   const period = document.hidden ? null : await refreshPeriod(true);
   return JSON.stringify({
     viewport: [innerWidth, innerHeight],
@@ -47,7 +47,7 @@ export async function measure() {
 
 /** The address of a picture or a signed video of the study, fetched by its hash. */
 export async function mediaAddress(hash, type) {
-  const { fetchPack } = await import("./stage-packs.js");
+  const { fetchPack } = await stageHost();
   const bytes = await fetchPack(hash);
   media[hash] ??= URL.createObjectURL(new Blob([bytes], { type }));
   return media[hash];

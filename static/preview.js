@@ -1,6 +1,5 @@
 // The preview of a study's stimuli: two clips side by side, played in step, scrubbed, slowed down.
-import { backend, openStage, prepareClip, preparedClip } from "./stage-host.js";
-import { refreshPeriod } from "./stage-clock.js";
+import { backend, openStage, prepareClip, preparedClip, refreshPeriod } from "./stage-host.js";
 import { Player, made } from "./stage-player.js";
 
 const $ = (id) => document.getElementById(id);

@@ -4,12 +4,14 @@ import { backend, loadModule } from "./stage-backend.js";
 import { prepareClip, preparedClip, putClip, weightsAt } from "./stage-clips.js";
 import { refreshPeriod } from "./stage-clock.js";
 import { Film } from "./stage-film.js";
+import { fetchPack } from "./stage-packs.js";
 import { Playback } from "./stage-playback.js";
 
 // Modules, scripts and shaders are served under the hash of all of them.
 const renderer = /\/assets\/([0-9a-f]+)\//.exec(import.meta.url)?.[1] ?? "";
 
-export { backend, prepareClip, preparedClip, putClip };
+// What pages load them for: the scripts behind this one are not served by themselves.
+export { backend, fetchPack, loadModule, prepareClip, preparedClip, putClip, refreshPeriod };
 
 /// A stage on a canvas. `look`: {background: "#rrggbb", width, height (CSS pixels), variant:
 /// "stimulus" (or left out) | "reference"}; a clip's own look goes before the variant.

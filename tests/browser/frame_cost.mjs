@@ -17,7 +17,7 @@ const heads = [["built-in head", []], ...(existsSync(ict) ? [["ICT-FaceKit", [ic
 async function measure(frames) {
   const script = document.querySelector('script[src*="studio.js"]').src;
   const { desk } = await import(new URL("./studio-desk.js", script));
-  const { backend, loadModule } = await import(new URL("./stage-backend.js", script));
+  const { backend, loadModule } = await import(new URL("./stage-host.js", script));
   const module = await loadModule(await backend());
   const element = document.createElement("canvas");
   [element.width, element.height] = [1280, 720];

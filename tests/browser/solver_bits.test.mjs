@@ -35,7 +35,7 @@ test("solver: every method has the same bits natively and in Chromium", { skip: 
     const { clips } = await (await fetch(`${server.url}/api/studies/demo`)).json();
     const solved = await page.evaluate(async (clips) => {
       const page = document.querySelector('script[type="module"][src*="preview.js"]').src;
-      const { prepareClip } = await import(new URL("stage-clips.js", page).href);
+      const { prepareClip } = await import(new URL("stage-host.js", page).href);
       const found = {};
       for (const [id, source] of Object.entries(clips)) found[id] = await prepareClip(id, source);
       return found;

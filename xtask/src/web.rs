@@ -142,6 +142,19 @@ const WASM_OPT: [&str; 14] = [
     "--strip-target-features",
 ];
 
+/// Scripts that are always loaded together become one file under the name of the first, which says
+/// to the others what the rest of them has: fewer requests, and a quarter less of them.
+const JOINED: [&str; 8] = [
+    "stage-host.js",
+    "stage-backend.js",
+    "stage-clips.js",
+    "stage-clock.js",
+    "stage-film.js",
+    "stage-packs.js",
+    "stage-pictures.js",
+    "stage-playback.js",
+];
+
 /// Where the pages are gathered.
 pub fn dist() -> PathBuf {
     target().join("web-dist")
@@ -326,8 +339,8 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
     Ok(())
 }
 
-/// Scripts and styles without comments, spaces and long names of their own.
-fn minify(esbuild: &Path, files: &mut [(String, Vec<u8>)]) -> Result<()> {
+/// Scripts and styles without comments, spaces and long names of their own; [`JOINED`] as one.
+fn minify(esbuild: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
     let (from, to) = (target().join("web-plain"), target().join("web-small"));
     for folder in [&from, &to] {
         if folder.exists() {
@@ -349,6 +362,13 @@ fn minify(esbuild: &Path, files: &mut [(String, Vec<u8>)]) -> Result<()> {
         command.arg(path);
     }
     run_program(&mut command)?;
+    let (joined, parts) = (JOINED[0], &JOINED[1..]);
+    let mut command = Command::new("node");
+    command.arg(esbuild).args(["--bundle", "--format=esm", "--minify", "--charset=utf8"]);
+    command.args(["--legal-comments=none", "--log-level=error", "--allow-overwrite"]);
+    command.arg(format!("--outfile={}", to.join(joined).display())).arg(from.join(joined));
+    run_program(&mut command)?;
+    files.retain(|(name, _)| !parts.contains(&name.as_str()));
     for (name, bytes) in files.iter_mut().filter(|(name, _)| small(name)) {
         *bytes = fs::read(to.join(&*name)).with_context(|| name.clone())?;
     }

@@ -1,6 +1,8 @@
 //! Where the camera stands: from the head's landmarks in the neutral pose, so that every condition
 //! of a study is framed alike and a shoulder or a hat changes nothing.
 
+use std::collections::HashMap;
+
 use glam::camera::rh::proj::directx::{orthographic, perspective};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, Vec3};
@@ -124,23 +126,32 @@ fn eyes(avatar: &Avatar) -> (Vec3, Vec3) {
 fn mouth(avatar: &Avatar, guess: Vec3, span: f32) -> (Vec3, Option<[f32; 3]>) {
     let mut rim = Vec::new();
     for mesh in avatar.meshes.iter().filter(|m| m.part == Part::Skin) {
-        let place = |v: u32| mesh.positions[v as usize].map(f32::to_bits);
         let near = |p: Vec3| {
             let off = (p - guess).abs() / span;
             off.x < 0.6 && off.y < 0.3 && off.z < 0.6
         };
         let near_vertex = |v: u32| mesh.positions.get(v as usize).is_some_and(|&p| near(p.into()));
-        let mut edges: Vec<[[u32; 3]; 2]> = (mesh.triangles.iter())
+        // Vertices at one place count as the first of them. Edges are numbers: only such are sorted here.
+        let mut here: HashMap<[u32; 3], Vec<u32>> = HashMap::new();
+        let mut first = |v: u32| {
+            let place = here.entry(mesh.positions[v as usize].map(f32::to_bits)).or_default();
+            if place.is_empty() {
+                place.push(v);
+            }
+            u64::from(place[0])
+        };
+        let mut edges: Vec<u64> = (mesh.triangles.iter())
             .filter(|t| t.iter().any(|&v| near_vertex(v)))
             .filter(|t| t.iter().all(|&v| (v as usize) < mesh.positions.len()))
             .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
-            .map(|e| e.map(place))
-            .map(|[a, b]| if a < b { [a, b] } else { [b, a] })
+            .map(|e| e.map(&mut first))
+            .map(|[a, b]| a.min(b) << 32 | a.max(b))
             .collect();
         edges.sort_unstable();
         let alone = edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
         // The border of the region itself is alone too, but has an end outside.
-        let ends = alone.map(|same| same[0].map(|p| Vec3::from(p.map(f32::from_bits))));
+        let point = |v: u64| Vec3::from(mesh.positions[v as u32 as usize]);
+        let ends = alone.map(|same| [same[0] >> 32, same[0]].map(point));
         rim.extend(ends.filter(|e| e.iter().all(|&p| near(p))).flatten());
     }
     let Some(corner) = rim.iter().copied().reduce(|a, b| if b.x > a.x { b } else { a }) else {

@@ -180,16 +180,20 @@ proptest! {
         let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
         let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
-            let (body, seal): (_, fn(&'static str, u32, &[u8]) -> Vec<u8>) = match *kind {
-                "MMOP" => (open_pack(kind, 3, whole).unwrap(), seal_pack),
-                _ => (open_plain(kind, 5, whole).unwrap().to_vec(), seal_plain),
+            let operators = *kind == "MMOP";
+            let body = match operators {
+                true => open_pack(kind, 3, whole).unwrap(),
+                false => open_plain(kind, 5, whole).unwrap().to_vec(),
             };
-            let version = if *kind == "MMOP" { 3 } else { 5 };
             for (bytes, sealed) in [(whole.clone(), false), (body, true)] {
                 let mut damaged = bytes;
                 let at = at % damaged.len();
                 if cut { damaged.truncate(at) } else { damaged[at] = value }
-                let damaged = if sealed { seal(kind, version, &damaged) } else { damaged };
+                let damaged = match (sealed, operators) {
+                    (false, _) => damaged,
+                    (true, true) => seal_pack(kind, 3, &damaged),
+                    (true, false) => seal_plain(kind, 5, &damaged),
+                };
                 // Neither unpacking nor solving may panic, whatever comes of it.
                 let [(_, operators), (_, take)] = &packs;
                 let _ = match *kind {
