@@ -1,10 +1,11 @@
-//! Panics that nobody hears, without their words.
+//! Panics without their words.
 //!
-//! A module without a hook for panics says nothing when it panics: it traps, and the browser tells the
-//! script that it did. The messages, the places in our sources and all that prints them (a tenth of a
-//! small module) are carried along for nothing. The linker leaves its relocations in the module
-//! (`--emit-relocs`), so what only a panic uses can be found: calls of a panic become traps, and so does,
-//! with all its data, what can no longer be reached. `wasm-opt` takes away what is left of it.
+//! What a panic says goes to the browser's console at most; that it trapped, the script learns from the
+//! browser. The messages, the places in our sources and all that prints them are a tenth of a module.
+//! The linker leaves its relocations in the module (`--emit-relocs`), so what only a panic uses can be
+//! found: calls of a panic become traps, and so does, with all its data, what can no longer be reached.
+//! `wasm-opt` takes away what is left of it. Who looks for a panic builds with `--no-opt`, where the words
+//! stay.
 //!
 //! Source: "WebAssembly Object File Linking" (tool-conventions/Linking.md), symbol table and relocation
 //! sections.

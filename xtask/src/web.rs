@@ -31,7 +31,7 @@ pub struct Args {
     /// always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Leave out wasm-opt: a quicker build of larger files
+    /// Leave out wasm-opt: a quicker build of larger files, whose panics say in the console what they are
     #[arg(long)]
     no_opt: bool,
 }
@@ -45,8 +45,6 @@ struct Module {
     features: Option<&'static str>,
     profile: &'static str,
     opt_level: &'static str,
-    /// Whether its panics are words that somebody hears: there is a hook that tells them.
-    speaks: bool,
 }
 
 const MODULES: [Module; 6] = [
@@ -58,7 +56,6 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
-        speaks: true,
     },
     Module {
         name: "orders",
@@ -68,7 +65,6 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
-        speaks: true,
     },
     Module {
         name: "solver",
@@ -78,7 +74,6 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
-        speaks: false,
     },
     Module {
         name: "desk",
@@ -88,7 +83,6 @@ const MODULES: [Module; 6] = [
         features: None,
         profile: "web-solver",
         opt_level: "-O3",
-        speaks: false,
     },
     Module {
         name: "stage_webgpu",
@@ -98,7 +92,6 @@ const MODULES: [Module; 6] = [
         features: Some("webgpu"),
         profile: "web",
         opt_level: "-Oz",
-        speaks: false,
     },
     Module {
         name: "stage_webgl",
@@ -108,7 +101,6 @@ const MODULES: [Module; 6] = [
         features: Some("webgl"),
         profile: "web",
         opt_level: "-Oz",
-        speaks: false,
     },
 ];
 
@@ -217,7 +209,7 @@ impl Module {
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
         }
-        if !self.speaks {
+        if optimiser.is_some() {
             command.args(["--", wasm_silent::LINKER]);
         }
         run_program(&mut command)?;
@@ -237,12 +229,11 @@ impl Module {
             fs::remove_dir_all(&out)?;
         }
         fs::create_dir_all(&out)?;
-        let linked = fs::read(&raw).with_context(|| raw.display().to_string())?;
-        let linked = match self.speaks {
-            true => linked,
-            false => wasm_silent::silenced(&linked)
-                .with_context(|| format!("words of panics in {}", raw.display()))?,
-        };
+        let mut linked = fs::read(&raw).with_context(|| raw.display().to_string())?;
+        if optimiser.is_some() {
+            linked = wasm_silent::silenced(&linked)
+                .with_context(|| format!("words of panics in {}", raw.display()))?;
+        }
         wasm_bindgen_cli_support::Bindgen::new()
             .input_bytes(self.name, linked)
             .out_name(self.name)

@@ -24,6 +24,7 @@ use crate::{bridge, page, site};
 /// The module's entry.
 #[wasm_bindgen(start)]
 pub fn start() {
+    // Words that builds for the public leave out (`cargo xtask web --no-opt` keeps them).
     std::panic::set_hook(Box::new(|panic| page::report(&panic.to_string())));
     screen::open();
     screen::boot(Boot::Opening);
