@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::Subject;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
+use super::{Subject, assigned};
+use crate::responses::ASSIGNED_CONDITION;
 use crate::study_file::{Hypothesis, Measure, Question, QuestionKind, TestName};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -16,7 +17,9 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             issues.error(below(&pointer, "id"), "duplicate", message, "give it another name");
         }
         response(subject, hypothesis, &pointer, issues);
+        assigned::hypothesis(subject, hypothesis, &pointer, issues);
         factors(subject, hypothesis, &pointer, issues);
+        levels(subject, hypothesis, &pointer, issues);
     }
 }
 
@@ -61,6 +64,9 @@ pub(super) fn factor_names(subject: &Subject<'_>) -> BTreeSet<String> {
         subject.study.demographics.iter().flat_map(|page| &page.questions).map(|q| q.id.clone()),
     );
     names.extend(["avatar", "segment"].map(str::to_owned));
+    if !subject.study.conditions().is_empty() {
+        names.insert(ASSIGNED_CONDITION.to_owned());
+    }
     names
 }
 
@@ -80,39 +86,42 @@ fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues
         };
         issues.error(&place, "wrong-length", message, hint);
     }
-    let names = factor_names(subject);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     for (index, factor) in hypothesis.factors.iter().enumerate() {
-        if !names.contains(&factor.as_str()) {
-            let message = format!("there is no factor \"{factor}\"");
-            issues.error(
-                below(&place, index),
-                "unknown-reference",
-                message,
-                suggestion(factor, &names),
-            );
-        }
+        assigned::factor(subject, factor, below(&place, index), issues);
     }
+}
+
+fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
     let Some(factor) = hypothesis.factors.first() else { return };
-    let values: BTreeSet<String> =
-        subject.clips.iter().filter_map(|clip| clip.factor_text(factor)).collect();
+    let assigned = factor == ASSIGNED_CONDITION;
+    let values: BTreeSet<String> = match assigned {
+        true => subject.study.conditions().into_iter().map(str::to_owned).collect(),
+        false => subject.clips.iter().filter_map(|clip| clip.factor_text(factor)).collect(),
+    };
     if values.is_empty() {
         return;
     }
     let known: Vec<&str> = values.iter().map(String::as_str).collect();
-    for (index, level) in hypothesis.levels.iter().enumerate() {
-        let level = level.to_string();
+    let place = below(pointer, "levels");
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    for (index, level) in levels.iter().enumerate() {
+        let place = below(&place, index);
         if !known.contains(&level.as_str()) {
-            let message = format!("no clip has {factor} \"{level}\"");
-            let place = below(&below(pointer, "levels"), index);
-            issues.error(place, "unknown-reference", message, suggestion(&level, &known));
+            let message = match assigned {
+                true => format!("there is no condition \"{level}\""),
+                false => format!("no clip has {factor} \"{level}\""),
+            };
+            issues.error(place, "unknown-reference", message, suggestion(level, &known));
+        } else if levels[..index].contains(level) {
+            let message = format!("the level \"{level}\" stands here twice");
+            issues.error(place, "duplicate", message, "name each level once");
         }
     }
-    let count = if hypothesis.levels.is_empty() { values.len() } else { hypothesis.levels.len() };
+    let count = if levels.is_empty() { values.len() } else { levels.len() };
     let two = matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney);
     if (two && count != 2) || count < 2 {
         let message = format!("{count} levels of \"{factor}\" to compare");
         let hint = if two { "name two in \"levels\"" } else { "compare at least two" };
-        issues.error(below(pointer, "levels"), "wrong-length", message, hint);
+        issues.error(place, "wrong-length", message, hint);
     }
 }

@@ -2,10 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::Subject;
-use super::hypotheses::factor_names;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
+use super::{Subject, assigned};
 use crate::study_file::{Layout, QuestionKind, TableLayout};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -18,6 +17,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         }
         counts(subject, table, &pointer, issues);
         names(subject, table, &pointer, issues);
+        assigned::table(subject, table, &pointer, issues);
     }
 }
 
@@ -79,8 +79,6 @@ fn names(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut
             issues.error(place, "no-truth", message, "give the question \"truth\"");
         }
     }
-    let names = factor_names(subject);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let lists = [("factors".to_owned(), table.factors.as_slice())].into_iter().chain(
         table
             .crossings
@@ -90,11 +88,7 @@ fn names(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut
     );
     for (key, factors) in lists {
         for (index, factor) in factors.iter().enumerate() {
-            if !names.contains(&factor.as_str()) {
-                let place = below(&format!("{pointer}/{key}"), index);
-                let message = format!("there is no factor \"{factor}\"");
-                issues.error(place, "unknown-reference", message, suggestion(factor, &names));
-            }
+            assigned::factor(subject, factor, below(&format!("{pointer}/{key}"), index), issues);
         }
     }
 }

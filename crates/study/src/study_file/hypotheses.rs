@@ -21,7 +21,8 @@ pub struct Hypothesis {
     /// What of the response is tested.
     #[serde(default)]
     pub measure: Measure,
-    /// The factors: one for most tests, two for an interaction.
+    /// The factors: one for most tests, two for an interaction. Factors of the clips, questions about the
+    /// participant, or `assigned_condition`: the condition that the participant is in.
     pub factors: Vec<String>,
     /// The levels of the first factor that are compared, in the order of signs; all if not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -19,7 +19,8 @@ pub struct TableLayout {
     /// Identifiers of questions: its rows, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub responses: Vec<String>,
-    /// Factors of the clips, or questions about the participant.
+    /// Factors of the clips, questions about the participant, or `assigned_condition`: the condition
+    /// that the participant is in.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<String>,
     /// Pairs of factors, for `interactions`.
