@@ -156,3 +156,14 @@ fn a_missing_key_makes_nothing_up_elsewhere() {
     assert_eq!(made_up, "");
     assert!(missing > 100, "{missing}");
 }
+
+/// Where it cannot be read which sequences are conditional, nothing is said of the conditions.
+#[test]
+fn conditions_that_cannot_be_read_are_not_missed() {
+    let mut file = parse(&study_text("invalid/condition-within-people.json")).unwrap();
+    for place in 0..2 {
+        file["sequence"]["components"][place]["conditional"] = json!("yes");
+    }
+    let codes: Vec<&str> = found(&file).into_iter().map(|(_, code)| code).collect();
+    assert_eq!(codes, ["wrong-type", "wrong-type"]);
+}

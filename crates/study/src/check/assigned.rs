@@ -1,12 +1,14 @@
-//! The assigned condition as a factor: that there are conditions, and that the test or table is one of
-//! independent groups, since everybody is in one condition.
+//! The assigned condition as a factor: that there are conditions, that the test or table is one of
+//! independent groups, since everybody is in one condition, and that everybody compared is asked.
 
 use super::Subject;
 use super::hypotheses::factor_names;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
 use crate::responses::ASSIGNED_CONDITION;
-use crate::study_file::{Hypothesis, Layout, TableLayout, TestName};
+use crate::study_file::{
+    Component, Hypothesis, Layout, Sequence, SequenceItem, Study, TableLayout, TestName,
+};
 
 /// A factor that a hypothesis or a table names at `place`: that there is such a factor.
 pub(super) fn factor(subject: &Subject<'_>, factor: &str, place: String, issues: &mut Issues) {
@@ -34,13 +36,17 @@ pub(super) fn hypothesis(
     pointer: &str,
     issues: &mut Issues,
 ) {
-    let conditions = subject.study.conditions().len();
+    let conditions = subject.study.conditions();
     let is_factor = hypothesis.factors.iter().any(|factor| factor == ASSIGNED_CONDITION);
-    if !is_factor || conditions == 0 {
+    if !is_factor || conditions.is_empty() {
         return;
     }
-    let compared = if hypothesis.levels.is_empty() { conditions } else { hypothesis.levels.len() };
-    let of_groups = match compared {
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let first = hypothesis.factors.first().is_some_and(|factor| factor == ASSIGNED_CONDITION);
+    let named = |name: &&str| !first || levels.is_empty() || levels.iter().any(|it| it == name);
+    let compared: Vec<&str> = conditions.into_iter().filter(named).collect();
+    asked(subject.study, hypothesis, &compared, pointer, issues);
+    let of_groups = match compared.len() {
         2 => "take \"mann-whitney\"",
         _ => "take \"kruskal-wallis\"",
     };
@@ -66,6 +72,42 @@ pub(super) fn hypothesis(
         "\"{test}\" compares answers of one person at several levels; everybody is in one condition"
     );
     issues.error(below(pointer, "test"), "dependent-samples", message, hint);
+}
+
+/// Everybody who is compared is asked in some trial.
+fn asked(
+    study: &Study,
+    hypothesis: &Hypothesis,
+    compared: &[&str],
+    pointer: &str,
+    issues: &mut Issues,
+) {
+    let response = hypothesis.response.as_str();
+    if !study.all_questions().any(|question| question.id == response) {
+        return;
+    }
+    for condition in compared {
+        if !asks(study, &study.sequence, condition, response) {
+            let message = format!(
+                "nobody in the condition \"{condition}\" is asked \"{response}\" in a trial"
+            );
+            let hint = "ask it in trials of every condition that is compared, or compare others by \"levels\"";
+            issues.error(below(pointer, "response"), "not-asked", message, hint);
+        }
+    }
+}
+
+/// Whether a trial that the condition is shown asks a question.
+fn asks(study: &Study, sequence: &Sequence, condition: &str, question: &str) -> bool {
+    sequence.components.iter().any(|item| match item {
+        SequenceItem::Sequence(nested) => {
+            nested.is_shown_in(Some(condition)) && asks(study, nested, condition, question)
+        }
+        SequenceItem::Component(name) => matches!(
+            study.components.get(name),
+            Some(Component::Trials(block)) if block.questions.iter().any(|id| id == question)
+        ),
+    })
 }
 
 /// A table of pairs compares levels within people.

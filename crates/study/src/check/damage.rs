@@ -133,6 +133,10 @@ fn touches(place: &str, issue: &Issue) -> bool {
         | "too-late"
         | "not-kept"
         | "factor-twice"
+        | "no-conditions"
+        | "dependent-samples"
+        | "no-order"
+        | "not-asked"
         | "bad-interruption" => among(&ORDER) || among(&REFERRED),
         "no-code" => among(&["/recruitment", "/device", "/screening", "/training"]),
         _ => false,

@@ -17,9 +17,7 @@ mod wide;
 
 pub use cells::iso_time;
 pub use column::{Column, ColumnKind, Table};
-pub use fixed_columns::{
-    ASSIGNED_CONDITION, EXCLUSION_COLUMNS, FIXED_COLUMNS, is_reserved_column,
-};
+pub use fixed_columns::{ASSIGNED_CONDITION, EXCLUSION_COLUMNS, FIXED_COLUMNS, is_reserved_column};
 pub use psych_ds::psych_ds_description;
 pub use session::{SessionRecord, failed_attention_checks, session_status};
 pub use tidy::tidy;
