@@ -117,6 +117,11 @@ impl<T> Labelled<T> {
         Self(labels.iter().cloned().zip(values).collect())
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The value of a label.
     pub fn get(&self, label: &str) -> Option<&T> {
         self.0.iter().find(|(name, _)| name == label).map(|(_, value)| value)

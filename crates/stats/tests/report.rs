@@ -246,6 +246,32 @@ fn a_parameter_that_one_method_lacks_is_compared_where_it_is() {
     assert_eq!(alpha(&both)["trials_without_level"], 216);
 }
 
+#[test]
+fn conditions_are_told_in_french_too() {
+    let study = support::study_in_conditions();
+    let text = export(&study, &Raters { people: 14, effect: 0.5, seed: 6 });
+    // Nobody is in the second condition.
+    let text: String = text
+        .lines()
+        .filter(|line| !line.contains(",at-once,"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let table = Table::parse(text.as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::French).unwrap();
+    let reading = &report.readings[0].1;
+    for words in [
+        "Moyenne des personnes de chaque condition : rested ",
+        " (5 personnes), 10 ",
+        "n’est dans la condition at-once",
+        "condition attribuée (10 | rested)",
+    ] {
+        assert!(reading.contains(words), "{words} in {reading}");
+    }
+    let page = &report.files[0].text;
+    assert!(page.contains("moyenne de chaque personne, par condition"));
+    assert!(page.contains("Entre conditions"));
+}
+
 /// A factor about people beside one of the clips: everyone counts once, and the reading says how.
 #[test]
 fn a_factor_about_people_is_tested_on_people() {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use mimique_stats::{Language, Report, Table, analyze};
-use support::{Raters, demo_study, export, parameter_study};
+use support::{Raters, demo_study, export, parameter_study, study_in_conditions};
 
 /// Relative difference that two programs may have.
 const TOLERANCE: f64 = 1e-8;
@@ -17,6 +17,7 @@ fn reports() -> Vec<(&'static str, Report)> {
     [
         ("demo", demo_study(), Raters { people: 9, effect: 0.5, seed: 4 }),
         ("parameter", parameter_study(), Raters { people: 14, effect: 0.3, seed: 8 }),
+        ("conditions", study_in_conditions(), Raters { people: 17, effect: 0.3, seed: 15 }),
     ]
     .into_iter()
     .map(|(name, study, raters)| {

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{Answers, Component, Study};
 use serde_json::Value;
 
@@ -65,7 +66,8 @@ impl<'d> Data<'d> {
 
     fn person(&mut self, clips: &ClipEffects, seed: u64, number: usize) {
         let walk = &self.design.walks[number - 1];
-        let mut person = Person::new(self.model, clips, seed, number as u64);
+        let condition = self.design.condition(number);
+        let mut person = Person::new(self.model, clips, seed, number as u64, condition);
         let trials = walk.iter().filter(|step| matches!(step, Step::Trial { .. })).count();
         let leaves = person.fate.leaves_after.is_some_and(|after| after < trials);
         if person.fate.declines || (leaves && person.fate.withdraws) {
@@ -122,7 +124,10 @@ impl<'d> Data<'d> {
             return;
         }
         for (question, cells) in &mut self.export.about {
-            cells.push(person.about.get(question).map(text));
+            cells.push(match question.as_str() {
+                ASSIGNED_CONDITION => condition.map(str::to_owned),
+                question => person.about.get(question).map(text),
+            });
         }
         self.export.people.push(who);
         self.stages.push("live");
@@ -347,10 +352,22 @@ mod tests {
             "attentionCheck": {"expected": "blue"},
             "options": [{"value": "red", "label": "Red"}, {"value": "blue", "label": "Blue"}],
         }]});
+        let condition = |id: &str| {
+            serde_json::json!({
+                "id": id, "conditional": true, "order": "random", "components": ["faces"],
+                "interruptions": [{"component": "check", "spacing": 100, "firstLocation": 4}],
+            })
+        };
         value["sequence"] = serde_json::json!({
-            "order": "random", "components": ["faces"],
-            "interruptions": [{"component": "check", "spacing": 100, "firstLocation": 4}],
+            "order": "fixed", "components": [condition("rested"), condition("at-once")],
         });
+        // It shifts answers and times.
+        for (id, measure) in [("H6", "answer"), ("H7", "rt")] {
+            value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
+                "id": id, "statement": "s", "test": "mann-whitney", "response": "believability",
+                "measure": measure, "factors": ["assigned_condition"],
+            }));
+        }
         value["questions"][2]["showIf"] =
             serde_json::json!({"question": "perceived_intensity", "atLeast": 3});
         let study = Study::from_value(&value).unwrap();
@@ -374,6 +391,7 @@ mod tests {
                 read.trials.iter().map(|trial| Trial { order: None, ..trial.clone() }).collect();
             assert_eq!(direct.trials, unplaced);
             assert_eq!(direct.factors, read.factors);
+            assert!(direct.about.iter().any(|(name, _)| name == ASSIGNED_CONDITION));
             for (question, cells) in &direct.about {
                 let column = read.about.iter().find(|(name, _)| name == question).unwrap();
                 assert_eq!(cells, &column.1, "{question}");

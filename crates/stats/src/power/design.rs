@@ -11,6 +11,7 @@ pub(crate) struct Design<'s> {
     pub clips: ScaledClips,
     /// A participant each, from number 1.
     pub walks: Vec<Vec<Step>>,
+    conditions: Vec<&'s str>,
     pub needs: Needs,
 }
 
@@ -73,7 +74,12 @@ impl<'s> Design<'s> {
             pages: rules.failed_attention_checks.is_some() || has_conditions(study),
             responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
         };
-        Ok(Self { study, clips, walks, needs })
+        Ok(Self { study, clips, walks, conditions, needs })
+    }
+
+    /// The condition of a participant, numbered from 1.
+    pub(crate) fn condition(&self, number: usize) -> Option<&'s str> {
+        condition_and_slot(&self.conditions, number as u64).0
     }
 
     /// The model of these parameters on the design's clips.

@@ -1,5 +1,6 @@
 //! Design and variables in words.
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{
     Clip, Component, Constraint, OrderRule, Question, QuestionKind, Sequence, SequenceItem, Study,
 };
@@ -120,7 +121,8 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
     let tested =
         |factor: &str| study.hypotheses.iter().any(|h| h.factors.iter().any(|f| f == factor));
     for (factor, levels) in factor_levels(study, &clips) {
-        if about.contains_key(&factor) || levels.len() < 2 {
+        let between = factor == ASSIGNED_CONDITION;
+        if (about.contains_key(&factor) && !between) || levels.len() < 2 {
             continue;
         }
         let role = if tested(&factor) {
@@ -128,9 +130,13 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         } else {
             language.pick("varied, not tested", "variée, non testée")
         };
+        let between = match between {
+            true => language.pick(", between participants", ", inter-participants"),
+            false => "",
+        };
         let words = language.pick(
-            format!("{} levels ({role}), column `{factor}`", levels.len()),
-            format!("{} niveaux ({role}), colonne `{factor}`", levels.len()),
+            format!("{} levels ({role}{between}), column `{factor}`", levels.len()),
+            format!("{} niveaux ({role}{between}), colonne `{factor}`", levels.len()),
         );
         text.item(&naming.factor(&factor), &naming.factor(&factor), &words);
     }

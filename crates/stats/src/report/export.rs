@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, OnceLock};
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{Exclusions, Question, QuestionKind, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
@@ -103,7 +104,7 @@ pub(crate) struct Export {
     pub answers: BTreeMap<String, Vec<Answer>>,
     /// Names of the factors.
     pub factors: Vec<String>,
-    /// Answers about each person: column, then one cell a person.
+    /// Answers about each person, and the assigned condition: column, then one cell a person.
     pub about: Vec<(String, Vec<Option<String>>)>,
     pub flow: Flow,
     /// Of the trials; found when first asked for.
@@ -380,7 +381,8 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
     words
 }
 
-/// Columns of answers about the person: the same in each of the person's rows.
+/// Columns of answers about the person, and of the assigned condition: the same in each of the person's
+/// rows.
 fn about_people(
     table: &Table,
     study: &Study,
@@ -393,10 +395,12 @@ fn about_people(
         .flat_map(|page| &page.questions)
         .map(|question| question.id.as_str())
         .collect();
+    let conditions = !study.conditions().is_empty();
     let own = |name: &String| {
-        questions
-            .iter()
-            .any(|id| name == id || name.strip_prefix(id).is_some_and(|rest| rest.starts_with('.')))
+        (conditions && name == ASSIGNED_CONDITION)
+            || questions.iter().any(|id| {
+                name == id || name.strip_prefix(id).is_some_and(|rest| rest.starts_with('.'))
+            })
     };
     let mut about = Vec::new();
     for (place, name) in table.names().iter().enumerate().filter(|(_, name)| own(name)) {

@@ -6,11 +6,11 @@ use super::measure::MeasureKind;
 use super::svg::{Anchor, Axis, Svg, WIDTH, clipped, shade};
 use crate::proportion::Proportion;
 
-const LEFT: f64 = 52.0;
-const RIGHT: f64 = WIDTH - 12.0;
+pub(super) const LEFT: f64 = 52.0;
+pub(super) const RIGHT: f64 = WIDTH - 12.0;
 
 /// A value as people read it: shares in percent.
-fn tick(language: Language, kind: MeasureKind, value: f64, decimals: usize) -> String {
+pub(super) fn tick(language: Language, kind: MeasureKind, value: f64, decimals: usize) -> String {
     match kind {
         MeasureKind::Recognition => language.percent(value),
         MeasureKind::Rating | MeasureKind::ResponseTime => language.fixed(value, decimals),
@@ -18,7 +18,7 @@ fn tick(language: Language, kind: MeasureKind, value: f64, decimals: usize) -> S
 }
 
 /// A vertical axis with its rules; the place of a value.
-fn vertical(
+pub(super) fn vertical(
     svg: &mut Svg,
     language: Language,
     kind: MeasureKind,

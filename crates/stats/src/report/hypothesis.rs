@@ -1,8 +1,10 @@
 //! The hypotheses of a study file, each tested as in the thesis and as recommended.
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{Hypothesis, Measure as What, Study, TestName};
 use serde::Serialize;
 
+use super::assigned::{self, InCondition};
 use super::comparison::without_level;
 use super::export::{AskedQuestion, Export};
 use super::language::Language;
@@ -14,7 +16,7 @@ use super::reading;
 use super::test_line::TestLine;
 use super::trial_level::{self, TrialLevel};
 use crate::factor::Factor;
-use crate::outcome::Outcome;
+use crate::outcome::{Labelled, Outcome};
 
 /// A hypothesis and what came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,6 +31,9 @@ pub(crate) struct HypothesisResult {
     pub recommended: PersonLevel,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
+    /// The people of each condition compared, where the assigned condition is a factor.
+    #[serde(skip_serializing_if = "Labelled::is_empty")]
+    pub people_by_condition: Labelled<InCondition>,
     /// p of the recommended test that decides.
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
@@ -49,7 +54,7 @@ pub(crate) fn test_hypothesis(
     let language = naming.language;
     let measure = measure_of(export, study, hypothesis, language);
     let tested = match &measure {
-        Some(measure) => tests(export, hypothesis, measure, language),
+        Some(measure) => tests(export, study, hypothesis, measure, language),
         None => Err(language.pick(
             format!("\"{}\" has no answers that this test can use", hypothesis.response),
             format!("« {} » n’a pas de réponses que ce test puisse utiliser", hypothesis.response),
@@ -90,14 +95,20 @@ pub(crate) fn test_hypothesis(
             format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
         );
     }
+    let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
+        assigned::people(export, study, hypothesis, measure)
+    });
+    let kind = measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind);
+    reading += &assigned::words(naming, &people_by_condition, kind);
     HypothesisResult {
         id: hypothesis.id.clone(),
         statement: hypothesis.statement.in_language(language.code()).to_owned(),
         test: hypothesis.test,
-        kind: measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind),
+        kind,
         measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
         factors: hypothesis.factors.clone(),
         trials_without_level,
+        people_by_condition,
         as_in_the_thesis: TrialLevel::new(trials),
         p: deciding_p(&people),
         p_holm_over_hypotheses: None,
@@ -128,6 +139,7 @@ fn measure_of(
 
 fn tests(
     export: &Export,
+    study: &Study,
     hypothesis: &Hypothesis,
     measure: &Measure,
     language: Language,
@@ -145,7 +157,18 @@ fn tests(
                     format!("l’export n’a pas de facteur « {name} »"),
                 )
             })?;
-            (factor, false)
+            // Whoever is in a condition that the study no longer has is compared with nobody.
+            let known = |level: &&String| {
+                name != ASSIGNED_CONDITION || study.conditions().contains(&level.as_str())
+            };
+            let wanted = if chosen.is_empty() { factor.levels.as_slice() } else { chosen };
+            let wanted: Vec<String> = wanted
+                .iter()
+                .filter(|level| factor.levels.contains(level))
+                .filter(known)
+                .cloned()
+                .collect();
+            (factor.restricted(&wanted).unwrap_or(factor), false)
         });
     }
     for (factor, _) in &factors {

@@ -2,6 +2,7 @@
 //! thesis stands beside or above recommended.
 
 use mimique_study::TableLayout;
+use mimique_study::responses::ASSIGNED_CONDITION;
 
 use super::document::DataTable;
 use super::hypothesis::HypothesisResult;
@@ -227,7 +228,9 @@ impl Writer<'_> {
             let reason = format!("\"{}\" has fewer than two levels", factor.name);
             return [Outcome::undefined(reason.clone()), Outcome::undefined(reason)];
         }
-        let numeric = factor.levels.iter().all(|level| level.parse::<f64>().is_ok());
+        // Conditions are names, even those of digits.
+        let numeric = factor.name != ASSIGNED_CONDITION
+            && factor.levels.iter().all(|level| level.parse::<f64>().is_ok());
         let recognition = measure.kind == MeasureKind::Recognition;
         let undefined = || Outcome::undefined("no test is defined");
         match (column.about_people, numeric) {

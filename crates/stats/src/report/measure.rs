@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use serde::Serialize;
 
 use super::export::{AskedQuestion, Export};
@@ -155,11 +156,13 @@ impl Measure {
         if known.is_empty() { factor } else { factor.restricted(&known).unwrap_or(factor) }
     }
 
-    /// An answer about the person, a code a value.
+    /// An answer about the person, or the assigned condition, a code a value.
     pub(crate) fn trait_factor(&self, export: &Export, name: &str) -> Option<Factor> {
         let (_, cells) = export.about.iter().find(|(column, _)| column == name)?;
         let cells = self.person.iter().map(|&person| cells[person].as_deref());
-        Some(Factor::from_cells(name, cells, |level| level.parse().ok()))
+        // A condition is a name, even one of digits.
+        let number = |level: &str| level.parse().ok().filter(|_| name != ASSIGNED_CONDITION);
+        Some(Factor::from_cells(name, cells, number))
     }
 
     /// Mean of each person at each level of a factor; people without a value at some level are

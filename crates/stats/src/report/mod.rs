@@ -4,6 +4,7 @@
 //! input. Each test stands in two columns: as in the thesis (trials taken for independent
 //! observations) and as recommended (one value a person).
 
+mod assigned;
 mod call;
 mod column;
 mod combinations;
@@ -11,6 +12,7 @@ mod comparison;
 mod document;
 mod export;
 mod figure;
+mod figure_conditions;
 mod figure_people;
 mod flow_chart;
 mod html;

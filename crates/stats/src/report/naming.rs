@@ -1,5 +1,6 @@
 //! What people read for factors and their levels.
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{QuestionKind, Study};
 
 use super::language::Language;
@@ -18,6 +19,7 @@ impl Naming<'_> {
             "method" => self.language.pick("method", "méthode"),
             "expression" => self.language.pick("emotion", "émotion"),
             "intensity" => self.language.pick("intensity", "intensité"),
+            ASSIGNED_CONDITION => self.language.pick("assigned condition", "condition attribuée"),
             other => other,
         };
         known.to_owned()
@@ -53,6 +55,9 @@ impl Naming<'_> {
     /// Levels of a factor or answers to a question in the study's order; none where the study leaves
     /// them open.
     pub(crate) fn level_order(&self, name: &str) -> Vec<String> {
+        if name == ASSIGNED_CONDITION {
+            return self.study.conditions().into_iter().map(str::to_owned).collect();
+        }
         let mut levels: Vec<String> = Vec::new();
         for clip in self.study.clips() {
             let level = clip.factors.get(name).map(ToString::to_string);

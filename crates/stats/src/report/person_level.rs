@@ -186,8 +186,8 @@ pub(crate) fn differences_by_trait(
 /// One value a person against something about the person.
 pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
     let means = measure.overall_person_means();
-    let people = means.people.len();
     let factor = factor.rows(&means.first_rows);
+    let people = factor.codes.iter().filter(|code| **code != Factor::MISSING).count();
     let values = Numbers { name: measure.id.clone(), values: means.means };
     let overall = TestLine::of_groups(&values, &factor, "person means");
     PersonLevel { people, incomplete: 0, overall: vec![overall], pairs: Vec::new() }

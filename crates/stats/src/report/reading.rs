@@ -266,8 +266,14 @@ fn overall_sentence(
         Outcome::Ok(line) => line,
     };
     let interaction = line.term.split_once(':');
-    let what = if line.term.is_empty() { factor.to_owned() } else { line.term.clone() };
-    let what = what.split(':').map(|part| naming.factor(part)).collect::<Vec<_>>().join(" × ");
+    // Of two groups the term is their pair, in the order of the effect's sign.
+    let (of_factor, pair) = match line.term.as_str() {
+        "" => (factor, String::new()),
+        pair if pair.contains(" | ") => (factor, format!(" ({pair})")),
+        term => (term, String::new()),
+    };
+    let what: Vec<String> = of_factor.split(':').map(|part| naming.factor(part)).collect();
+    let what = what.join(" × ") + &pair;
     let degrees = if line.df.is_empty() { String::new() } else { format!("({})", line.df) };
     let numbers = format!(
         "{}{degrees} = {}, {}, {} = {}",

@@ -3,6 +3,7 @@
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::document::{Block, DataTable, slug};
+use super::figure_conditions::people_by_condition;
 use super::hypothesis::{HypothesisResult, test_hypothesis};
 use super::reading;
 use super::sections::Writer;
@@ -51,6 +52,31 @@ impl Writer<'_> {
         }
     }
 
+    /// The people of each condition, where a hypothesis is about the conditions alone.
+    fn people_by_condition(&mut self, result: &HypothesisResult) {
+        let conditions: Vec<(String, Vec<(&str, f64)>)> = result
+            .people_by_condition
+            .iter()
+            .filter(|(_, own)| own.people > 0)
+            .map(|(name, own)| {
+                let people = own.means.iter();
+                let id = |person: usize| self.export.people[person].id.as_str();
+                (name.to_owned(), people.map(|(person, mean)| (id(*person), *mean)).collect())
+            })
+            .collect();
+        if conditions.len() < 2 || result.factors.len() > 1 {
+            return;
+        }
+        let language = self.language();
+        let caption = language.pick(
+            format!("{}: mean of each person, by condition", result.id),
+            format!("{} : moyenne de chaque personne, par condition", result.id),
+        );
+        let id = format!("hypothesis-{}-people", slug(&result.id));
+        let figure = people_by_condition(language, &id, &caption, result.kind, &conditions);
+        self.figure(figure);
+    }
+
     pub(crate) fn hypotheses(&mut self, hypotheses: &[HypothesisResult]) {
         if hypotheses.is_empty() {
             return;
@@ -81,6 +107,7 @@ impl Writer<'_> {
                 &result.recommended,
             );
             self.blocks.extend(pairs.map(Block::Table));
+            self.people_by_condition(result);
             self.blocks.push(Block::Reading(result.reading.clone()));
         }
         if hypotheses.iter().filter(|result| result.p.is_some()).count() > 1 {

@@ -13,6 +13,12 @@ impl Writer<'_> {
             "Recommended: each person’s answers at a level are averaged, so that a person counts once. Several levels: Friedman’s test with Iman and Davenport’s F and Kendall’s W. Pairs: Wilcoxon’s signed rank test, exact and conditional on the observed ranks, zeros by Pratt, Holm’s correction, rank-biserial correlation, Hodges-Lehmann estimate and 95 % interval from the Walsh averages. Interactions: aligned rank transform on person means; with something about people, whether each person’s difference between two levels depends on it.",
             "Recommandé : les réponses de chaque personne à un niveau sont moyennées, de sorte qu’une personne compte une fois. Plusieurs niveaux : test de Friedman, F d’Iman et Davenport, W de Kendall. Paires : test des rangs signés de Wilcoxon, exact et conditionnel aux rangs observés, zéros selon Pratt, correction de Holm, corrélation bisériale des rangs, estimation de Hodges-Lehmann et intervalle à 95 % par les moyennes de Walsh. Interactions : transformation des rangs alignés sur les moyennes des personnes ; avec un facteur propre aux personnes, la différence de chacune entre deux niveaux en dépend-elle.",
         );
+        if !self.study.conditions().is_empty() {
+            self.paragraph(
+                "Between conditions: each person’s answers are averaged to one value; Mann-Whitney of two conditions, Kruskal-Wallis of more.",
+                "Entre conditions : les réponses de chaque personne sont moyennées en une seule valeur ; Mann-Whitney pour deux conditions, Kruskal-Wallis au-delà.",
+            );
+        }
         self.paragraph(
             "Effect sizes: r is the matched rank-biserial correlation, W Kendall’s coefficient of concordance, V Cramér’s, ε² is H / (n − 1) of Kruskal-Wallis, η²H the same of Scheirer-Ray-Hare (SRH), ηp² the partial eta squared of the aligned rank transform (ART).",
             "Tailles d’effet : r est la corrélation bisériale des rangs appariés, W le coefficient de concordance de Kendall, V celui de Cramér, ε² est H / (n − 1) de Kruskal-Wallis, η²H le même de Scheirer-Ray-Hare (SRH), ηp² l’êta carré partiel de la transformation des rangs alignés (ART).",

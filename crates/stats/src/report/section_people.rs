@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use mimique_study::responses::ASSIGNED_CONDITION;
+
 use super::document::{Block, DataTable};
 use super::flow_chart::flow_chart;
 use super::results::AboutPeople;
@@ -27,10 +29,16 @@ impl Writer<'_> {
                 format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
             )));
         }
-        let caption = language.pick(
-            "Answers of the people in the analysis about themselves",
-            "Réponses des personnes de l’analyse sur elles-mêmes",
-        );
+        let caption = match self.study.conditions().is_empty() {
+            true => language.pick(
+                "Answers of the people in the analysis about themselves",
+                "Réponses des personnes de l’analyse sur elles-mêmes",
+            ),
+            false => language.pick(
+                "The people in the analysis: their condition, and their answers about themselves",
+                "Les personnes de l’analyse : leur condition et leurs réponses sur elles-mêmes",
+            ),
+        };
         let mut table = DataTable::new(
             "about-people",
             caption,
@@ -50,7 +58,7 @@ impl Writer<'_> {
                 .flat_map(|page| &page.questions)
                 .find(|question| question.id == *column);
             let label = question.map_or_else(
-                || column.clone(),
+                || self.naming.factor(column),
                 |question| question.prompt.in_language(language.code()).to_owned(),
             );
             let (summary, words) = self.about_people(column, &used);
@@ -64,7 +72,12 @@ impl Writer<'_> {
 
     fn about_people(&self, column: &str, used: &[&str]) -> (AboutPeople, String) {
         let language = self.language();
-        let numbers: Option<Vec<f64>> = used.iter().map(|cell| cell.parse().ok()).collect();
+        let conditions = match column {
+            ASSIGNED_CONDITION => self.study.conditions(),
+            _ => Vec::new(),
+        };
+        let numbers: Option<Vec<f64>> =
+            used.iter().map(|cell| cell.parse().ok().filter(|_| conditions.is_empty())).collect();
         if let Some(numbers) = numbers.filter(|numbers| !numbers.is_empty()) {
             let description = describe(&numbers);
             let words = match &description {
@@ -90,7 +103,9 @@ impl Writer<'_> {
             };
             return (AboutPeople::Numbers(description), words);
         }
-        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        // A condition with nobody is one, too.
+        let mut counts: BTreeMap<&str, usize> =
+            conditions.into_iter().map(|condition| (condition, 0)).collect();
         for cell in used {
             *counts.entry(cell).or_insert(0) += 1;
         }

@@ -152,9 +152,7 @@ impl Parameters {
             clip_ms: 3000.0,
         };
         for hypothesis in study.hypotheses.iter().filter(|each| each.measure == Measure::Rt) {
-            for factor in
-                hypothesis.factors.iter().filter(|each| !traits(study).contains_key(*each))
-            {
+            for factor in &hypothesis.factors {
                 times.effects.insert(
                     factor.clone(),
                     spread(&tested(hypothesis, factor, &levels), TIME_EFFECT),

@@ -19,7 +19,8 @@ pub(crate) struct Latent {
     clip_sd: f64,
     /// Standard deviation and level of each clip, a factor each.
     by: Vec<(f64, Vec<Option<usize>>, usize)>,
-    /// Answers about the participant that shift the value: question, answer -> shift.
+    /// Answers about the participant, and the assigned condition, that shift the value: question,
+    /// answer -> shift.
     traits: Vec<(String, ByLevel)>,
     /// Shifts that depend on the participant too: what must be answered, for which clips, by how much.
     combined: Vec<(BTreeMap<String, String>, Vec<bool>, f64)>,
@@ -157,12 +158,10 @@ impl Latent {
             .collect()
     }
 
-    /// The value of one person at each clip.
+    /// The value of one person at each clip; `about` has the answers about the participant and the
+    /// assigned condition.
     pub(crate) fn of_person(&self, draws: &mut Draws, clips: &[f64], about: &Answers) -> Vec<f64> {
-        let told = |question: &str| -> Option<String> {
-            let answer = about.get(question)?;
-            Some(answer.as_str().map_or_else(|| answer.to_string(), str::to_owned))
-        };
+        let told = |question: &str| told(about, question);
         let mut person = self.person_sd * draws.normal();
         for (question, shifts) in &self.traits {
             person += told(question).and_then(|a| shifts.get(&a)).copied().unwrap_or(0.0);
@@ -184,4 +183,10 @@ impl Latent {
         }
         values
     }
+}
+
+/// What is told of a participant, as the export has it.
+pub(super) fn told(about: &Answers, question: &str) -> Option<String> {
+    let answer = about.get(question)?;
+    Some(answer.as_str().map_or_else(|| answer.to_string(), str::to_owned))
 }

@@ -64,7 +64,8 @@ pub struct Rating {
     pub clip_sd: f64,
     /// Borders between neighbouring points, ascending; half-way between them if empty.
     pub thresholds: Vec<f64>,
-    /// Factor (of the clip, or a question about the participant) -> level -> shift, points.
+    /// Factor (of the clip, a question about the participant, or `assigned_condition`) -> level -> shift,
+    /// points.
     pub effects: BTreeMap<String, ByLevel>,
     /// Shifts of combinations.
     pub interactions: Vec<Interaction>,
@@ -130,7 +131,7 @@ pub struct Times {
     pub sigma: f64,
     /// Standard deviation of the logarithm from person to person.
     pub person_sigma: f64,
-    /// Factor of the clip -> level -> shift of the logarithm (0.1: about 10 % longer).
+    /// Factor, as of ratings -> level -> shift of the logarithm (0.1: about 10 % longer).
     pub effects: BTreeMap<String, ByLevel>,
     /// Length of a clip, milliseconds.
     pub clip_ms: f64,

@@ -1,9 +1,10 @@
 //! One simulated person: what is answered, when, and how far the person goes.
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{Answers, QuestionKind};
 use serde_json::{Value, json};
 
-use super::latent::ClipEffects;
+use super::latent::{ClipEffects, told};
 use super::model::{Asked, Model, Rated, Way};
 use super::random::Draws;
 
@@ -86,7 +87,14 @@ impl Showing {
 pub(crate) const BEFORE_REPLAY_MS: f64 = 500.0;
 
 impl<'m> Person<'m> {
-    pub(crate) fn new(model: &'m Model<'m>, clips: &ClipEffects, seed: u64, number: u64) -> Self {
+    /// The person of a number, in a condition where the study has some.
+    pub(crate) fn new(
+        model: &'m Model<'m>,
+        clips: &ClipEffects,
+        seed: u64,
+        number: u64,
+        condition: Option<&str>,
+    ) -> Self {
         let draws = |purpose| Draws::new(seed, Some(number), purpose);
         let parameters = model.parameters;
         let mut person = draws("person");
@@ -122,11 +130,20 @@ impl<'m> Person<'m> {
             }
         }
         new.pages = draws("pages");
+        let mut known = new.about.clone();
+        if let Some(condition) = condition {
+            known.insert(ASSIGNED_CONDITION.to_owned(), condition.into());
+        }
+        let shift = |(factor, shifts): (&String, &super::ByLevel)| {
+            told(&known, factor).and_then(|level| shifts.get(&level)).copied()
+        };
+        let slower: f64 = parameters.times.effects.iter().filter_map(shift).sum();
+        new.pace *= libm::exp(slower);
         new.mind.values = model
             .latents()
             .iter()
             .zip(clips)
-            .map(|(latent, clips)| latent.of_person(&mut person, clips, &new.about))
+            .map(|(latent, clips)| latent.of_person(&mut person, clips, &known))
             .collect();
         new
     }

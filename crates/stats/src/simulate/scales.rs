@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_study::responses::ASSIGNED_CONDITION;
 use mimique_study::{Clip, Question, QuestionKind, Study};
 
 use crate::factor::Factor;
@@ -71,8 +72,8 @@ pub(crate) fn truth_of(question: &Question) -> Option<&str> {
     }
 }
 
-/// The levels of each factor of the clips, and of each question about the participant that has few
-/// answers, in the order of the analysis.
+/// The levels of each factor of the clips, of each question about the participant that has few answers,
+/// and of the assigned condition, in the order of the analysis.
 pub(crate) fn factor_levels(study: &Study, clips: &[Clip]) -> BTreeMap<String, Vec<String>> {
     let mut levels = BTreeMap::new();
     for name in study.factor_names() {
@@ -87,9 +88,12 @@ pub(crate) fn factor_levels(study: &Study, clips: &[Clip]) -> BTreeMap<String, V
     levels
 }
 
-/// Questions about the participant that can be a factor, with their answers.
+/// What can be a factor between participants: questions about the participant with their answers, and the
+/// assigned condition with the study's conditions.
 pub(crate) fn traits(study: &Study) -> BTreeMap<String, Vec<String>> {
     let questions = study.demographics.iter().flat_map(|page| &page.questions);
+    let conditions: Vec<String> = study.conditions().into_iter().map(str::to_owned).collect();
+    let assigned = !conditions.is_empty();
     questions
         .filter_map(|question| {
             let levels: Vec<String> = match &question.kind {
@@ -103,5 +107,6 @@ pub(crate) fn traits(study: &Study) -> BTreeMap<String, Vec<String>> {
             };
             Some((question.id.clone(), levels))
         })
+        .chain(assigned.then_some((ASSIGNED_CONDITION.to_owned(), conditions)))
         .collect()
 }

@@ -39,9 +39,10 @@ pub(crate) fn events(
     started: &SessionStarted,
 ) -> Result<Vec<Event>, OrderError> {
     let plan = Plan::new(model.study.clone(), started.clone())?;
-    let person = Person::new(model, clips, seed, started.participant);
+    let person =
+        |seed| Person::new(model, clips, seed, started.participant, started.condition.as_deref());
     // Practice is not part of the answers' stream.
-    let practice = Person::new(model, clips, seed ^ PRACTICE, started.participant);
+    let (person, practice) = (person(seed), person(seed ^ PRACTICE));
     let state = State::new(&plan, model.study.default_language());
     let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0 };
     let mut walk = Walk { model, person, practice, page, trial: 0 };

@@ -2,8 +2,10 @@
 
 mod random;
 
-use mimique_study::{Question, QuestionKind, Study, responses::FIXED_COLUMNS};
+use mimique_study::responses::{ASSIGNED_CONDITION, FIXED_COLUMNS};
+use mimique_study::{Question, QuestionKind, Study};
 use random::Random;
+use serde_json::{Value, json};
 
 /// What the raters are like.
 pub struct Raters {
@@ -25,6 +27,9 @@ pub fn export(study: &Study, raters: &Raters) -> String {
     let mut names: Vec<&str> = Vec::new();
     for (name, ..) in FIXED_COLUMNS {
         names.push(name);
+        if name == "condition" && !study.conditions().is_empty() {
+            names.push(ASSIGNED_CONDITION);
+        }
         if name == "stimulus" {
             names.extend(factors.iter().map(String::as_str));
         }
@@ -87,6 +92,7 @@ pub fn export(study: &Study, raters: &Raters) -> String {
                         "trial_type" => "trial".to_owned(),
                         "condition" => "faces".to_owned(),
                         "stage" => "live".to_owned(),
+                        ASSIGNED_CONDITION => condition_of(study, person).to_owned(),
                         "status" => status.to_owned(),
                         "stimulus" => clip.id.clone(),
                         "response_id" => question.to_owned(),
@@ -115,6 +121,12 @@ pub fn export(study: &Study, raters: &Raters) -> String {
     text
 }
 
+/// The condition of a person, numbered from 0: they go round.
+pub fn condition_of(study: &Study, person: usize) -> &str {
+    let conditions = study.conditions();
+    conditions[person % conditions.len()]
+}
+
 fn trait_answer(question: &Question, random: &mut Random) -> String {
     match &question.kind {
         QuestionKind::Likert(likert) => {
@@ -132,6 +144,59 @@ fn trait_answer(question: &Question, random: &mut Random) -> String {
 /// A study of one method with three values of its parameter, 18 clips each, that lays out its tables.
 pub fn parameter_study() -> Study {
     Study::from_text(include_str!("../fixtures/parameter-study.json")).unwrap()
+}
+
+/// The demonstration in three conditions, which its hypotheses and tables compare.
+pub fn study_in_conditions() -> Study {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/demo.json");
+    let mut file = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let condition = |id: &str, order: &str| json!({ "id": id, "conditional": true, "order": order, "components": ["faces"] });
+    let conditions =
+        [condition("rested", "fixed"), condition("at-once", "random"), condition("10", "random")];
+    file["sequence"] = json!({ "order": "fixed", "components": conditions });
+    let hypothesis = |id: &str, test: &str, response: &str, more: Value| {
+        let mut hypothesis = json!({ "id": id, "statement": { "en": "No effect.", "fr": "Sans effet." },
+            "test": test, "response": response, "factors": ["assigned_condition"] });
+        hypothesis.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        hypothesis
+    };
+    file["hypotheses"] = json!([
+        hypothesis("C1", "kruskal-wallis", "believability", json!({})),
+        hypothesis(
+            "C2",
+            "mann-whitney",
+            "believability",
+            json!({ "levels": ["rested", "at-once"] })
+        ),
+        hypothesis("C3", "chi-square", "emotion", json!({ "measure": "correct" })),
+        hypothesis(
+            "C4",
+            "mann-whitney",
+            "emotion",
+            json!({ "measure": "rt", "levels": ["at-once", "10"] })
+        ),
+        hypothesis(
+            "C5",
+            "scheirer-ray-hare",
+            "believability",
+            json!({ "factors": ["assigned_condition", "method"] })
+        ),
+    ]);
+    let table = |layout: &str, more: Value| {
+        let mut table = json!({ "id": layout, "layout": layout, "responses": ["believability", "emotion"],
+            "caption": { "en": "Conditions", "fr": "Conditions" } });
+        table.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        table
+    };
+    file["tables"] = json!([
+        table("means", json!({ "factors": ["assigned_condition", "method"] })),
+        table("influences", json!({ "factors": ["assigned_condition"] })),
+        table("interactions", json!({ "crossings": [["assigned_condition", "method"]] })),
+        table("confusion", json!({ "responses": ["emotion"], "factors": ["assigned_condition"] })),
+    ]);
+    let report = mimique_study::check(&file.to_string(), &|_| Ok(()));
+    assert!(report.study.is_some(), "{:?}", report.issues);
+    Study::from_value(&file).unwrap()
 }
 
 /// The built-in demonstration study, with a rule on late frames such as a real study has.
