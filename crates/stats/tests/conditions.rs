@@ -266,6 +266,24 @@ fn power_grows_with_the_difference_and_is_alpha_without() {
     assert!((0.85..=0.97).contains(&share), "{share}");
 }
 
+/// A response time that is a fifth longer and one that is a fifth shorter, of people who differ by a tenth.
+#[test]
+fn a_difference_of_response_times_is_planted_too() {
+    let (mut study, hash, mut parameters) = simulated(0.0);
+    study.hypotheses[0].measure = mimique_study::Measure::Rt;
+    parameters.times.person_sigma = 0.1;
+    let shifts = [("rested".to_owned(), 0.2), ("at-once".to_owned(), -0.2)];
+    parameters.times.effects = [("assigned_condition".to_owned(), shifts.into())].into();
+    let result = power(&study, &hash, &parameters, &options(16, 40), &|| {}).unwrap();
+    let found = &result.points[0].hypotheses[0];
+    assert_eq!(found.power.recommended.positive, 40);
+    assert!(found.false_positives.unwrap().recommended.positive < 10);
+    // What a study has of itself plants the difference that its hypothesis looks for.
+    let own = Parameters::for_study(&study);
+    let effects = &own.times.effects["assigned_condition"];
+    assert!((effects["rested"] - effects["at-once"] - 0.1).abs() < 1e-9, "{effects:?}");
+}
+
 #[test]
 fn the_preregistration_says_the_test_and_that_it_is_between_participants() {
     let (study, hash, parameters) = simulated(0.9);

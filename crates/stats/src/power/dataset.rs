@@ -124,10 +124,9 @@ impl<'d> Data<'d> {
             return;
         }
         for (question, cells) in &mut self.export.about {
-            cells.push(match question.as_str() {
-                ASSIGNED_CONDITION => condition.map(str::to_owned),
-                question => person.about.get(question).map(text),
-            });
+            let assigned = condition.filter(|_| question == ASSIGNED_CONDITION);
+            let told = || person.about.get(question).map(text);
+            cells.push(assigned.map(str::to_owned).or_else(told));
         }
         self.export.people.push(who);
         self.stages.push("live");
@@ -352,20 +351,18 @@ mod tests {
             "attentionCheck": {"expected": "blue"},
             "options": [{"value": "red", "label": "Red"}, {"value": "blue", "label": "Blue"}],
         }]});
-        let condition = |id: &str| {
+        let conditions = ["rested", "at-once"].map(|id| {
             serde_json::json!({
                 "id": id, "conditional": true, "order": "random", "components": ["faces"],
                 "interruptions": [{"component": "check", "spacing": 100, "firstLocation": 4}],
             })
-        };
-        value["sequence"] = serde_json::json!({
-            "order": "fixed", "components": [condition("rested"), condition("at-once")],
         });
+        value["sequence"] = serde_json::json!({"order": "fixed", "components": conditions});
         // It shifts answers and times.
-        for (id, measure) in [("H6", "answer"), ("H7", "rt")] {
+        for measure in ["answer", "rt"] {
             value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
-                "id": id, "statement": "s", "test": "mann-whitney", "response": "believability",
-                "measure": measure, "factors": ["assigned_condition"],
+                "id": measure, "statement": "s", "test": "mann-whitney", "measure": measure,
+                "response": "believability", "factors": [ASSIGNED_CONDITION],
             }));
         }
         value["questions"][2]["showIf"] =
