@@ -2,10 +2,12 @@
 
 // Four letters, version and length stand before the body (crates/face/src/pack/envelope.rs).
 const HEAD = 12;
+const KIND = [..."MMOP"].map((letter) => letter.charCodeAt(0));
 
-/// The pack with its body inflated, or a thrown Error if it is damaged.
+/// The pack with its body inflated, or a thrown Error if it is damaged. What is no operators pack comes back
+/// as it is: clips of recorded weights have none, and the solver says so where it needs one.
 export async function inflated(pack) {
-  if (pack.length < HEAD) return pack;
+  if (pack.length < HEAD || KIND.some((letter, at) => pack[at] !== letter)) return pack;
   const body = new Blob([pack.subarray(HEAD)]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = await new Response(body).arrayBuffer().catch((error) => {
     throw new Error(`MMOP pack: the body cannot be inflated (${error.message}); load the page again`);
