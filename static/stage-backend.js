@@ -41,8 +41,10 @@ async function open(address) {
 
 async function detect() {
   const wish = new URLSearchParams(globalThis.location?.search ?? "").get("backend");
-  const wanted = wish === null ? ["webgpu", "webgl2"] : [wish];
-  const reasons = [];
+  // What the solver needs beside the canvas (inflated.js): Chrome 80, Firefox 113, Safari 16.4 and later.
+  const inflates = "DecompressionStream" in globalThis;
+  const wanted = !inflates ? [] : wish === null ? ["webgpu", "webgl2"] : [wish];
+  const reasons = inflates ? [] : ["too old: no DecompressionStream"];
   for (const name of wanted) {
     const reason = name === "webgpu" ? await webgpuLacks() : name === "webgl2" ? webgl2Lacks() : "unknown back end";
     if (reason === null) return name;
