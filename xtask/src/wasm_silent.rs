@@ -368,8 +368,6 @@ fn leaves_the_line(operator: &Operator<'_>) -> bool {
 mod tests {
     use super::*;
 
-    const RUN: [u8; 2] = *b"ok";
-
     fn section(out: &mut Vec<u8>, kind: u8, bytes: &[u8]) {
         out.push(kind);
         leb(out, bytes.len());
@@ -448,7 +446,7 @@ mod tests {
             .concat();
             section(&mut wasm, 0, &uses);
         }
-        section(&mut wasm, 0, &[&named("mark")[..], &RUN].concat());
+        section(&mut wasm, 0, &[&named("mark")[..], b"ok"].concat());
         wasm
     }
 
