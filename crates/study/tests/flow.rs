@@ -312,8 +312,11 @@ fn pictures_are_loaded_before_their_page_and_no_trial_starts_without_them() {
     let (state, effects) = turn(state, Input::Retry);
     assert_eq!(effects, vec![Effect::PrepareClips(all.to_vec())]);
     let View::Questions { failed: None, .. } = shown(&state) else { panic!() };
+    // What failed ahead of its page is asked for again there, and shown as on its way.
+    let state = failed(state, "media:eye.png");
     let answer = Input::Answer { question: "who".into(), value: json!("a") };
-    let (state, _) = turn(turn(state, answer).0, Input::Next);
+    let (state, effects) = turn(turn(state, answer).0, Input::Next);
+    assert!(effects.contains(&Effect::PrepareClips(all[1..].to_vec())), "{effects:?}");
 
     // The trial waits for everything.
     let state = prepared(prepared(state, "p.box"), "media:sign.webm");

@@ -51,7 +51,8 @@ pub struct Engine {
     /// Set to end a wait before the next try.
     wake: Cell<bool>,
     to_prepare: RefCell<VecDeque<String>>,
-    preparing: Cell<bool>,
+    /// What is being prepared right now.
+    preparing: RefCell<Option<String>>,
     prepared: RefCell<SortedMap<String, ()>>,
     /// False until the first page stands: a page that was just loaded is read from its top.
     open: Cell<bool>,
@@ -82,7 +83,7 @@ impl Engine {
             sending: Cell::new(false),
             wake: Cell::new(false),
             to_prepare: RefCell::default(),
-            preparing: Cell::new(false),
+            preparing: RefCell::default(),
             prepared: RefCell::default(),
             open: Cell::new(false),
         })
@@ -134,9 +135,12 @@ impl Engine {
             Effect::Flush => self.flush(),
             Effect::PrepareClips(clips) => {
                 let mut queue = self.to_prepare.borrow_mut();
-                // The first named is the most urgent.
+                // The first named is the most urgent; one that is under way already answers soon.
                 queue.retain(|waiting| !clips.contains(waiting));
-                clips.into_iter().rev().for_each(|clip| queue.push_front(clip));
+                let under_way = self.preparing.borrow();
+                let others = clips.into_iter().rev().filter(|clip| under_way.as_ref() != Some(clip));
+                others.for_each(|clip| queue.push_front(clip));
+                drop(under_way);
                 drop(queue);
                 self.prepare();
             }
@@ -295,18 +299,23 @@ impl Engine {
     }
 
     fn prepare(self: &Rc<Self>) {
-        if self.preparing.replace(true) {
-            return;
+        if self.preparing.borrow().is_none() && self.next_to_prepare() {
+            let engine = Rc::clone(self);
+            spawn_local(async move {
+                loop {
+                    let Some(clip) = engine.preparing.borrow().clone() else { break };
+                    engine.prepare_one(clip).await;
+                    engine.next_to_prepare();
+                }
+            });
         }
-        let engine = Rc::clone(self);
-        spawn_local(async move {
-            loop {
-                let next = engine.to_prepare.borrow_mut().pop_front();
-                let Some(clip) = next else { break };
-                engine.prepare_one(clip).await;
-            }
-            engine.preparing.set(false);
-        });
+    }
+
+    fn next_to_prepare(&self) -> bool {
+        let next = self.to_prepare.borrow_mut().pop_front();
+        let found = next.is_some();
+        self.preparing.replace(next);
+        found
     }
 
     async fn prepare_one(self: &Rc<Self>, clip: String) {

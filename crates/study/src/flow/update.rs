@@ -160,15 +160,24 @@ impl<'a> Turn<'a> {
         } else if self.step().is_some_and(|step| step.kind == StepKind::Device) {
             self.effects.push(Effect::MeasureDevice);
         }
-        let needs = needs_ahead(self.plan, &self.state);
-        if !needs.is_empty() && self.state.record.status == Status::Active {
-            self.effects.push(Effect::PrepareClips(needs));
+        if self.state.record.status == Status::Active {
+            self.prepare();
         }
         if self.step().is_none() && self.state.record.status == Status::Active {
             self.record(EventKind::Finished);
         }
         self.effects.push(Effect::Flush);
         self.effects.push(Effect::FocusHeading);
+    }
+
+    /// Asks for what this step and the next ones need. What could not be had before is on its way again,
+    /// and shown so: until it fails anew, nobody has to press anything.
+    fn prepare(&mut self) {
+        let needs = needs_ahead(self.plan, &self.state);
+        needs.iter().for_each(|need| drop(self.state.live.failed.remove(need)));
+        if !needs.is_empty() {
+            self.effects.push(Effect::PrepareClips(needs));
+        }
     }
 
     fn choose_language(&mut self, language: &str) -> bool {
@@ -330,13 +339,10 @@ impl<'a> Turn<'a> {
     fn retry(&mut self) -> bool {
         let Some(step) = self.step() else { return false };
         let needs = step.needs(&self.state.record.language);
-        let failed = &mut self.state.live.failed;
-        let before = failed.len();
-        needs.iter().for_each(|need| drop(failed.remove(need)));
-        if failed.len() == before {
+        if !needs.iter().any(|need| self.state.live.failed.contains_key(need)) {
             return false;
         }
-        self.effects.push(Effect::PrepareClips(needs_ahead(self.plan, &self.state)));
+        self.prepare();
         true
     }
 
