@@ -8,8 +8,8 @@ use std::time::Duration;
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_stats::{
-    Language, Power, PowerOptions, Preregistration, power, power_csv, power_curve, power_markdown,
-    power_runs, preregistration,
+    Language, Power, PowerOptions, Preregistration, no_effect, power, power_csv, power_curve,
+    power_markdown, power_runs, preregistration,
 };
 
 use crate::simulate::{Assumptions, write_whole};
@@ -157,6 +157,9 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
     for place in 0..ids {
         let id = &power.points[0].hypotheses[place].id;
         writeln!(out, "\n{id}")?;
+        if !power.points[0].hypotheses[place].effect {
+            writeln!(out, "{}", no_effect(Language::English))?;
+        }
         let falsely = power.points[0].hypotheses[place].false_positives.is_some();
         write!(
             out,

@@ -52,8 +52,8 @@ pub use kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
 pub use mann_whitney::{MannWhitney, mann_whitney};
 pub use outcome::{Labelled, Outcome, Refusal};
 pub use power::{
-    Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, power, power_csv,
-    power_curve, power_markdown, power_runs,
+    Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, no_effect, power,
+    power_csv, power_curve, power_markdown, power_runs,
 };
 pub use preregistration::{Preregistration, preregistration};
 pub use proportion::{Proportion, proportion};

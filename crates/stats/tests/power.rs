@@ -133,6 +133,43 @@ fn without_effects_there_is_none_left() {
     assert!(believability.power.recommended.share > 0.3, "{believability:?}");
 }
 
+/// Where the parameters hold no effect (a typed number never has one), the share of positive tests is no
+/// power, and nobody is told how many people have enough of it.
+#[test]
+fn without_an_effect_in_the_parameters_nothing_is_called_power() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    value["questions"].as_array_mut().unwrap().push(serde_json::json!(
+        { "id": "years", "type": "number", "prompt": { "en": "How old?", "fr": "Quel âge\u{a0}?" } }
+    ));
+    value["components"]["faces"]["questions"].as_array_mut().unwrap().push("years".into());
+    let hypotheses = value["hypotheses"].as_array_mut().unwrap();
+    let (mut years, mut time) = (hypotheses[1].clone(), hypotheses[1].clone());
+    (years["id"], years["response"]) = ("HY".into(), "years".into());
+    (time["id"], time["measure"]) = ("HT".into(), "rt".into());
+    hypotheses.extend([years, time]);
+    let study = Study::from_value(&value).unwrap();
+    let hash = mimique_study::config_hash(&value);
+    let mut parameters = Parameters::for_study(&study);
+    let effects = |parameters: &Parameters| -> Vec<bool> {
+        study.hypotheses.iter().map(|each| parameters.has_effect(&study, each)).collect()
+    };
+    assert_eq!(effects(&parameters), [true, true, true, true, false, true]);
+    assert_eq!(effects(&parameters.without_effects(&study)), [false; 6]);
+    let believability = parameters.ratings.get_mut("believability").unwrap();
+    believability.effects.clear();
+    believability.interactions.clear();
+    assert_eq!(effects(&parameters), [true, true, false, false, false, true]);
+
+    let result = power(&study, &hash, &parameters, &options(&[10], 2), &|| {}).unwrap();
+    let note = "hold no effect of its factors on its response";
+    let table = mimique_stats::power_markdown(&result, mimique_stats::Language::English);
+    assert_eq!(table.matches(note).count(), 3);
+    assert!(table.contains("**HY**\n\nThe parameters hold no effect"), "{table}");
+    let curve = mimique_stats::power_curve(&result, mimique_stats::Language::English);
+    assert_eq!(curve.matches("no effect in the parameters").count(), 3);
+}
+
 #[test]
 fn refuses_what_cannot_be() {
     let (study, hash) = study("demo.json");

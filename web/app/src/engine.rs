@@ -138,7 +138,8 @@ impl Engine {
                 // The first named is the most urgent; one that is under way already answers soon.
                 queue.retain(|waiting| !clips.contains(waiting));
                 let under_way = self.preparing.borrow();
-                let others = clips.into_iter().rev().filter(|clip| under_way.as_ref() != Some(clip));
+                let others =
+                    clips.into_iter().rev().filter(|clip| under_way.as_ref() != Some(clip));
                 others.for_each(|clip| queue.push_front(clip));
                 drop(under_way);
                 drop(queue);

@@ -73,6 +73,10 @@ fn panel(
     let heading = language
         .pick(format!("{}, {clips} clips", first.id), format!("{}, {clips} extraits", first.id));
     svg.text(LEFT, top + 14.0, "strong", Anchor::Start, &heading);
+    if !first.effect {
+        let words = language.pick("no effect in the parameters", "aucun effet dans les paramètres");
+        svg.text(RIGHT, top + 14.0, "small", Anchor::End, words);
+    }
     for share in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
         svg.line([LEFT, y(share)], [RIGHT, y(share)], "rule");
         let label = language.percent(share);

@@ -23,7 +23,7 @@ use crate::simulate::{Draws, Model, Parameters, ParametersError, is_two_way};
 pub use curve::power_curve;
 use design::Design;
 pub(crate) use table::enough;
-pub use table::{power_csv, power_markdown};
+pub use table::{no_effect, power_csv, power_markdown};
 
 /// What is varied, and how often it is simulated.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +75,9 @@ pub struct PowerPoint {
 pub struct HypothesisPower {
     /// Its identifier.
     pub id: String,
+    /// Whether the parameters hold an effect for it ([`Parameters::has_effect`]). Without one, what is
+    /// counted as power is false positives.
+    pub effect: bool,
     /// With the effects of the parameters.
     pub power: Columns,
     /// Without the effects that the hypotheses look for.
@@ -186,6 +189,7 @@ pub fn power(
                 .enumerate()
                 .map(|(place, hypothesis)| HypothesisPower {
                     id: hypothesis.id.clone(),
+                    effect: parameters.has_effect(study, hypothesis),
                     power: columns(&with, place, options.alpha),
                     false_positives: without
                         .as_ref()

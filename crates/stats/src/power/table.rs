@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Columns, Power, Rate};
+use super::{Columns, HypothesisPower, Power, Rate};
 use crate::report::Language;
 
 /// One row a number of people, number of clips and hypothesis.
@@ -62,6 +62,9 @@ pub fn power_markdown(power: &Power, language: Language) -> String {
     for place in 0..ids {
         let Some(first) = power.points.first() else { break };
         let _ = writeln!(text, "**{}**\n", first.hypotheses[place].id);
+        if !first.hypotheses[place].effect {
+            let _ = writeln!(text, "{}\n", no_effect(language));
+        }
         let falsely = first.hypotheses[place].false_positives.is_some();
         let mut heading = language
             .pick(
@@ -105,6 +108,14 @@ pub fn power_markdown(power: &Power, language: Language) -> String {
     text
 }
 
+/// What stands above the numbers of a hypothesis that has no effect in the parameters.
+pub fn no_effect(language: Language) -> &'static str {
+    language.pick(
+        "The parameters hold no effect of its factors on its response: its power is not known, and what stands here are false positives.",
+        "Les paramètres ne contiennent aucun effet de ses facteurs sur sa réponse\u{a0}: sa puissance est inconnue, et ces nombres sont des faux positifs.",
+    )
+}
+
 /// `81.2 % [79.4; 82.9]`, with what was undefined.
 pub(crate) fn cell(language: Language, rate: &Rate) -> String {
     let percent = |share: f64| language.fixed(100.0 * share, 1);
@@ -123,7 +134,8 @@ pub(crate) fn enough(power: &Power, place: usize, wanted: f64) -> Option<(usize,
         .points
         .iter()
         .filter(|point| {
-            point.hypotheses.get(place).is_some_and(|h| h.power.recommended.share >= wanted)
+            let enough = |h: &HypothesisPower| h.effect && h.power.recommended.share >= wanted;
+            point.hypotheses.get(place).is_some_and(enough)
         })
         .map(|point| (point.participants, point.clips))
         .min()

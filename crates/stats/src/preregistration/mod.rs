@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 use mimique_study::Study;
 
-use crate::power::{Power, power_markdown};
+use crate::power::{Power, no_effect, power_markdown};
 use crate::report::{Language, Naming};
 use crate::simulate::Parameters;
 
@@ -191,6 +191,9 @@ fn sample(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
                 format!("- {}: {people} people and {clips} clips have a power of 80 % or more.", hypothesis.id),
                 format!("- {} : {people} personnes et {clips} extraits ont une puissance de 80 % ou plus.", hypothesis.id),
             ),
+            None if from.power.points.iter().any(|point| !point.hypotheses[place].effect) => {
+                ["- ", &hypothesis.id, language.pick(": ", "\u{a0}: "), no_effect(language)].concat()
+            }
             None => language.pick(
                 format!("- {}: none of the sizes below has a power of 80 %.", hypothesis.id),
                 format!("- {} : aucune des tailles ci-dessous n’a une puissance de 80 %.", hypothesis.id),

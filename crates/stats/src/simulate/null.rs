@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::{Measure, Study};
+use mimique_study::{Hypothesis, Measure, Study};
 
 use super::parameters::{ByLevel, Interaction, Parameters, Recognition};
 use super::scales::truth_of;
@@ -12,25 +12,35 @@ impl Parameters {
     /// them. What is random stays: clips still differ from one another.
     pub fn without_effects(&self, study: &Study) -> Self {
         let mut null = self.clone();
-        for hypothesis in &study.hypotheses {
-            let tested = |factor: &str| hypothesis.factors.iter().any(|each| each == factor);
-            if hypothesis.measure == Measure::Rt {
-                null.times.effects.retain(|factor, _| !tested(factor));
-                continue;
-            }
-            if let Some(rating) = null.ratings.get_mut(&hypothesis.response) {
-                drop_effects(&mut rating.effects, &mut rating.interactions, tested);
-            }
-            if let Some(recognition) = null.recognition.get_mut(&hypothesis.response) {
-                drop_effects(&mut recognition.effects, &mut recognition.interactions, tested);
-                let asked = study.all_questions().find(|each| each.id == hypothesis.response);
-                let truth = asked.and_then(truth_of).unwrap_or_default();
-                if tested(truth) || tested(&recognition.by) {
-                    level_hits(recognition);
-                }
+        study.hypotheses.iter().for_each(|hypothesis| null.drop_effects_of(study, hypothesis));
+        null
+    }
+
+    /// Whether there is an effect of this hypothesis's factors on its response. Typed numbers and choices
+    /// without a right answer never have one; a correlation has no factors and needs none.
+    pub fn has_effect(&self, study: &Study, hypothesis: &Hypothesis) -> bool {
+        let mut null = self.clone();
+        null.drop_effects_of(study, hypothesis);
+        hypothesis.factors.is_empty() || null != *self
+    }
+
+    fn drop_effects_of(&mut self, study: &Study, hypothesis: &Hypothesis) {
+        let tested = |factor: &str| hypothesis.factors.iter().any(|each| each == factor);
+        if hypothesis.measure == Measure::Rt {
+            self.times.effects.retain(|factor, _| !tested(factor));
+            return;
+        }
+        if let Some(rating) = self.ratings.get_mut(&hypothesis.response) {
+            drop_effects(&mut rating.effects, &mut rating.interactions, tested);
+        }
+        if let Some(recognition) = self.recognition.get_mut(&hypothesis.response) {
+            drop_effects(&mut recognition.effects, &mut recognition.interactions, tested);
+            let asked = study.all_questions().find(|each| each.id == hypothesis.response);
+            let truth = asked.and_then(truth_of).unwrap_or_default();
+            if tested(truth) || tested(&recognition.by) {
+                level_hits(recognition);
             }
         }
-        null
     }
 }
 
