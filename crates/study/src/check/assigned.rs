@@ -8,6 +8,7 @@ use super::nearest::suggestion;
 use crate::responses::ASSIGNED_CONDITION;
 use crate::study_file::{
     Component, Hypothesis, Layout, Sequence, SequenceItem, Study, TableLayout, TestName,
+    TrialsComponent,
 };
 
 /// A factor that a hypothesis or a table names at `place`: that there is such a factor.
@@ -87,7 +88,8 @@ fn asked(
         return;
     }
     for condition in compared {
-        if !asks(study, &study.sequence, condition, response) {
+        let blocks = trials(study, &study.sequence, Some(condition));
+        if !blocks.into_iter().any(|block| asks(block, response)) {
             let message = format!(
                 "nobody in the condition \"{condition}\" is asked \"{response}\" in a trial"
             );
@@ -97,17 +99,35 @@ fn asked(
     }
 }
 
-/// Whether a trial that the condition is shown asks a question.
-fn asks(study: &Study, sequence: &Sequence, condition: &str, question: &str) -> bool {
-    sequence.components.iter().any(|item| match item {
-        SequenceItem::Sequence(nested) => {
-            nested.is_shown_in(Some(condition)) && asks(study, nested, condition, question)
+/// Whether trials are shown, and none of them, to nobody, asks a question.
+pub(super) fn is_asked_in_no_trial(study: &Study, question: &str) -> bool {
+    let shown_to = study.conditions().into_iter().map(Some).chain([None]);
+    let blocks: Vec<_> =
+        shown_to.flat_map(|condition| trials(study, &study.sequence, condition)).collect();
+    !blocks.is_empty() && !blocks.iter().any(|block| asks(block, question))
+}
+
+/// The blocks of trials that a condition is shown.
+fn trials<'s>(
+    study: &'s Study,
+    sequence: &Sequence,
+    condition: Option<&str>,
+) -> Vec<&'s TrialsComponent> {
+    let of = |item: &SequenceItem| match item {
+        SequenceItem::Sequence(nested) if nested.is_shown_in(condition) => {
+            trials(study, nested, condition)
         }
-        SequenceItem::Component(name) => matches!(
-            study.components.get(name),
-            Some(Component::Trials(block)) if block.questions.iter().any(|id| id == question)
-        ),
-    })
+        SequenceItem::Sequence(_) => Vec::new(),
+        SequenceItem::Component(name) => match study.components.get(name) {
+            Some(Component::Trials(block)) => vec![block],
+            _ => Vec::new(),
+        },
+    };
+    sequence.components.iter().flat_map(of).collect()
+}
+
+fn asks(block: &TrialsComponent, question: &str) -> bool {
+    block.questions.iter().any(|id| id == question)
 }
 
 /// A table of pairs compares levels within people.

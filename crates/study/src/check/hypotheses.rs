@@ -34,6 +34,14 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
         issues.error(below(pointer, "response"), "unknown-reference", message, hint);
         return;
     };
+    // Conditions that are compared are looked at one by one.
+    let of_conditions = hypothesis.factors.iter().any(|factor| factor == ASSIGNED_CONDITION);
+    if !of_conditions && assigned::is_asked_in_no_trial(subject.study, &question.id) {
+        let message = format!("no trial asks \"{}\": its answers belong to no clip", question.id);
+        let hint = "ask it in the trials of the sequence, or test a question that is asked there";
+        issues.error(below(pointer, "response"), "not-asked", message, hint);
+        return;
+    }
     let has_truth =
         matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
     if hypothesis.measure == Measure::Correct && !has_truth {
