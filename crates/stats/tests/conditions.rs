@@ -1,6 +1,8 @@
 //! The assigned condition as a factor of hypotheses and tables: one value a person, independent groups,
 //! said who is in which; and its power.
 
+#[path = "support/simulated.rs"]
+mod simulated;
 mod support;
 
 use std::collections::BTreeMap;
@@ -9,9 +11,9 @@ use mimique_stats::{
     Language, Numbers, Parameters, PowerOptions, Preregistration, Report, Simulation, Table,
     analyze, mann_whitney, power, preregistration,
 };
-use mimique_study::responses::{self, SessionRecord};
 use mimique_study::{Study, config_hash};
 use serde_json::{Value, json};
+use simulated::simulated_export;
 use support::{Raters, condition_of, demo_study, export, parameter_study, study_in_conditions};
 
 fn report(study: &Study, csv: &str) -> Report {
@@ -209,24 +211,7 @@ fn options(participants: usize, runs: usize) -> PowerOptions {
 fn a_difference_between_conditions_is_found_again_in_a_simulated_export() {
     let (study, hash, parameters) = simulated(1.2);
     let simulation = Simulation::new(&study, &hash, &parameters, 5).unwrap();
-    let sessions: Vec<_> = (1..=30).map(|number| simulation.session(number).unwrap()).collect();
-    let records = sessions.iter().map(|session| SessionRecord {
-        started: &session.started,
-        events: &session.events,
-        status: None,
-    });
-    let table = responses::tidy(&study, &BTreeMap::new(), records);
-    let text = |value: &Value| match value {
-        Value::Null => String::new(),
-        Value::String(text) => format!("\"{}\"", text.replace('"', "\"\"")),
-        other => other.to_string(),
-    };
-    let names: Vec<String> = table.columns.iter().map(|column| column.name.clone()).collect();
-    let mut csv = names.join(",") + "\n";
-    for row in &table.rows {
-        csv += &row.iter().map(text).collect::<Vec<_>>().join(",");
-        csv.push('\n');
-    }
+    let csv = simulated_export(&simulation, &study, 30);
     let report = report(&study, &csv);
     let found = hypothesis(&report, "H");
     let groups = &found["people_by_condition"];

@@ -1,10 +1,15 @@
 //! The report of a simulated study: complete, the same each time, and true to what was planted.
 
+#[path = "support/simulated.rs"]
+mod simulated;
 mod support;
 
 use std::collections::BTreeSet;
 
-use mimique_stats::{Language, Table, analyze};
+use mimique_stats::{Language, Parameters, Simulation, Table, analyze};
+use mimique_study::Study;
+use serde_json::json;
+use simulated::simulated_export;
 use support::{Raters, demo_study, export};
 
 fn report(raters: &Raters, language: Language) -> mimique_stats::Report {
@@ -345,4 +350,51 @@ fn whom_the_researcher_excluded_is_left_out_with_the_reason() {
     }
     let reasons = results(&report)["flow"].to_string();
     assert!(reasons.contains("\"watched with a friend\":2"), "{reasons}");
+}
+
+/// A place on a grid is two answers, a ranking and a matrix as many as they have parts: each has a name of
+/// its own, which `check` takes for a hypothesis and the analysis finds.
+#[test]
+fn parts_of_questions_are_tested_by_their_names() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let text = |word: &str| json!({ "en": word, "fr": word });
+    let grid = json!({ "id": "grid", "type": "valenceArousal", "prompt": text("Where?"), "numItems": 9,
+        "leftLabel": text("bad"), "rightLabel": text("good"), "bottomLabel": text("calm"), "topLabel": text("wild") });
+    let point = |point: &str| json!({ "value": point, "label": text(point) });
+    let matrix = json!({ "id": "parts", "type": "matrix", "prompt": text("How far?"),
+        "rows": [point("brow"), point("lips")], "options": [point("1"), point("2"), point("3")] });
+    let ranking = json!({ "id": "order", "type": "ranking", "prompt": text("Which first?"),
+        "options": [point("eyes"), point("mouth")] });
+    value["questions"].as_array_mut().unwrap().extend([grid, matrix, ranking]);
+    let asked = value["components"]["faces"]["questions"].as_array_mut().unwrap();
+    asked.extend(["grid", "parts", "order"].map(Into::into));
+    let hypotheses = value["hypotheses"].as_array_mut().unwrap();
+    let responses = ["grid.valence", "grid.arousal", "parts.lips", "order.eyes"];
+    let of = |response: &&str| {
+        let mut hypothesis = hypotheses[1].clone();
+        (hypothesis["id"], hypothesis["response"]) = ((*response).into(), (*response).into());
+        hypothesis
+    };
+    value["hypotheses"] = responses.iter().map(of).collect();
+    let report = mimique_study::check(&value.to_string(), &|_| Ok(()));
+    assert!(report.issues.is_empty(), "{:?}", report.issues);
+
+    let study = Study::from_value(&value).unwrap();
+    let mut parameters = Parameters::for_study(&study);
+    let arousal = parameters.ratings.get_mut("grid.arousal").unwrap();
+    let [lsts, _] = ["lsts", "box"].map(|method| arousal.effects["method"][method]);
+    assert!(lsts != 0.0, "a default of its own");
+    let valence = parameters.ratings.get_mut("grid.valence").unwrap();
+    valence.effects.insert("method".into(), [("lsts".into(), 2.0), ("box".into(), 0.0)].into());
+    let hash = mimique_study::config_hash(&value);
+    let csv =
+        simulated_export(&Simulation::new(&study, &hash, &parameters, 3).unwrap(), &study, 25);
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    let results = results(&analyze(&table, &study, Language::English).unwrap());
+    for (found, response) in results["hypotheses"].as_array().unwrap().iter().zip(responses) {
+        assert_eq!(found["measure"], response);
+        let p = found["p"].as_f64().unwrap_or_else(|| panic!("{response} is not tested: {found}"));
+        assert!(response != "grid.valence" || p < 1e-4, "{response}: {p}");
+    }
 }

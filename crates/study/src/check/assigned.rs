@@ -1,15 +1,12 @@
 //! The assigned condition as a factor: that there are conditions, that the test or table is one of
 //! independent groups, since everybody is in one condition, and that everybody compared is asked.
 
-use super::Subject;
 use super::hypotheses::factor_names;
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
+use super::{Subject, responses};
 use crate::responses::ASSIGNED_CONDITION;
-use crate::study_file::{
-    Component, Hypothesis, Layout, Sequence, SequenceItem, Study, TableLayout, TestName,
-    TrialsComponent,
-};
+use crate::study_file::{Hypothesis, Layout, Study, TableLayout, TestName};
 
 /// A factor that a hypothesis or a table names at `place`: that there is such a factor.
 pub(super) fn factor(subject: &Subject<'_>, factor: &str, place: String, issues: &mut Issues) {
@@ -84,12 +81,9 @@ fn asked(
     issues: &mut Issues,
 ) {
     let response = hypothesis.response.as_str();
-    if !study.all_questions().any(|question| question.id == response) {
-        return;
-    }
+    let Some(question) = responses::question(study, response) else { return };
     for condition in compared {
-        let blocks = trials(study, &study.sequence, Some(condition));
-        if !blocks.into_iter().any(|block| asks(block, response)) {
+        if !responses::is_asked(study, condition, &question.id) {
             let message = format!(
                 "nobody in the condition \"{condition}\" is asked \"{response}\" in a trial"
             );
@@ -97,37 +91,6 @@ fn asked(
             issues.error(below(pointer, "response"), "not-asked", message, hint);
         }
     }
-}
-
-/// Whether trials are shown, and none of them, to nobody, asks a question.
-pub(super) fn is_asked_in_no_trial(study: &Study, question: &str) -> bool {
-    let shown_to = study.conditions().into_iter().map(Some).chain([None]);
-    let blocks: Vec<_> =
-        shown_to.flat_map(|condition| trials(study, &study.sequence, condition)).collect();
-    !blocks.is_empty() && !blocks.iter().any(|block| asks(block, question))
-}
-
-/// The blocks of trials that a condition is shown.
-fn trials<'s>(
-    study: &'s Study,
-    sequence: &Sequence,
-    condition: Option<&str>,
-) -> Vec<&'s TrialsComponent> {
-    let of = |item: &SequenceItem| match item {
-        SequenceItem::Sequence(nested) if nested.is_shown_in(condition) => {
-            trials(study, nested, condition)
-        }
-        SequenceItem::Sequence(_) => Vec::new(),
-        SequenceItem::Component(name) => match study.components.get(name) {
-            Some(Component::Trials(block)) => vec![block],
-            _ => Vec::new(),
-        },
-    };
-    sequence.components.iter().flat_map(of).collect()
-}
-
-fn asks(block: &TrialsComponent, question: &str) -> bool {
-    block.questions.iter().any(|id| id == question)
 }
 
 /// A table of pairs compares levels within people.

@@ -137,6 +137,7 @@ fn touches(place: &str, issue: &Issue) -> bool {
         | "dependent-samples"
         | "no-order"
         | "not-asked"
+        | "several-answers"
         | "bad-interruption" => among(&ORDER) || among(&REFERRED),
         "no-code" => among(&["/recruitment", "/device", "/screening", "/training"]),
         _ => false,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
 use super::nearest::suggestion;
-use super::{Subject, assigned};
+use super::{Subject, assigned, responses};
 use crate::responses::ASSIGNED_CONDITION;
 use crate::study_file::{Hypothesis, Measure, Question, QuestionKind, TestName};
 
@@ -24,24 +24,12 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
 }
 
 fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
-    let known: Vec<&str> =
-        subject.study.all_questions().map(|question| question.id.as_str()).collect();
-    let Some(question) =
-        subject.study.all_questions().find(|question| question.id == hypothesis.response)
-    else {
-        let message = format!("there is no question \"{}\"", hypothesis.response);
-        let hint = suggestion(&hypothesis.response, &known);
-        issues.error(below(pointer, "response"), "unknown-reference", message, hint);
+    let place = below(pointer, "response");
+    let of_conditions = hypothesis.factors.iter().any(|factor| factor == ASSIGNED_CONDITION);
+    let response = hypothesis.response.as_str();
+    let Some(question) = responses::tested(subject, response, place, of_conditions, issues) else {
         return;
     };
-    // Conditions that are compared are looked at one by one.
-    let of_conditions = hypothesis.factors.iter().any(|factor| factor == ASSIGNED_CONDITION);
-    if !of_conditions && assigned::is_asked_in_no_trial(subject.study, &question.id) {
-        let message = format!("no trial asks \"{}\": its answers belong to no clip", question.id);
-        let hint = "ask it in the trials of the sequence, or test a question that is asked there";
-        issues.error(below(pointer, "response"), "not-asked", message, hint);
-        return;
-    }
     let has_truth =
         matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
     if hypothesis.measure == Measure::Correct && !has_truth {
@@ -57,11 +45,19 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
     }
 }
 
+/// Whether the answers are numbers: of a matrix those whose options are, of a ranking the places.
 fn is_number(question: &Question) -> bool {
-    matches!(
-        question.kind,
-        QuestionKind::Likert(_) | QuestionKind::Slider(_) | QuestionKind::Number(_)
-    )
+    match &question.kind {
+        QuestionKind::Likert(_)
+        | QuestionKind::Slider(_)
+        | QuestionKind::Number(_)
+        | QuestionKind::ValenceArousal(_)
+        | QuestionKind::Ranking(_) => true,
+        QuestionKind::Matrix(matrix) => {
+            matrix.options.iter().all(|option| option.value.parse::<f64>().is_ok())
+        }
+        _ => false,
+    }
 }
 
 /// What an analysis can group by.

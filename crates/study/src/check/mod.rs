@@ -18,6 +18,7 @@ mod issue;
 mod media;
 mod nearest;
 mod questions;
+mod responses;
 mod schema;
 mod sequence;
 mod stimuli;

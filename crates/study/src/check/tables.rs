@@ -3,8 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
-use super::{Subject, assigned};
+use super::{Subject, assigned, responses};
 use crate::study_file::{Layout, QuestionKind, TableLayout};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -57,21 +56,10 @@ fn counts(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mu
 }
 
 fn names(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut Issues) {
-    let questions: Vec<&str> =
-        subject.study.all_questions().map(|question| question.id.as_str()).collect();
     for (index, response) in table.responses.iter().enumerate() {
         let place = below(&below(pointer, "responses"), index);
-        // `grid.valence` is a part of the question `grid`.
-        let whole = response.split('.').next().unwrap_or(response);
-        let Some(question) = subject
-            .study
-            .all_questions()
-            .find(|question| question.id == *response || question.id == whole)
-        else {
-            let message = format!("there is no question \"{response}\"");
-            issues.error(place, "unknown-reference", message, suggestion(response, &questions));
-            continue;
-        };
+        let found = responses::tested(subject, response, place.clone(), false, issues);
+        let Some(question) = found else { continue };
         let has_truth =
             matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
         if table.layout == Layout::Confusion && !has_truth {

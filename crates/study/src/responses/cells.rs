@@ -86,6 +86,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn rows_of_answers_have_the_names_that_hypotheses_give_them() {
+        let text = std::fs::read_to_string(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../study-config/template.json"
+        ));
+        let value = crate::parse(&text.expect("the template")).expect("JSON");
+        let study = crate::Study::from_value(&value).expect("a study");
+        let mut parts = 0;
+        for question in study.all_questions() {
+            let cells = answer_cells(question, &Value::Null).into_iter();
+            let rows: Vec<String> =
+                cells.map(|(suffix, _)| question.id.clone() + &suffix).collect();
+            assert_eq!(rows, question.response_ids());
+            parts += usize::from(rows.len() > 1);
+        }
+        assert!(parts >= 3, "matrix, ranking and grid");
+    }
+
+    #[test]
     fn iso_time_knows_leap_years_and_times_before_1970() {
         // Values as `date -u -d @SECONDS` gives them.
         assert_eq!(iso_time(0.0), "1970-01-01T00:00:00.000Z");

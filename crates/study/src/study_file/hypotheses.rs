@@ -16,7 +16,8 @@ pub struct Hypothesis {
     pub statement: LocalText,
     /// The test, by its name in `mimique test`.
     pub test: TestName,
-    /// Identifier of a question.
+    /// Identifier of a question that trials ask; of one that gives several answers, a part: `grid.valence`, a row
+    /// of a matrix, an option of a ranking.
     pub response: String,
     /// What of the response is tested.
     #[serde(default)]

@@ -154,6 +154,21 @@ pub enum QuestionKind {
 
 tagged_by_type!(QuestionKind);
 
+impl Question {
+    /// Names of its answers in the export: its own, or one for each part of a question that gives several
+    /// (`grid.valence`, a row of a matrix, the place of an option in a ranking).
+    pub fn response_ids(&self) -> Vec<String> {
+        let part = |part: &str| format!("{}.{part}", self.id);
+        let of = |choices: &[Choice]| choices.iter().map(|choice| part(&choice.value)).collect();
+        match &self.kind {
+            QuestionKind::ValenceArousal(_) => vec![part("valence"), part("arousal")],
+            QuestionKind::Matrix(matrix) => of(&matrix.rows),
+            QuestionKind::Ranking(ranking) => of(&ranking.options),
+            _ => vec![self.id.clone()],
+        }
+    }
+}
+
 impl QuestionKind {
     /// The word of the file: `likert`...
     pub fn word(&self) -> &'static str {

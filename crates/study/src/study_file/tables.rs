@@ -16,7 +16,7 @@ pub struct TableLayout {
     pub caption: LocalText,
     /// How it is laid out.
     pub layout: Layout,
-    /// Identifiers of questions: its rows, in order.
+    /// Identifiers of questions, or of their parts (`grid.valence`): its rows, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub responses: Vec<String>,
     /// Factors of the clips, questions about the participant, or `assigned_condition`: the condition

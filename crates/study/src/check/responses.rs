@@ -1,0 +1,82 @@
+//! What hypotheses and tables take: answers to questions of trials, by their names in the export.
+
+use super::Subject;
+use super::issue::Issues;
+use super::nearest::suggestion;
+use crate::study_file::{Component, Question, Sequence, SequenceItem, Study, TrialsComponent};
+
+/// The question that gives an answer of this name.
+pub(super) fn question<'s>(study: &'s Study, response: &str) -> Option<&'s Question> {
+    study.all_questions().find(|question| question.response_ids().iter().any(|id| id == response))
+}
+
+/// The same, if it is asked in trials; what is wrong with the name at `place` is reported.
+/// `of_conditions`: conditions are compared, each of which is looked at by itself.
+pub(super) fn tested<'s>(
+    subject: &Subject<'s>,
+    response: &str,
+    place: String,
+    of_conditions: bool,
+    issues: &mut Issues,
+) -> Option<&'s Question> {
+    let study = subject.study;
+    let Some(question) = question(study, response) else {
+        if let Some(whole) = study.all_questions().find(|question| question.id == response) {
+            let message = format!("\"{response}\" gives several answers");
+            let parts: Vec<String> =
+                whole.response_ids().iter().map(|id| format!("\"{id}\"")).collect();
+            let hint = format!("name one of them: {}", parts.join(", "));
+            issues.error(place, "several-answers", message, hint);
+            return None;
+        }
+        let known: Vec<String> = study.all_questions().flat_map(Question::response_ids).collect();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        let message = format!("there is no question \"{response}\"");
+        issues.error(place, "unknown-reference", message, suggestion(response, &known));
+        return None;
+    };
+    if !of_conditions && is_asked_in_no_trial(study, &question.id) {
+        let message = format!("no trial asks \"{}\": its answers belong to no clip", question.id);
+        let hint = "ask it in the trials of the sequence, or test a question that is asked there";
+        issues.error(place, "not-asked", message, hint);
+        return None;
+    }
+    Some(question)
+}
+
+/// Whether a trial that a condition is shown asks a question.
+pub(super) fn is_asked(study: &Study, condition: &str, question: &str) -> bool {
+    let blocks = trials(study, &study.sequence, Some(condition));
+    blocks.into_iter().any(|block| asks(block, question))
+}
+
+/// Whether trials are shown, and none of them, to nobody, asks a question.
+fn is_asked_in_no_trial(study: &Study, question: &str) -> bool {
+    let shown_to = study.conditions().into_iter().map(Some).chain([None]);
+    let blocks: Vec<_> =
+        shown_to.flat_map(|condition| trials(study, &study.sequence, condition)).collect();
+    !blocks.is_empty() && !blocks.iter().any(|block| asks(block, question))
+}
+
+/// The blocks of trials that a condition is shown.
+fn trials<'s>(
+    study: &'s Study,
+    sequence: &Sequence,
+    condition: Option<&str>,
+) -> Vec<&'s TrialsComponent> {
+    let of = |item: &SequenceItem| match item {
+        SequenceItem::Sequence(nested) if nested.is_shown_in(condition) => {
+            trials(study, nested, condition)
+        }
+        SequenceItem::Sequence(_) => Vec::new(),
+        SequenceItem::Component(name) => match study.components.get(name) {
+            Some(Component::Trials(block)) => vec![block],
+            _ => Vec::new(),
+        },
+    };
+    sequence.components.iter().flat_map(of).collect()
+}
+
+fn asks(block: &TrialsComponent, question: &str) -> bool {
+    block.questions.iter().any(|id| id == question)
+}
