@@ -160,6 +160,8 @@ pub fn power(
     check(study, options)?;
     parameters.check(study)?;
     let null = parameters.without_effects(study);
+    let effects: Vec<bool> =
+        study.hypotheses.iter().map(|each| parameters.has_effect(study, each)).collect();
     let most = options.participants.iter().copied().max().unwrap_or(0);
     let own_clips = study.clips().len();
     let sizes: Vec<Option<usize>> = match options.clips.as_slice() {
@@ -189,7 +191,7 @@ pub fn power(
                 .enumerate()
                 .map(|(place, hypothesis)| HypothesisPower {
                     id: hypothesis.id.clone(),
-                    effect: parameters.has_effect(study, hypothesis),
+                    effect: effects[place],
                     power: columns(&with, place, options.alpha),
                     false_positives: without
                         .as_ref()

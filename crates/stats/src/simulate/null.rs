@@ -17,11 +17,11 @@ impl Parameters {
     }
 
     /// Whether there is an effect of this hypothesis's factors on its response. Typed numbers and choices
-    /// without a right answer never have one; a correlation has no factors and needs none.
+    /// without a right answer never have one.
     pub fn has_effect(&self, study: &Study, hypothesis: &Hypothesis) -> bool {
         let mut null = self.clone();
         null.drop_effects_of(study, hypothesis);
-        hypothesis.factors.is_empty() || null != *self
+        null != *self
     }
 
     fn drop_effects_of(&mut self, study: &Study, hypothesis: &Hypothesis) {

@@ -23,9 +23,7 @@ pub(super) fn tested<'s>(
     let Some(question) = question(study, response) else {
         if let Some(whole) = study.all_questions().find(|question| question.id == response) {
             let message = format!("\"{response}\" gives several answers");
-            let parts: Vec<String> =
-                whole.response_ids().iter().map(|id| format!("\"{id}\"")).collect();
-            let hint = format!("name one of them: {}", parts.join(", "));
+            let hint = format!("name one of them: \"{}\"", whole.response_ids().join("\", \""));
             issues.error(place, "several-answers", message, hint);
             return None;
         }

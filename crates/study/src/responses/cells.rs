@@ -39,28 +39,18 @@ pub(super) fn number(value: f64) -> Value {
 
 /// An answer as rows: suffix of the response's name, and the cell.
 pub(super) fn answer_cells(question: &Question, answer: &Value) -> Vec<(String, Value)> {
-    match &question.kind {
-        QuestionKind::Matrix(matrix) => matrix
-            .rows
-            .iter()
-            .map(|row| (format!(".{}", row.value), plain(answer.get(&row.value))))
-            .collect(),
-        QuestionKind::ValenceArousal(_) => ["valence", "arousal"]
-            .iter()
-            .map(|axis| (format!(".{axis}"), plain(answer.get(axis))))
-            .collect(),
-        QuestionKind::Ranking(ranking) => ranking
-            .options
-            .iter()
-            .map(|option| {
-                let place = answer.as_array().and_then(|ranked| {
-                    ranked.iter().position(|each| each.as_str() == Some(&option.value))
-                });
-                let place = place.map_or(Value::Null, |place| (place + 1).into());
-                (format!(".{}", option.value), place)
-            })
-            .collect(),
-        _ => vec![(String::new(), plain(Some(answer)))],
+    let cell = |part: &str| match &question.kind {
+        QuestionKind::Ranking(_) => {
+            let ranked = answer.as_array();
+            let place =
+                ranked.and_then(|it| it.iter().position(|each| each.as_str() == Some(part)));
+            place.map_or(Value::Null, |place| (place + 1).into())
+        }
+        _ => plain(answer.get(part)),
+    };
+    match question.parts() {
+        Some(parts) => parts.into_iter().map(|part| (format!(".{part}"), cell(part))).collect(),
+        None => vec![(String::new(), plain(Some(answer)))],
     }
 }
 

@@ -359,10 +359,11 @@ fn question_columns(question: &Question, language: &str) -> Vec<Column> {
             .collect(),
         _ => Vec::new(),
     };
-    answer_cells(question, &Value::Null)
+    question
+        .response_ids()
         .into_iter()
-        .map(|(suffix, _)| {
-            let mut column = Column::new(&format!("{}{suffix}", question.id), kind, prompt);
+        .map(|id| {
+            let mut column = Column::new(&id, kind, prompt);
             column.levels = levels.clone();
             column
         })

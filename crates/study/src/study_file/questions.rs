@@ -155,16 +155,24 @@ pub enum QuestionKind {
 tagged_by_type!(QuestionKind);
 
 impl Question {
-    /// Names of its answers in the export: its own, or one for each part of a question that gives several
-    /// (`grid.valence`, a row of a matrix, the place of an option in a ranking).
-    pub fn response_ids(&self) -> Vec<String> {
-        let part = |part: &str| format!("{}.{part}", self.id);
-        let of = |choices: &[Choice]| choices.iter().map(|choice| part(&choice.value)).collect();
+    /// The parts of a question that gives several answers: the axes of a grid, the rows of a matrix, the
+    /// options whose places a ranking gives.
+    pub fn parts(&self) -> Option<Vec<&str>> {
+        let values =
+            |choices| Some(<[Choice]>::iter(choices).map(|it| it.value.as_str()).collect());
         match &self.kind {
-            QuestionKind::ValenceArousal(_) => vec![part("valence"), part("arousal")],
-            QuestionKind::Matrix(matrix) => of(&matrix.rows),
-            QuestionKind::Ranking(ranking) => of(&ranking.options),
-            _ => vec![self.id.clone()],
+            QuestionKind::ValenceArousal(_) => Some(vec!["valence", "arousal"]),
+            QuestionKind::Matrix(matrix) => values(&matrix.rows),
+            QuestionKind::Ranking(ranking) => values(&ranking.options),
+            _ => None,
+        }
+    }
+
+    /// Names of its answers in the export: its own, or one for each part (`grid.valence`).
+    pub fn response_ids(&self) -> Vec<String> {
+        match self.parts() {
+            Some(parts) => parts.iter().map(|part| format!("{}.{part}", self.id)).collect(),
+            None => vec![self.id.clone()],
         }
     }
 }
