@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Fuzzes targets one after the other, each for so many seconds of processor time, and prints the
-# rows of the record (tests/records/fuzz-mocap.md).
+# Fuzzes one folder of the corpus after the other, each for so many seconds of processor time, and prints
+# the rows of the record (tests/records/fuzz-mocap.md). A folder is named after its target, or after the
+# format of captures or weights that the target `capture` is to read.
 #
-#   cargo +nightly fuzz build && fuzz/run.sh LOGS [TARGET...]     all targets by default
+#   cargo +nightly fuzz build && fuzz/run.sh LOGS [FOLDER...]     all folders by default
 #   fuzz/run.sh --record LOGS                                      the rows of what has been run
 #
 # FUZZ_SECONDS (600) of each; FUZZ_BIN is the folder of the built targets. What is found lies in
@@ -31,8 +32,11 @@ if [ "$1" = --record ]; then record "$2"; exit; fi
 logs=$1; shift
 bin=${FUZZ_BIN:-$here/target/x86_64-unknown-linux-gnu/release}
 mkdir -p "$logs/found"
-[ $# -gt 0 ] || set -- $(cd "$here/fuzz_targets" && ls | sed 's/\.rs$//')
+[ $# -gt 0 ] || set -- $(ls "$here/corpus")
 for target; do
+  program=$target
+  [ -e "$here/fuzz_targets/$target.rs" ] || program=capture
+  export FUZZ_FORMAT=$target
   corpus=$logs/corpus/$target
   mkdir -p "$corpus"
   : > "$logs/$target.times"
@@ -41,7 +45,7 @@ for target; do
     round=$logs/$target.round
     status=0
     TIMEFORMAT='cpu %U %S'
-    { time "$bin/$target" "$corpus" "$here/corpus/$target" -max_total_time=60 -timeout=25 \
+    { time "$bin/$program" "$corpus" "$here/corpus/$target" -max_total_time=60 -timeout=25 \
         -rss_limit_mb=2048 -artifact_prefix="$logs/found/$target-" -print_final_stats=1 \
         > "$round" 2>&1; } 2> "$round.time" || status=$?
     runs=$(awk '/stat::number_of_executed_units/ { print $2 }' "$round")

@@ -1,5 +1,5 @@
 //! Embeds the pages: every file of `target/web-dist` (or of `MIMIQUE_WEB_DIST`) with its brotli and
-//! gzip forms, as a table of `include_bytes!` that `src/assets.rs` reads.
+//! gzip forms, as a table of `include_bytes!` that `src/files/assets.rs` reads.
 //!
 //! Without the folder the table is empty, and `mimique serve` says how to build the pages.
 
@@ -10,19 +10,21 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-#[path = "src/compression.rs"]
+#[path = "src/files/compression.rs"]
 #[allow(dead_code)]
 mod compression;
-#[path = "src/folder.rs"]
+#[path = "src/files/folder.rs"]
 mod folder;
-#[path = "src/tight_gzip.rs"]
+#[path = "src/files/tight_gzip.rs"]
 mod tight_gzip;
 
 fn main() -> io::Result<()> {
     for variable in ["MIMIQUE_WEB_DIST", "CARGO_TARGET_DIR"] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
-    for source in ["build.rs", "src/compression.rs", "src/folder.rs", "src/tight_gzip.rs"] {
+    for source in
+        ["build.rs", "src/files/compression.rs", "src/files/folder.rs", "src/files/tight_gzip.rs"]
+    {
         println!("cargo::rerun-if-changed={source}");
     }
     let dist = dist();

@@ -13,7 +13,7 @@ import { heard } from "./lib/snapshot.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 
-/** Waits until as many signed videos as here can be played in each question, and so many pictures are seen. */
+/** Waits until as many sign-language videos as here can be played in each question, and so many pictures are seen. */
 function signs(page, videos, pictures) {
   const there = ([videos, pictures]) => {
     const all = document.querySelectorAll("video");
@@ -37,6 +37,7 @@ async function answerAll(page) {
     if (id === "several") await question.locator("label").first().click();
     else if (id === "slider") await question.locator("input[type=range]").press("ArrowRight");
     else if (id === "matrix") for (const row of await question.locator("[role=radiogroup], tr:has(input)").all()) await row.locator("label, input").first().click();
+    else if (id === "extremes") for (const pick of [0, 1]) await question.locator("[role=radiogroup]").nth(pick).locator("label").nth(pick).click();
     else if (id === "number") await question.locator("input").fill("30");
     else if (id === "short") await question.locator("input").fill("word");
     else if (id === "long") await question.locator("textarea").fill("some words");
@@ -75,7 +76,7 @@ for (const [scheme, width, zoom, locale] of [
         }
         if (here.view === "questions") {
           // What is signed can be played, and a picture is there.
-          await signs(page, { single: 2, likert: 2, slider: 1, matrix: 3, ranking: 1, grid: 1 }, 2);
+          await signs(page, { single: 2, likert: 2, slider: 1, matrix: 3, ranking: 1, grid: 1, extremes: 2 }, 2);
           const slider = page.locator("fieldset[data-question=slider] input");
           const untouched = { "en-GB": "not answered yet", "fr-FR": "pas encore de réponse" }[locale];
           assert.equal(await slider.getAttribute("aria-valuetext"), untouched, "nothing is pre-selected");

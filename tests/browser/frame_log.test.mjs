@@ -1,4 +1,4 @@
-// The log of a play, by a display of the test's own: `static/stage-playback.js` without a browser. The
+// The log of a play, by a display of the test's own: `static/stage/playback.js` without a browser. The
 // onset is the first frame that went to the display, the clip's time is the display's since then, and a
 // frame is late that began more than 1.5 refresh periods after the one before.
 
@@ -16,8 +16,8 @@ globalThis.document = {
   addEventListener: (_, call) => (hidden = call),
   removeEventListener: () => (hidden = undefined),
 };
-const { Playback } = await import("../../static/stage-playback.js");
-const { refreshPeriod } = await import("../../static/stage-clock.js");
+const { Playback } = await import("../../static/stage/playback.js");
+const { refreshPeriod } = await import("../../static/stage/clock.js");
 
 /** What waits on promises goes on. */
 const settle = () => new Promise(setImmediate);

@@ -1,4 +1,4 @@
-// Every type of question, signed videos and a pair of clips by keyboard alone: nothing is clicked, nothing is
+// Every type of question, sign-language videos and a pair of clips by keyboard alone: nothing is clicked, nothing is
 // focused by a script, and what was pressed is what is stored.
 
 import assert from "node:assert/strict";
@@ -64,6 +64,10 @@ test("keyboard: every type of question, videos and a comparison", { skip: unable
     await press("Enter");
     await to("grid", "input");
     await press("Space", "ArrowRight");
+    await to("extremes", "[role=radiogroup]:nth-of-type(1) input");
+    await press("Space", "ArrowRight");
+    await to("extremes", "[role=radiogroup]:nth-of-type(2) input");
+    await press("Space");
     await go(page, "keyboard");
     here = await leave(page, here);
 
@@ -94,6 +98,7 @@ test("keyboard: every type of question, videos and a comparison", { skip: unable
       long: "some words",
       ranking: ["mouth", "eyes", "skin"],
       grid: { valence: 2, arousal: 9 },
+      extremes: { best: "mouth", worst: "eyes" },
     });
     assert.deepEqual(trial.answers, { nearer: "same", rating: 1 });
     assert.deepEqual(browser.errors, [], "the console is clean");

@@ -57,6 +57,7 @@ for (const reducedMotion of ["reduce", "no-preference"]) {
         const id = await question.getAttribute("data-question");
         if (id === "slider") await question.locator("input[type=range]").press("ArrowRight");
         else if (id === "matrix") for (const row of await question.locator("[role=radiogroup]").all()) await row.locator("label").first().click();
+        else if (id === "extremes") for (const pick of [0, 1]) await question.locator("[role=radiogroup]").nth(pick).locator("label").nth(pick).click();
         else if (id === "number") await question.locator("input").fill("30");
         else if (id === "short") await question.locator("input").fill("word");
         else if (id === "ranking") await question.locator("[data-action=confirm-order]").click();

@@ -122,7 +122,7 @@ test(`nothing lost: ${sessions} sessions over a bad network`, { skip: unable, ti
     mimique(["export", "--database", server.database, "--out", csv]);
     const rows = parse(readFileSync(csv, "utf8"));
     assert.deepEqual(rows.map((row) => `${row.response_id} = ${row.answer}`).sort(), clicked.sort(), "0 lost, 0 doubled");
-    assert.equal(new Set(rows.map((row) => row.participant_id)).size, sessions, "one session a participant");
+    assert.equal(new Set(rows.map((row) => row.participant_id)).size, sessions, "one session per participant");
     assert.ok(rows.every((row) => row.status === "completed"));
     console.log(`${sessions} sessions, ${rows.length} answers, ${reloads} reloads, ${kills} killed tabs, requests ${JSON.stringify(totals)}: 0 lost, 0 doubled`);
     assert.ok(totals.lost + totals.unanswered + totals.held + totals.silent > 0, "there was a storm");

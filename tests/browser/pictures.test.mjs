@@ -76,7 +76,7 @@ for (const [name, backend] of cases) {
       const { page } = browser;
       await page.goto(`${server.url}/?backend=${backend}`);
       const drawn = await page.evaluate(async ({ size: [width, height], yaw, weights: posed }) => {
-        const { openStage, putClip } = await import("/stage-host.js");
+        const { openStage, putClip } = await import("/stage/host.js");
         const pack = new Uint8Array(await (await fetch("/pack")).arrayBuffer());
         const weights = Float32Array.from(posed);
         await putClip({ clip: "head", avatarHash: "head", avatarPack: pack, weights, frames: 1, shapes: weights.length, rate_hz: 60 });

@@ -1,4 +1,4 @@
-// How people come from a recruiting service and go back: with the examples of docs/recruitment.md, every way
+// How people come from a recruiting service and go back: with the examples of docs/guide/recruitment.md, every way
 // a session can end, each with its code and its address, or without.
 
 import assert from "node:assert/strict";
@@ -16,7 +16,7 @@ const unable = skip(!executable && "Chromium not found");
 
 /** The section `recruitment` that the documentation gives under a heading. */
 function documented(heading) {
-  const page = readFileSync(join(root, "docs/recruitment.md"), "utf8");
+  const page = readFileSync(join(root, "docs/guide/recruitment.md"), "utf8");
   const [, part] = page.split(`\n## ${heading}\n`);
   return JSON.parse(`{${part.match(/```json\n([^]*?)```/)[1]}}`).recruitment;
 }

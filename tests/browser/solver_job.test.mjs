@@ -1,5 +1,5 @@
 // The worker that solves clips says nothing for minutes: the clip fails with words, and the next try gets
-// another worker. Without a browser: `static/stage-clips.js` itself, with a worker of the test's own.
+// another worker. Without a browser: `static/stage/clips.js` itself, with a worker of the test's own.
 
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
@@ -24,7 +24,7 @@ test("solver job: a silent worker is given up, and the next one solves", async (
       this.ended = true;
     }
   };
-  const { prepareClip } = await import("../../static/stage-clips.js");
+  const { prepareClip } = await import("../../static/stage/clips.js");
   const [avatar, operators, take] = hashes;
   const source = { avatar, operators, take, method: {}, duration_ms: 100, bytes: 0, provenance: "p", weights_hash: "" };
   const asked = async (count) => {

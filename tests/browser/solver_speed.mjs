@@ -4,7 +4,7 @@
 //   node tests/browser/solver_speed.mjs WEB_DIST PROBLEM_FOLDER
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { basename, join, resolve } from "node:path";
+import { basename, join, normalize, resolve } from "node:path";
 import { open } from "./lib/browser.mjs";
 
 const [modules, folder] = process.argv.slice(2).map((path) => resolve(path));
@@ -13,7 +13,7 @@ const page404 = { status: 404, type: "text/plain", body: "" };
 
 function answer(path) {
   if (path === "/") return { status: 200, type: types.html, body: "<!doctype html><title>54 clips</title>" };
-  const name = basename(path);
+  const name = path.startsWith("/problem/") ? basename(path) : normalize(path);
   try {
     const body = readFileSync(join(path.startsWith("/problem/") ? folder : modules, name));
     return { status: 200, type: types[name.split(".").pop()] ?? "application/octet-stream", body };
@@ -35,7 +35,7 @@ try {
     const operators = await bytes("operators.mmop");
     const takes = await Promise.all(Array.from({ length: 54 }, (_, clip) => bytes(`clip${clip}.mmtk`)));
     const method = await (await fetch("/problem/lsts.json")).json();
-    const worker = new Worker("/solver-worker.js", { type: "module" });
+    const worker = new Worker("/stage/solver-worker.js", { type: "module" });
     const solve = (id, take) =>
       new Promise((done, fail) => {
         worker.onmessage = ({ data }) => (data.error ? fail(new Error(data.error)) : done(data));

@@ -211,7 +211,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
     // Weights of another length are refused with both names.
     writeFileSync(file("short.csv"), readFileSync(file("known.csv"), "utf8").split("\n").slice(0, 101).join("\n"));
     await page.setInputFiles("#training-weights-file", file("short.csv"));
-    await page.waitForFunction(() => document.querySelector("#training-facts").textContent.includes("JawMoCap.c3d has 1590 frames, short.csv 100; give a row of weights a frame"));
+    await page.waitForFunction(() => document.querySelector("#training-facts").textContent.includes("JawMoCap.c3d has 1590 frames, short.csv 100; give a row of weights per frame"));
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();

@@ -11,7 +11,7 @@ import { preview, root } from "./lib/server.mjs";
 const unable = skip(!executable && "Chromium not found");
 
 test("studio: a compression that only native builds read is named, and the head stays", { skip: unable, timeout: 240_000 }, async () => {
-  // Native builds read this one: a seed of the fuzzer, whose corpus is read in `crates/face/tests`.
+  // Native builds read this one: a seed of the fuzzer, whose corpus is read in `crates/avatar-files/tests`.
   const glb = readFileSync(join(root, "fuzz/corpus/avatar_file/seed-glb"));
   assert.ok(glb.includes("EXT_meshopt_compression"));
   const file = join(mkdtempSync(join(tmpdir(), "mimique-refused-")), "packed.glb");

@@ -9,7 +9,7 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [modules, cases] = process.argv.slice(2).map((folder) => resolve(folder));
-const { inflated } = await import("../../static/inflated.js");
+const { inflated } = await import("../../static/stage/inflated.js");
 const solver = await import(pathToFileURL(join(modules, "solver.js")));
 await solver.default({ module_or_path: readFileSync(join(modules, "solver_bg.wasm")) });
 
@@ -18,7 +18,7 @@ for (const clip of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) 
   const bytes = (name) => new Uint8Array(readFileSync(join(cases, name)));
   const [operators, take] = [await inflated(bytes(clip.operators)), bytes(clip.take)];
   const start = performance.now();
-  const solved = solver.solve(operators, take, clip.method);
+  const solved = solver.solve(operators, take, JSON.stringify(clip.method));
   const milliseconds = performance.now() - start;
   const weights = solved.weights();
   const right =
@@ -35,7 +35,7 @@ for (const clip of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) 
 // What is damaged is an Error with a message, not a trap.
 for (const wrong of [new Uint8Array(0), new Uint8Array([77, 77, 79, 80, 9, 9, 9, 9, 9, 9, 9, 9])]) {
   try {
-    solver.solve(wrong, wrong, { method: "lsts" });
+    solver.solve(wrong, wrong, '{"method": "lsts"}');
     console.log("DIFFERENT: a damaged pack was solved");
     failed += 1;
   } catch (error) {

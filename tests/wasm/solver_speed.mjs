@@ -8,14 +8,14 @@ import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
 
 const [modules, folder] = process.argv.slice(2).map((path) => resolve(path));
-const { inflated } = await import("../../static/inflated.js");
+const { inflated } = await import("../../static/stage/inflated.js");
 const solver = await import(pathToFileURL(join(modules, "solver.js")));
 const { memory } = await solver.default({ module_or_path: readFileSync(join(modules, "solver_bg.wasm")) });
 const bytes = (name) => new Uint8Array(readFileSync(join(folder, name)));
 const [operators, take] = [await inflated(bytes("operators.mmop")), bytes("take.mmtk")];
 
 function solve(method) {
-  const spec = JSON.parse(readFileSync(join(folder, `${method}.json`), "utf8"));
+  const spec = readFileSync(join(folder, `${method}.json`), "utf8");
   const before = process.cpuUsage();
   const solved = solver.solve(operators, take, spec);
   const { user, system } = process.cpuUsage(before);

@@ -32,7 +32,7 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/solver-benchmarks.md, or docs/statistics-benchmarks.md
+    /// Write the figures into docs/measured/solver-benchmarks.md, or docs/measured/statistics-benchmarks.md
     #[arg(long)]
     record: bool,
 }
@@ -60,152 +60,239 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let folder = target().join("bench");
     std::fs::create_dir_all(&folder)?;
-    let mut ours = Partner::start(figures(&data).arg(&folder))?;
-    let python = match std::env::var_os("MIMIQUE_PYTHON") {
-        Some(python) => Ok(PathBuf::from(python)),
-        None => install::python("python", &root().join("tests/support/requirements.txt"))?,
-    };
-    let python = python.map_err(anyhow::Error::msg)?;
-    let mut peers = Partner::start(
-        Command::new(python)
-            .arg(root().join("tests/peers/solvers.py"))
-            .arg(&folder)
-            .envs(["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"].map(|n| (n, "1"))),
-    )?;
     let dist = std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(web::dist, PathBuf::from);
-    let mut wasm = Partner::start(
-        Command::new("node").arg(root().join("tests/wasm/solver_speed.mjs")).args([&dist, &folder]),
-    )?;
-    let apart = |name: &str| number(&peers.greeting, &format!("\"{name}\":"));
-    let (bvls, tight, default) = (apart("lsts")?, apart("lsts-norm")?, apart("lsts-norm-default")?);
-    say(&format!(
-        "largest difference between SciPy's weights and ours: bvls {bvls:.1e}, L-BFGS-B {tight:.1e} (tolerances 0 and 1e-10), {default:.1e} (as it comes)"
-    ));
-    if !(bvls < 1e-8 && tight < 1e-5) {
-        bail!("SciPy finds other weights than we do: nothing to compare");
-    }
-
-    let mut rounds: Vec<[f64; 14]> = Vec::new();
-    let mut memory = 0.0;
+    let mut partners = Partners::start(&data, &folder, &dist)?;
+    let differences = Differences::of(&partners.peers)?;
+    differences.check()?;
+    let mut rounds = Vec::new();
     for round in 1..=args.rounds.max(1) {
         say(&format!("round {round} of {}", args.rounds.max(1)));
-        let mut packs = |method: &str| -> Result<[f64; 2]> {
-            let native = ours.rate(&format!("packs {method}"))?;
-            let line = wasm.ask(method)?;
-            memory = number(&line, "\"memory\":")?;
-            Ok([native, number(&line, "\"units\":")? / number(&line, "\"seconds\":")?])
-        };
-        let ([native, in_wasm], [native_norm, in_wasm_norm]) =
-            (packs("lsts")?, packs("lsts-norm")?);
-        rounds.push([
-            ours.rate("lsts")?,
-            peers.rate("lsts")?,
-            ours.rate("lsts-norm")?,
-            peers.rate("lsts-norm")?,
-            peers.rate("lsts-norm-default")?,
-            ours.rate("front end")?,
-            ours.rate("synthesis")?,
-            native,
-            in_wasm,
-            native_norm,
-            in_wasm_norm,
-            1.0 / ours.rate("set-up 11248")?,
-            1.0 / ours.rate("set-up 26719")?,
-            ours.rate("lsts fine")?,
-        ]);
+        rounds.push(partners.round()?);
     }
-    let column = |k: usize| median(rounds.iter().map(|r| r[k]).collect());
-    let ratio = |a: usize, b: usize| median(rounds.iter().map(|r| r[a] / r[b]).collect());
-    let rate = |k: usize| format!("{:.0} frames/s", column(k));
-    let against = |a: usize, b: usize, what: &str| {
-        let ratios: Vec<f64> = rounds.iter().map(|r| r[a] / r[b]).collect();
-        let (least, most) =
-            ratios.iter().fold((f64::MAX, 0.0_f64), |(l, m), &r| (l.min(r), m.max(r)));
-        format!(
-            "{:.0} x {what} ({:.0} frames/s); rounds {least:.0} to {most:.0}",
-            ratio(a, b),
-            column(b)
-        )
-    };
-    let mut rows: Vec<[String; 4]> = Vec::new();
-    let mut row = |what: &str, figure: String, beside: String, goal: &str| {
-        rows.push([what.to_owned(), figure, beside, goal.to_owned()]);
-    };
-    row("`lsts`, solve alone", rate(0), against(0, 1, "bvls"), "80 x");
-    row("`lsts-norm`, solve alone", rate(2), against(2, 3, "L-BFGS-B, tight"), "60 x");
-    row("", String::new(), against(2, 4, "L-BFGS-B as it comes"), "");
-    row(
-        "`lsts`, mesh four times as fine",
-        rate(13),
-        format!("{:.2} of the skin's", ratio(13, 0)),
-        "the same",
-    );
-    row("front end", rate(5), String::new(), "100,000 frames/s");
-    row("vertex synthesis, S = 11,248", rate(6), String::new(), "15,000 frames/s");
-    let wasm_row =
-        |a: usize, b: usize| format!("{:.2} of native ({:.0} frames/s)", ratio(b, a), column(a));
-    row("wasm, packs to weights, `lsts`", rate(8), wasm_row(7, 8), "0.6");
-    row("wasm, packs to weights, `lsts-norm`", rate(10), wasm_row(9, 10), "0.6");
-    row("set-up, skin, S = 11,248", format!("{:.1} ms", 1e3 * column(11)), String::new(), "60 ms");
-    row(
-        "set-up, whole head",
-        format!("{:.1} ms", 1e3 * column(12)),
-        "S = 26,511: seams closed".into(),
-        "160 ms",
-    );
-    row(
-        "wasm memory",
-        format!("{:.1} MiB", memory / 1048576.0),
-        "after both methods on 5,660 frames".into(),
-        "150 MiB",
-    );
+    let mut rows = rows(&rounds);
     if args.browser {
-        let folder_of_tests = root().join("tests/browser");
-        install::npm(&folder_of_tests)?;
-        let mut node = Command::new("node");
-        node.arg(folder_of_tests.join("solver_speed.mjs")).args([&dist, &folder]);
-        let line = output(&mut node).with_context(|| format!("failed: {}", show(&node)))?;
-        let (played, seconds) = (number(&line, "\"played\":")?, number(&line, "\"seconds\":")?);
-        let gap = number(&line, "\"longestGapMs\":")?;
-        let none = line.contains("\"longTasks\":[]");
-        let blocked = if none {
-            "no task of 50 ms on the page"
-        } else {
-            "the page was blocked for 50 ms or more"
-        };
-        row(
-            "54 clips of 4 s in Chromium's worker",
-            format!("{:.0} x as fast as they play", played / seconds),
-            format!("{seconds:.2} s; {blocked}, longest gap {gap:.0} ms"),
-            "20 x, never 50 ms",
-        );
+        rows.push(in_browser(&dist, &folder)?);
     }
     let table = table(&rows);
     print(&table);
     if args.plot {
-        let points = bench_plot::measure(|parts| {
-            let mut command = figures(&data);
-            command.args(["scale", &parts.to_string()]);
-            output(&mut command).with_context(|| format!("failed: {}", show(&command)))
-        })?;
-        let file = root().join("docs/solver-set-up.svg");
-        std::fs::write(&file, bench_plot::svg(&points))?;
-        say(&format!("drawn: {}", file.display()));
+        plot(&data)?;
     }
     if args.record {
         let versions = format!(
             "SciPy {}, NumPy {}, {} rounds.",
-            text(&peers.greeting, "scipy")?,
-            text(&peers.greeting, "numpy")?,
+            text(&partners.peers.greeting, "scipy")?,
+            text(&partners.peers.greeting, "numpy")?,
             rounds.len()
         );
         record(
-            "docs/solver-benchmarks.md",
-            &format!(
-                "{table}\n{versions} Largest difference between SciPy's weights and ours: bvls {bvls:.1e}, L-BFGS-B {tight:.1e} with tolerances 0 and 1e-10, {default:.1e} as it comes.\n"
-            ),
+            "docs/measured/solver-benchmarks.md",
+            &format!("{table}\n{versions} {}.\n", differences.sentence()),
         )?;
     }
+    Ok(())
+}
+
+/// The processes whose figures are compared: they wait for questions, so that every round asks all of them.
+struct Partners {
+    ours: Partner,
+    peers: Partner,
+    wasm: Partner,
+}
+
+impl Partners {
+    fn start(data: &Path, folder: &Path, dist: &Path) -> Result<Self> {
+        let ours = Partner::start(figures(data).arg(folder))?;
+        let python = match std::env::var_os("MIMIQUE_PYTHON") {
+            Some(python) => Ok(PathBuf::from(python)),
+            None => install::python("python", &root().join("tests/support/requirements.txt"))?,
+        };
+        let python = python.map_err(anyhow::Error::msg)?;
+        let one_thread = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"];
+        let peers = Partner::start(
+            Command::new(python)
+                .arg(root().join("tests/peers/solvers.py"))
+                .arg(folder)
+                .envs(one_thread.map(|name| (name, "1"))),
+        )?;
+        let script = root().join("tests/wasm/solver_speed.mjs");
+        let wasm = Partner::start(Command::new("node").arg(script).args([dist, folder]))?;
+        Ok(Self { ours, peers, wasm })
+    }
+
+    /// Asks everybody everything once.
+    fn round(&mut self) -> Result<Round> {
+        let (lsts_wasm, _) = self.wasm("lsts")?;
+        let (lsts_norm_wasm, memory) = self.wasm("lsts-norm")?;
+        let ours = &mut self.ours;
+        Ok(Round {
+            lsts: ours.rate("lsts")?,
+            lsts_peer: self.peers.rate("lsts")?,
+            lsts_norm: ours.rate("lsts-norm")?,
+            lsts_norm_peer: self.peers.rate("lsts-norm")?,
+            lsts_norm_peer_default: self.peers.rate("lsts-norm-default")?,
+            front_end: ours.rate("front end")?,
+            synthesis: ours.rate("synthesis")?,
+            lsts_wasm,
+            lsts_norm_wasm,
+            wasm_memory: memory,
+            set_up_skin: 1.0 / ours.rate("set-up 11248")?,
+            set_up_head: 1.0 / ours.rate("set-up 26719")?,
+            lsts_fine: ours.rate("lsts fine")?,
+        })
+    }
+
+    /// From packs to weights: frames per second natively and in wasm, and the module's memory, bytes.
+    fn wasm(&mut self, method: &str) -> Result<([f64; 2], f64)> {
+        let native = self.ours.rate(&format!("packs {method}"))?;
+        let line = self.wasm.ask(method)?;
+        let in_wasm = number(&line, "\"units\":")? / number(&line, "\"seconds\":")?;
+        Ok(([native, in_wasm], number(&line, "\"memory\":")?))
+    }
+}
+
+/// How far SciPy's weights are from ours.
+struct Differences {
+    bvls: f64,
+    /// L-BFGS-B with tolerances 0 and 1e-10.
+    tight: f64,
+    /// L-BFGS-B as it comes.
+    default: f64,
+}
+
+impl Differences {
+    fn of(peers: &Partner) -> Result<Self> {
+        let apart = |name: &str| number(&peers.greeting, &format!("\"{name}\":"));
+        let (bvls, tight) = (apart("lsts")?, apart("lsts-norm")?);
+        Ok(Self { bvls, tight, default: apart("lsts-norm-default")? })
+    }
+
+    /// Only who finds the same weights is compared.
+    fn check(&self) -> Result<()> {
+        say(&self.sentence());
+        if !(self.bvls < 1e-8 && self.tight < 1e-5) {
+            bail!("SciPy finds other weights than we do: nothing to compare");
+        }
+        Ok(())
+    }
+
+    fn sentence(&self) -> String {
+        let Self { bvls, tight, default } = self;
+        format!(
+            "Largest difference between SciPy's weights and ours: bvls {bvls:.1e}, L-BFGS-B \
+             {tight:.1e} with tolerances 0 and 1e-10, {default:.1e} as it comes"
+        )
+    }
+}
+
+/// The figures of one round: frames per second, seconds of a set-up, bytes of memory.
+struct Round {
+    lsts: f64,
+    lsts_peer: f64,
+    lsts_norm: f64,
+    lsts_norm_peer: f64,
+    lsts_norm_peer_default: f64,
+    front_end: f64,
+    synthesis: f64,
+    /// From packs to weights, natively and in wasm.
+    lsts_wasm: [f64; 2],
+    lsts_norm_wasm: [f64; 2],
+    wasm_memory: f64,
+    set_up_skin: f64,
+    set_up_head: f64,
+    lsts_fine: f64,
+}
+
+/// What is measured, the figure, what it is compared with, the goal.
+type Row = [String; 4];
+
+fn row(what: &str, figure: String, beside: String, goal: &str) -> Row {
+    [what.to_owned(), figure, beside, goal.to_owned()]
+}
+
+fn rows(rounds: &[Round]) -> Vec<Row> {
+    let of = |figure: fn(&Round) -> f64| median(rounds.iter().map(figure).collect());
+    let rate = |figure: fn(&Round) -> f64| format!("{:.0} frames/s", of(figure));
+    let against = |figures: fn(&Round) -> [f64; 2], what: &str| {
+        let ratios: Vec<f64> = rounds.iter().map(figures).map(|[own, peer]| own / peer).collect();
+        let (least, most) =
+            ratios.iter().fold((f64::MAX, 0.0_f64), |(l, m), &r| (l.min(r), m.max(r)));
+        let peer = median(rounds.iter().map(|round| figures(round)[1]).collect());
+        let ratio = median(ratios);
+        format!("{ratio:.0} x {what} ({peer:.0} frames/s); rounds {least:.0} to {most:.0}")
+    };
+    let wasm = |figures: fn(&Round) -> [f64; 2]| {
+        let ratio = median(rounds.iter().map(figures).map(|[own, wasm]| wasm / own).collect());
+        let native = median(rounds.iter().map(|round| figures(round)[0]).collect());
+        format!("{ratio:.2} of native ({native:.0} frames/s)")
+    };
+    let milliseconds = |figure: fn(&Round) -> f64| format!("{:.1} ms", 1e3 * of(figure));
+    let tight = against(|r| [r.lsts_norm, r.lsts_norm_peer], "L-BFGS-B, tight");
+    let default = against(|r| [r.lsts_norm, r.lsts_norm_peer_default], "L-BFGS-B as it comes");
+    let bvls = against(|r| [r.lsts, r.lsts_peer], "bvls");
+    let fine = format!("{:.2} of the skin's", of(|r| r.lsts_fine / r.lsts));
+    let (alone, memory) = (String::new, format!("{:.1} MiB", of(|r| r.wasm_memory) / 1048576.0));
+    vec![
+        row("`lsts`, solve alone", rate(|r| r.lsts), bvls, "80 x"),
+        row("`lsts-norm`, solve alone", rate(|r| r.lsts_norm), tight, "60 x"),
+        row("", alone(), default, ""),
+        row("`lsts`, mesh four times as fine", rate(|r| r.lsts_fine), fine, "the same"),
+        row("front end", rate(|r| r.front_end), alone(), "100,000 frames/s"),
+        row("vertex synthesis, S = 11,248", rate(|r| r.synthesis), alone(), "15,000 frames/s"),
+        row(
+            "wasm, packs to weights, `lsts`",
+            rate(|r| r.lsts_wasm[1]),
+            wasm(|r| r.lsts_wasm),
+            "0.6",
+        ),
+        row(
+            "wasm, packs to weights, `lsts-norm`",
+            rate(|r| r.lsts_norm_wasm[1]),
+            wasm(|r| r.lsts_norm_wasm),
+            "0.6",
+        ),
+        row("set-up, skin, S = 11,248", milliseconds(|r| r.set_up_skin), alone(), "60 ms"),
+        row(
+            "set-up, whole head",
+            milliseconds(|r| r.set_up_head),
+            "S = 26,511: seams closed".into(),
+            "160 ms",
+        ),
+        row("wasm memory", memory, "after both methods on 5,660 frames".into(), "150 MiB"),
+    ]
+}
+
+/// 54 clips solved by the page's own worker.
+fn in_browser(dist: &Path, folder: &Path) -> Result<Row> {
+    let tests = root().join("tests/browser");
+    install::npm(&tests)?;
+    let mut node = Command::new("node");
+    node.arg(tests.join("solver_speed.mjs")).args([dist, folder]);
+    let line = output(&mut node).with_context(|| format!("failed: {}", show(&node)))?;
+    let (played, seconds) = (number(&line, "\"played\":")?, number(&line, "\"seconds\":")?);
+    let gap = number(&line, "\"longestGapMs\":")?;
+    let blocked = match line.contains("\"longTasks\":[]") {
+        true => "no task of 50 ms on the page",
+        false => "the page was blocked for 50 ms or more",
+    };
+    Ok(row(
+        "54 clips of 4 s in Chromium's worker",
+        format!("{:.0} x as fast as they play", played / seconds),
+        format!("{seconds:.2} s; {blocked}, longest gap {gap:.0} ms"),
+        "20 x, never 50 ms",
+    ))
+}
+
+/// Draws how set-up grows with the mesh.
+fn plot(data: &Path) -> Result<()> {
+    let points = bench_plot::measure(|parts| {
+        let mut command = figures(data);
+        command.args(["scale", &parts.to_string()]);
+        output(&mut command).with_context(|| format!("failed: {}", show(&command)))
+    })?;
+    let file = root().join("docs/measured/solver-set-up.svg");
+    std::fs::write(&file, bench_plot::svg(&points))?;
+    say(&format!("drawn: {}", file.display()));
     Ok(())
 }
 

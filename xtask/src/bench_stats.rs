@@ -75,7 +75,7 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     let commands = commands(rounds, &folder, &file, peers)?;
     print(&format!("{table}\n{versions}\n\n{commands}"));
     if recorded {
-        let document = "docs/statistics-benchmarks.md";
+        let document = "docs/measured/statistics-benchmarks.md";
         record(document, &format!("{table}\n{versions}\n\n{commands}"))?;
     }
     Ok(())

@@ -27,7 +27,7 @@ pub fn run(args: &Args) -> Result<()> {
     if let Found::No(remedy) = install::C_COMPILER.ensure() {
         say(&format!("no C compiler, the build may fail: {remedy}"));
     }
-    web::all()?;
+    web::all(false)?;
     binary()?;
     let binary = binary_path();
     if args.no_serve {

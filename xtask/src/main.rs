@@ -14,10 +14,6 @@ mod install;
 mod process;
 mod tally;
 mod test;
-mod wasm_names;
-mod wasm_order;
-mod wasm_paths;
-mod wasm_silent;
 mod web;
 
 use clap::{Parser, Subcommand};

@@ -33,6 +33,14 @@ impl Tally {
         }
     }
 
+    /// Counts something that was done, or was not.
+    pub fn done(&mut self, name: &str, done: Result<()>) {
+        match done {
+            Ok(()) => self.passed += 1,
+            Err(error) => self.fail(format!("{name}: {error:#}")),
+        }
+    }
+
     /// Counts one failure.
     pub fn fail(&mut self, what: String) {
         say(&format!("FAILED: {what}"));

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: every check and test there is, and one closing line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Result, bail};
@@ -26,36 +26,48 @@ pub fn run(args: &Args) -> Result<()> {
     let no_skip = std::env::var_os("MIMIQUE_NO_SKIP").is_some_and(|v| v == "1");
     let mut tally = Tally::default();
     say(&format!("real data are looked for in {}", data().display()));
-
-    install::nextest()?;
-    need(&install::C_COMPILER);
-    need(&install::LAVAPIPE);
-    need(&install::POSTGRESQL);
-    need(&install::NGINX);
-    need(&install::R);
-    let python = match install::python("python", &root().join("tests/support/requirements.txt")) {
-        Ok(Ok(interpreter)) => Some(interpreter),
-        Ok(Err(remedy)) => {
-            say(&format!("no Python environment; the tests that need it will skip: {remedy}"));
-            None
-        }
-        Err(error) => {
-            say(&format!("no Python environment; the tests that need it will skip: {error:#}"));
-            None
-        }
-    };
-
+    let python = needed()?;
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
     // The server embeds the pages, so they come before everything that compiles it.
-    match web::all() {
-        Ok(()) => tally.passed += 1,
-        Err(error) => tally.fail(format!("pages: {error:#}")),
+    tally.done("pages", web::all(true));
+    tally.done("size of the pages", budget::check());
+    lints(&mut tally);
+    dependencies(&mut tally);
+    native(&mut tally, python.as_deref())?;
+    documentation(&mut tally);
+    if !args.no_browser {
+        browser(&mut tally)?;
     }
-    match budget::check() {
-        Ok(()) => tally.passed += 1,
-        Err(error) => tally.fail(format!("size of the pages: {error:#}")),
+    if !tally.close(!no_skip) {
+        bail!("not all is well");
     }
+    Ok(())
+}
 
+/// Installs what tests need; the Python environment, where there can be one.
+fn needed() -> Result<Option<PathBuf>> {
+    install::nextest()?;
+    for package in [
+        &install::C_COMPILER,
+        &install::LAVAPIPE,
+        &install::POSTGRESQL,
+        &install::NGINX,
+        &install::R,
+    ] {
+        need(package);
+    }
+    let requirements = root().join("tests/support/requirements.txt");
+    let remedy = match install::python("python", &requirements) {
+        Ok(Ok(interpreter)) => return Ok(Some(interpreter)),
+        Ok(Err(remedy)) => remedy,
+        Err(error) => format!("{error:#}"),
+    };
+    say(&format!("no Python environment; the tests that need it will skip: {remedy}"));
+    Ok(None)
+}
+
+/// Clippy, natively and for the modules of the pages.
+fn lints(tally: &mut Tally) {
     let mut lint = cargo();
     lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
     exclude_web(&mut lint);
@@ -76,9 +88,11 @@ pub fn run(args: &Args) -> Result<()> {
         let title = format!("clippy, wasm32, {name} {}", features.unwrap_or_default());
         tally.check(title.trim_end(), lint.args(["--", "-D", "warnings"]));
     }
+}
 
-    // Licences, sources and unwanted crates. Compiling it takes longer than all of the tests, so it is
-    // not installed here; advisories need its database from the network.
+/// Licences, sources and unwanted crates. Compiling cargo-deny takes longer than all of the tests, so that it
+/// is not installed here; advisories need its database from the network.
+fn dependencies(tally: &mut Tally) {
     if output(cargo().args(["deny", "--version"])).is_some() {
         let mut deny = cargo();
         tally.check("cargo deny", deny.args(["deny", "check", "bans", "licenses", "sources"]));
@@ -88,7 +102,10 @@ pub fn run(args: &Args) -> Result<()> {
              advisories not at all (cargo install --locked cargo-deny; cargo deny check)",
         );
     }
+}
 
+/// Unit, property, golden and HTTP tests, and the examples of the documentation.
+fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
     let mut tests = cargo();
     tests.args(["nextest", "run"]).args(locked()).args([
         "--release",
@@ -99,28 +116,23 @@ pub fn run(args: &Args) -> Result<()> {
     tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
     exclude_web(&mut tests);
     tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_WEB_DIST", web::dist());
-    if let Some(python) = &python {
+    if let Some(python) = python {
         tests.env("MIMIQUE_PYTHON", python);
     }
     tally.tests("unit, property, golden and http tests", &mut tests)?;
-
     let mut doc_tests = cargo();
     doc_tests.arg("test").args(locked()).args(["--release", "--doc", "--workspace"]);
     exclude_web(&mut doc_tests);
     tally.check("doc tests", &mut doc_tests);
+    Ok(())
+}
 
+/// The documentation of every public item, without a warning.
+fn documentation(tally: &mut Tally) {
     let mut docs = cargo();
     docs.arg("doc").args(locked()).args(["--workspace", "--no-deps", "--release"]);
     exclude_web(&mut docs);
     tally.check("documentation", docs.env("RUSTDOCFLAGS", "-D warnings"));
-
-    if !args.no_browser {
-        browser(&mut tally)?;
-    }
-    if !tally.close(!no_skip) {
-        bail!("not all is well");
-    }
-    Ok(())
 }
 
 /// Pages are used as a person uses them: by click, by keyboard, on both graphics back ends.

@@ -5,9 +5,10 @@
 //! | `app` | `web/app` | `web` | the participant's pages |
 //! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
-//! | `desk` | `web/studio` | `web-solver` | the studio's worker |
+//! | `studio` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
+//! | `panicking` | an example of `web/panics` | `web` | a solver that panics, for a test; not a part of the pages |
 //!
 //! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
 //! binaryen) and `esbuild` make the files smaller where node is there.
@@ -22,16 +23,15 @@ use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
 use crate::process::{cargo, locked, root, run as run_program, say, target};
-use crate::{wasm_names, wasm_order, wasm_paths, wasm_silent};
 
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (app, orders, stage_webgpu, stage_webgl, solver, desk); static files
-    /// always
+    /// Build only these modules (app, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
+    /// static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
-    /// Leave out wasm-opt: a quicker build of larger files, whose panics say in the console what they are
+    /// Leave out wasm-opt and esbuild: a quicker build of larger files
     #[arg(long)]
     no_opt: bool,
 }
@@ -47,7 +47,7 @@ struct Module {
     opt_level: &'static str,
 }
 
-const MODULES: [Module; 6] = [
+const MODULES: [Module; 7] = [
     Module {
         name: "app",
         package: "mimique-app",
@@ -67,6 +67,15 @@ const MODULES: [Module; 6] = [
         opt_level: "-Oz",
     },
     Module {
+        name: "panicking",
+        package: "mimique-web-panics",
+        library: "panicking",
+        example: true,
+        features: None,
+        profile: "web",
+        opt_level: "-Oz",
+    },
+    Module {
         name: "solver",
         package: "mimique-web-solver",
         library: "mimique_web_solver",
@@ -76,7 +85,7 @@ const MODULES: [Module; 6] = [
         opt_level: "-O3",
     },
     Module {
-        name: "desk",
+        name: "studio",
         package: "mimique-web-studio",
         library: "mimique_web_studio",
         example: false,
@@ -115,8 +124,8 @@ const FEATURES: [&str; 4] = [
 
 /// How `wasm-opt` makes every module small: what counts is the size after compression. Functions put into
 /// their callers (LLVM has done it where it pays) make the file smaller by a tenth and its gzip larger by a
-/// tenth; folding code and sharing locals, too, save bytes that the gzip does not have. The order of
-/// the functions is [`wasm_order`]'s.
+/// tenth; folding code, sharing locals and sorting functions by their use, too, save bytes that the gzip
+/// does not have.
 const WASM_OPT: [&str; 14] = [
     "--always-inline-max-function-size",
     "0",
@@ -134,18 +143,20 @@ const WASM_OPT: [&str; 14] = [
     "--strip-target-features",
 ];
 
-/// Scripts that are always loaded together become one file under the name of the first, which says
-/// to the others what the rest of them has: fewer requests, and a quarter less of them.
-const JOINED: [&str; 8] = [
-    "stage-host.js",
-    "stage-backend.js",
-    "stage-clips.js",
-    "stage-clock.js",
-    "stage-film.js",
-    "stage-packs.js",
-    "stage-pictures.js",
-    "stage-playback.js",
-];
+/// A script that is always loaded together with what it imports becomes one file: fewer requests, and a
+/// quarter fewer bytes. The files that nothing else imports are left out then.
+const BUNDLED: (&str, [&str; 7]) = (
+    "stage/host.js",
+    [
+        "stage/backend.js",
+        "stage/clips.js",
+        "stage/clock.js",
+        "stage/packs.js",
+        "stage/pictures.js",
+        "stage/playback.js",
+        "stage/video.js",
+    ],
+);
 
 /// Where the pages are gathered.
 pub fn dist() -> PathBuf {
@@ -156,24 +167,23 @@ pub fn dist() -> PathBuf {
 pub fn run(args: &Args) -> Result<()> {
     for name in &args.only {
         if !MODULES.iter().any(|m| m.name == name) {
-            bail!(
-                "no module is called {name}; there are: app, orders, solver, desk, stage_webgpu, stage_webgl"
-            );
+            let names: Vec<&str> = MODULES.iter().map(|module| module.name).collect();
+            bail!("no module is called {name}; there are: {}", names.join(", "));
         }
     }
-    build(|name| args.only.is_empty() || args.only.iter().any(|n| n == name), !args.no_opt)
+    build(|m| args.only.is_empty() || args.only.iter().any(|name| name == m.name), !args.no_opt)
 }
 
-/// Builds every module.
-pub fn all() -> Result<()> {
-    build(|_| true, true)
+/// Builds every module of the pages, and with `tests` those that only tests load.
+pub fn all(tests: bool) -> Result<()> {
+    build(|module| tests || !module.example, true)
 }
 
-fn build(wanted: impl Fn(&str) -> bool, optimise: bool) -> Result<()> {
+fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
     install::wasm_target()?;
     let tools = if optimise { tools()? } else { None };
     let wasm_opt = tools.as_ref().map(|folder| folder.join("binaryen/bin/wasm-opt"));
-    for module in MODULES.iter().filter(|m| wanted(m.name)) {
+    for module in MODULES.iter().filter(|module| wanted(module)) {
         module.build(wasm_opt.as_deref())?;
     }
     gather(tools.map(|folder| folder.join("esbuild/bin/esbuild")).as_deref())
@@ -209,9 +219,6 @@ impl Module {
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
         }
-        if optimiser.is_some() {
-            command.args(["--", wasm_silent::LINKER]);
-        }
         run_program(&mut command)?;
         let raw = target()
             .join("wasm32-unknown-unknown")
@@ -229,35 +236,19 @@ impl Module {
             fs::remove_dir_all(&out)?;
         }
         fs::create_dir_all(&out)?;
-        let mut linked = fs::read(&raw).with_context(|| raw.display().to_string())?;
-        if optimiser.is_some() {
-            linked = wasm_silent::silenced(&linked)
-                .with_context(|| format!("words of panics in {}", raw.display()))?;
-        }
         wasm_bindgen_cli_support::Bindgen::new()
-            .input_bytes(self.name, linked)
+            .input_path(&raw)
             .out_name(self.name)
             .web(true)?
             .typescript(false)
             .omit_default_module_path(false)
             .generate(&out)
             .with_context(|| format!("wasm-bindgen of {}", self.name))?;
-        let script = out.join(format!("{}.js", self.name));
-        let wasm = out.join(format!("{}_bg.wasm", self.name));
-        let (short, renamed) =
-            wasm_names::shortened(&fs::read_to_string(&script)?, &fs::read(&wasm)?)
-                .with_context(|| format!("names of {}", self.name))?;
-        fs::write(&script, short)?;
-        fs::write(&wasm, renamed)?;
         if let Some(script) = optimiser {
-            let wasm_opt = |options: &[&str]| {
-                let mut command = Command::new("node");
-                command.arg(script).args(FEATURES).args(options);
-                run_program(command.arg(&wasm).arg("-o").arg(&wasm))
-            };
-            wasm_opt(&[&[self.opt_level], &WASM_OPT[..]].concat())?;
-            fs::write(&wasm, wasm_order::named_by_place(&wasm_paths::dotted(&fs::read(&wasm)?))?)?;
-            wasm_opt(&["--reorder-functions-by-name"])?;
+            let wasm = out.join(format!("{}_bg.wasm", self.name));
+            let mut command = Command::new("node");
+            command.arg(script).args(FEATURES).arg(self.opt_level).args(WASM_OPT);
+            run_program(command.arg(&wasm).arg("-o").arg(&wasm))?;
         }
         fs::write(&stamp, mark)?;
         Ok(())
@@ -271,10 +262,6 @@ impl Module {
         hash.update(wasm_bindgen_cli_support_version());
         hash.update(self.opt_level);
         FEATURES.iter().chain(&WASM_OPT).for_each(|option| hash.update(option));
-        hash.update(include_bytes!("wasm_order.rs"));
-        hash.update(include_bytes!("wasm_names.rs"));
-        hash.update(include_bytes!("wasm_paths.rs"));
-        hash.update(include_bytes!("wasm_silent.rs"));
         Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
     }
 }
@@ -330,7 +317,7 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
     Ok(())
 }
 
-/// Scripts and styles without comments, spaces and long names of their own; [`JOINED`] as one.
+/// Scripts and styles without comments, spaces and long names of their own; [`BUNDLED`] as one.
 fn minify(esbuild: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
     let (from, to) = (target().join("web-plain"), target().join("web-small"));
     for folder in [&from, &to] {
@@ -353,7 +340,7 @@ fn minify(esbuild: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
         command.arg(path);
     }
     run_program(&mut command)?;
-    let (joined, parts) = (JOINED[0], &JOINED[1..]);
+    let (joined, parts) = BUNDLED;
     let mut command = Command::new("node");
     command.arg(esbuild).args(["--bundle", "--format=esm", "--minify", "--charset=utf8"]);
     command.args(["--legal-comments=none", "--log-level=error", "--allow-overwrite"]);

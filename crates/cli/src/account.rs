@@ -3,7 +3,8 @@
 use std::io::Write as _;
 
 use anyhow::Context as _;
-use mimique_server::{Role, Storage};
+use mimique_server::reset_link;
+use mimique_storage::{Role, Storage};
 
 /// Options.
 #[derive(clap::Args)]
@@ -55,7 +56,8 @@ async fn print(what: &What, storage: &Storage, json: bool) -> anyhow::Result<()>
     let mut out = std::io::stdout().lock();
     match what {
         What::Reset { email, url, .. } => {
-            let link = format!("{}{}", url.trim_end_matches('/'), storage.reset_link(email).await?);
+            let link =
+                format!("{}{}", url.trim_end_matches('/'), reset_link(storage, email).await?);
             if json {
                 writeln!(out, "{}", serde_json::json!({"email": email, "link": link}))?;
             } else {

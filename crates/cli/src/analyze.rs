@@ -7,7 +7,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use mimique_stats::{Language, Report, Table, analyze};
+use mimique_analysis::{Language, Report, analyze};
+use mimique_stats::Table;
+use mimique_storage::durable_file;
 use mimique_study::Study;
 
 /// Options.
@@ -70,41 +72,17 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes beside `out`, then puts the new folder in its place.
+/// Writes the files of a report into `out`, in the place of an earlier one.
 fn write_report(report: &Report, out: &Path) -> anyhow::Result<()> {
     if out.exists() && !is_replaceable(out)? {
         bail!(
             "the folder holds something else than a report; give an empty or a new folder with --out"
         );
     }
-    let name = out.file_name().context("this is no name of a folder; give one with --out")?;
-    let parent = match out.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    std::fs::create_dir_all(parent)?;
-    let beside = |suffix: &str| {
-        let name = name.to_string_lossy();
-        parent.join(format!(".{name}.{}{suffix}", std::process::id()))
-    };
-    let (fresh, old) = (beside(".new"), beside(".old"));
-    let written = write_files(report, &fresh).and_then(|()| {
-        if out.exists() {
-            std::fs::rename(out, &old)?;
-        }
-        std::fs::rename(&fresh, out)?;
-        Ok(())
-    });
-    if written.is_err() {
-        // What could not be finished must not lie about; the first error is the one to tell.
-        let _ = std::fs::remove_dir_all(&fresh);
-        if old.exists() && !out.exists() {
-            let _ = std::fs::rename(&old, out);
-        }
-    } else if old.exists() {
-        std::fs::remove_dir_all(&old)?;
-    }
-    written
+    out.file_name().context("this is no name of a folder; give one with --out")?;
+    let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty());
+    std::fs::create_dir_all(parent.unwrap_or(Path::new(".")))?;
+    durable_file::write_folder(out, |folder| write_files(report, folder))
 }
 
 fn write_files(report: &Report, folder: &Path) -> anyhow::Result<()> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::Context as _;
-use mimique_server::{Storage, scrub_backup, write_deletions};
+use mimique_storage::{Storage, scrub_backup, write_deletions};
 
 /// End of a backup's name.
 const SUFFIX: &str = ".backup.gz";

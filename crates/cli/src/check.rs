@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_study::text::template;
-use mimique_study::{Report, Severity, check, json_schema, resolve_path};
+use mimique_study::{Problem, Report, Severity, check, json_schema, resolve_path};
 
 /// Options.
 #[derive(clap::Args)]
@@ -79,19 +79,11 @@ pub fn check_file(file: &Path) -> anyhow::Result<Report> {
     let folder = file.parent().unwrap_or(Path::new("."));
     let data = std::env::var_os("MIMIQUE_DATA").map(PathBuf::from);
     Ok(check(&text, &|path| {
-        let found = resolve_path(path, folder, data.as_deref()).map_err(|error| {
-            let text = error.to_string();
-            match text.split_once("; ") {
-                Some((message, hint)) => (message.to_owned(), hint.to_owned()),
-                None => (text, "mend the path".to_owned()),
-            }
-        })?;
+        let found = resolve_path(path, folder, data.as_deref())?;
         if found.is_file() {
-            Ok(())
-        } else {
-            let message = format!("no file {}", found.display());
-            Err((message, "put the file there, or mend the path".to_owned()))
+            return Ok(());
         }
+        Err(Problem::NoFile { path: found.display().to_string() })
     }))
 }
 
@@ -101,9 +93,9 @@ fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        let place = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
+        let place = issue.place();
         let file = file.display();
-        writeln!(out, "{severity}: {file}: {place}: {}; {}", issue.message, issue.hint)?;
+        writeln!(out, "{severity}: {file}: {place}: {}; {}", issue.message(), issue.remedy())?;
     }
     match &report.study {
         None => writeln!(

@@ -4,7 +4,8 @@ use std::io::Write as _;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::Context as _;
-use mimique_server::{Storage, erase_overdue};
+use mimique_server::erase_overdue;
+use mimique_storage::Storage;
 
 /// Options.
 #[derive(clap::Args)]

@@ -4,8 +4,8 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mimique_server::Storage;
 use mimique_server::export::{Cells, Format, Options, export};
+use mimique_storage::Storage;
 
 /// Options.
 #[derive(clap::Args)]

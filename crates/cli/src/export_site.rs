@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_server::{Assets, HostedStudy, Stage};
+use mimique_session::Standing;
+use mimique_storage::durable_file;
 use mimique_study::Severity;
 use serde_json::{Map, json};
 
@@ -57,8 +59,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let report = check_file(&args.study)?;
     let mut problems = Vec::new();
     for issue in &report.issues {
-        let at = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
-        let text = format!("{}: {at}: {}; {}", args.study.display(), issue.message, issue.hint);
+        let at = issue.place();
+        let text =
+            format!("{}: {at}: {}; {}", args.study.display(), issue.message(), issue.remedy());
         match issue.severity {
             Severity::Error => problems.push(text),
             Severity::Warning => eprintln!("warning: {text}"),
@@ -75,18 +78,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let parent = parent.unwrap_or(Path::new("."));
     std::fs::create_dir_all(parent).with_context(|| parent.display().to_string())?;
-    let beside = parent.join(format!(".mimique-site.{}.part", std::process::id()));
-    let written =
-        write(&beside, &assets, checked.study(), &hosted, stage, &args.packs).and_then(|size| {
-            // An empty folder gives way.
-            let _ = std::fs::remove_dir(&args.out);
-            std::fs::rename(&beside, &args.out).with_context(place)?;
-            Ok(size)
-        });
-    if written.is_err() {
-        let _ = std::fs::remove_dir_all(&beside);
-    }
-    let (files, bytes) = written?;
+    let (files, bytes) = durable_file::write_folder(&args.out, |folder| {
+        write(folder, &assets, checked.study(), &hosted, stage, &args.packs)
+    })
+    .with_context(place)?;
 
     let study = checked.study();
     let hosting = study.static_hosting.clone().unwrap_or_default();
@@ -140,7 +135,9 @@ fn write(
     for (name, bytes) in assets.files() {
         // Pages of the server, and what only they need.
         let servers = name.ends_with(".html")
-            || ["preview.", "researcher."].iter().any(|start| name.starts_with(start));
+            || ["researcher/", "studio/", "studio.", "studio_bg."]
+                .iter()
+                .any(|start| name.starts_with(start));
         if !servers {
             put(&format!("{prefix}/{name}"), bytes)?;
         }
@@ -155,10 +152,13 @@ fn write(
         put(&format!("packs/{hash}"), &bytes)?;
     }
     let recruitment = &study.recruitment;
-    let codes: Map<String, serde_json::Value> = ["completed", "screened_out", "failed_checks"]
-        .into_iter()
-        .filter_map(|status| Some((status.to_owned(), recruitment.code_for(status)?.into())))
-        .collect();
+    // By the exported word: several standings share one, and its code.
+    let code = |standing: Standing| {
+        let code = standing.completion_code(recruitment)?;
+        Some((standing.export_word().to_owned(), code.into()))
+    };
+    let codes: Map<String, serde_json::Value> =
+        Standing::ALL.into_iter().filter_map(code).collect();
     let hosting = study.static_hosting.clone().unwrap_or_default();
     let site = json!({
         "bundle": bundle,
@@ -179,9 +179,9 @@ fn write(
         ("study", &study.id),
         ("post", &post),
     ];
-    let page = assets
-        .page("site.html", &values)
-        .context("site.html is not among the pages; run `cargo xtask web` and build again")?;
+    let page = assets.page("participant/site.html", &values).context(
+        "participant/site.html is not among the pages; run `cargo xtask web` and build again",
+    )?;
     put("index.html", page.as_bytes())?;
     Ok(written)
 }

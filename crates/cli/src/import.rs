@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_server::export::{Format, Unstored};
-use mimique_study::SessionFile;
-use mimique_study::wire::ClipSource;
+use mimique_session::SessionFile;
+use mimique_study::ClipSource;
 use serde_json::Value;
 
 use crate::export::parse_format;
@@ -53,52 +53,27 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     };
     let place = || args.study.display().to_string();
     let writer = Unstored::new(file, clips, args.format).with_context(place)?;
-    let mut sessions: BTreeMap<String, (PathBuf, SessionFile)> = BTreeMap::new();
-    let mut read = 0;
+    let mut sessions = Sessions::default();
     for path in session_files(&args.files)? {
-        let at = || path.display().to_string();
-        let text = std::fs::read_to_string(&path)
-            .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
-            .with_context(at)?;
-        let session = SessionFile::read(&text).with_context(at)?;
+        let session = read_session(&path)?;
+        let at = path.display();
         anyhow::ensure!(
             session.study == study.id,
-            "{}: line 1: a session of study {}, not of {}; leave it out, or name its study file",
-            at(),
+            "{at}: line 1: a session of study {}, not of {}; leave it out, or name its study file",
             session.study,
             study.id
         );
         let (here, there) = (writer.config_hash(), &session.started.config_hash);
         anyhow::ensure!(
             there == here,
-            "{}: line 1: a session of version {}, and {} is version {}; give the file that the site was made from",
-            at(),
+            "{at}: line 1: a session of version {}, and {} is version {}; give the file that the site was made from",
             short(there),
             place(),
             short(here)
         );
-        read += 1;
-        match sessions.get_mut(&session.started.session) {
-            None => drop(sessions.insert(session.started.session.clone(), (path, session))),
-            Some((first, known)) => {
-                let longer = session.events.len() > known.events.len();
-                let (long, short) = if longer {
-                    (&session.events, &known.events)
-                } else {
-                    (&known.events, &session.events)
-                };
-                anyhow::ensure!(
-                    long.starts_with(short),
-                    "{}: the same session as {}, with other answers; leave one of them out",
-                    at(),
-                    first.display()
-                );
-                if longer {
-                    *known = session;
-                }
-            }
-        }
+        sessions.add(path, session)?;
     }
+    let Sessions { known: sessions, read } = sessions;
     let mut ordered: Vec<&SessionFile> = sessions.values().map(|(_, session)| session).collect();
     let begun = |session: &SessionFile| session.events.first().map_or(0.0, |event| event.at_ms);
     ordered.sort_by(|left, right| begun(left).total_cmp(&begun(right)));
@@ -131,6 +106,49 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(stdout, "  {}", path.display())?;
     }
     Ok(())
+}
+
+/// Sessions by their identifier, each with the file that it was first read from.
+#[derive(Default)]
+struct Sessions {
+    known: BTreeMap<String, (PathBuf, SessionFile)>,
+    /// Files read.
+    read: usize,
+}
+
+impl Sessions {
+    /// Adds what a file holds: a session, or more or less of one that is known.
+    fn add(&mut self, path: PathBuf, session: SessionFile) -> anyhow::Result<()> {
+        self.read += 1;
+        let id = &session.started.session;
+        let Some((first, known)) = self.known.get_mut(id) else {
+            self.known.insert(id.clone(), (path, session));
+            return Ok(());
+        };
+        let is_longer = session.events.len() > known.events.len();
+        let (long, short) = match is_longer {
+            true => (&session.events, &known.events),
+            false => (&known.events, &session.events),
+        };
+        anyhow::ensure!(
+            long.starts_with(short),
+            "{}: the same session as {}, with other answers; leave one of them out",
+            path.display(),
+            first.display()
+        );
+        if is_longer {
+            *known = session;
+        }
+        Ok(())
+    }
+}
+
+fn read_session(path: &Path) -> anyhow::Result<SessionFile> {
+    let at = || path.display().to_string();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
+        .with_context(at)?;
+    SessionFile::read(&text).with_context(at)
 }
 
 fn short(hash: &str) -> &str {

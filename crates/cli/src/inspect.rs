@@ -6,14 +6,12 @@ use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use mimique_face::Avatar;
-use mimique_face::pack::{decode_pack, pack_kind};
-use mimique_mocap::{CaptureFacts, CaptureFile, Format, ReadOptions};
+use mimique_avatar::Avatar;
+use mimique_avatar::pack::{decode_pack, pack_kind};
+use mimique_clip::{TakeContent, decode_operators, decode_take, sha256_hex};
+use mimique_mocap::{CaptureFacts, CaptureFile, ReadOptions, WeightOptions, WeightsTable};
 use mimique_solver::Linking;
-use mimique_stimulus::{
-    AvatarSkin, BankDiagnosis, MarkerMap, TakeContent, WeightsTable, decode_operators, decode_take,
-    sha256_hex,
-};
+use mimique_stimulus::{AvatarSkin, BankDiagnosis, MarkerMap};
 use serde_json::{Value, json};
 
 /// Options.
@@ -55,7 +53,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 /// `--bank`: the five rules.
 fn bank(args: &Args, json: bool) -> anyhow::Result<()> {
     let blame = |file: &Path, error: &dyn std::fmt::Display| anyhow!("{}: {error}", file.display());
-    let read = mimique_face::read_avatar(&args.file).map_err(|e| blame(&args.file, &e))?;
+    let read = mimique_avatar_files::read_avatar(&args.file).map_err(|e| blame(&args.file, &e))?;
     let skin = AvatarSkin::of(&read.avatar).map_err(|e| blame(&args.file, &e))?;
     let sites = match &args.markers {
         None => None,
@@ -146,15 +144,9 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
     }
     let mut capture = opened.capture()?;
     match capture.format() {
-        Some(Format::LiveLinkCsv) => {
-            let take = capture.weights()?;
-            return Ok(weights_facts(
-                Format::LiveLinkCsv.name(),
-                &take.names,
-                &take.weights,
-                take.rate_hz,
-                json!({"interpolated": take.filled.len()}),
-            ));
+        Some(format) if format.holds_weights() => {
+            let table = capture.weights(&WeightOptions::default())?;
+            return Ok(weights_facts(format.name, &table));
         }
         Some(_) => {
             let recording = capture.recording(&ReadOptions::default())?;
@@ -169,12 +161,6 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with("marker,") {
         return map_facts(text);
-    }
-    if text.starts_with("frame,") {
-        let table = WeightsTable::from_csv(text, None)?;
-        let rate = table.rate_hz().unwrap_or(f64::NAN);
-        let frames = json!({"first_frame": table.frames.first()});
-        return Ok(weights_facts("CSV", &table.shape_names, &table.weights, rate, frames));
     }
     match mimique_study::parse(text) {
         Ok(value) if value.get("meshes").is_some() && value.get("asset").is_some() => {
@@ -191,7 +177,7 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
 }
 
 fn avatar_file(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
-    let read = mimique_face::read_avatar(file)?;
+    let read = mimique_avatar_files::read_avatar(file)?;
     let mut facts = avatar_facts("avatar", &read.avatar, bytes);
     facts["unit m"] = json!(read.unit_metres);
     facts["notes"] = json!(read.notes);
@@ -215,16 +201,7 @@ fn avatar_facts(kind: &str, avatar: &Avatar, bytes: &[u8]) -> Value {
             })
         })
         .collect();
-    // Largest displacement of the skin by each shape at weight 1.
-    let reach: Vec<f64> = (0..avatar.shape_names.len())
-        .map(|k| {
-            let skins = avatar.meshes.iter().filter(|m| m.part == mimique_face::Part::Skin);
-            skins
-                .flat_map(|m| &m.shapes[k].deltas)
-                .map(|d| d.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt())
-                .fold(0.0, f64::max)
-        })
-        .collect();
+    let reach = reach(avatar);
     let shapes: Vec<String> = avatar
         .shape_names
         .iter()
@@ -246,32 +223,46 @@ fn avatar_facts(kind: &str, avatar: &Avatar, bytes: &[u8]) -> Value {
     if !still.is_empty() {
         warnings.push(format!("shapes that do not move the skin: {}", still.join(", ")));
     }
-    let eyeballs: Vec<Value> = avatar
-        .eyeballs
-        .iter()
-        .map(|eye| {
-            let looks = eye.looks.iter().map(|l| avatar.shape_names[l.shape].as_str());
-            json!({
-                "mesh": avatar.meshes[eye.mesh].name,
-                "centre_m": eye.centre,
-                "turned_by": looks.collect::<Vec<_>>().join(", "),
-            })
-        })
-        .collect();
     json!({
         "kind": kind,
         "name": avatar.name,
         "sha256": sha256_hex(bytes),
         "meshes": meshes,
         "skin_vertices_welded": welded,
-        "eyeballs": eyeballs,
+        "eyeballs": eyeball_facts(avatar),
         "shape_count": avatar.shape_names.len(),
         "shapes": shapes.join(", "),
         "warnings": warnings,
     })
 }
 
-fn weights_facts(kind: &str, names: &[String], weights: &[f64], rate: f64, more: Value) -> Value {
+/// Largest displacement of the skin by each shape at weight 1, metres.
+fn reach(avatar: &Avatar) -> Vec<f64> {
+    let of_shape = |k: usize| {
+        let skins = avatar.meshes.iter().filter(|m| m.part == mimique_avatar::Part::Skin);
+        skins
+            .flat_map(|m| &m.shapes[k].deltas)
+            .map(|d| d.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt())
+            .fold(0.0, f64::max)
+    };
+    (0..avatar.shape_names.len()).map(of_shape).collect()
+}
+
+fn eyeball_facts(avatar: &Avatar) -> Vec<Value> {
+    let facts = |eye: &mimique_avatar::Eyeball| {
+        let looks = eye.looks.iter().map(|l| avatar.shape_names[l.shape].as_str());
+        json!({
+            "mesh": avatar.meshes[eye.mesh].name,
+            "centre_m": eye.centre,
+            "turned_by": looks.collect::<Vec<_>>().join(", "),
+        })
+    };
+    avatar.eyeballs.iter().map(facts).collect()
+}
+
+fn weights_facts(format: &str, table: &WeightsTable) -> Value {
+    let (names, weights) = (&table.shape_names, &table.weights);
+    let rate = table.rate_hz().unwrap_or(f64::NAN);
     let n = names.len().max(1);
     let range = |k: usize| {
         let column = || weights.iter().skip(k).step_by(n).copied();
@@ -282,19 +273,18 @@ fn weights_facts(kind: &str, names: &[String], weights: &[f64], rate: f64, more:
         .map(|k| (range(k), &names[k]))
         .map(|((low, high), name)| format!("{name} ({low:.3} to {high:.3})"))
         .collect();
-    let mut facts = json!({
+    let interpolated: usize = table.filled.iter().map(|(first, end)| end - first).sum();
+    json!({
         "kind": "weights",
-        "format": kind,
+        "format": format,
         "frames": weights.len() / n,
         "rate_hz": rate.is_finite().then(|| (rate * 1e6).round() / 1e6),
         "column_count": names.len(),
         "columns": columns.join(", "),
         "outside_0_1": format!("{:.2} %", 100.0 * outside as f64 / weights.len().max(1) as f64),
-    });
-    if let (Value::Object(facts), Value::Object(more)) = (&mut facts, more) {
-        facts.extend(more);
-    }
-    facts
+        "first_frame": table.frames.first(),
+        "interpolated": interpolated,
+    })
 }
 
 fn map_facts(text: &str) -> anyhow::Result<Value> {

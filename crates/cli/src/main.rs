@@ -20,6 +20,7 @@ mod power;
 mod preview;
 mod repair;
 mod restore;
+mod sample;
 mod segment;
 mod serve;
 mod simulate;
@@ -54,6 +55,8 @@ enum Command {
     Order(order::Args),
     /// Tell what an avatar, a capture, a weight file, a pack or a study holds
     Inspect(inspect::Args),
+    /// Write an avatar, a capture and a marker map to try the commands on
+    Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
     /// Mend a capture: swaps, spikes, gaps; filter, resample, hold the head still
@@ -99,6 +102,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args, json),
         Command::Order(args) => order::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),
+        Command::Sample(args) => sample::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),

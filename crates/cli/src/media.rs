@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use mimique_study::wire::ClipSource;
+use mimique_storage::durable_file;
+use mimique_study::ClipSource;
 use mimique_study::{MEDIA_PREFIX, Study, media_type, resolve_path};
 use serde_json::json;
 use sha2::{Digest as _, Sha256};
@@ -24,14 +25,11 @@ pub fn add(
             format!("{}: cannot be read ({error}); mend the path", place.display())
         };
         let bytes = std::fs::read(&place).map_err(at)?;
-        let hash: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        let hash = hex::encode(Sha256::digest(&bytes));
         std::fs::create_dir_all(packs).map_err(at)?;
         let kept = packs.join(&hash);
         if !kept.exists() {
-            // Whole or absent.
-            let beside = packs.join(format!(".{hash}.{}.part", std::process::id()));
-            std::fs::write(&beside, &bytes).map_err(at)?;
-            std::fs::rename(&beside, &kept).map_err(at)?;
+            durable_file::write(&kept, &bytes).map_err(at)?;
         }
         let source = json!({
             "avatar": hash, "operators": "", "take": "", "method": { "method": "recorded" },

@@ -1,23 +1,31 @@
-//! Files that are there whole or not at all.
+//! Files and folders that are there whole or not at all.
 
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 use anyhow::anyhow;
+use mimique_storage::durable_file;
 
-/// Write a file beside its place, then move it there.
+/// Writes a file.
 ///
 /// # Errors
 /// What the operating system says, with the file's name and what to check.
 pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let blame = |e: std::io::Error| {
-        anyhow!("{}: write: {e}; check the folder and its permissions", path.display())
-    };
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let part = PathBuf::from(name);
-    let done = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
-    done.map_err(|e| {
-        let _ = std::fs::remove_file(&part);
-        blame(e)
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// Writes a file as `fill` does.
+///
+/// # Errors
+/// Those of [`write()`], and of `fill`.
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> anyhow::Result<()> {
+    durable_file::write_with(path, fill).map_err(|error| {
+        anyhow!(
+            "{}: cannot be written ({error}); check the folder and its permissions",
+            path.display()
+        )
     })
 }

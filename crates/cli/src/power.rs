@@ -7,12 +7,13 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mimique_stats::{
+use mimique_analysis::{
     Language, Power, PowerOptions, Preregistration, no_effect, power, power_csv, power_curve,
     power_markdown, power_runs, preregistration,
 };
 
-use crate::simulate::{Assumptions, write_whole};
+use crate::output;
+use crate::simulate::Assumptions;
 use crate::study_file::load;
 
 /// Options.
@@ -87,7 +88,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
                 .map_err(|error| anyhow::anyhow!("no folder can be made ({error})"))
                 .with_context(|| parent.display().to_string())?;
         }
-        write_whole(&path, &text)?;
+        output::write(&path, text.as_bytes())?;
         written.push(path.display().to_string());
         Ok(())
     };
@@ -169,7 +170,7 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
         writeln!(out, "{}", if falsely { " false positives        as in the thesis" } else { "" })?;
         for point in &power.points {
             let hypothesis = &point.hypotheses[place];
-            let cell = |rate: &mimique_stats::Rate| {
+            let cell = |rate: &mimique_analysis::Rate| {
                 let [low, high] = rate.interval.map(|share| 100.0 * share);
                 format!("{:5.1} % [{low:.1}, {high:.1}]", 100.0 * rate.share)
             };

@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
-use mimique_face::AvatarSettings;
+use mimique_avatar_files::AvatarSettings;
 use mimique_server::{Assets, StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
 use serde_json::json;
 use tokio::net::TcpListener;

@@ -4,9 +4,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
-use mimique_mocap::{
-    C3dOptions, Capture, CaptureFile, GapFill, LowPass, RepairPlan, Repaired, stillest,
-};
+use mimique_mocap::{Capture, CaptureFile, GapFill, LowPass, RepairPlan, Repaired, stillest};
 use mimique_stimulus::{FileHash, RepairSidecar, sidecar_path};
 use serde_json::json;
 
@@ -159,12 +157,5 @@ fn plan(args: &Args) -> anyhow::Result<RepairPlan> {
 
 /// The capture in the format that the file's name asks for.
 fn written(capture: &Capture, out: &Path) -> anyhow::Result<Vec<u8>> {
-    let blame = |e: mimique_mocap::WriteError| anyhow!("{}: {e}", out.display());
-    let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    match out.extension().map(|e| e.to_ascii_lowercase()).as_deref().and_then(|e| e.to_str()) {
-        Some("c3d") => mimique_mocap::write_c3d(capture, &C3dOptions::default()).map_err(blame),
-        Some("trc") => Ok(mimique_mocap::write_trc(capture, &name).map_err(blame)?.into_bytes()),
-        Some("csv") => Ok(mimique_mocap::write_csv(capture).map_err(blame)?.into_bytes()),
-        _ => bail!("--out: {name:?}; end the name in .c3d, .trc or .csv"),
-    }
+    mimique_mocap::capture_file(capture, out).map_err(|e| anyhow!("--out: {}: {e}", out.display()))
 }

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mimique_server::{RestoreOptions, Storage, read_deletions};
+use mimique_storage::{RestoreOptions, Storage, read_deletions};
 
 use crate::backup::DELETIONS;
 

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{anyhow, bail};
-use mimique_mocap::{CaptureFile, Format, stabilise};
+use mimique_geometry::coordinates;
+use mimique_mocap::{CaptureFile, WeightOptions, stabilise};
+use mimique_session::rows::iso_time;
 use mimique_stimulus::{
-    Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, WeightsTable, cut,
-    read_segments, study_segments, suggest, write_segments,
+    Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, cut, read_segments,
+    study_segments, suggest, write_segments,
 };
 use serde_json::json;
 
@@ -67,8 +69,8 @@ impl Take {
     }
 }
 
-/// Runs the command.
-pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+/// That the options can be what they say.
+fn check(args: &Args) -> anyhow::Result<()> {
     for (option, seconds) in [("--lead-in", args.lead_in), ("--lead-out", args.lead_out)] {
         if !(seconds >= 0.0 && seconds.is_finite()) {
             bail!("{option}: {seconds}; give seconds, 0 for none");
@@ -80,6 +82,27 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             bail!("--study: {id:?} is no identifier of a capture; use letters, digits, _ and -");
         }
     }
+    Ok(())
+}
+
+/// The segments of a file, all of which lie in the take.
+fn read_of(file: &Path, tier: &str, take: &Take) -> anyhow::Result<Vec<TakeSegment>> {
+    let segments = read(file, tier, take.rate_hz)?;
+    if let Some(out) = segments.iter().find(|s| s.clip.end > take.frames()) {
+        bail!(
+            "{}: {}: ends at frame {} of {}; give the segments of this take",
+            file.display(),
+            out.label,
+            out.clip.end,
+            take.frames()
+        );
+    }
+    Ok(segments)
+}
+
+/// Runs the command.
+pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+    check(&args)?;
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
     let take = take(&args)?;
     let channels = Channels { values: &take.values, count: take.count, rate_hz: take.rate_hz };
@@ -90,16 +113,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     };
     let mut found = suggest(channels, &options).map_err(|e| blame(e.to_string()))?;
     if let Some(file) = &args.from {
-        found.segments = read(file, &args.tier, take.rate_hz)?;
-        if let Some(out) = found.segments.iter().find(|s| s.clip.end > take.frames()) {
-            bail!(
-                "{}: {}: ends at frame {} of {}; give the segments of this take",
-                file.display(),
-                out.label,
-                out.clip.end,
-                take.frames()
-            );
-        }
+        found.segments = read_of(file, &args.tier, &take)?;
     }
     found.segments = cut(&found.segments, take.frames(), take.rate_hz, args.lead_in, args.lead_out);
     if let Some(out) = &args.out {
@@ -155,12 +169,17 @@ fn take(args: &Args) -> anyhow::Result<Take> {
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
     let mut file = CaptureFile::open(&args.take).map_err(|e| blame(e.to_string()))?;
     match file.format() {
-        Some(Format::LiveLinkCsv) => {
-            let weights = file.weights().map_err(|e| blame(e.to_string()))?;
-            let (count, rate_hz) = (weights.names.len(), weights.rate_hz);
-            Ok(Take { values: weights.weights, count, rate_hz, notes: Vec::new() })
+        Some(format) if format.holds_weights() => {
+            let rate_hz = args.read.mocap_rate;
+            let options = WeightOptions { rate_hz, ..WeightOptions::default() };
+            let table = file.weights(&options).map_err(|e| blame(e.to_string()))?;
+            let rate_hz = rate_hz.or(table.rate_hz()).ok_or_else(|| {
+                blame("column time: no rate; give it with --mocap-rate".to_owned())
+            })?;
+            let count = table.shape_names.len();
+            Ok(Take { values: table.weights, count, rate_hz, notes: Vec::new() })
         }
-        Some(_) => {
+        _ => {
             let mut capture = args.read.recording(&args.take, &mut file)?.capture;
             let head = args.read.head()?;
             let mut notes = std::mem::take(&mut capture.notes);
@@ -173,19 +192,8 @@ fn take(args: &Args) -> anyhow::Result<Take> {
                 stabilise(&mut capture, &head).map_err(|e| blame(e.to_string()))?;
             }
             let count = 3 * capture.labels.len();
-            let values = capture.positions.into_flattened();
+            let values = coordinates(&capture.positions).to_vec();
             Ok(Take { values, count, rate_hz: capture.rate_hz, notes })
-        }
-        None => {
-            let bytes = std::fs::read(&args.take)
-                .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
-            let (text, rate) = (String::from_utf8_lossy(&bytes), args.read.mocap_rate);
-            let table = WeightsTable::from_csv(&text, rate).map_err(|e| blame(e.to_string()))?;
-            let rate_hz = rate.or(table.rate_hz()).ok_or_else(|| {
-                blame("column time: no rate; give it with --mocap-rate".to_owned())
-            })?;
-            let count = table.shape_names.len();
-            Ok(Take { values: table.weights, count, rate_hz, notes: Vec::new() })
         }
     }
 }
@@ -233,36 +241,6 @@ fn is_eaf(file: &Path) -> bool {
 
 /// The present time as ISO 8601.
 fn now() -> String {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
-    let (days, time) = (seconds / 86_400, seconds % 86_400);
-    let (year, month, day) = date(days);
-    let (hour, minute, second) = (time / 3600, time / 60 % 60, time % 60);
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}+00:00")
-}
-
-/// Year, month and day of a day since 1970-01-01.
-fn date(days: u64) -> (u64, u64, u64) {
-    // Years that begin in March, in eras of 400 years: leap days come last.
-    let days = days + 719_468;
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let (month_of_year, carry) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
-    (400 * era + year + carry, month_of_year, day - (153 * month + 2) / 5 + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn dates_of_known_days() {
-        for (days, want) in [
-            (0, (1970, 1, 1)),
-            (19_782, (2024, 2, 29)),
-            (19_783, (2024, 3, 1)),
-            (20_453, (2025, 12, 31)),
-        ] {
-            assert_eq!(super::date(days), want);
-        }
-    }
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+    iso_time(since_1970.map_or(0.0, |since| since.as_secs() as f64 * 1000.0))
 }

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Settings, Stage, Storage};
+use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Settings, Stage};
 use mimique_stimulus::{Places, prepare};
+use mimique_storage::Storage;
 use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;
@@ -154,16 +155,7 @@ async fn host(
     let storage =
         Storage::open(&database).await.with_context(|| Storage::without_password(&database))?;
     packs.load_earlier_versions(&storage, &args.data_dir.join("packs")).await?;
-    let addresses: Vec<_> = studies
-        .iter()
-        .map(|study| {
-            let (id, clips) = (
-                study.id().to_owned(),
-                study.bundle().clips.keys().filter(|id| !id.starts_with(MEDIA_PREFIX)).count(),
-            );
-            (id, study.config_hash().to_owned(), clips)
-        })
-        .collect();
+    let hosted: Vec<Hosted> = studies.iter().map(Hosted::of).collect();
     let kind = storage.kind();
     let access = Access { open_preview: args.open_preview, public_url: args.public_url.clone() };
     let app = App::new(studies, packs, assets, storage)
@@ -172,7 +164,6 @@ async fn host(
         .with_data_folder(args.data_dir.clone())
         .with_settings(settings);
     app.host_uploads().await?;
-    let version = |id: &str| app.registered(id).map_or(1, |facts| facts.version);
     let base = match &args.public_url {
         Some(url) => url.trim_end_matches('/').to_owned(),
         None => format!("http://{}", reachable(listener.local_addr()?)),
@@ -180,50 +171,71 @@ async fn host(
     // Without an account there is a link that makes the first.
     let first_link = app.first_owner_link().await?;
     let researcher = format!("{base}{}", first_link.as_deref().unwrap_or("/researcher"));
-    {
-        let mut out = std::io::stdout().lock();
-        if json {
-            let studies: Vec<_> = addresses
-                .iter()
-                .map(|(id, config_hash, clips)| {
-                    json!({
-                        "id": id,
-                        "config_hash": config_hash,
-                        "version": version(id),
-                        "clips": clips,
-                        "participant": format!("{base}/s/{id}/"),
-                        "preview": format!("{base}/preview/{id}"),
-                    })
-                })
-                .collect();
-            let line = json!({
-                "url": base, "studies": studies, "researcher": researcher, "database": kind,
-            });
-            writeln!(out, "{line}")?;
-        } else {
-            for (id, config_hash, clips) in &addresses {
-                let version = version(id);
-                writeln!(
-                    out,
-                    "study {id} ({clips} clips, version {version}, {})",
-                    &config_hash[..12]
-                )?;
-                writeln!(out, "  participants  {base}/s/{id}/")?;
-                writeln!(out, "  preview       {base}/preview/{id}")?;
-            }
-            writeln!(out, "researcher      {researcher}")?;
-            if first_link.is_some() {
-                writeln!(
-                    out,
-                    "                (makes the first account; works once, for two days)"
-                )?;
-            }
-            writeln!(out, "Answers are kept in {kind}. Stop with Ctrl-C.")?;
+    let version = |id: &str| app.registered(id).map_or(1, |facts| facts.version);
+    let mut out = std::io::stdout().lock();
+    if json {
+        let studies: Vec<_> =
+            hosted.iter().map(|study| study.as_json(&base, version(&study.id))).collect();
+        let line = json!({
+            "url": base, "studies": studies, "researcher": researcher, "database": kind,
+        });
+        writeln!(out, "{line}")?;
+    } else {
+        for study in &hosted {
+            study.print(&mut out, &base, version(&study.id))?;
         }
-        out.flush()?;
+        writeln!(out, "researcher      {researcher}")?;
+        if first_link.is_some() {
+            writeln!(out, "                (makes the first account; works once, for two days)")?;
+        }
+        writeln!(out, "Answers are kept in {kind}. Stop with Ctrl-C.")?;
     }
+    out.flush()?;
+    drop(out);
     mimique_server::serve(app, listener, stop_signal()).await?;
     Ok(())
+}
+
+/// A study that is hosted, as it is told at the start.
+struct Hosted {
+    id: String,
+    config_hash: String,
+    clips: usize,
+}
+
+impl Hosted {
+    fn of(study: &HostedStudy) -> Self {
+        let clips = study.bundle().clips.keys().filter(|id| !id.starts_with(MEDIA_PREFIX));
+        Self {
+            id: study.id().to_owned(),
+            config_hash: study.config_hash().to_owned(),
+            clips: clips.count(),
+        }
+    }
+
+    fn as_json(&self, base: &str, version: u64) -> serde_json::Value {
+        let Self { id, config_hash, clips } = self;
+        json!({
+            "id": id,
+            "config_hash": config_hash,
+            "version": version,
+            "clips": clips,
+            "participant": format!("{base}/s/{id}/"),
+            "preview": format!("{base}/preview/{id}"),
+        })
+    }
+
+    fn print(
+        &self,
+        out: &mut impl std::io::Write,
+        base: &str,
+        version: u64,
+    ) -> std::io::Result<()> {
+        let Self { id, config_hash, clips } = self;
+        writeln!(out, "study {id} ({clips} clips, version {version}, {})", &config_hash[..12])?;
+        writeln!(out, "  participants  {base}/s/{id}/")?;
+        writeln!(out, "  preview       {base}/preview/{id}")
+    }
 }
 
 /// Checks and prepares every study; what is wrong with any of them is said before giving up.
@@ -233,8 +245,9 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
     for file in files {
         let report = check_file(file)?;
         for issue in &report.issues {
-            let place = if issue.pointer.is_empty() { "/" } else { &issue.pointer };
-            let text = format!("{}: {place}: {}; {}", file.display(), issue.message, issue.hint);
+            let place = issue.place();
+            let text =
+                format!("{}: {place}: {}; {}", file.display(), issue.message(), issue.remedy());
             match issue.severity {
                 Severity::Error => problems.push(text),
                 Severity::Warning => eprintln!("warning: {text}"),
@@ -250,7 +263,7 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
     Ok(studies)
 }
 
-type Clips = std::collections::BTreeMap<String, mimique_study::wire::ClipSource>;
+type Clips = std::collections::BTreeMap<String, mimique_study::ClipSource>;
 
 pub fn prepare_study(
     file: &Path,

@@ -3,14 +3,16 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context as _;
+use mimique_analysis::{Parameters, Simulation};
 use mimique_server::export::{Format, Unstored};
-use mimique_stats::{Parameters, Simulation, Table};
+use mimique_stats::Table;
 use mimique_study::Study;
 use rayon::prelude::*;
 
+use crate::output;
 use crate::study_file::load;
 
 /// Most participants of one simulation.
@@ -125,7 +127,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let path = args.out.join("parameters.json");
     let mut text = serde_json::to_string_pretty(&parameters)?;
     text.push('\n');
-    write_whole(&path, &text)?;
+    output::write(&path, text.as_bytes())?;
     written.push(path);
 
     let mut out = std::io::stdout().lock();
@@ -151,17 +153,4 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "  {}", path.display())?;
     }
     Ok(())
-}
-
-/// Writes a file so that it is whole or absent.
-pub fn write_whole(path: &Path, text: &str) -> anyhow::Result<()> {
-    let place = || path.display().to_string();
-    let name = path.file_name().context("this is no name of a file").with_context(place)?;
-    let beside = format!(".{}.{}.part", name.to_string_lossy(), std::process::id());
-    let beside = path.with_file_name(beside);
-    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    if written.is_err() {
-        let _ = std::fs::remove_file(&beside);
-    }
-    written.map_err(|error| anyhow::anyhow!("cannot be written ({error})")).with_context(place)
 }

@@ -2,23 +2,28 @@
 
 mod args;
 mod method_options;
+mod parameter_options;
 mod print;
 mod recorded;
 mod values;
 
-use std::io::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 use indicatif::ProgressBar;
-use mimique_mocap::{CaptureFile, LengthUnit, ReadOptions};
-use mimique_solver::{FrontEndError, Method, TrainingError};
+use mimique_mocap::{
+    CaptureFile, LengthUnit, ReadOptions, Recording, WeightOptions, WeightsTable,
+    read_weights_file, weights_files,
+};
+use mimique_solver::{FrontEndError, Method, MethodSpec, TrainingError};
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, RepairSidecar, ScaleRule, SolveError, TakeOptions, Training,
-    VertexFrames, WeightsTable, sha256_of_file, solve_take, split_shapes,
+    VertexFrames, lock_shapes, sha256_of_file, solve_take, split_shapes,
 };
 use serde_json::json;
+
+use crate::output;
 
 pub use self::args::Args;
 use self::method_options::method_spec;
@@ -52,12 +57,54 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let seconds = || origin.elapsed().as_secs_f64();
 
     progress.set_message("reading");
-    let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    mimique_stimulus::lock_shapes(&mut spec, &avatar.locked);
+    let read = read(&args, markers, &mut spec)?;
+    let read_seconds = seconds();
+
+    progress.set_message(format!("solving {} frames", read.recording.capture.frames()));
+    let Inputs { skin, recording, map, options, notes } = &read;
+    let mut solved = solve_take(skin, &recording.capture, map, &spec, options, &mut || seconds())
+        .map_err(|e| blame(at_fault(&e, &args), e))?;
+
+    progress.set_message("writing");
+    let start = seconds();
+    write_weights(&solved.table, &args.out)?;
+    if let Some(path) = &args.vertices {
+        let mut npy = VertexFrames::new(skin, &solved);
+        output::write_with(path, |out| npy.write(out))?;
+    }
+    solved.report.seconds.read = read_seconds;
+    solved.report.seconds.write = seconds() - start;
+    if let Some(path) = &args.report {
+        let mut report = serde_json::to_value(&solved.report).context("report")?;
+        report["notes"] = json!(notes);
+        report["files"] = json!({
+            "avatar": args.avatar, "mocap": args.mocap, "markers": args.markers, "out": args.out,
+        });
+        let text = serde_json::to_string_pretty(&report)? + "\n";
+        output::write(path, text.as_bytes())?;
+    }
+    progress.finish_and_clear();
+    print(&args, &solved, notes, json)
+}
+
+/// What the files hold, and what is to be said of them.
+struct Inputs {
+    skin: AvatarSkin,
+    recording: Recording,
+    map: MarkerMap,
+    options: TakeOptions,
+    notes: Vec<String>,
+}
+
+/// Reads the files; the shapes that the avatar's settings hold at 0 are locked in `spec`.
+fn read(args: &Args, markers: &Path, spec: &mut MethodSpec) -> anyhow::Result<Inputs> {
+    let avatar =
+        mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
+    lock_shapes(spec, &avatar.locked);
     let split = split_shapes(&avatar.avatar, &args.split)
         .map_err(|e| blame(&args.avatar, format!("--{e}")))?;
     let skin = AvatarSkin::of(&split).map_err(|e| blame(&args.avatar, e))?;
-    let recording = capture(&args, &args.mocap)?;
+    let recording = capture(args, &args.mocap)?;
     let text = std::fs::read_to_string(markers)
         .map_err(|e| blame(markers, format!("open: {e}; check the path")))?;
     let map = MarkerMap::from_text(&text).map_err(|e| blame(markers, e))?;
@@ -72,47 +119,21 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             markers: unique("--scale", &args.scale)?.into_iter().map(|(k, f)| (k, f.0)).collect(),
         },
         depth: args.depth,
-        training: training(&args)?.map(Box::new),
+        training: training(args, &avatar.avatar.shape_names)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
-    let read = seconds();
-
-    progress.set_message(format!("solving {} frames", recording.capture.frames()));
-    let mut solved =
-        solve_take(&skin, &recording.capture, &map, &spec, &options, &mut || seconds())
-            .map_err(|e| blame(at_fault(&e, &args), e))?;
-    let notes = avatar.notes.iter().map(|n| (&args.avatar, n));
-    let notes = notes.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
+    let of_avatar = avatar.notes.iter().map(|n| (&args.avatar, n));
+    let of_both = of_avatar.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
     let mut notes: Vec<String> =
-        notes.map(|(file, n)| format!("{}: {n}", file.display())).collect();
+        of_both.map(|(file, n)| format!("{}: {n}", file.display())).collect();
     notes.extend(sidecar.map(|s| {
         format!("{}: repaired from {}: {}", args.mocap.display(), s.source.file, s.repair.summary())
     }));
-
-    progress.set_message("writing");
-    let start = seconds();
-    write_whole(&args.out, |out| out.write_all(solved.table.to_csv().as_bytes()))?;
-    if let Some(path) = &args.vertices {
-        let mut npy = VertexFrames::new(&skin, &solved);
-        write_whole(path, |out| npy.write(out))?;
-    }
-    solved.report.seconds.read = read;
-    solved.report.seconds.write = seconds() - start;
-    if let Some(path) = &args.report {
-        let mut report = serde_json::to_value(&solved.report).context("report")?;
-        report["notes"] = json!(notes);
-        report["files"] = json!({
-            "avatar": args.avatar, "mocap": args.mocap, "markers": args.markers, "out": args.out,
-        });
-        let text = serde_json::to_string_pretty(&report)? + "\n";
-        write_whole(path, |out| out.write_all(text.as_bytes()))?;
-    }
-    progress.finish_and_clear();
-    print(&args, &solved, &notes, json)
+    Ok(Inputs { skin, recording, map, options, notes })
 }
 
 /// The capture of a file.
-fn capture(args: &Args, file: &Path) -> anyhow::Result<mimique_mocap::Recording> {
+fn capture(args: &Args, file: &Path) -> anyhow::Result<Recording> {
     let unit = args.mocap_unit.as_deref().map(length_unit).transpose()?;
     let options = ReadOptions { unit, rate_hz: args.mocap_rate };
     CaptureFile::open(file)
@@ -121,32 +142,27 @@ fn capture(args: &Args, file: &Path) -> anyhow::Result<mimique_mocap::Recording>
 }
 
 /// What regression learns from.
-fn training(args: &Args) -> anyhow::Result<Option<Training>> {
+fn training(args: &Args, shape_names: &[String]) -> anyhow::Result<Option<Training>> {
     let (Some(take), Some(weights)) = (&args.training, &args.training_weights) else {
         return Ok(None);
     };
     Ok(Some(Training {
         capture: capture(args, take)?.capture,
-        weights: WeightsTable::from_file(weights).map_err(|e| blame(weights, e))?,
+        weights: read_weights_file(
+            weights,
+            &WeightOptions { rate_hz: args.mocap_rate, shape_names },
+        )
+        .map_err(|e| blame(weights, e))?,
         neutral: args.training_neutral.as_ref().map(|s| s.0.clone()),
         head: None,
     }))
 }
 
-/// Writes a file that is whole or absent.
-fn write_whole(
-    path: &Path,
-    write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>,
-) -> anyhow::Result<()> {
-    let part = path.with_extension("part");
-    let written = std::fs::File::create(&part)
-        .map(std::io::BufWriter::new)
-        .and_then(|mut file| write(&mut file).and_then(|()| file.flush()))
-        .and_then(|()| std::fs::rename(&part, path));
-    written.map_err(|e| {
-        let _ = std::fs::remove_file(&part);
-        blame(path, format!("{e}; check the folder and its permissions"))
-    })
+/// Writes weights in the format that the file's name asks for.
+fn write_weights(table: &WeightsTable, path: &Path) -> anyhow::Result<()> {
+    let files =
+        weights_files(table, path).map_err(|e| anyhow!("--out: {}: {e}", path.display()))?;
+    files.iter().try_for_each(|(path, bytes)| output::write(path, bytes))
 }
 
 /// The file or option that an error of the solve comes from.

@@ -15,13 +15,13 @@ pub fn load(path: &Path) -> anyhow::Result<(Value, Study)> {
     let blocking = report
         .issues
         .iter()
-        .find(|issue| issue.severity == Severity::Error && issue.code != "missing-file");
+        .find(|issue| issue.severity == Severity::Error && issue.code() != "missing-file");
     if let Some(issue) = blocking {
         anyhow::bail!(
             "{file}: {}: {}; {} (`mimique check` lists every problem)",
-            if issue.pointer.is_empty() { "/" } else { &issue.pointer },
-            issue.message,
-            issue.hint
+            issue.place(),
+            issue.message(),
+            issue.remedy()
         );
     }
     let text = std::fs::read_to_string(path).with_context(|| format!("{file}"))?;

@@ -9,7 +9,7 @@ use common::{ok, text};
 use mimique_test_support::{python, repository, skip};
 
 fn example(name: &str) -> String {
-    let path = repository().join("docs/deployment").join(name);
+    let path = repository().join("docs/guide/deployment").join(name);
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
@@ -104,7 +104,7 @@ print("sound")
     if !has_yaml.status.success() {
         return skip(test, "Python has no yaml; run cargo xtask test");
     }
-    let folder = repository().join("docs/deployment");
+    let folder = repository().join("docs/guide/deployment");
     let output = Command::new(python)
         .args(["-c", look])
         .args(["compose.yaml", "kubernetes.yaml"].map(|name| text(&folder.join(name))))

@@ -6,8 +6,8 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{ok, refused, text};
-use mimique_server::{NewSession, Storage, StudyVersion};
-use mimique_study::wire::Event;
+use mimique_session::wire::Event;
+use mimique_storage::{NewSession, Storage, StudyVersion};
 use serde_json::{Value, json};
 
 /// A database with two participants of three events each.

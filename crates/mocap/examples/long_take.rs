@@ -1,4 +1,4 @@
-//! Ten minutes of 50 markers at 200 frames a second, as C3D, CSV and TRC: read, repaired,
+//! Ten minutes of 50 markers at 200 frames per second, as C3D, CSV and TRC: read, repaired,
 //! stabilised. Prints the seconds of each step and the peak memory: `long_take [c3d|csv|trc]
 //! [FOLDER]`.
 #![allow(clippy::print_stdout)] // what it is for
@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use mimique_geometry::Point;
 use mimique_mocap::{
     C3dOptions, Capture, LengthUnit, RepairPlan, read, repair, write_c3d, write_csv, write_trc,
 };
@@ -36,13 +37,13 @@ fn take() -> Capture {
             let [x, y, z] = [p[0], p[1] + lift, p[2]];
             let turned = [c * x + s * z, y + 1600.0, c * z - s * x];
             // Four decimals, as systems write them.
-            positions.push(turned.map(|v| ((v + 0.1 * random()) * 1e4).round() / 1e4));
+            positions.push(Point::from(turned.map(|v| ((v + 0.1 * random()) * 1e4).round() / 1e4)));
         }
     }
     for _ in 0..400 {
         let (marker, first) = ((random() * 46.0) as usize, (random() * 119_000.0) as usize);
         for frame in first..first + 4 + (random() * 150.0) as usize {
-            positions[frame * MARKERS + marker] = [f64::NAN; 3];
+            positions[frame * MARKERS + marker] = Point::UNSEEN;
         }
     }
     for _ in 0..60 {

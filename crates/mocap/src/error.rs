@@ -18,31 +18,36 @@ pub enum ReadError {
     #[error("read: {0}; copy the file again, or check the disk")]
     Read(std::io::Error),
     /// No known format starts like this.
-    #[error(
-        "byte 0: not a capture in a known format, {found}; \
-         give C3D, TRC, QTM TSV, Motive CSV, Vicon CSV, BVH, or CSV with columns LABEL_x, LABEL_y, LABEL_z"
-    )]
+    #[error("byte 0: not a capture in a known format, {found}; give one of {}", names(readable))]
     Unrecognised {
         /// What the file starts with.
         found: String,
+        /// The names of the formats that are read.
+        readable: Vec<&'static str>,
     },
     /// The file holds blendshape weights where markers are asked for.
-    #[error(
-        "line 1, header: a Live Link Face export, {columns} weight columns and no marker; \
-         give it as weights, not as a capture"
-    )]
+    #[error("byte 0: {format} holds no marker; give it as weights, not as a capture")]
     WeightsNotMarkers {
-        /// Number of weight columns.
-        columns: usize,
+        /// The name of its format.
+        format: &'static str,
     },
     /// Not a file of weights.
-    #[error(
-        "byte 0: not a Live Link Face export, {found}; \
-         give a CSV that starts with Timecode,BlendShapeCount"
-    )]
+    #[error("byte 0: no weights in a known format, {found}; give one of {}", names(readable))]
     NotWeights {
         /// What the file starts with.
         found: String,
+        /// The names of the formats of weights that are read.
+        readable: Vec<&'static str>,
+    },
+    /// What stands beside the file and belongs to it is wrong.
+    #[error("{file}, beside it: {what}; {remedy}")]
+    Beside {
+        /// Name of the file beside it.
+        file: String,
+        /// What is wrong, with the value.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
     },
     /// A binary file is wrong at a byte.
     #[error("byte {offset}, {section}: {what}; {remedy}")]
@@ -70,9 +75,22 @@ pub enum ReadError {
     },
 }
 
+/// Names as a list in a sentence.
+fn names(names: &[&str]) -> String {
+    names.join(", ")
+}
+
 /// Why a capture cannot be written in a format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WriteError {
+    /// No format is written under that ending of the file's name.
+    #[error("the name ends in {found:?}; end it in {}", extensions.join(" or "))]
+    Extension {
+        /// The ending.
+        found: String,
+        /// The endings of the formats that are written, with their dots.
+        extensions: Vec<String>,
+    },
     /// A label the format cannot hold.
     #[error("marker \"{label}\": {what}; rename the marker")]
     Label {

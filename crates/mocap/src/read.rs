@@ -1,17 +1,18 @@
 //! From a file of any known format to a capture.
 
-use crate::source::{self, Source};
-use crate::text::{self, Lines, TextForm};
-use crate::{Capture, Format, LengthUnit, ReadError, Recording, WeightTake, c3d, format};
+use crate::formats::source::{self, Source};
+use crate::formats::text::{Lines, TextForm};
+use crate::formats::{Format, Read, Recognise, formats};
+use crate::{Capture, LengthUnit, ReadError, Recording, WeightOptions, WeightsTable};
 use std::io::{BufRead, Cursor, Seek};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What the caller knows better than the file.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ReadOptions {
     /// Unit of the coordinates. `None`: what the file says, else guessed by magnitude and noted.
     pub unit: Option<LengthUnit>,
-    /// Frames a second. `None`: what the file says.
+    /// Frames per second. `None`: what the file says.
     pub rate_hz: Option<f64>,
 }
 
@@ -21,8 +22,10 @@ pub struct ReadOptions {
 /// or a line, where they are longer) is in memory, whatever the file's size.
 pub struct CaptureFile<'a> {
     source: Box<dyn Source + 'a>,
-    format: Option<Format>,
-    /// Encoding and line ends, where it is not C3D.
+    /// Where it was opened; `None` for bytes and streams.
+    path: Option<PathBuf>,
+    format: Option<&'static Format>,
+    /// Encoding and line ends, where it is a text.
     form: TextForm,
 }
 
@@ -32,7 +35,7 @@ impl CaptureFile<'static> {
     /// # Errors
     /// [`ReadError::Open`], [`ReadError::Read`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        Self::of(source::open(path)?)
+        Ok(Self { path: Some(path.to_owned()), ..Self::of(source::open(path)?)? })
     }
 }
 
@@ -54,17 +57,44 @@ impl<'a> CaptureFile<'a> {
     }
 
     fn of(mut source: Box<dyn Source + 'a>) -> Result<Self, ReadError> {
-        let c3d = format::is_c3d(&source::beginning(&mut *source, 512)?);
-        let form = if c3d { TextForm::default() } else { TextForm::of(&mut *source)? };
-        let format = match c3d {
-            true => Some(Format::C3d),
-            false => format::recognise_text(Lines::new(&mut *source, form)?)?,
-        };
-        Ok(Self { source, format, form })
+        let beginning = source::beginning(&mut *source, 512)?;
+        let binary = formats()
+            .iter()
+            .copied()
+            .find(|format| matches!(format.recognise, Recognise::Beginning(is) if is(&beginning)));
+        let mut file = Self { source, path: None, format: binary, form: TextForm::default() };
+        if binary.is_none() {
+            file.form = TextForm::of(&mut *file.source)?;
+            file.format = file.recognised_text(|_| true)?;
+        }
+        Ok(file)
+    }
+
+    /// The first text format of those `among` that knows the first line that is neither blank nor
+    /// a comment.
+    fn recognised_text(
+        &mut self,
+        among: impl Fn(&Format) -> bool,
+    ) -> Result<Option<&'static Format>, ReadError> {
+        let mut lines = self.lines()?;
+        loop {
+            match lines.next_filled() {
+                Ok(Some((_, line))) if line.starts_with('#') => {}
+                Ok(Some((_, line))) => {
+                    return Ok(formats().iter().copied().find(|format| {
+                        matches!(format.recognise, Recognise::FirstLine(is) if is(line))
+                            && among(format)
+                    }));
+                }
+                // What has no end of a line for megabytes is no text.
+                Ok(None) | Err(ReadError::Text { .. }) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
     }
 
     /// Its format; `None` when no reader knows it.
-    pub fn format(&self) -> Option<Format> {
+    pub fn format(&self) -> Option<&'static Format> {
         self.format
     }
 
@@ -73,31 +103,38 @@ impl<'a> CaptureFile<'a> {
     /// # Errors
     /// [`ReadError`] with place, value and remedy.
     pub fn recording(&mut self, options: &ReadOptions) -> Result<Recording, ReadError> {
-        match self.format {
-            Some(Format::C3d) => c3d::read(&mut *self.source, options),
-            Some(Format::WideCsv) => text::wide_csv::read(&mut self.lines()?, options),
-            Some(Format::LongCsv) => text::long_csv::read(&mut self.lines()?, options),
-            Some(Format::Trc) => text::trc::read(&mut self.lines()?, options),
-            Some(Format::QtmTsv) => text::qtm_tsv::read(&mut self.lines()?, options),
-            Some(Format::MotiveCsv) => text::motive_csv::read(&mut self.lines()?, options),
-            Some(Format::ViconCsv) => text::vicon_csv::read(&mut self.lines()?, options),
-            Some(Format::Bvh) => text::bvh::read(&mut self.lines()?, options),
-            Some(Format::LiveLinkCsv) => {
-                let take = text::live_link::read(&mut self.lines()?)?;
-                Err(ReadError::WeightsNotMarkers { columns: take.names.len() })
+        match self.format.map(|format| (format, &format.read)) {
+            Some((_, Read::Binary(read))) => read(&mut *self.source, options),
+            Some((_, Read::Text(read))) => read(&mut self.lines()?, options),
+            Some((format, _)) => Err(ReadError::WeightsNotMarkers { format: format.name }),
+            None => {
+                let (found, readable) = (self.beginning()?, names(|f| !f.holds_weights()));
+                Err(ReadError::Unrecognised { found, readable })
             }
-            None => Err(ReadError::Unrecognised { found: self.beginning()? }),
         }
     }
 
-    /// The weights of a performance recorded as such (Live Link Face CSV).
+    /// The weights of a performance recorded as such. A table whose columns look like coordinates
+    /// is read as weights here, too.
     ///
     /// # Errors
     /// [`ReadError`] with place, value and remedy.
-    pub fn weights(&mut self) -> Result<WeightTake, ReadError> {
-        match self.format {
-            Some(Format::LiveLinkCsv) => text::live_link::read(&mut self.lines()?),
-            _ => Err(ReadError::NotWeights { found: self.beginning()? }),
+    pub fn weights(&mut self, options: &WeightOptions<'_>) -> Result<WeightsTable, ReadError> {
+        let format = match self.format {
+            Some(Format { read: Read::Text(_), .. }) => {
+                self.recognised_text(Format::holds_weights)?
+            }
+            format => format,
+        };
+        match format.map(|format| &format.read) {
+            Some(Read::TextWeights(read)) => read(&mut self.lines()?, options),
+            Some(Read::BinaryWeights(read)) => {
+                read(&mut *self.source, self.path.as_deref(), options)
+            }
+            Some(Read::Binary(_) | Read::Text(_)) | None => {
+                let (found, readable) = (self.beginning()?, names(Format::holds_weights));
+                Err(ReadError::NotWeights { found, readable })
+            }
         }
     }
 
@@ -115,6 +152,11 @@ impl<'a> CaptureFile<'a> {
         let head: String = bytes.iter().flat_map(|b| b.escape_ascii()).map(char::from).collect();
         Ok(format!("it starts with \"{head}\""))
     }
+}
+
+/// The names of some of the formats.
+fn names(among: impl Fn(&Format) -> bool) -> Vec<&'static str> {
+    formats().iter().filter(|format| among(format)).map(|format| format.name).collect()
 }
 
 impl std::fmt::Debug for CaptureFile<'_> {
@@ -147,15 +189,26 @@ pub fn read_recording(bytes: &[u8], options: &ReadOptions) -> Result<Recording, 
     CaptureFile::of_bytes(bytes)?.recording(options)
 }
 
-/// Read a performance recorded as weights (Live Link Face CSV) from bytes.
+/// Read a performance recorded as weights from bytes.
 ///
 /// # Errors
 /// [`ReadError`] with place, value and remedy.
-pub fn read_weights(bytes: &[u8]) -> Result<WeightTake, ReadError> {
-    CaptureFile::of_bytes(bytes)?.weights()
+pub fn read_weights(bytes: &[u8], options: &WeightOptions<'_>) -> Result<WeightsTable, ReadError> {
+    CaptureFile::of_bytes(bytes)?.weights(options)
+}
+
+/// Read a performance recorded as weights from a file.
+///
+/// # Errors
+/// [`ReadError`] with place, value and remedy.
+pub fn read_weights_file(
+    path: &Path,
+    options: &WeightOptions<'_>,
+) -> Result<WeightsTable, ReadError> {
+    CaptureFile::open(path)?.weights(options)
 }
 
 /// Recognise the format of bytes; `None` when no reader knows it.
-pub fn recognise(bytes: &[u8]) -> Option<Format> {
+pub fn recognise(bytes: &[u8]) -> Option<&'static Format> {
     CaptureFile::of_bytes(bytes).ok()?.format()
 }

@@ -1,6 +1,7 @@
 //! C3D files laid out as systems lay them out and the standard does not forbid: parameters in any
 //! order, labels continued, analog data between the points, damaged or missing parameters.
 
+use mimique_geometry::Point;
 use mimique_mocap::{
     C3dOptions, C3dStorage, Capture, LengthUnit, Processor, ReadOptions, read_bytes,
     read_recording, write_c3d,
@@ -15,7 +16,7 @@ fn capture(markers: usize, frames: usize) -> Capture {
         first_frame: 1,
         unit: LengthUnit::Millimetre,
         positions: (0..markers * frames)
-            .map(|i| [20.0 + i as f64, 0.5 * i as f64 - 40.0, 1000.0 - i as f64])
+            .map(|i| Point::new(20.0 + i as f64, 0.5 * i as f64 - 40.0, 1000.0 - i as f64))
             .collect(),
         notes: Vec::new(),
     }
@@ -180,7 +181,7 @@ fn residual_and_camera_mask_do_not_make_a_marker_missing_but_a_sign_does() {
         file[data + 14..data + 16].copy_from_slice(&word_bytes(processor, 0xff0c));
         let read = read_bytes(&file).unwrap();
         assert_eq!(read.frame(0)[0], capture.frame(0)[0]);
-        assert!(read.frame(0)[1].iter().all(|v| v.is_nan()));
+        assert!(read.frame(0)[1].is_nan_mask().all());
         assert_eq!(read.frame(1), capture.frame(1));
     }
 }
@@ -192,7 +193,7 @@ fn a_coordinate_that_is_not_a_number_makes_the_marker_missing() {
     let data = 512 * (usize::from(word(Processor::Intel, [file[16], file[17]])) - 1);
     file[data + 4..data + 8].copy_from_slice(&f32::NAN.to_le_bytes());
     let read = read_bytes(&file).unwrap();
-    assert!(read.frame(0)[0].iter().all(|v| v.is_nan()));
+    assert!(read.frame(0)[0].is_nan_mask().all());
     assert_eq!(read.frame(0)[1], capture.frame(0)[1]);
     assert!(read.notes.iter().any(|n| n.contains("one or two coordinates")), "{:?}", read.notes);
 }

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mimique_geometry::Point;
 use mimique_mocap::{C3dOptions, C3dStorage, Capture, LengthUnit, Processor, read, write_c3d};
 use mimique_test_support::{python, real_data};
 
@@ -79,9 +80,9 @@ fn planted(markers: usize, frames: usize) -> Capture {
         let v = i as f64;
         let missing = i % 17 == 3;
         if missing {
-            [f64::NAN; 3]
+            Point::UNSEEN
         } else {
-            [v * 0.0625 + 1.0, 900.5 - v * 0.125, (v * 0.5) % 300.0]
+            Point::new(v * 0.0625 + 1.0, 900.5 - v * 0.125, (v * 0.5) % 300.0)
         }
     });
     Capture {

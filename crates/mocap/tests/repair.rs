@@ -1,5 +1,6 @@
 //! Faults planted in a smooth take are found where they are, and mended to what was there before.
 
+use mimique_geometry::{Point, coordinates};
 use mimique_mocap::{
     Capture, CaptureFacts, Format, GapFill, GapRepair, LengthUnit, LowPass, MendedSwap, Recording,
     RepairPlan, repair, stillest,
@@ -42,7 +43,7 @@ fn take(seconds: f64, noise_mm: f64) -> Capture {
             let y = p[1] + talk * amplitude * (5.0 * t + 0.4 * m).sin();
             let z = p[2] + talk * 0.4 * amplitude * (4.0 * t + m).cos();
             let turned = [c * p[0] + s * z + 15.0 * (0.7 * t).sin(), y + 1600.0, c * z - s * p[0]];
-            positions.push(turned.map(|v| v + noise_mm * noise.next()));
+            positions.push(Point::from(turned.map(|v| v + noise_mm * noise.next())));
         }
     }
     let mut labels: Vec<String> = (0..20).map(|m| format!("face {m}")).collect();
@@ -67,14 +68,14 @@ fn swap(capture: &mut Capture, a: usize, b: usize, frames: std::ops::Range<usize
 
 fn largest_error(a: &Capture, b: &Capture) -> f64 {
     assert_eq!(a.positions.len(), b.positions.len());
-    let pairs = a.positions.as_flattened().iter().zip(b.positions.as_flattened());
+    let pairs = coordinates(&a.positions).iter().zip(coordinates(&b.positions));
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
 }
 
 fn facts(capture: &Capture) -> CaptureFacts {
     CaptureFacts::of(&Recording {
         capture: capture.clone(),
-        format: Format::C3d,
+        format: Format::by_id("c3d").unwrap(),
         system: None,
         analog_channels: 0,
         events: Vec::new(),
@@ -133,8 +134,8 @@ fn labels_that_change_places_while_both_are_hidden_are_put_back() {
     let mut faulty = clean.clone();
     swap(&mut faulty, 6, 7, 410..1600);
     for frame in 400..410 {
-        faulty.positions[MARKERS * frame + 6] = [f64::NAN; 3];
-        faulty.positions[MARKERS * frame + 7] = [f64::NAN; 3];
+        faulty.positions[MARKERS * frame + 6] = Point::UNSEEN;
+        faulty.positions[MARKERS * frame + 7] = Point::UNSEEN;
     }
     let done = repair(faulty, &RepairPlan::default()).unwrap();
     // The longer part keeps its labels, so it is the first that is moved: one person's marker has
@@ -181,7 +182,7 @@ fn gaps_are_filled_as_far_as_is_said_and_listed() {
     let mut faulty = clean.clone();
     for (marker, frames) in [(0, 100..110), (1, 300..420), (2, 600..1000), (20, 700..780)] {
         for frame in frames {
-            faulty.positions[MARKERS * frame + marker] = [f64::NAN; 3];
+            faulty.positions[MARKERS * frame + marker] = Point::UNSEEN;
         }
     }
     let plan =
@@ -245,9 +246,9 @@ fn a_plan_that_cannot_be_is_refused() {
     let refused = |plan: RepairPlan| repair(capture.clone(), &plan).unwrap_err().to_string();
     let butterworth = |cutoff_hz| Some(LowPass::Butterworth { cutoff_hz });
     let plan = RepairPlan { low_pass: butterworth(150.0), ..RepairPlan::default() };
-    assert!(refused(plan).starts_with("low-pass: cut-off 150 Hz at 200 frames a second"));
+    assert!(refused(plan).starts_with("low-pass: cut-off 150 Hz at 200 frames per second"));
     let plan = RepairPlan { resample_hz: Some(0.0), ..RepairPlan::default() };
-    assert!(refused(plan).starts_with("resample: 0 frames a second"));
+    assert!(refused(plan).starts_with("resample: 0 frames per second"));
     let plan = RepairPlan { head: vec!["nose".to_owned(); 3], ..RepairPlan::default() };
     assert!(refused(plan).starts_with("head marker nose: not in the capture"));
 }

@@ -1,5 +1,6 @@
 //! What is written is read back: the same numbers for every processor, storage and format.
 
+use mimique_geometry::Point;
 use mimique_mocap::{
     C3dOptions, C3dStorage, Capture, LengthUnit, Processor, read_bytes, write_c3d, write_csv,
     write_trc,
@@ -19,9 +20,9 @@ fn planted(markers: usize, frames: usize) -> Capture {
     let positions = (0..markers * frames)
         .map(|i| {
             if i % 11 == 3 {
-                [f64::NAN; 3]
+                Point::UNSEEN
             } else {
-                [coordinate() + 0.0625, coordinate(), coordinate()]
+                Point::new(coordinate() + 0.0625, coordinate(), coordinate())
             }
         })
         .collect();
@@ -44,7 +45,7 @@ fn assert_same(got: &Capture, want: &Capture) {
     );
     assert_eq!(got.positions.len(), want.positions.len());
     for (index, (g, w)) in got.positions.iter().zip(&want.positions).enumerate() {
-        assert!(g == w || (w[0].is_nan() && g.iter().all(|v| v.is_nan())), "{index}: {g:?} {w:?}");
+        assert!(g == w || (w[0].is_nan() && g.is_nan_mask().all()), "{index}: {g:?} {w:?}");
     }
 }
 
@@ -89,7 +90,7 @@ fn csv_and_trc_give_back_every_bit() {
     let mut capture = planted(7, 90);
     capture.rate_hz = 60_000.0 / 1001.0;
     capture.unit = LengthUnit::Metre;
-    capture.positions[1] = [0.1 + 0.2, -1e-17, 1.0 / 3.0];
+    capture.positions[1] = Point::new(0.1 + 0.2, -1e-17, 1.0 / 3.0);
     capture.labels[2] = "with, comma; \"quoted\"".to_owned();
     for text in [write_csv(&capture).unwrap(), write_trc(&capture, "take.trc").unwrap()] {
         assert_same(&read_bytes(text.as_bytes()).unwrap(), &capture);

@@ -26,7 +26,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use mimique_server::{App, Storage};
+use mimique_server::App;
+use mimique_storage::Storage;
 use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -253,7 +254,7 @@ async fn fetch_again_and_again(run: &Run) -> Vec<f32> {
     let page = connection.exchange("GET", "/s/faces/", "").await.unwrap_or_default();
     let page = String::from_utf8_lossy(&page).into_owned();
     let at = page.find("/assets/").unwrap_or_default();
-    let style = format!("{}/style.css", &page[at..at + "/assets/".len() + 16]);
+    let style = format!("{}/style/style.css", &page[at..at + "/assets/".len() + 16]);
     let pack = format!("/packs/{}", study::sha256(&study::pack()));
     for path in [style, pack].iter().cycle() {
         if run.end.load(Ordering::Relaxed) {

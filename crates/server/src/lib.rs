@@ -1,57 +1,65 @@
 //! The server: pages, packs, answers kept in SQLite or PostgreSQL, export.
 //!
 //! [`App`] joins studies ([`HostedStudy`]), their packs ([`PackStore`]), the pages ([`Assets`]) and
-//! [`Storage`]; [`router`] is its HTTP interface (the bodies are `mimique_study::wire`), [`serve`]
+//! [`Storage`](mimique_storage::Storage); [`router`] is its HTTP interface (the bodies are `mimique_session::wire`), [`serve`]
 //! runs it until it is told to stop, [`export`] writes what was answered.
 //!
 //! What it promises: an append is acknowledged only after its transaction is on disk; sending a
 //! request again changes nothing; a participant number is never given twice; tokens, codes and keys
 //! are kept as hashes; no address of a participant is stored and no answer is logged.
+//!
+//! ```
+//! use axum::{body::Body, http::Request};
+//! use mimique_server::{App, Assets, PackStore, router};
+//! use mimique_storage::Storage;
+//! use tower::ServiceExt as _;
+//!
+//! # tokio::runtime::Runtime::new()?.block_on(async {
+//! let folder = tempfile::tempdir()?;
+//! let pages = folder.path().join("pages");
+//! for (part, page) in [("participant", "index.html"), ("style", "style.css")] {
+//!     std::fs::create_dir_all(pages.join(part))?;
+//!     std::fs::write(pages.join(part).join(page), "")?;
+//! }
+//! let assets = Assets::from_folder(&pages)?;
+//! let url = format!("sqlite:{}", folder.path().join("answers.sqlite").display());
+//! let storage = Storage::open(&url).await?;
+//! // Studies are checked and prepared before: here there are none.
+//! let app = App::new(Vec::new(), PackStore::default(), assets, storage).await?;
+//! let asked = Request::get("/healthz").body(Body::empty())?;
+//! let answer = router(app).oneshot(asked).await?;
+//! assert_eq!(answer.status(), 200);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # })?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod accounts;
-mod app;
-mod assets;
-mod atomic_file;
-mod catalogue;
 mod clock;
-mod compression;
 mod error;
 pub mod export;
-mod folder;
-mod hosted;
-mod limits;
-mod metrics;
-mod packs;
-mod receipt;
+mod files;
+mod http;
+mod participant;
+mod participant_id;
 mod researcher;
 mod retention;
-mod routes;
 mod secret;
 mod serve;
-mod settings;
-mod static_file;
-mod storage;
+mod state;
 mod studio;
 mod uploads;
 
-pub use accounts::Access;
-pub use app::{App, AppError};
-pub use assets::{Assets, AssetsError};
-pub use hosted::{HostedStudy, Stage};
-pub use packs::{PackError, PackStore};
+pub use accounts::links::reset_link;
+pub use files::assets::{Assets, AssetsError};
+pub use files::packs::{PackError, PackStore};
+pub use http::router;
+pub use participant_id::participant_id;
 pub use retention::erase_overdue;
-pub use routes::router;
 pub use serve::{ServeError, serve};
-pub use settings::Settings;
-pub use storage::{
-    Account, AccountLink, ApiToken, Appended, AuditEntry, BackupError, BackupFacts, Completed,
-    Deletion, Exclusion, LinkPurpose, MOST_SEQUENCES_REPORTED, NewSession, RecruitmentEntry,
-    Registered, RestoreOptions, Restored, Role, SessionRecord, Status, Storage, StorageError,
-    StudyVersion, UploadedStudy, read_deletions, scrub_backup, write_deletions,
-};
+pub use state::App;
+pub use state::access::Access;
+pub use state::hosted_study::{HostedStudy, Stage};
+pub use state::settings::Settings;
+pub use state::start_error::AppError;
 pub use studio::{StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
-
-/// The public name of a participant: `p0007`.
-pub fn participant_id(number: u64) -> String {
-    format!("p{number:04}")
-}

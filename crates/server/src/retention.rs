@@ -3,11 +3,11 @@
 
 use std::time::{Duration, Instant, SystemTime};
 
+use mimique_storage::{Storage, StorageError};
 use serde_json::Value;
 
-use crate::app::App;
 use crate::clock;
-use crate::storage::{Storage, StorageError};
+use crate::state::App;
 
 const DAY_MS: i64 = 24 * 3600 * 1000;
 /// How often the server looks.

@@ -11,12 +11,12 @@ use subtle::ConstantTimeEq;
 pub(crate) fn random<const BYTES: usize>() -> Result<String, getrandom::Error> {
     let mut bytes = [0; BYTES];
     getrandom::fill(&mut bytes)?;
-    Ok(hex(&bytes))
+    Ok(hex::encode(bytes))
 }
 
 /// SHA-256 of a secret, hexadecimal: what the database keeps of it.
 pub(crate) fn hash(secret: &str) -> String {
-    hex(&Sha256::digest(secret.as_bytes()))
+    hex::encode(Sha256::digest(secret.as_bytes()))
 }
 
 /// HMAC-SHA-256 over the parts, each preceded by its length so that no two lists of parts collide.
@@ -37,16 +37,6 @@ pub(crate) fn keyed(key: &[u8]) -> Hmac<Sha256> {
 /// Compares without telling by the time taken where two secrets differ.
 pub(crate) fn same(left: &str, right: &str) -> bool {
     left.as_bytes().ct_eq(right.as_bytes()).into()
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 16] = b"0123456789abcdef";
-    bytes
-        .iter()
-        .flat_map(|byte| [DIGITS[usize::from(byte >> 4)], DIGITS[usize::from(byte & 15)]])
-        .map(char::from)
-        .collect()
 }
 
 /// Whether this is `digits` lower-case hexadecimal digits.

@@ -21,10 +21,10 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
-use crate::app::App;
-use crate::limits::Peer;
+use crate::http::router;
 use crate::retention;
-use crate::routes::router;
+use crate::state::App;
+use crate::state::rate_limit::Peer;
 
 /// Requests in progress have this long to end after the signal.
 const LONGEST_FAREWELL: Duration = Duration::from_secs(10);
@@ -72,11 +72,11 @@ pub async fn serve(
                 let connection = connection(&app, &router, stream, peer);
                 let connection = graceful.watch(connection);
                 let metrics = Arc::clone(&app.metrics);
-                metrics.connections.fetch_add(1, Ordering::Relaxed);
+                metrics.connections.inc();
                 tokio::spawn(async move {
                     // A connection that breaks is the caller's affair.
                     let _ = connection.await;
-                    metrics.connections.fetch_sub(1, Ordering::Relaxed);
+                    metrics.connections.dec();
                     drop(place);
                 });
             }

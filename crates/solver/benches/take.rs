@@ -1,4 +1,4 @@
-//! Frames a second on the planted take (5,660 frames, S = 11,248, N = 53, P = 40), and set-up.
+//! Frames per second on the planted take (5,660 frames, S = 11,248, N = 53, P = 40), and set-up.
 //!
 //! `cargo bench -p mimique-solver`; reads the real data as the tests do, one thread.
 #![allow(missing_docs)]

@@ -5,6 +5,30 @@
 //! captured markers --FrontEnd--> displacements d --Fit::solve_take--> weights + reports
 //! ```
 //!
+//! ```
+//! use mimique_geometry::{Displacement, Point};
+//! use mimique_solver::{
+//!     Fit, Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas,
+//! };
+//!
+//! // A skin of two triangles; its one shape lifts the last vertex, which has a marker, by 1 cm.
+//! let skin = SkinMesh {
+//!     positions: [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.1, 0.1, 0.0]]
+//!         .map(Point::from)
+//!         .to_vec(),
+//!     triangles: vec![[0, 1, 2], [1, 3, 2]],
+//!     shapes: vec![SparseDeltas { vertices: vec![3], deltas: vec![Displacement::from([0.0, 0.0, 0.01])] }],
+//! };
+//! let (shapes, markers) = (["lift".to_owned()], [("Cheek".to_owned(), 3)]);
+//! let spec = MethodSpec::new(Method::Box);
+//! let operators = Operators::build(&skin, &shapes, &markers, &OperatorOptions::of(&spec))?;
+//!
+//! // The marker went 5 mm up: half of the shape.
+//! let frame = Fit::new(&operators, &spec)?.solve_frame(&[0.0, 0.0, 0.005])?;
+//! assert!((frame.weights[0] - 0.5).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | paper | code | size | unit |
 //! |---|---|---|---|
 //! | S, P, N (thesis 5.1.1) | `vertex_count`, `marker_count`, `shape_count` | | |
@@ -14,7 +38,7 @@
 //! | AB (eq. 5.29) | rows streamed into H, never kept | 3S x N | m |
 //! | c^T H c = Enc'_ts (eq. 5.28, 5.30) | [`OperatorParts::shell_gram`] | N x N | m^2 |
 //! | Da_c = D c (eq. 5.22) | [`OperatorParts::marker_deltas`] | 3P x N | m |
-//! | Dm (eq. 5.21) | displacements `d`, [`FrontEnd::displacements`] | 3P a frame | m |
+//! | Dm (eq. 5.21) | displacements `d`, [`FrontEnd::displacements`] | 3P per frame | m |
 //! | l^2 = tr(D^T D) / N | [`Operators::data_scale`] | | m^2 |
 //! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
 //! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
@@ -29,90 +53,65 @@
 //! # Speed
 //!
 //! A Newton step at N = 53 is some 61 kflop, of which the factor is 50; a core that does 8
-//! double-precision operations a cycle at 2.8 GHz could not make more than 370,000 a second, and the
+//! double-precision operations per cycle at 2.8 GHz could not make more than 370,000 per second, and the
 //! divisions and roots on the diagonal halve that. `lsts` exchanges its active set some four times
-//! a frame, `lsts-norm` needs about two factors; `docs/solver-benchmarks.md` has what was measured
+//! per frame, `lsts-norm` needs about two factors; `docs/measured/solver-benchmarks.md` has what was measured
 //! beside SciPy, and `cargo xtask bench` measures again.
 
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
-mod bank;
-mod box_qp;
-mod cholesky;
-mod dense;
-mod exp;
+mod energy;
 mod fit;
 mod front_end;
-mod front_end_error;
 mod gaussian_process;
-mod head_pose;
-mod hyper_parameters;
-mod laplacian;
-mod linked;
-mod lowpass;
-mod marker_frames;
-mod marker_scales;
-mod marker_site;
-mod mask;
+mod kouadio;
+mod linear_algebra;
+mod mesh;
 mod method;
-mod method_spec;
-mod named_values;
 mod newton;
-mod number_text;
-mod objective;
-mod operators;
-mod problem;
-mod rbf;
-mod regression;
-mod report;
-mod rigid_alignment;
-mod seen;
-mod shell_patch;
-mod skin_mesh;
-#[cfg(feature = "surface")]
-mod sparse_cholesky;
-mod sparse_process;
-mod spec_check;
-#[cfg(feature = "surface")]
+mod parameters;
+mod quadratic;
 mod surface;
-mod surface_depth;
-mod surface_fit;
-mod svd;
-mod symmetry;
-mod synthesis;
-mod thin_shell;
 
-pub use bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
-pub use fit::{CHUNK_FRAMES, Fit, FrameSolver};
-pub use front_end::{FrontEnd, FrontEndScratch};
-pub use front_end_error::FrontEndError;
-pub use gaussian_process::{ExactProcess, Kernel, log_marginal_likelihood};
-pub use hyper_parameters::maximise_likelihood;
-pub use laplacian::{Laplacian, mixed_voronoi_areas};
-pub use linked::{LinkedRows, Linking};
-pub use lowpass::{Lowpass, LowpassError};
-pub use marker_frames::{MarkerColumns, MarkerFrames};
-pub use marker_scales::{Extent, LEAST_RANGE_M, MarkerScales, bank_extents, motion_extents};
-pub use marker_site::{MarkerSite, SurfacePoint};
-pub use method::Method;
-pub use method_spec::{Association, Hold, Inference, LaplacianKind, MethodSpec, Unit};
-pub use number_text::number_text;
-pub use operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
-pub use problem::FitError;
-pub use rbf::{Rbf, RbfError};
-pub use regression::{
+pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
+pub use energy::thin_shell::{apply_shell, shell_gram};
+pub use fit::frame::FrameSolver;
+pub use fit::problem::FitError;
+pub use fit::report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
+pub use fit::{CHUNK_FRAMES, Fit};
+pub use front_end::error::FrontEndError;
+pub use front_end::head_lowpass::{HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE};
+pub use front_end::lowpass::{Lowpass, LowpassError};
+pub use front_end::marker_frames::{MarkerColumns, MarkerFrames};
+pub use front_end::marker_scales::{
+    Extent, LEAST_RANGE_M, MarkerScales, bank_extents, motion_extents,
+};
+pub use front_end::rbf::{Rbf, RbfError};
+pub use front_end::surface_depth::{FanTriangle, SurfaceDepth};
+pub use front_end::take::{FrontEnd, FrontEndScratch};
+pub use gaussian_process::exact::{ExactProcess, Kernel, log_marginal_likelihood};
+pub use gaussian_process::hyper_parameters::maximise_likelihood;
+pub use gaussian_process::regression::{
     LEAST_TRAINING_FRAMES, MOST_EXACT_FRAMES, Regression, TrainingError, TrainingOptions,
 };
-pub use report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
-pub use rigid_alignment::{RigidError, RigidMotion, align_rigidly};
-pub use skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
-pub use sparse_process::SparseProcess;
-pub use spec_check::SpecError;
+pub use gaussian_process::sparse::SparseProcess;
+pub use kouadio::bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
+pub use kouadio::linked::{LinkedRows, Linking};
+pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
+pub use mesh::marker_site::{MarkerSite, SurfacePoint};
+pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
+pub use mesh::symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
+pub use mesh::synthesis::Synthesis;
+pub use method::definition::Needs;
+pub use method::names::Method;
+pub use parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
+pub use parameters::group::Group;
+pub use parameters::kind::{Kind, NamesOf, Quantity, Range};
+pub use parameters::problem::{SpecError, SpecFault};
+pub use parameters::schema::parameter_schemas;
+pub use parameters::table::{About, Effect, MethodSpec, PARAMETERS, Parameter};
+pub use parameters::value::ByName;
+pub use surface::frame::METRES_PER_WEIGHT;
 #[cfg(feature = "surface")]
-pub use surface::{SurfaceError, SurfaceResponse, surface_shape_names};
-pub use surface_depth::{FanTriangle, SurfaceDepth};
-pub use surface_fit::METRES_PER_WEIGHT;
-pub use symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
-pub use synthesis::Synthesis;
-pub use thin_shell::{apply_shell, shell_gram};
+pub use surface::response::{SurfaceError, SurfaceResponse, surface_shape_names};

@@ -4,6 +4,7 @@
 //! values on another processor, or with other features, is what this test is for. Inputs are made
 //! with exact operations only, since `sin` and `exp` of the platform differ in their last bits.
 
+use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
     Fit, FrontEnd, Lowpass, MarkerColumns, MarkerFrames, MarkerSite, Method, MethodSpec,
     OperatorOptions, Operators, Regression, SkinMesh, SparseDeltas, SurfaceResponse,
@@ -25,10 +26,10 @@ impl Numbers {
 fn sheet(width: usize) -> (SkinMesh, Vec<String>, Vec<(String, usize)>) {
     let spacing = 64.0 * width as f64 / 12.0;
     let mut noise = Numbers(3);
-    let positions: Vec<[f64; 3]> = (0..width * width)
+    let positions: Vec<Point> = (0..width * width)
         .map(|i| {
             let (x, y) = ((i % width) as f64 / spacing, (i / width) as f64 / spacing);
-            [x, y, 0.1 - 2.0 * (x - 0.08) * (x - 0.08) - (y - 0.08) * (y - 0.08)]
+            Point::new(x, y, 0.1 - 2.0 * (x - 0.08) * (x - 0.08) - (y - 0.08) * (y - 0.08))
         })
         .collect();
     let at = |x: usize, y: usize| (y * width + x) as u32;
@@ -46,7 +47,8 @@ fn sheet(width: usize) -> (SkinMesh, Vec<String>, Vec<(String, usize)>) {
                 .filter_map(|(v, p)| {
                     let r2: f64 = (0..3).map(|a| (p[a] - centre[a]) * (p[a] - centre[a])).sum();
                     let bump = 1.0 - r2 / 0.006;
-                    (bump > 0.0).then(|| (v as u32, direction.map(|d| d * bump * bump)))
+                    (bump > 0.0)
+                        .then(|| (v as u32, Displacement::from(direction.map(|d| d * bump * bump))))
                 })
                 .unzip();
             SparseDeltas { vertices, deltas }

@@ -4,13 +4,14 @@ mod common;
 
 use std::path::Path;
 
+use mimique_geometry::{DQuat, Point, RigidError, RigidMotion, align_rigidly};
 use mimique_solver::{
     Fit, FrontEnd, FrontEndError, Lowpass, MarkerColumns, MarkerFrames, Method, MethodSpec,
-    OperatorOptions, Rbf, RbfError, RigidError, RigidMotion, align_rigidly,
+    OperatorOptions, Rbf, RbfError,
 };
 use mimique_test_support::real_data;
 
-type Points = Vec<[f64; 3]>;
+type Points = Vec<Point>;
 
 /// SciPy 1.17's cubic RBF with degree 1 on 40 points of a face, and the same in 40-digit arithmetic;
 /// millimetres.
@@ -25,7 +26,9 @@ struct Golden {
 fn golden() -> Golden {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/rbf_scipy.json");
     let json = common::json(&file);
-    let points = |key: &str| common::numbers(&json[key]).as_chunks::<3>().0.to_vec();
+    let points = |key: &str| -> Points {
+        common::numbers(&json[key]).as_chunks::<3>().0.iter().map(|&p| p.into()).collect()
+    };
     Golden {
         actor: points("actor"),
         avatar: points("avatar"),
@@ -39,11 +42,10 @@ fn golden() -> Golden {
 fn motion(angle: f64, shift: [f64; 3]) -> RigidMotion {
     let (s, c) = (angle / 2.0).sin_cos();
     let axis = [0.6 * s, -0.48 * s, 0.64 * s];
-    let turn = RigidMotion::from_quaternion([c, axis[0], axis[1], axis[2]]);
-    RigidMotion { translation: shift, ..turn }
+    RigidMotion::turn(DQuat::from_xyzw(axis[0], axis[1], axis[2], c)).then_by(shift.into())
 }
 
-fn worst_distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+fn worst_distance(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).fold(0.0, |s, (a, b)| (0..3).fold(s, |s: f64, k| s.max((a[k] - b[k]).abs())))
 }
 
@@ -63,12 +65,12 @@ fn rbf_interpolates_and_equals_scipy() {
 #[test]
 fn rbf_reproduces_affine_maps() {
     let g = golden();
-    let map = |p: [f64; 3]| {
-        [
+    let map = |p: Point| {
+        Point::new(
             1.1 * p[0] - 0.2 * p[1] + 3.0,
             0.9 * p[1] + 0.1 * p[2] - 2.0,
             0.3 * p[0] + 1.2 * p[2] + 5.0,
-        ]
+        )
     };
     let values: Points = g.actor.iter().map(|&p| map(p)).collect();
     let rbf = Rbf::interpolate(&g.actor, &values).unwrap();
@@ -84,7 +86,7 @@ fn rbf_without_a_solution_is_refused_in_words() {
     twice[7] = twice[3];
     assert_eq!(Rbf::interpolate(&twice, &g.avatar), Err(RbfError::Coincident(3, 7)));
     assert_eq!(Rbf::interpolate(&g.actor[..3], &g.avatar), Err(RbfError::TooFew(3)));
-    let flat: Points = g.actor.iter().map(|p| [p[0], p[1], 2.0 * p[0] - p[1]]).collect();
+    let flat: Points = g.actor.iter().map(|p| Point::new(p.x, p.y, 2.0 * p.x - p.y)).collect();
     assert_eq!(Rbf::interpolate(&flat, &g.avatar), Err(RbfError::Planar));
 }
 
@@ -98,20 +100,18 @@ fn alignment_recovers_a_rigid_motion_and_never_reflects() {
         let back: Points = g.actor.iter().map(|&p| found.apply(p)).collect();
         assert!(worst_distance(&back, &moved) < 1e-11, "angle {angle}");
     }
-    let mirrored: Points = g.actor.iter().map(|p| [-p[0], p[1], p[2]]).collect();
-    let r = align_rigidly(&g.actor, &mirrored).unwrap().rotation;
-    let determinant = r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1])
-        - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0])
-        + r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
+    let mirrored: Points = g.actor.iter().map(|p| Point::new(-p.x, p.y, p.z)).collect();
+    let determinant = align_rigidly(&g.actor, &mirrored).unwrap().rotation.determinant();
     assert!((determinant - 1.0).abs() < 1e-12);
 }
 
 #[test]
 fn alignment_refuses_lines_and_too_few() {
-    let line: Points = (0..5).map(|i| [f64::from(i), 2.0 * f64::from(i), 1.0]).collect();
+    let line: Points = (0..5).map(|i| Point::new(f64::from(i), 2.0 * f64::from(i), 1.0)).collect();
     assert_eq!(align_rigidly(&line, &line), Err(RigidError::Collinear));
     assert_eq!(align_rigidly(&line[..2], &line), Err(RigidError::TooFew(2)));
-    assert_eq!(align_rigidly(&[[1.0; 3]; 4], &[[1.0; 3]; 4]), Err(RigidError::Collinear));
+    let one = [Point::new(1.0, 1.0, 1.0); 4];
+    assert_eq!(align_rigidly(&one, &one), Err(RigidError::Collinear));
 }
 
 /// A slow nod of 0.2 rad and a drift of the head, at 200 frames/s.
@@ -129,10 +129,11 @@ fn small_take(frames: usize, head_moves: bool) -> (Vec<f64>, MarkerColumns) {
         let m = if head_moves { head_motion(f) } else { RigidMotion::IDENTITY };
         for (k, p) in g.actor.iter().enumerate() {
             let moves = if f < 5 { 0.0 } else { 0.002 * (t / 4.0 + k as f64).sin() };
-            out.extend(m.apply([p[0] / 1e3 + moves, p[1] / 1e3 - moves, p[2] / 1e3]));
+            let here = Point::new(p.x / 1e3 + moves, p.y / 1e3 - moves, p.z / 1e3);
+            out.extend(m.apply(here).to_array());
         }
         for p in [[0.0, 0.2, 0.0], [0.09, 0.1, 0.0], [-0.09, 0.1, 0.01], [0.0, 0.1, 0.1]] {
-            out.extend(m.apply(p));
+            out.extend(m.apply(p.into()).to_array());
         }
     }
     (out, MarkerColumns { face: (0..40).collect(), head: Some(vec![40, 41, 42, 43]) })
@@ -271,7 +272,7 @@ fn head_lowpass_takes_noise_out_of_the_pose() {
         let take = |positions| MarkerFrames { positions, columns: 44 };
         let truth = FrontEnd::head_poses(take(&clean), &columns, None).unwrap();
         let found = FrontEnd::head_poses(take(&noisy), &columns, lowpass).unwrap();
-        let at = [0.05, 0.0, 0.1];
+        let at = Point::new(0.05, 0.0, 0.1);
         let squares: f64 = (truth.iter().zip(&found).enumerate())
             .map(|(f, (a, b))| {
                 let m =
@@ -327,7 +328,7 @@ fn planted_take_from_its_file_gives_the_stored_weights() {
         let (_, expected) = common::table(&data.join(format!("lsts/frames/{file}.csv")), 1);
         let error = common::worst(&found, &expected);
         let steps: u32 = take.reports.iter().map(|r| r.iterations).sum();
-        eprintln!("{method}: {error:.1e}, {:.2} steps a frame", f64::from(steps) / 5660.0);
+        eprintln!("{method}: {error:.1e}, {:.2} steps per frame", f64::from(steps) / 5660.0);
         assert!(error < 1e-6, "{method}: {error:e}");
         let kkt = take.reports.iter().fold(0.0_f64, |s, r| s.max(r.kkt_error));
         assert!(kkt < 1e-9 && take.reports.iter().all(|r| r.warning.is_none()), "{kkt:e}");

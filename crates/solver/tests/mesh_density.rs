@@ -5,6 +5,7 @@ mod common;
 #[allow(dead_code, reason = "the benchmarks use the rest")]
 mod mesh;
 
+use mimique_geometry::{Displacement, Point};
 use mimique_solver::{Fit, Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas};
 use mimique_test_support::real_data;
 
@@ -21,9 +22,9 @@ fn hills(parts: usize) -> Scene {
     let step = 0.2 / (24 * parts) as f64;
     let place = |i: usize| {
         let (x, y) = ((i % width) as f64 * step - 0.1, (i / width) as f64 * step - 0.1);
-        [x, y, 0.1 - 3.0 * (x * x + 0.5 * y * y)]
+        Point::new(x, y, 0.1 - 3.0 * (x * x + 0.5 * y * y))
     };
-    let positions: Vec<[f64; 3]> = (0..width * width).map(place).collect();
+    let positions: Vec<Point> = (0..width * width).map(place).collect();
     let at = |x: usize, y: usize| (y * width + x) as u32;
     let triangles = (0..(width - 1) * (width - 1))
         .flat_map(|i| {
@@ -39,7 +40,7 @@ fn hills(parts: usize) -> Scene {
             for (v, p) in positions.iter().enumerate() {
                 let r2: f64 = (0..3).map(|a| (p[a] - centre[a]).powi(2)).sum();
                 shape.vertices.push(v as u32);
-                shape.deltas.push(direction.map(|d| d * (-r2 / 0.0016).exp()));
+                shape.deltas.push(direction.map(|d| d * (-r2 / 0.0016).exp()).into());
             }
             shape
         })
@@ -55,13 +56,13 @@ fn apart(mesh: &SkinMesh, a: &[f64], b: &[f64]) -> f64 {
     let n = mesh.shapes.len();
     let mut squares = 0.0;
     for (a, b) in a.chunks_exact(n).zip(b.chunks_exact(n)) {
-        let mut difference = vec![[0.0; 3]; mesh.positions.len()];
+        let mut difference = vec![Displacement::ZERO; mesh.positions.len()];
         for (shape, (a, b)) in mesh.shapes.iter().zip(a.iter().zip(b)) {
             for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                (0..3).for_each(|k| difference[v as usize][k] += (a - b) * d[k]);
+                difference[v as usize] += (a - b) * *d;
             }
         }
-        squares += difference.as_flattened().iter().map(|x| x * x).sum::<f64>();
+        squares += difference.iter().map(|d| d.length_squared()).sum::<f64>();
     }
     1e3 * (squares / (mesh.positions.len() * a.len() / n) as f64).sqrt()
 }

@@ -4,9 +4,10 @@ mod common;
 
 use litemap::LiteMap;
 
+use mimique_geometry::Point;
 use mimique_solver::{
-    Fit, FitError, FrameWarning, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts,
-    Operators, SkinMesh, SparseDeltas, Unit,
+    Fit, FitError, FrameWarning, Group, LaplacianKind, Method, MethodSpec, Needs, OperatorOptions,
+    OperatorParts, Operators, SkinMesh, SparseDeltas, Unit,
 };
 use proptest::prelude::*;
 
@@ -17,9 +18,9 @@ const WIDTH: usize = 15;
 fn sheet(unit: f64) -> (SkinMesh, Vec<String>, Vec<(String, usize)>) {
     let place = |i: usize| {
         let (x, y) = ((i % WIDTH) as f64 / 70.0 - 0.1, (i / WIDTH) as f64 / 70.0 - 0.1);
-        [x, y, 0.1 - 3.0 * (x * x + 0.5 * y * y)]
+        Point::new(x, y, 0.1 - 3.0 * (x * x + 0.5 * y * y))
     };
-    let positions: Vec<[f64; 3]> = (0..WIDTH * WIDTH).map(place).collect();
+    let positions: Vec<Point> = (0..WIDTH * WIDTH).map(place).collect();
     let at = |x: usize, y: usize| (y * WIDTH + x) as u32;
     let triangles = (0..(WIDTH - 1) * (WIDTH - 1))
         .flat_map(|i| {
@@ -37,7 +38,7 @@ fn sheet(unit: f64) -> (SkinMesh, Vec<String>, Vec<(String, usize)>) {
                 let r2: f64 = (0..3).map(|a| (p[a] - centre[a]).powi(2)).sum();
                 if r2 < 0.08 * 0.08 {
                     shape.vertices.push(v as u32);
-                    shape.deltas.push(direction.map(|d| d * (-r2 / 0.0009).exp()));
+                    shape.deltas.push(direction.map(|d| d * (-r2 / 0.0009).exp()).into());
                 }
             }
             shape
@@ -92,20 +93,16 @@ fn noisy(c: &[f64], noise: f64) -> Vec<f64> {
 
 const EXPRESSION: [f64; 9] = [0.2, 0.0, 0.7, 1.0, 0.4, 0.0, 0.9, 0.1, 0.5];
 
-const SOLVED: [Method; 12] = [
-    Method::Lsts,
-    Method::LstsSoft,
-    Method::LstsNorm,
-    Method::LstsShort,
-    Method::ThesisLiteral,
-    Method::ShortLiteral,
-    Method::BoundsOnly,
-    Method::ThinShellOnly,
-    Method::Box,
-    Method::Nnls,
-    Method::PseudoInverse,
-    Method::Kouadio,
-];
+/// Every method that finds weights from markers and shapes alone.
+fn solved() -> Vec<Method> {
+    Method::ALL.into_iter().filter(|method| method.needs() == Needs::Shapes).collect()
+}
+
+/// Those whose energies are normalised, so that they have no unit.
+fn normalised() -> Vec<Method> {
+    let has_none = |m: &Method| m.uses(Group::Balance) && !m.uses(Group::LiteralUnit);
+    solved().into_iter().filter(has_none).collect()
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
@@ -113,7 +110,7 @@ proptest! {
     #[test]
     fn normalised_forms_are_free_of_units(
         c in prop::collection::vec(-0.2..1.2_f64, 9),
-        method in prop::sample::select(SOLVED[..4].to_vec()),
+        method in prop::sample::select(normalised()),
         unit in prop::sample::select(vec![100.0, 1000.0]),
     ) {
         let spec = MethodSpec::new(method);
@@ -128,7 +125,7 @@ proptest! {
     #[test]
     fn order_of_the_shapes_does_not_matter(
         c in prop::collection::vec(-0.2..1.2_f64, 9),
-        method in prop::sample::select(SOLVED.to_vec()),
+        method in prop::sample::select(solved()),
         order in Just((0..9_usize).collect::<Vec<_>>()).prop_shuffle(),
     ) {
         let spec = MethodSpec::new(method);
@@ -150,7 +147,7 @@ proptest! {
     #[test]
     fn turning_avatar_and_markers_together_changes_nothing(
         c in prop::collection::vec(-0.2..1.2_f64, 9),
-        method in prop::sample::select(SOLVED.to_vec()),
+        method in prop::sample::select(solved()),
         angle in -3.0..3.0_f64,
     ) {
         let spec = MethodSpec::new(method);
@@ -158,10 +155,10 @@ proptest! {
         let turn = |p: [f64; 3]| [cos * p[0] - sin * p[2], p[1], sin * p[0] + cos * p[2]];
         let (mut mesh, names, markers) = sheet(1.0);
         for p in &mut mesh.positions {
-            *p = turn(*p).map(|x| x + 0.3);
+            *p = turn(p.to_array()).map(|x| x + 0.3).into();
         }
         for x in mesh.shapes.iter_mut().flat_map(|s| &mut s.deltas) {
-            *x = turn(*x);
+            *x = turn(x.to_array()).into();
         }
         let turned = Operators::build(&mesh, &names, &markers, &OperatorOptions::of(&spec)).unwrap();
         let d = noisy(&c, 2e-4);
@@ -175,7 +172,7 @@ proptest! {
     fn two_starts_lead_to_one_minimiser(
         c in prop::collection::vec(-0.5..1.5_f64, 9),
         other in prop::collection::vec(-3.0..4.0_f64, 9),
-        method in prop::sample::select(SOLVED.to_vec()),
+        method in prop::sample::select(solved()),
     ) {
         let fit = fit(&MethodSpec::new(method));
         let d = noisy(&c, 2e-4);
@@ -269,7 +266,7 @@ fn frames_that_do_not_reach_their_tolerance_are_warned_of() {
     absurd[21] = f64::MAX;
     let take = [good.clone(), absurd, good].concat();
     let mut failed = 0;
-    for method in SOLVED {
+    for method in solved() {
         let solved = fit(&MethodSpec::new(method)).solve_take(&take).unwrap();
         assert!(solved.weights.iter().all(|c| c.is_finite()), "{method}: {:?}", solved.weights);
         let [before, during, after] = &solved.reports[..] else { panic!("three frames") };
@@ -295,7 +292,7 @@ fn frames_that_do_not_reach_their_tolerance_are_warned_of() {
 #[test]
 fn lost_markers_drop_their_rows() {
     let d = noisy(&EXPRESSION, 2e-4);
-    for method in SOLVED {
+    for method in solved() {
         let spec = MethodSpec::new(method);
         let mut holed = d.clone();
         // One coordinate is enough to lose a marker.
@@ -330,7 +327,7 @@ fn lost_markers_drop_their_rows() {
 #[test]
 fn locked_shapes_stay_at_zero_and_bounds_hold() {
     let d = noisy(&EXPRESSION, 2e-4);
-    for method in SOLVED {
+    for method in solved() {
         let mut spec = MethodSpec::new(method);
         spec.locked = vec!["bump3".to_owned(), "bump6".to_owned()];
         let found = fit(&spec).solve_frame(&d).unwrap();
@@ -353,7 +350,7 @@ fn locked_shapes_stay_at_zero_and_bounds_hold() {
 #[test]
 fn importance_has_no_unit_and_pulls() {
     let d = noisy(&EXPRESSION, 5e-4);
-    for method in SOLVED {
+    for method in solved() {
         if matches!(method, Method::ThesisLiteral | Method::ShortLiteral) {
             continue;
         }
@@ -381,7 +378,7 @@ fn importance_has_no_unit_and_pulls() {
 fn unseen_shapes_stay_at_zero() {
     // A shape that moves no marker, and a copy of another: least squares has no one answer.
     let (mut mesh, mut names, markers) = sheet(1.0);
-    mesh.shapes.push(SparseDeltas { vertices: vec![0], deltas: vec![[0.01; 3]] });
+    mesh.shapes.push(SparseDeltas { vertices: vec![0], deltas: vec![[0.01; 3].into()] });
     mesh.shapes.push(mesh.shapes[2].clone());
     names.extend(["corner".to_owned(), "twin".to_owned()]);
     let d = noisy(&EXPRESSION, 2e-4);
@@ -406,7 +403,7 @@ fn take_does_not_depend_on_how_it_is_cut() {
             noisy(&c, 2e-4)
         })
         .collect();
-    for method in SOLVED {
+    for method in solved() {
         let fit = fit(&MethodSpec::new(method));
         let take = fit.solve_take(&frames).unwrap();
         assert_eq!(take.reports.len(), 300);
@@ -436,8 +433,10 @@ fn refusals_name_field_value_and_remedy() {
     };
     assert_eq!(
         say(&|s| s.sigma = Some(0.01), Method::Lsts),
-        "sigma: 'lsts' does not use it; remove it (it takes alpha, kappa, kS, kB, laplacian, \
-         bounds, locked, importance, headLowpassHz)"
+        format!(
+            "sigma: 'lsts' does not use it; remove it (it takes {})",
+            Method::Lsts.parameters().join(", ")
+        )
     );
     assert_eq!(
         say(&|s| s.alpha = Some(1.5), Method::Lsts),
@@ -454,8 +453,8 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert_eq!(
         say(&|s| s.laplacian = Some(LaplacianKind::Umbrella), Method::Lsts),
-        "operators built with laplacian Uniform, kS 1, kB 1, association none, the method asks \
-         for laplacian Umbrella, kS 1, kB 1, association none; build them with \
+        "operators built with laplacian uniform, kS 1, kB 1, association none, the method asks \
+         for laplacian umbrella, kS 1, kB 1, association none; build them with \
          OperatorOptions::of"
     );
     assert_eq!(
@@ -500,4 +499,85 @@ fn specs_are_written_and_read_as_the_study_file_has_them() {
     let many = MethodSpec { alpha: Some(f64::NAN), s: Some(0.0), ..spec };
     let fields: Vec<String> = many.problems().into_iter().map(|p| p.field).collect();
     assert_eq!(fields, ["alpha", "s"]);
+}
+
+#[test]
+fn gain_multiplies_the_weights_within_their_bounds() {
+    let d = noisy(&EXPRESSION, 2e-4);
+    for method in solved() {
+        let spec = MethodSpec::new(method);
+        let plain = fit(&spec).solve_frame(&d).unwrap();
+        let once = fit(&MethodSpec { gain: Some(1.0), ..spec.clone() }).solve_frame(&d).unwrap();
+        assert_eq!(once, plain, "{method}");
+        for gain in [0.5, 2.0] {
+            let with = fit(&MethodSpec { gain: Some(gain), ..spec.clone() });
+            let found = with.solve_frame(&d).unwrap();
+            let [low, high] = match method {
+                _ if method.uses(Group::SoftBounds) => spec.soft_bounds(),
+                Method::Nnls => [0.0, f64::INFINITY],
+                Method::PseudoInverse | Method::ThinShellOnly => [f64::NEG_INFINITY, f64::INFINITY],
+                _ => [0.0, 1.0],
+            };
+            for (k, (w, c)) in found.weights.iter().zip(&plain.weights).enumerate() {
+                let expected = (gain * c).max(low.min(*c)).min(high.max(*c));
+                assert_eq!(*w, expected, "{method}, shape {k}");
+            }
+            // The residual is that of the weights that are shown; the solve is the same.
+            let moved =
+                displacements(operators(1.0, &OperatorOptions::of(&spec)).parts(), &found.weights);
+            let squares: f64 = moved.iter().zip(&d).map(|(a, b)| (a - b).powi(2)).sum();
+            let residual = (squares / 12.0).sqrt();
+            assert!((found.report.residual - residual).abs() < 1e-12, "{method}");
+            assert_eq!(found.report.kkt_error, plain.report.kkt_error, "{method}");
+            // The next frame starts from the solved weights, not from the amplified ones.
+            let take = [d.clone(), d.clone()].concat();
+            let twice = with.solve_take(&take).unwrap();
+            assert!(common::worst(&twice.weights[9..], &found.weights) < 1e-9, "{method}");
+        }
+    }
+    let wrong = MethodSpec { gain: Some(0.0), ..MethodSpec::new(Method::Box) };
+    assert_eq!(
+        wrong.validate().unwrap_err().to_string(),
+        "gain: is 0; give a number above 0 and at most 3"
+    );
+}
+
+#[test]
+fn ridge_recovers_planted_weights_and_meets_its_conditions() {
+    let operators = operators(1.0, &OperatorOptions::default());
+    let (parts, n) = (operators.parts(), 9);
+    let spec = |kappa| MethodSpec { kappa: Some(kappa), ..MethodSpec::new(Method::Ridge) };
+    let exact = noisy(&EXPRESSION, 0.0);
+    let error =
+        |kappa| common::worst(&fit(&spec(kappa)).solve_frame(&exact).unwrap().weights, &EXPRESSION);
+    // The prior draws the weights away from the planted ones as much as it weighs.
+    let (large, small) = (error(1e-5), error(1e-6));
+    assert!(small < 1e-4 && (large / small - 10.0).abs() < 0.1, "{large:e} {small:e}");
+
+    // Karush-Kuhn-Tucker: no slope inside the bounds, none that leads back from a bound; the gradient
+    // is computed here from the equation itself.
+    let d = noisy(&EXPRESSION, 2e-3);
+    let (kappa, alpha) = (0.1, 0.3);
+    let found = fit(&spec(kappa)).solve_frame(&d).unwrap();
+    let c = &found.weights;
+    assert!(found.report.kkt_error < 1e-10, "{:e}", found.report.kkt_error);
+    let residual: Vec<f64> = displacements(parts, c).iter().zip(&d).map(|(a, b)| a - b).collect();
+    for (k, weight) in c.iter().enumerate() {
+        let column = |row: usize| parts.marker_deltas[row * n + k];
+        let data: f64 = (0..residual.len()).map(|row| column(row) * residual[row]).sum();
+        let own: f64 = (0..residual.len()).map(|row| column(row).powi(2)).sum();
+        let slope = data / operators.data_scale() + kappa * alpha * weight;
+        let step = slope / (own / operators.data_scale() + kappa * alpha);
+        let error = match *weight {
+            0.0 => (-step).max(0.0),
+            1.0 => step.max(0.0),
+            _ => step.abs(),
+        };
+        assert!(error < 1e-10, "shape {k}: {error:e}");
+    }
+    assert!(c.contains(&0.0) || c.contains(&1.0), "no bound is met: {c:?}");
+
+    // `lsts` with H in the place of the scaled identity is another answer.
+    let shell = fit(&MethodSpec::new(Method::Lsts)).solve_frame(&d).unwrap();
+    assert!(common::worst(&shell.weights, c) > 1e-3);
 }

@@ -2,6 +2,7 @@
 
 mod common;
 
+use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
     Fit, Laplacian, LaplacianKind, Linking, Method, MethodSpec, OperatorOptions, OperatorParts,
     Operators, SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
@@ -9,10 +10,11 @@ use mimique_solver::{
 use mimique_test_support::real_data;
 
 /// A width x height grid in the plane, each square cut along the same diagonal.
-fn grid(width: usize, height: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+fn grid(width: usize, height: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
     let at = |x: usize, y: usize| (y * width + x) as u32;
-    let positions =
-        (0..width * height).map(|i| [(i % width) as f64, (i / width) as f64, 0.0]).collect();
+    let positions = (0..width * height)
+        .map(|i| Point::new((i % width) as f64, (i / width) as f64, 0.0))
+        .collect();
     let triangles = (0..(width - 1) * (height - 1))
         .flat_map(|i| {
             let (x, y) = (i % (width - 1), i / (width - 1));
@@ -103,14 +105,14 @@ fn clamped_cotangent_rows_are_means() {
 #[test]
 fn energy_of_a_translation_is_zero_and_of_a_rotation_is_not() {
     let (p, t) = sphere(0.1, 2);
-    let shape = |delta: &dyn Fn([f64; 3]) -> [f64; 3]| SparseDeltas {
+    let shape = |delta: &dyn Fn(Point) -> [f64; 3]| SparseDeltas {
         vertices: (0..p.len() as u32).collect(),
-        deltas: p.iter().map(|&p| delta(p)).collect(),
+        deltas: p.iter().map(|&p| delta(p).into()).collect(),
     };
     let shapes = vec![
         shape(&|_| [0.01, -0.02, 0.03]),
         shape(&|p| [-0.1 * p[1], 0.1 * p[0], 0.0]),
-        shape(&|p| p.map(|x| 0.1 * x)),
+        shape(&|p| p.to_array().map(|x| 0.1 * x)),
     ];
     let mesh = SkinMesh { positions: p, triangles: t, shapes };
     let l = Laplacian::new(&mesh.positions, &mesh.triangles, LaplacianKind::Uniform);
@@ -125,11 +127,14 @@ fn toy_every_matrix_and_solution() {
     let toy = common::json(&data.join("lsts/toy.json"));
     let numbers = |key: &str| common::numbers(&toy[key]);
     let triples = |key: &str| -> Vec<[f64; 3]> { numbers(key).as_chunks::<3>().0.to_vec() };
-    let positions = triples("vertices");
+    let positions: Vec<Point> = triples("vertices").into_iter().map(Point::from).collect();
     let triangles: Vec<[u32; 3]> =
         triples("triangles").iter().map(|t| t.map(|v| v as u32)).collect();
     let shapes: Vec<SparseDeltas> = (triples("deltas").chunks(16))
-        .map(|d| SparseDeltas { vertices: (0..16).collect(), deltas: d.to_vec() })
+        .map(|d| SparseDeltas {
+            vertices: (0..16).collect(),
+            deltas: d.iter().map(|&d| d.into()).collect(),
+        })
         .collect();
     let vertices: Vec<usize> = numbers("markers").iter().map(|&v| v as usize).collect();
     let close = |what: &str, a: &[f64], b: &[f64]| {
@@ -244,7 +249,7 @@ fn welding_closes_the_seams_of_an_exported_head() {
     let (mesh, _) = common::read_skin(&data.join("ict-facekit/ict-facekit.glb"));
     // 11,925 vertices in the file; every place holds one vertex afterwards.
     let mut places: Vec<[u64; 3]> =
-        mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+        mesh.positions.iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
     places.sort_unstable();
     places.dedup();
     assert_eq!((mesh.positions.len(), places.len()), (11_382, 11_382));
@@ -253,18 +258,18 @@ fn welding_closes_the_seams_of_an_exported_head() {
 #[test]
 fn welding_keeps_touching_lips_apart() {
     let mesh = SkinMesh {
-        positions: vec![
+        positions: points([
             [0.0; 3],
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],
             [0.0; 3],
             [1.0, 0.0, 0.0],
             [0.0, -1.0, -0.0],
-        ],
+        ]),
         triangles: vec![[0, 1, 2], [3, 5, 4]],
         shapes: vec![SparseDeltas {
             vertices: vec![0, 1],
-            deltas: vec![[0.0; 3], [0.1, 0.0, 0.0]],
+            deltas: vec![Displacement::ZERO, Displacement::new(0.1, 0.0, 0.0)],
         }],
     };
     let welded = mesh.weld().unwrap();
@@ -279,22 +284,22 @@ fn welding_keeps_touching_lips_apart() {
 fn welding_closes_a_seam_whose_deltas_differ_in_the_last_bit() {
     let next = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() + 1));
     let mesh = |other: f64| SkinMesh {
-        positions: vec![
+        positions: points([
             [0.0; 3],
             [0.1, 0.0, 0.0],
             [0.0, 0.2, 0.0],
             [0.0; 3],
             [0.1, 0.0, 0.0],
             [0.0, -0.2, 0.0],
-        ],
+        ]),
         triangles: vec![[0, 1, 2], [3, 5, 4]],
         shapes: vec![
             SparseDeltas {
                 vertices: vec![1, 4],
-                deltas: vec![[0.01, 0.0, 0.02], [0.01, 0.0, other]],
+                deltas: [[0.01, 0.0, 0.02], [0.01, 0.0, other]].map(Displacement::from).to_vec(),
             },
             // What one side rounds to nothing is no movement of the other.
-            SparseDeltas { vertices: vec![4], deltas: vec![[0.0, 1e-12, 0.0]] },
+            SparseDeltas { vertices: vec![4], deltas: vec![Displacement::new(0.0, 1e-12, 0.0)] },
         ],
     };
     let close = mesh(next(0.02)).weld().unwrap();
@@ -311,9 +316,9 @@ fn welding_closes_a_seam_whose_deltas_differ_in_the_last_bit() {
 #[test]
 fn wrong_meshes_and_parts_are_refused_in_words() {
     let mut mesh = SkinMesh {
-        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        positions: points([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
         triangles: vec![[0, 1, 7]],
-        shapes: vec![SparseDeltas { vertices: vec![1], deltas: vec![[0.1; 3]] }],
+        shapes: vec![SparseDeltas { vertices: vec![1], deltas: vec![[0.1; 3].into()] }],
     };
     let say = |mesh: &SkinMesh, names: &[&str], marker: usize| {
         let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
@@ -359,15 +364,16 @@ fn parts_restore_the_same_bits() {
     );
 }
 
-fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
-    let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
-    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    0.5 * n.iter().map(|x| x * x).sum::<f64>().sqrt()
+fn points<const N: usize>(places: [[f64; 3]; N]) -> Vec<Point> {
+    places.map(Point::from).to_vec()
+}
+
+fn area([a, b, c]: [Point; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
 }
 
 /// An octahedron cut in four `levels` times and pushed out to the sphere.
-fn sphere(radius: f64, levels: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+fn sphere(radius: f64, levels: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
     let mut points: Vec<[f64; 3]> = vec![
         [1.0, 0.0, 0.0],
         [-1.0, 0.0, 0.0],
@@ -404,5 +410,5 @@ fn sphere(radius: f64, levels: usize) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         }
         triangles = finer;
     }
-    (points.iter().map(|p| p.map(|x| radius * x)).collect(), triangles)
+    (points.iter().map(|p| p.map(|x| radius * x).into()).collect(), triangles)
 }

@@ -3,6 +3,7 @@
 
 mod common;
 
+use mimique_geometry::Point;
 use mimique_solver::{
     ExactProcess, Fit, FitError, FrameWarning, Inference, Kernel, Method, MethodSpec,
     OperatorOptions, Operators, Regression, SkinMesh, SparseDeltas, SparseProcess, TrainingError,
@@ -60,7 +61,7 @@ fn gradient_of_the_marginal_likelihood_is_that_of_differences() {
     ] {
         let (_, gradient) = log_marginal_likelihood(&x, WIDTH, &y, OUTPUTS, &kernel);
         let h: f64 = 1e-5;
-        for (k, slope) in gradient.into_iter().enumerate() {
+        for (k, slope) in gradient.to_array().into_iter().enumerate() {
             let at = |step: f64| {
                 let mut moved = [kernel.length, kernel.signal, kernel.noise];
                 moved[k] *= step.exp();
@@ -122,7 +123,10 @@ fn planted_hyper_parameters_are_recovered() {
     let (at_planted, _) = log_marginal_likelihood(&x, WIDTH, &y, outputs, &planted);
     let (_, gradient) = log_marginal_likelihood(&x, WIDTH, &y, outputs, &found);
     assert!(value > at_planted);
-    assert!(gradient.iter().all(|g| g.abs() < 1e-6 * (n * outputs) as f64), "{gradient:?}");
+    assert!(
+        gradient.to_array().iter().all(|g| g.abs() < 1e-6 * (n * outputs) as f64),
+        "{gradient:?}"
+    );
     // What is given stays.
     let (held, _) =
         maximise_likelihood(&x, WIDTH, &y, outputs, [Some(2.5), None, Some(0.05)]).unwrap();
@@ -216,8 +220,8 @@ fn half_the_basis_stays_near_the_exact_process() {
 
 /// A bank of three bumps and five markers, for the way through `Fit`.
 fn operators() -> Operators {
-    let positions: Vec<[f64; 3]> =
-        (0..25).map(|i| [(i % 5) as f64 * 0.01, (i / 5) as f64 * 0.01, 0.0]).collect();
+    let positions: Vec<Point> =
+        (0..25).map(|i| Point::new((i % 5) as f64 * 0.01, (i / 5) as f64 * 0.01, 0.0)).collect();
     let triangles = (0..16)
         .flat_map(|i| {
             let at = (i / 4 * 5 + i % 4) as u32;
@@ -231,7 +235,7 @@ fn operators() -> Operators {
         };
         SparseDeltas {
             vertices: (0..25).collect(),
-            deltas: (0..25).map(|v| direction.map(|d| d * weight(v))).collect(),
+            deltas: (0..25).map(|v| direction.map(|d| d * weight(v)).into()).collect(),
         }
     };
     let shapes = vec![

@@ -5,6 +5,7 @@ mod common;
 
 use litemap::LiteMap;
 
+use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
     Fit, FitError, FrameWarning, Hold, Laplacian, LaplacianKind, METRES_PER_WEIGHT, MarkerSite,
     Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas, SurfaceError,
@@ -21,10 +22,10 @@ const KINDS: [LaplacianKind; 4] = [
 
 /// A sheet of 13 x 13 vertices 1 cm apart, bent by `curvature`; one shape that lifts its middle.
 fn sheet(curvature: f64) -> SkinMesh {
-    let positions: Vec<[f64; 3]> = (0..WIDTH * WIDTH)
+    let positions: Vec<Point> = (0..WIDTH * WIDTH)
         .map(|i| {
             let (x, y) = ((i % WIDTH) as f64 / 100.0 - 0.06, (i / WIDTH) as f64 / 100.0 - 0.06);
-            [x, y, 0.1 - curvature * (x * x + 0.5 * y * y)]
+            Point::new(x, y, 0.1 - curvature * (x * x + 0.5 * y * y))
         })
         .collect();
     let at = |x: usize, y: usize| (y * WIDTH + x) as u32;
@@ -34,7 +35,8 @@ fn sheet(curvature: f64) -> SkinMesh {
             [[at(x, y), at(x + 1, y), at(x + 1, y + 1)], [at(x, y), at(x + 1, y + 1), at(x, y + 1)]]
         })
         .collect();
-    let middle = SparseDeltas { vertices: vec![84], deltas: vec![[0.0, 0.0, 0.01]] };
+    let middle =
+        SparseDeltas { vertices: vec![84], deltas: vec![Displacement::new(0.0, 0.0, 0.01)] };
     SkinMesh { positions, triangles, shapes: vec![middle] }
 }
 
@@ -76,7 +78,7 @@ fn displacements(markers: usize) -> Vec<f64> {
 }
 
 /// The energy by its definition: k_s sum of w (f_i - f_j)^2 over edges, k_b sum of M (M^-1 L* f)^2.
-fn energy(mesh: &SkinMesh, options: &OperatorOptions, field: &[[f64; 3]]) -> f64 {
+fn energy(mesh: &SkinMesh, options: &OperatorOptions, field: &[Displacement]) -> f64 {
     let (edges, masses) = Laplacian::symmetric(&mesh.positions, &mesh.triangles, options.laplacian);
     (0..3)
         .map(|a| {
@@ -165,7 +167,7 @@ fn turning_mesh_and_markers_together_turns_the_answer() {
     let (sin, cos) = 1.1_f64.sin_cos();
     let turn = |p: [f64; 3]| [cos * p[0] - sin * p[2], p[1], sin * p[0] + cos * p[2]];
     let mut turned = mesh.clone();
-    turned.positions.iter_mut().for_each(|p| *p = turn(*p).map(|x| x + 0.4));
+    turned.positions.iter_mut().for_each(|p| *p = turn(p.to_array()).map(|x| x + 0.4).into());
     let d = displacements(MARKERS.len());
     let dt: Vec<f64> = d.chunks(3).flat_map(|x| turn([x[0], x[1], x[2]])).collect();
     for kind in KINDS {
@@ -176,7 +178,7 @@ fn turning_mesh_and_markers_together_turns_the_answer() {
             response(mesh, &MARKERS, &options).displacements(&weights)
         };
         for (a, b) in field(&mesh, &d).into_iter().zip(field(&turned, &dt)) {
-            assert!(common::worst(&turn(a), &b) < 1e-11, "{kind:?}");
+            assert!(common::worst(&turn(a.to_array()), &b.to_array()) < 1e-11, "{kind:?}");
         }
     }
 }
@@ -200,7 +202,7 @@ fn planted_fields_are_recovered_from_the_two_outer_rings() {
     let field = response.displacements(&weights);
     for (i, d) in field.iter().enumerate() {
         let expected = planted(i).map(|x| x * METRES_PER_WEIGHT);
-        assert!(common::worst(d, &expected) < 1e-13, "vertex {i}: {d:?} {expected:?}");
+        assert!(common::worst(&d.to_array(), &expected) < 1e-13, "vertex {i}: {d:?} {expected:?}");
     }
 }
 
@@ -227,7 +229,10 @@ fn a_lost_marker_is_a_marker_less() {
         let expected = Fit::new(&fewer, &same).unwrap().solve_frame(&d_left).unwrap();
         let a = response(&mesh, &MARKERS, &options).displacements(&found.weights);
         let b = response(&mesh, &left, &options).displacements(&expected.weights);
-        let worst = a.iter().zip(&b).fold(0.0_f64, |w, (a, b)| w.max(common::worst(a, b)));
+        let worst = a
+            .iter()
+            .zip(&b)
+            .fold(0.0_f64, |w, (a, b)| w.max(common::worst(&a.to_array(), &b.to_array())));
         assert!(worst < 1e-12, "{kind:?} {stiffness}: {worst:e}");
         // A marker without importance is one that is never seen.
         let mut unimportant = spec(&options, stiffness);
@@ -301,7 +306,7 @@ fn what_is_held_rests_and_pieces_without_marker_too() {
     // A second sheet, apart.
     let other = sheet(3.0);
     let count = mesh.positions.len();
-    mesh.positions.extend(other.positions.iter().map(|p| [p[0], p[1], p[2] + 0.5]));
+    mesh.positions.extend(other.positions.iter().map(|p| Point::new(p.x, p.y, p.z + 0.5)));
     mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + count as u32)));
     let mut held = vec![false; 2 * count];
     held[..WIDTH].fill(true);
@@ -310,9 +315,9 @@ fn what_is_held_rests_and_pieces_without_marker_too() {
     let response = SurfaceResponse::build(&mesh, &MARKERS, &held, &options).unwrap();
     assert_eq!(response.without_marker, count);
     let field = response.displacements(&[1.0; 24]);
-    assert!(field[..WIDTH].iter().chain(&field[count..]).all(|d| *d == [0.0; 3]));
-    assert!(field[16].iter().all(|x| (x - METRES_PER_WEIGHT).abs() < 1e-17));
-    assert!(field[WIDTH + 5].iter().all(|x| *x > 1e-4 && *x < METRES_PER_WEIGHT));
+    assert!(field[..WIDTH].iter().chain(&field[count..]).all(|d| *d == Displacement::ZERO));
+    assert!(field[16].to_array().iter().all(|x| (x - METRES_PER_WEIGHT).abs() < 1e-17));
+    assert!(field[WIDTH + 5].to_array().iter().all(|x| *x > 1e-4 && *x < METRES_PER_WEIGHT));
     // No shape of the bank moves anything but vertex 84.
     let unmoved = mesh.unmoved(1e-4);
     assert_eq!(unmoved.iter().filter(|still| !**still).count(), 1);

@@ -1,8 +1,8 @@
-//! What a study's stimuli weigh as packs and as video. `docs/pack-sizes.md` keeps what it says.
+//! What a study's stimuli weigh as packs and as video. `docs/measured/pack-sizes.md` keeps what it says.
 //!
 //! `pack_sizes STUDY.json [CLIP ...]` prepares the study and adds up what a participant loads; with
 //! `ict` for the study, 54 clips of ICT-FaceKit and the planted take of the real data (18 segments
-//! of 4 s, three methods). The clips named are rendered at 1280 x 720 and 60 frames a second, whole,
+//! of 4 s, three methods). The clips named are rendered at 1280 x 720 and 60 frames per second, whole,
 //! and encoded with `ffmpeg` (libx264, CRF 18); their mean counts for all clips.
 
 use std::collections::BTreeMap;
@@ -11,20 +11,18 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use mimique_face::Avatar;
-use mimique_face::pack::{decode_pack, pack_kind};
+use mimique_avatar::Avatar;
+use mimique_avatar::pack::{decode_pack, pack_kind};
+use mimique_clip::{SolvedTake, TakeContent, TakePack, encode_take_in_steps, solve_packs};
 use mimique_stage::offscreen::Offscreen;
 use mimique_stage::{Look, View};
-use mimique_stimulus::{
-    Places, SolvedTake, TakeContent, TakePack, encode_take_in_steps, prepare, solve_packs,
-    weight_steps,
-};
+use mimique_stimulus::{Places, prepare, weight_steps};
 use mimique_study::Study;
 use serde_json::{Value, json};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// Frames a second of pictures and of weights at the playing rate.
+/// Frames per second of pictures and of weights at the playing rate.
 const RATE_HZ: f64 = 60.0;
 
 fn main() -> Result<()> {
@@ -122,7 +120,7 @@ fn study(file: &str, folder: &Path) -> Result<(Study, Places)> {
         return Ok((Study::from_value(&value)?, Places { study, data: Some(data), packs }));
     }
     // Markers by position: the vertices of the two files are numbered differently.
-    let skin = mimique_face::read_avatar(&data.join("lsts/avatar_skin.glb"))?.avatar;
+    let skin = mimique_avatar_files::read_avatar(&data.join("lsts/avatar_skin.glb"))?.avatar;
     let points = &skin.skin().ok_or("no skin")?.positions;
     let (mut markers, mut head) = (serde_json::Map::new(), Vec::new());
     for line in std::fs::read_to_string(data.join("lsts/mapping.csv"))?.lines().skip(1) {

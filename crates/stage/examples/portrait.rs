@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use mimique_face::{Density, HeadSpec, Identity};
+use mimique_actor::{Density, HeadSpec, Identity};
 use mimique_stage::offscreen::Offscreen;
 use mimique_stage::{Look, View};
 
@@ -21,17 +21,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         None => Density::default(),
     };
     let avatar = match file.as_str() {
-        "builtin" => mimique_face::build_head(&HeadSpec { density, ..HeadSpec::default() }),
+        "builtin" => mimique_actor::build_head(&HeadSpec { density, ..HeadSpec::default() }),
         file => match file.strip_prefix("builtin:") {
-            Some(seed) => mimique_face::build_head(&HeadSpec {
+            Some(seed) => mimique_actor::build_head(&HeadSpec {
                 identity: Identity::from_seed(seed.parse()?),
                 density,
             }),
-            None => mimique_face::read_avatar(Path::new(file))?.avatar,
+            None => mimique_avatar_files::read_avatar(Path::new(file))?.avatar,
         },
     };
     if out.ends_with(".mmav") {
-        std::fs::write(out, mimique_face::pack::encode_pack(&avatar).bytes)?;
+        std::fs::write(out, mimique_avatar::pack::encode_pack(&avatar).bytes)?;
         return Ok(());
     }
     let mut weights = vec![0.0_f32; avatar.shape_names.len()];

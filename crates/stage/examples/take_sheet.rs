@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use mimique_face::HeadSpec;
+use mimique_actor::HeadSpec;
 use mimique_solver::{Method, MethodSpec};
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, View};
@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [columns, rows] = pair(rest.first(), [8, 5])?;
     let [width, height] = pair(rest.get(1), [240, 300])?;
     let avatar = match avatar.as_str() {
-        "builtin" => mimique_face::build_head(&HeadSpec::default()),
-        file => mimique_face::read_avatar(Path::new(file))?.avatar,
+        "builtin" => mimique_actor::build_head(&HeadSpec::default()),
+        file => mimique_avatar_files::read_avatar(Path::new(file))?.avatar,
     };
     let skin = AvatarSkin::of(&avatar)?;
     let capture = mimique_mocap::read(Path::new(capture))?;
@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// A marker map's text with the built-in head's sites as vertices.
 fn with_sites(text: &str) -> Result<String, Box<dyn std::error::Error>> {
     let mut map: serde_json::Value = serde_json::from_str(text)?;
-    let sites = mimique_face::marker_sites(&HeadSpec::default());
+    let sites = mimique_actor::marker_sites(&HeadSpec::default());
     let markers = map["markers"].as_object_mut().into_iter().flat_map(|m| m.values_mut());
     for marker in markers {
         let Some(name) = marker["site"].as_str() else { continue };

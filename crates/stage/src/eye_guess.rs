@@ -2,7 +2,7 @@
 //! hats, hair and shoulders, which no shape of a face moves, change nothing.
 
 use glam::Vec3;
-use mimique_face::{Avatar, Mesh, Part};
+use mimique_avatar::{Avatar, Mesh, Part};
 
 /// Parts of a lid's travel below which a vertex is beside the lid.
 const LID_TRAVEL: f32 = 0.3;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::camera::rh::proj::directx::{orthographic, perspective};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, Vec3};
-use mimique_face::{Avatar, Mesh, Part};
+use mimique_avatar::{Avatar, Mesh, Part};
 
 use crate::eye_guess::guess_eyes;
 

@@ -13,7 +13,7 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
-use mimique_face::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part};
+use mimique_avatar::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part};
 
 use crate::StageError;
 use crate::framing::{Landmarks, bounds_centre};
@@ -31,7 +31,7 @@ pub(crate) struct Geometry {
     /// Place of each vertex in its picture.
     pub uvs: Vec<[f32; 2]>,
     pub indices: Vec<u32>,
-    /// Ranges of `indices`, one a mesh, in the order to draw.
+    /// Ranges of `indices`, one per mesh, in the order to draw.
     pub draws: Vec<Draw>,
     pub eyes: Vec<Eye>,
     pub shape_count: usize,
@@ -66,7 +66,7 @@ pub(crate) struct Eye {
     pub radius: f32,
     /// Direction of the pupil in the neutral pose.
     pub forward: Vec3,
-    pub looks: Vec<mimique_face::Look>,
+    pub looks: Vec<mimique_avatar::Look>,
     /// Colours of iris and white, where the mesh is coloured.
     pub iris: Option<[f32; 3]>,
     pub white: Option<[f32; 3]>,
@@ -97,7 +97,7 @@ impl Geometry {
         Ok(out)
     }
 
-    /// Measures each eyeball; a mesh of an eye that has no [`mimique_face::Eyeball`] gets one that
+    /// Measures each eyeball; a mesh of an eye that has no [`mimique_avatar::Eyeball`] gets one that
     /// stays still. Answers the eye of each mesh.
     fn measure_eyes(&mut self, avatar: &Avatar) -> Result<Vec<Option<usize>>, StageError> {
         let mut eye_of_mesh = vec![None; avatar.meshes.len()];
@@ -334,7 +334,7 @@ fn weld(mesh: &Mesh, starts: &[u32], entries: &[[f32; 4]]) -> Vec<u32> {
         .collect()
 }
 
-fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_face::Look>) -> Eye {
+fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_avatar::Look>) -> Eye {
     // Lengths have the order of their bits.
     let mut lengths: Vec<u64> = (mesh.positions.iter())
         .map(|&p| (Vec3::from(p) - centre).length().to_bits().into())

@@ -2,9 +2,9 @@
 //! and size here is the field's order and size there.
 
 use bytemuck::{Pod, Zeroable};
-use mimique_face::{MOST_EYEBALLS, MOST_SHAPES};
+use mimique_avatar::{MOST_EYEBALLS, MOST_SHAPES};
 
-/// Width of the tables with one entry a vertex (`deform.wgsl`, `surface.wgsl`, `shade.wgsl`).
+/// Width of the tables with one entry per vertex (`deform.wgsl`, `surface.wgsl`, `shade.wgsl`).
 pub(crate) const VERTEX_TABLE_WIDTH: u32 = 256;
 /// Width of the tables of deltas and rings (`deform.wgsl`, `surface.wgsl`).
 pub(crate) const LIST_TABLE_WIDTH: u32 = 1024;

@@ -14,6 +14,24 @@
 //! Colours are computed in linear light, pass a filmic response and are stored in an sRGB format,
 //! so that the resolve of the samples is linear too; a target that does not encode sRGB by itself
 //! gets one more pass (`encode.wgsl`). At loading, `occlusion.wgsl` finds how open each vertex lies.
+//!
+//! Where a head is in the picture is known without a GPU:
+//!
+//! ```
+//! use mimique_actor::{Density, HeadSpec, build_head};
+//! use mimique_stage::{Landmarks, Look};
+//!
+//! let head = build_head(&HeadSpec { density: Density::nearest(2000), ..HeadSpec::person(1) });
+//! let landmarks = Landmarks::find(&head);
+//! // The person's left eye is at larger x, the chin below the mouth; eyes stand 5 to 8 cm apart.
+//! assert!(landmarks.eye_left[0] > landmarks.eye_right[0]);
+//! assert!(landmarks.chin[1] < landmarks.mouth[1]);
+//! assert!((0.05..0.08).contains(&landmarks.eye_span()));
+//! let grey = Look::STIMULUS.with_background_srgb([128, 128, 128]);
+//! assert_ne!(grey, Look::STIMULUS.with_background_srgb([0, 0, 0]));
+//! ```
+//!
+//! and drawn by a [`Renderer`] that has loaded it, in a browser or offscreen (`offscreen`).
 
 mod error;
 mod eye_guess;

@@ -1,6 +1,6 @@
 //! Pictures without a window: for golden images, contact sheets and the preview's command line.
 
-use mimique_face::Avatar;
+use mimique_avatar::Avatar;
 use wgpu::{Device, Queue, TextureFormat, TextureUsages};
 
 use crate::{Look, Renderer, StageError, View, tables};

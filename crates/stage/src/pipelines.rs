@@ -15,7 +15,7 @@ macro_rules! bare {
     };
 }
 
-/// Samples a pixel.
+/// Samples per pixel.
 pub(crate) const SAMPLES: u32 = 4;
 /// Depth of the picture and of the key light's view.
 pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
@@ -32,15 +32,20 @@ const ADD: wgpu::BlendState = wgpu::BlendState {
     alpha: wgpu::BlendComponent::REPLACE,
 };
 
-pub(crate) struct Pipelines {
-    pub deform_layout: BindGroupLayout,
-    pub surface_layout: BindGroupLayout,
-    pub soften_layout: BindGroupLayout,
-    pub occlusion_layout: BindGroupLayout,
-    pub shade_layout: BindGroupLayout,
-    pub light_layout: BindGroupLayout,
+/// What is bound to each pass, as its shader declares it.
+pub(crate) struct Layouts {
+    pub deform: BindGroupLayout,
+    pub surface: BindGroupLayout,
+    pub soften: BindGroupLayout,
+    pub occlusion: BindGroupLayout,
+    pub shade: BindGroupLayout,
+    pub light: BindGroupLayout,
     /// A surface's picture, as `shade.wgsl` reads it.
-    pub picture_layout: BindGroupLayout,
+    pub picture: BindGroupLayout,
+}
+
+pub(crate) struct Pipelines {
+    pub layouts: Layouts,
     pub deform: RenderPipeline,
     pub light: RenderPipeline,
     pub surface: RenderPipeline,
@@ -49,6 +54,61 @@ pub(crate) struct Pipelines {
     closed: RenderPipeline,
     sheet: RenderPipeline,
     blended: RenderPipeline,
+}
+
+impl Layouts {
+    fn new(device: &Device) -> Self {
+        let (float, integer) =
+            (TextureSampleType::Float { filterable: false }, TextureSampleType::Uint);
+        let (vertex, fragment) = (ShaderStages::VERTEX, ShaderStages::FRAGMENT);
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let sampler = |binding, kind| entry(binding, fragment, BindingType::Sampler(kind));
+        let comparison = wgpu::SamplerBindingType::Comparison;
+        let layout = |label, entries: &[BindGroupLayoutEntry]| layout(device, label, entries);
+        let deform = [
+            uniform(0, fragment),
+            table(1, fragment, float),
+            table(2, fragment, integer),
+            table(3, fragment, float),
+        ];
+        let surface = [
+            uniform(0, fragment),
+            table(1, fragment, integer),
+            table(2, fragment, integer),
+            table(3, fragment, float),
+            table(4, fragment, TextureSampleType::Depth),
+            sampler(5, comparison),
+        ];
+        let soften =
+            [table(0, fragment, integer), table(1, fragment, integer), table(2, fragment, float)];
+        let occlusion = [
+            uniform(0, fragment),
+            table(1, fragment, float),
+            table(2, fragment, TextureSampleType::Depth),
+            sampler(3, comparison),
+            table(4, fragment, float),
+        ];
+        let shade = [
+            uniform(0, both),
+            table(1, vertex, float),
+            table(2, vertex, float),
+            table(3, vertex, float),
+            table(4, vertex, float),
+        ];
+        let picture = [
+            table(0, fragment, TextureSampleType::Float { filterable: true }),
+            sampler(1, wgpu::SamplerBindingType::Filtering),
+        ];
+        Self {
+            deform: layout("deform", &deform),
+            surface: layout("surface", &surface),
+            soften: layout("soften", &soften),
+            occlusion: layout("occlusion", &occlusion),
+            shade: layout("shade", &shade),
+            light: layout("light", &[uniform(0, both), table(1, vertex, float)]),
+            picture: layout("picture", &picture),
+        }
+    }
 }
 
 impl Pipelines {
@@ -61,73 +121,9 @@ impl Pipelines {
         let occlusion_module = module("occlusion.wgsl", bare!("occlusion.wgsl"));
         let shade_module = module("shade.wgsl", bare!("shade.wgsl"));
 
-        let (float, integer) =
-            (TextureSampleType::Float { filterable: false }, TextureSampleType::Uint);
-        let fragment = ShaderStages::FRAGMENT;
-        let both = ShaderStages::VERTEX_FRAGMENT;
-        let deform_layout = layout(
-            device,
-            "deform",
-            &[
-                uniform(0, fragment),
-                table(1, fragment, float),
-                table(2, fragment, integer),
-                table(3, fragment, float),
-            ],
-        );
-        let surface_layout = layout(
-            device,
-            "surface",
-            &[
-                uniform(0, fragment),
-                table(1, fragment, integer),
-                table(2, fragment, integer),
-                table(3, fragment, float),
-                table(4, fragment, TextureSampleType::Depth),
-                entry(5, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-            ],
-        );
-        let soften_layout = layout(
-            device,
-            "soften",
-            &[table(0, fragment, integer), table(1, fragment, integer), table(2, fragment, float)],
-        );
-        let occlusion_layout = layout(
-            device,
-            "occlusion",
-            &[
-                uniform(0, fragment),
-                table(1, fragment, float),
-                table(2, fragment, TextureSampleType::Depth),
-                entry(3, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-                table(4, fragment, float),
-            ],
-        );
-        let shade_layout = layout(
-            device,
-            "shade",
-            &[
-                uniform(0, both),
-                table(1, ShaderStages::VERTEX, float),
-                table(2, ShaderStages::VERTEX, float),
-                table(3, ShaderStages::VERTEX, float),
-                table(4, ShaderStages::VERTEX, float),
-            ],
-        );
-        let light_layout =
-            layout(device, "light", &[uniform(0, both), table(1, ShaderStages::VERTEX, float)]);
-
-        let picture_layout = layout(
-            device,
-            "picture",
-            &[
-                table(0, fragment, TextureSampleType::Float { filterable: true }),
-                entry(1, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            ],
-        );
-
+        let layouts = Layouts::new(device);
         let float32 = TextureFormat::Rgba32Float.into();
-        let groups = [&shade_layout, &picture_layout];
+        let groups = [&layouts.shade, &layouts.picture];
         let summed = wgpu::ColorTargetState {
             format: OCCLUSION_FORMAT,
             blend: Some(ADD),
@@ -135,32 +131,27 @@ impl Pipelines {
         };
         let cover =
             |module, layout, entries, target| table_pass(device, module, layout, entries, target);
+        let picture = |layer| picture_pass(device, &shade_module, groups, format, layer);
         Self {
-            deform: cover(&deform_module, &deform_layout, ["cover_positions", "deform"], &float32),
+            deform: cover(&deform_module, &layouts.deform, ["cover_positions", "deform"], &float32),
             surface: cover(
                 &surface_module,
-                &surface_layout,
+                &layouts.surface,
                 ["cover_surface", "surface"],
                 &float32,
             ),
-            soften: cover(&soften_module, &soften_layout, ["cover_softened", "soften"], &float32),
+            soften: cover(&soften_module, &layouts.soften, ["cover_softened", "soften"], &float32),
             occlusion: cover(
                 &occlusion_module,
-                &occlusion_layout,
+                &layouts.occlusion,
                 ["cover_occlusion", "occlusion"],
                 &summed,
             ),
-            light: light_pass(device, &shade_module, &light_layout),
-            closed: picture_pass(device, &shade_module, groups, format, Layer::Closed),
-            sheet: picture_pass(device, &shade_module, groups, format, Layer::Sheet),
-            blended: picture_pass(device, &shade_module, groups, format, Layer::Blended),
-            picture_layout,
-            deform_layout,
-            surface_layout,
-            soften_layout,
-            occlusion_layout,
-            shade_layout,
-            light_layout,
+            light: light_pass(device, &shade_module, &layouts.light),
+            closed: picture(Layer::Closed),
+            sheet: picture(Layer::Sheet),
+            blended: picture(Layer::Blended),
+            layouts,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Draws one frame of a head into a texture view.
 
 use glam::Vec3;
-use mimique_face::{Avatar, Image};
+use mimique_avatar::{Avatar, Image};
 use wgpu::{Device, LoadOp, Operations, Queue, StoreOp, TextureFormat, TextureUsages, TextureView};
 
 use crate::framing::{Camera, View};
@@ -88,7 +88,7 @@ impl Renderer {
         self.load_with(avatar, pictures.collect::<Result<_, _>>()?)
     }
 
-    /// Puts an avatar on the GPU, with its pictures decoded, one a texture.
+    /// Puts an avatar on the GPU, with its pictures decoded, one per texture.
     ///
     /// # Errors
     /// [`StageError`] when the avatar is malformed, too large for this machine, or lacks a picture.
@@ -142,7 +142,7 @@ impl Renderer {
         self.look = look;
     }
 
-    /// Draws `head` at `weights` (one a blendshape; missing ones are 0) into `target`, which has
+    /// Draws `head` at `weights` (one per blendshape; missing ones are 0) into `target`, which has
     /// the renderer's format and size. The frame is submitted. No buffer and no texture is made:
     /// what a frame takes (a command encoder, its passes, the way of the constants to the GPU) is
     /// given back once the GPU is done with it.
@@ -159,10 +159,10 @@ impl Renderer {
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         let clear = LoadOp::Clear(wgpu::Color::TRANSPARENT);
         let passes = &self.pipelines;
-        fill_table(&mut encoder, &head.positions, &passes.deform, &head.deform_group, clear);
+        fill_table(&mut encoder, &head.positions, &passes.deform, &head.groups.deform, clear);
         self.light_pass(&mut encoder, head);
-        fill_table(&mut encoder, &head.surfaces, &passes.surface, &head.surface_group, clear);
-        let [onward, back] = &head.soften_groups;
+        fill_table(&mut encoder, &head.surfaces, &passes.surface, &head.groups.surface, clear);
+        let [onward, back] = &head.groups.soften;
         for _ in 0..SOFTENINGS {
             fill_table(&mut encoder, &head.softened, &passes.soften, onward, clear);
             fill_table(&mut encoder, &head.surfaces, &passes.soften, back, clear);
@@ -193,14 +193,14 @@ impl Renderer {
                     &mut encoder,
                     &head.positions,
                     &passes.deform,
-                    &head.deform_group,
+                    &head.groups.deform,
                     clear,
                 );
                 fill_table(
                     &mut encoder,
                     &head.surfaces,
                     &passes.surface,
-                    &head.surface_group,
+                    &head.groups.surface,
                     clear,
                 );
             }
@@ -210,7 +210,7 @@ impl Renderer {
                 &mut encoder,
                 &head.occlusions,
                 &passes.occlusion,
-                &head.occlusion_group,
+                &head.groups.occlusion,
                 sum,
             );
             self.queue.submit([encoder.finish()]);
@@ -228,7 +228,7 @@ impl Renderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&self.pipelines.light);
-        pass.set_bind_group(0, &head.light_group, &[]);
+        pass.set_bind_group(0, &head.groups.light, &[]);
         pass.set_index_buffer(head.indices.slice(..), wgpu::IndexFormat::Uint32);
         for draw in head.draws.iter().filter(|d| d.casts_shadow) {
             pass.draw_indexed(draw.indices.clone(), 0, 0..1);
@@ -255,7 +255,7 @@ impl Renderer {
             }),
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_bind_group(0, &head.shade_group, &[]);
+        pass.set_bind_group(0, &head.groups.shade, &[]);
         pass.set_vertex_buffer(0, head.colours.slice(..));
         pass.set_vertex_buffer(1, head.uvs.slice(..));
         pass.set_index_buffer(head.indices.slice(..), wgpu::IndexFormat::Uint32);

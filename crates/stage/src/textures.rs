@@ -1,7 +1,7 @@
 //! The pictures on surfaces, on the GPU, halved in linear light for their mipmaps. Whoever draws
 //! decodes them: natively this project's own decoder, in a browser the browser's.
 
-use mimique_face::Image;
+use mimique_avatar::Image;
 use wgpu::{
     Device, Extent3d, Queue, Sampler, TextureDimension, TextureFormat, TextureUsages, TextureView,
 };

@@ -2,7 +2,9 @@
 
 mod support;
 
-use mimique_face::{Avatar, HeadSpec, Identity, Part, build_head, read_avatar};
+use mimique_actor::{HeadSpec, Identity, build_head};
+use mimique_avatar::{Avatar, Part};
+use mimique_avatar_files::read_avatar;
 use mimique_stage::Landmarks;
 
 fn heads(test: &str) -> Vec<Avatar> {

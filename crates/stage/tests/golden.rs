@@ -11,7 +11,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use mimique_face::Avatar;
+use mimique_avatar::Avatar;
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, View};
 
@@ -46,11 +46,11 @@ fn golden_egg_with_a_picture() {
     let file =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join("egg-picture.mmav");
     if update() {
-        let packed = mimique_face::pack::encode_pack(&egg).bytes;
+        let packed = mimique_avatar::pack::encode_pack(&egg).bytes;
         std::fs::write(&file, packed).expect("the pack is written");
     }
     let packed = std::fs::read(&file).expect("the pack is there");
-    let unpacked = mimique_face::pack::decode_pack(&packed).expect("the pack opens");
+    let unpacked = mimique_avatar::pack::decode_pack(&packed).expect("the pack opens");
     check_avatar("egg-picture", &unpacked, Look::STIMULUS, View::FRONT, [0.3, 0.2, 0.0]);
 }
 
@@ -83,10 +83,10 @@ const MOST_HEAD_BYTES: usize = 100_000;
 
 #[test]
 fn golden_head_in_a_strong_expression() {
-    let identity = mimique_face::Identity::from_seed(HEAD_SEED);
-    let head = mimique_face::build_head(&mimique_face::HeadSpec {
+    let identity = mimique_actor::Identity::from_seed(HEAD_SEED);
+    let head = mimique_actor::build_head(&mimique_actor::HeadSpec {
         identity,
-        ..mimique_face::HeadSpec::default()
+        ..mimique_actor::HeadSpec::default()
     });
     let mut posed = vec![0.0; head.shape_names.len()];
     for (name, weight) in HEAD_POSE {
@@ -114,8 +114,8 @@ fn golden_head_in_a_strong_expression() {
         return write("head", &whole, &golden("head.png"), MOST_HEAD_BYTES);
     }
     let picture = read(&golden("head.png"));
-    let packed = mimique_face::pack::encode_pack(&head).bytes;
-    let unpacked = mimique_face::pack::decode_pack(&packed).expect("the pack opens");
+    let packed = mimique_avatar::pack::encode_pack(&head).bytes;
+    let unpacked = mimique_avatar::pack::decode_pack(&packed).expect("the pack opens");
     for drawn in [whole, draw(&unpacked, &weights)] {
         let found = support::difference(&drawn, &picture);
         let see = || format!("{found:?} on {}; see {}", stage.adapter(), keep("head", &drawn));

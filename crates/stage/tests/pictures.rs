@@ -2,7 +2,7 @@
 
 mod support;
 
-use mimique_face::Avatar;
+use mimique_avatar::Avatar;
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, StageError, View};
 
@@ -146,12 +146,12 @@ fn malformed_avatars_are_refused_by_name() {
     assert!(few.to_string().contains("2 blendshapes, the avatar has 3"), "{few}");
     let looks = refuse(&|a| a.eyeballs[0].looks[0].shape = 7);
     assert!(looks.to_string().contains("eyeball look of blendshape 7"), "{looks}");
-    let run = |triangles, texture| vec![mimique_face::Textured { triangles, texture }];
+    let run = |triangles, texture| vec![mimique_avatar::Textured { triangles, texture }];
     let beyond = refuse(&|a| a.meshes[0].textured = run(0..1_000_000, 0));
     assert!(beyond.to_string().contains("a picture on triangles 0 to 1000000"), "{beyond}");
     let absent = refuse(&|a| a.meshes[0].textured = run(0..1, 3));
     assert!(absent.to_string().contains("texture 3, the avatar has 0"), "{absent}");
-    let damaged = refuse(&|a| a.textures = vec![mimique_face::Texture::default()]);
+    let damaged = refuse(&|a| a.textures = vec![mimique_avatar::Texture::default()]);
     assert!(damaged.to_string().contains("avatar, texture 0: a JPEG picture"), "{damaged}");
     let many = refuse(&|a| {
         a.shape_names = (0..2049).map(|k| format!("s{k}")).collect();
@@ -177,18 +177,18 @@ fn the_last_of_many_shapes_and_eyes_are_drawn_as_the_first_are() {
     let mut many = few.clone();
     many.shape_names = (0..2048).map(|k| format!("s{k}")).collect();
     for mesh in &mut many.meshes {
-        let mut shapes = vec![mimique_face::SparseShape::default(); 2045];
+        let mut shapes = vec![mimique_avatar::SparseShape::default(); 2045];
         shapes.append(&mut mesh.shapes);
         mesh.shapes = shapes;
     }
     many.eyeballs.iter_mut().flat_map(|e| &mut e.looks).for_each(|look| look.shape += 2045);
     let mut inside = support::ball([0.0, 0.0, 0.0], [0.001; 3], 6, 4);
-    inside.part = mimique_face::Part::Other;
-    inside.shapes = vec![mimique_face::SparseShape::default(); 2048];
+    inside.part = mimique_avatar::Part::Other;
+    inside.shapes = vec![mimique_avatar::SparseShape::default(); 2048];
     let (skin, eyes) = many.meshes.split_at(1);
     let meshes = [skin, &vec![inside; 14], eyes].concat();
     many.eyeballs.iter_mut().for_each(|e| e.mesh += 14);
-    let hidden = |mesh| mimique_face::Eyeball { mesh, centre: [0.0; 3], looks: vec![] };
+    let hidden = |mesh| mimique_avatar::Eyeball { mesh, centre: [0.0; 3], looks: vec![] };
     many.eyeballs.extend((1..=14).map(hidden));
     many.meshes = meshes;
     let mut weights = vec![0.0; 2045];
@@ -233,14 +233,14 @@ fn real_head_reads_as_a_face() {
         return;
     };
     let Some(stage) = support::adapter(name) else { return };
-    let avatar = mimique_face::read_avatar(&path).expect("the head is read").avatar;
+    let avatar = mimique_avatar_files::read_avatar(&path).expect("the head is read").avatar;
     reads_as_a_face(&stage, &avatar, "jawOpen");
 }
 
 #[test]
 fn builtin_head_reads_as_a_face() {
     let Some(stage) = support::adapter("builtin_head_reads_as_a_face") else { return };
-    let avatar = mimique_face::build_head(&mimique_face::HeadSpec::default());
+    let avatar = mimique_actor::build_head(&mimique_actor::HeadSpec::default());
     reads_as_a_face(&stage, &avatar, "jawOpen");
 }
 
@@ -249,10 +249,11 @@ fn eyes_in_one_mesh_of_a_file_are_drawn_as_two() {
     let Some(stage) = support::adapter("eyes_in_one_mesh_of_a_file_are_drawn_as_two") else {
         return;
     };
-    let head = mimique_face::build_head(&mimique_face::HeadSpec::default());
+    let head = mimique_actor::build_head(&mimique_actor::HeadSpec::default());
     let read = |avatar: &Avatar| {
-        let glb = mimique_face::write_glb(avatar, &[], 60.0).expect("a file");
-        let read = mimique_face::read_avatar_bytes(glb, "head", None, None).expect("it is read");
+        let glb = mimique_avatar_files::write_glb(avatar, &[], 60.0).expect("a file");
+        let read =
+            mimique_avatar_files::read_avatar_bytes(glb, "head", None, None).expect("it is read");
         read.avatar
     };
     // The left eye's vertices behind the right eye's.
@@ -260,8 +261,8 @@ fn eyes_in_one_mesh_of_a_file_are_drawn_as_two() {
     let at = |avatar: &Avatar, part| {
         avatar.meshes.iter().position(|m| m.part == part).expect("the head has eyes")
     };
-    let left = joined.meshes.remove(at(&joined, mimique_face::Part::EyeLeft));
-    let right = at(&joined, mimique_face::Part::EyeRight);
+    let left = joined.meshes.remove(at(&joined, mimique_avatar::Part::EyeLeft));
+    let right = at(&joined, mimique_avatar::Part::EyeRight);
     let both = &mut joined.meshes[right];
     let first = both.positions.len() as u32;
     both.name = "Eyes".to_owned();

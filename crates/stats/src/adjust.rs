@@ -2,6 +2,13 @@
 
 use serde::Serialize;
 
+use crate::outcome::{Outcome, Refusal};
+use crate::procedure::arguments::{Arguments, ProcedureOption};
+use crate::procedure::lines::{self, Lines};
+use crate::procedure::{Answer, Procedure, Sample};
+use crate::table::Table;
+use crate::words::format_number;
+
 /// A correction for several comparisons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -32,6 +39,11 @@ impl Adjustment {
             Self::By => "by",
             Self::Hochberg => "hochberg",
         }
+    }
+
+    /// The correction of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|adjustment| adjustment.as_str() == name)
     }
 
     /// Adjusts p-values: monotone in their order, at most 1. A missing p stays missing and does not
@@ -95,4 +107,51 @@ pub fn adjust_all(p: &[f64]) -> AdjustedP {
         hochberg: Adjustment::Hochberg.apply(&p),
         p,
     }
+}
+
+/// `mimique test adjust`.
+pub(crate) const PROCEDURE: Procedure = Procedure {
+    name: "adjust",
+    question: "Correct p-values for the number of comparisons",
+    options: &[&[ProcedureOption::text("p", "Column of p-values").required()]],
+    run,
+    sample: Sample::Other,
+    r: "",
+    python: "",
+    golden_cases: "p_adjust",
+};
+
+fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
+    let column = arguments.numbers(table, "p")?;
+    let wrong = |&row: &usize| {
+        let p = column.values[row];
+        !(0.0..=1.0).contains(&p) && !p.is_nan()
+    };
+    if let Some(row) = (0..table.rows()).find(wrong) {
+        return Err(Refusal::column(
+            arguments.needed("p")?,
+            format!("line {}: {} is no probability", table.line(row), column.values[row]),
+            "give numbers from 0 to 1",
+        ));
+    }
+    Ok(Answer::of(&Outcome::Ok(adjust_all(&column.values)), words))
+}
+
+fn words(result: &AdjustedP) -> String {
+    let mut lines = Lines::default();
+    lines.add(format!("{} p-values, {} missing", result.n, result.missing));
+    let mut rows = vec![lines::row(["p", "holm", "bonferroni", "BH", "BY", "hochberg"])];
+    let cell = |value: Option<f64>| value.map_or_else(|| "NA".to_owned(), format_number);
+    for i in 0..result.p.len() {
+        rows.push(vec![
+            cell(result.p[i]),
+            cell(result.holm[i]),
+            cell(result.bonferroni[i]),
+            cell(result.BH[i]),
+            cell(result.BY[i]),
+            cell(result.hochberg[i]),
+        ]);
+    }
+    lines.table(&rows);
+    lines.into_text()
 }

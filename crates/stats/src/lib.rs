@@ -1,75 +1,60 @@
-//! Statistical tests, tables, figures and the report of a perceptual study.
+//! Statistical tests on columns of a table, for people and programs that know nothing of a study.
 //!
-//! A file a test. Each takes columns ([`Numbers`], [`Factor`]) and returns a plain, serialisable
-//! struct; what is undefined is an [`Outcome::Undefined`] with its reason, what cannot be tested a
-//! [`Refusal`] that names the column. Nothing here prints, reads a file or asks the time.
+//! A [`Table`] is read from a CSV file; its columns are [`Numbers`] and [`Factor`]s. Each test takes
+//! columns and returns a plain, serialisable struct; what is undefined is an [`Outcome::Undefined`]
+//! with its reason, what cannot be tested is a [`Refusal`] that names the column. Nothing here prints,
+//! reads a file or asks the time.
+//!
+//! ```
+//! use mimique_stats::{Outcome, Table, mann_whitney};
+//!
+//! let table = Table::parse("method,rating\nbox,2\nbox,3\nbox,1\nlsts,5\nlsts,4\nlsts,6\n")?;
+//! let tested = mann_whitney(&table.numbers("rating")?, &table.factor("method")?)?;
+//! let Outcome::Ok(result) = tested else { panic!("the ratings differ") };
+//! assert_eq!(result.pair.to_string(), "box | lsts");
+//! // Of 20 ways to part six values, 2 are as far apart.
+//! assert!((result.p_value - 0.1).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod adjust;
-mod aligned_rank_transform;
-mod cells;
-mod chi_square;
-mod coded;
-mod confusion;
-mod csv;
-mod describe;
-mod factor;
-mod friedman;
-mod grouped;
-mod kendall;
-mod kruskal_wallis;
-mod mann_whitney;
-mod number;
-mod order_statistic;
+mod distributions;
+mod estimate;
 mod outcome;
-mod power;
-mod preregistration;
-mod proportion;
-mod radix;
+mod procedure;
 mod ranks;
-mod report;
-mod sample;
-mod scheirer_ray_hare;
-mod signed_rank;
-mod simulate;
-mod spearman;
-mod special;
+mod summary;
 mod table;
-mod tail;
-mod tally;
-mod two_way;
-mod walsh;
-mod wilcoxon;
+mod test;
 mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
-pub use aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
-pub use chi_square::{ChiSquare, ChiSquareVariant, Contingency, GTest, chi_square};
-pub use confusion::{Confusion, confusion};
-pub use describe::{Description, describe, median, moments, quantile_sorted};
-pub use factor::Factor;
-pub use friedman::{Blocks, Friedman, ImanDavenport, PairwiseHolm, Quade, friedman};
-pub use kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
-pub use mann_whitney::{MannWhitney, mann_whitney};
+pub use distributions::tail::{
+    Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_upper,
+    normal_quantile_upper, normal_tail, normal_upper, t_quantile_upper, t_two_sided, t_upper,
+};
+pub use estimate::hodges_lehmann::HodgesLehmann;
+pub use estimate::proportion::{Proportion, proportion};
 pub use outcome::{Labelled, Outcome, Refusal};
-pub use power::{
-    Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, no_effect, power,
-    power_csv, power_curve, power_markdown, power_runs,
-};
-pub use preregistration::{Preregistration, preregistration};
-pub use proportion::{Proportion, proportion};
+pub use procedure::arguments::{Arguments, Choice, ProcedureOption, Required, Takes};
+pub use procedure::row::{Term, TestNames, TestResult, TestRow};
+pub use procedure::{Answer, PROCEDURES, Procedure, Sample};
 pub use ranks::Ranks;
-pub use report::{Language, Report, ReportFile, analyze};
-pub use scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
-pub use simulate::{
-    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
-    Rating, Recognition, SimulatedSession, Simulation, Times,
-};
-pub use spearman::{Spearman, spearman};
+pub use summary::confusion::{Confusion, confusion};
+pub use summary::describe::{Description, describe, median, moments, quantile_sorted};
+pub use table::blocks::Blocks;
+pub use table::contingency::Contingency;
+pub use table::factor::Factor;
+pub use table::number::parse_number;
+pub use table::pairs::{paired_differences, rounded};
 pub use table::{Numbers, Table, TableError};
-pub use tail::{
-    Alternative, Tail, beta_quantile, chi_square_upper, f_upper, normal_quantile_upper,
-    normal_tail, normal_upper, t_quantile_upper, t_two_sided, t_upper,
-};
-pub use walsh::HodgesLehmann;
-pub use wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, paired_differences, wilcoxon};
+pub use test::aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
+pub use test::chi_square::{ChiSquare, ChiSquareVariant, GTest, chi_square};
+pub use test::friedman::{Friedman, ImanDavenport, PairwiseHolm, Quade, friedman};
+pub use test::kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
+pub use test::mann_whitney::{MannWhitney, mann_whitney};
+pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
+pub use test::sign::{Sign, sign};
+pub use test::spearman::{Spearman, spearman};
+pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
 pub use words::{format_number, format_p};

@@ -3,9 +3,6 @@
 //! The normal run takes 300 data sets; `MIMIQUE_AGREEMENT=10000` takes more, and writes what it found
 //! to `tests/records/` at the repository's root.
 
-#[path = "support/random.rs"]
-mod random;
-
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -14,7 +11,7 @@ use mimique_stats::{
     Blocks, Contingency, Factor, Numbers, SumsOfSquares, WilcoxonOptions, WilcoxonVariant,
     chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare, spearman, wilcoxon,
 };
-use random::Random;
+use mimique_test_support::Random;
 
 const TESTS: [&str; 7] =
     ["kruskal", "wilcoxon", "mannwhitney", "spearman", "chisquare", "friedman", "srh"];

@@ -1,14 +1,13 @@
 //! Every case of the shared data sets, every field that their file of expected values gives, and every
 //! distribution tail. A field that this walk does not know fails it.
 
+use std::collections::BTreeMap;
+
 use mimique_stats::{
-    Alternative, Blocks, Contingency, Factor, Numbers, Outcome, Refusal, SumsOfSquares, Table,
-    WilcoxonOptions, adjust_all, chi_square, chi_square_upper, confusion, describe, f_upper,
-    friedman, kruskal_wallis, mann_whitney, normal_upper, paired_differences, scheirer_ray_hare,
-    spearman, t_upper, wilcoxon,
+    Arguments, Factor, Outcome, PROCEDURES, Refusal, Table, chi_square_upper, f_upper,
+    normal_upper, t_upper,
 };
 use mimique_test_support::real_file;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 fn expected(folder: &std::path::Path) -> Value {
@@ -61,66 +60,41 @@ fn all_cases_of_the_expected_file() {
     assert!(compared > 800, "only {compared} values were compared");
 }
 
-/// Runs the test of a case and gives its result as JSON, with the few fields that stand elsewhere in
-/// the file of expected values put where that file has them.
+/// Runs the procedure of a case on the columns that it names, as the command line does, and gives its
+/// result as JSON.
 fn run(case: &Value, table: &Table) -> Result<Value, Refusal> {
-    let columns = &case["columns"];
-    let name = |key: &str| columns[key].as_str().unwrap_or_else(|| panic!("{case}: no {key}"));
-    let numbers = |key: &str| table.numbers(name(key));
-    let factor = |key: &str| table.factor(name(key));
-    match case["test"].as_str().unwrap() {
-        "kruskal_wallis" => Ok(value(&kruskal_wallis(&numbers("response")?, &factor("group")?)?)),
-        "wilcoxon_signed_rank" => {
-            let differences: Numbers = if columns.get("difference").is_some() {
-                numbers("difference")?
-            } else {
-                paired_differences(&numbers("x")?, &numbers("y")?)
-            };
-            let mut result = value(&wilcoxon(&differences, WilcoxonOptions::default())?);
-            let greater =
-                WilcoxonOptions { alternative: Alternative::Greater, ..WilcoxonOptions::default() };
-            let mut one_sided = value(&wilcoxon(&differences, greater)?)["p_by_semantics"].take();
-            if let Some(keys) = one_sided.as_object_mut() {
-                let thesis = keys["R_le_4.5_default (thesis era)"].clone();
-                keys.insert("R_le_4.5_default".to_owned(), thesis);
-            }
-            if let Some(fields) = result.as_object_mut() {
-                fields.insert("one_sided_greater".to_owned(), one_sided);
-            }
-            Ok(result)
-        }
-        "mann_whitney" => {
-            let levels: Vec<String> =
-                columns["levels"].as_array().unwrap().iter().map(Value::to_string).collect();
-            let group = factor("group")?.restricted(&levels)?;
-            Ok(value(&mann_whitney(&numbers("response")?, &group)?))
-        }
-        "scheirer_ray_hare" => {
-            let factors = [factor("factor1")?, factor("factor2")?];
-            let [first, second] = &factors;
-            Ok(value(&scheirer_ray_hare(
-                &numbers("response")?,
-                [first, second],
-                SumsOfSquares::default(),
-            )?))
-        }
-        "chi_square" => {
-            Ok(value(&chi_square(&Contingency::of(&factor("rows")?, &factor("columns")?)?)?))
-        }
-        "spearman" => Ok(value(&spearman(&numbers("x")?, &numbers("y")?)?)),
-        "friedman" => {
-            let blocks = Blocks::of(&numbers("response")?, &factor("group")?, &factor("block")?)?;
-            Ok(value(&friedman(&blocks)))
-        }
-        "descriptives" => Ok(value(&describe(&numbers("response")?.values))),
-        "p_adjust" => Ok(value(&adjust_all(&numbers("p")?.values))),
-        "confusion" => Ok(value(&confusion(&factor("truth")?, &factor("answer")?)?)),
-        other => panic!("{}: the test {other} is not known here", case["id"]),
+    let test = case["test"].as_str().unwrap();
+    let procedure = PROCEDURES.iter().find(|procedure| procedure.golden_cases == test);
+    let procedure =
+        procedure.unwrap_or_else(|| panic!("{}: the test {test} is not known", case["id"]));
+    let mut given: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (key, columns) in case["columns"].as_object().unwrap() {
+        let option = if key.starts_with("factor") { "factors" } else { key };
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let values = match columns {
+            Value::Array(levels) => levels.iter().map(text).collect(),
+            column => vec![text(column)],
+        };
+        given.entry(option.to_owned()).or_default().extend(values);
     }
-}
-
-fn value<T: Serialize>(result: &T) -> Value {
-    serde_json::to_value(result).unwrap()
+    let answer = |given: &BTreeMap<String, Vec<String>>| -> Result<Value, Refusal> {
+        let answer = (procedure.run)(table, &Arguments::new(given.clone()))?;
+        Ok(serde_json::from_str(&answer.json).unwrap())
+    };
+    let mut result = answer(&given)?;
+    if test == "wilcoxon_signed_rank" {
+        // The file of expected values has the one-sided p beside the two-sided ones.
+        given.insert("alternative".to_owned(), vec!["greater".to_owned()]);
+        let mut one_sided = answer(&given)?["p_by_semantics"].take();
+        if let Some(keys) = one_sided.as_object_mut() {
+            let thesis = keys["R_le_4.5_default (thesis era)"].clone();
+            keys.insert("R_le_4.5_default".to_owned(), thesis);
+        }
+        if let Some(fields) = result.as_object_mut() {
+            fields.insert("one_sided_greater".to_owned(), one_sided);
+        }
+    }
+    Ok(result)
 }
 
 /// How far a number may be off.

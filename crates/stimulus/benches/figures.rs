@@ -14,20 +14,19 @@ use std::io::BufRead as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use mimique_face::read_avatar;
+use mimique_avatar_files::read_avatar;
+use mimique_clip::{encode_operators, encode_take, solve_packs};
 use mimique_solver::{
     Fit, FrontEnd, MarkerColumns, MarkerFrames, Method, MethodSpec, OperatorOptions, Operators,
     SkinMesh, Synthesis,
 };
-use mimique_stimulus::{
-    AvatarSkin, JoinedTake, MarkerMap, TakeOptions, encode_operators, encode_take, solve_packs,
-};
+use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, TakeOptions};
 use serde_json::json;
 
 /// Every twentieth frame goes to the peers, which are slow.
 const PEER_STRIDE: usize = 20;
 
-/// Clips of a study for the browser, each of four seconds at 200 frames a second.
+/// Clips of a study for the browser, each of four seconds at 200 frames per second.
 const CLIPS: usize = 54;
 const CLIP: usize = 800;
 
@@ -110,7 +109,7 @@ impl Planted {
         let metres = capture.unit.metres();
         let positions = (0..capture.frames())
             .flat_map(|frame| columns.iter().map(move |&c| (frame, c)))
-            .flat_map(|(frame, c)| capture.frame(frame)[c].map(|x| x * metres))
+            .flat_map(|(frame, c)| capture.frame(frame)[c].map(|x| x * metres).to_array())
             .collect();
         let face = markers.len();
         let columns =
@@ -219,6 +218,8 @@ fn capture_and_map(lsts: &Path) -> (mimique_mocap::Capture, MarkerMap) {
 fn spec(method: &str) -> MethodSpec {
     let found = Method::ALL.into_iter().find(|m| m.name() == method);
     let mut spec = MethodSpec::new(found.expect("the name of a method"));
+    // The peers get displacements of a head that is not filtered.
+    spec.head_lowpass_hz = Some(0.0);
     spec.alpha = match spec.method {
         Method::Lsts => Some(0.3),
         Method::LstsNorm | Method::LstsShort | Method::LstsSoft => Some(0.5),

@@ -1,120 +1,82 @@
-//! What joins avatar, capture and method: marker maps, the solve of a take, weight files, packs, provenance.
+//! What joins avatar, capture and marker map to a clip: the take that is solved, what looks wrong in
+//! it, weight files, expressions of a long take, and the packs of a study.
 //!
 //! ```text
 //! Avatar --AvatarSkin--> skin --+
-//! MarkerMap --------------------+--> solve_take --> WeightsTable + SolveReport
-//! Capture ----------------------+
-//!                               +--> JoinedTake --> operators pack + take pack
-//!                                                      (server)     |
-//!                                              solve_packs (server, browser) --> weights
+//! MarkerMap --------------------+--> JoinedTake --+--> solve_take --> WeightsTable + SolveReport
+//! Capture ----------------------+                 +--> operators pack + take pack
+//!                                                        |
+//!                                  mimique_clip::solve_packs (server, browser) --> weights
+//! ```
+//!
+//! The built-in actor's joy on the built-in head of another person:
+//!
+//! ```
+//! use mimique_actor::{
+//!     Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
+//! };
+//! use mimique_mocap::{Capture, LengthUnit};
+//! use mimique_solver::{Method, MethodSpec};
+//! use mimique_stimulus::{
+//!     AvatarSkin, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, solve_take,
+//! };
+//!
+//! let head = |seed| HeadSpec { identity: Identity::from_seed(seed), density: Density::COARSE };
+//! let (actor, person) = (head(41), head(3));
+//! let joy = Clip { emotion: Emotion::Joy, intensity: 2, seed: 9 };
+//! let take = synthetic_take(&build_head(&actor), &marker_sites(&actor), &[joy], 6, 0.1);
+//! let capture = Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions);
+//! let sites = marker_sites(&person);
+//! let face = sites.face_labels().iter().zip(&sites.vertices).map(|(label, &vertex)| {
+//!     MappedMarker { label: label.clone(), place: MarkerPlace::Vertex(vertex) }
+//! });
+//! let map = MarkerMap {
+//!     face: face.collect(),
+//!     head: take.head_labels,
+//!     neutral: Some(0..60),
+//!     ..MarkerMap::default()
+//! };
+//! let skin = AvatarSkin::of(&build_head(&person))?;
+//! let (spec, options) = (MethodSpec::new(Method::Lsts), TakeOptions::default());
+//! let solved = solve_take(&skin, &capture, &map, &spec, &options, &mut || 0.0)?;
+//! assert_eq!(solved.table.frames.len(), capture.frames());
+//! assert!(solved.report.summary.residual_rms_mm < 3.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "prepare")]
-mod bank_diagnosis;
-#[cfg(feature = "prepare")]
-mod found_neutral;
-#[cfg(feature = "prepare")]
-mod head_check;
-#[cfg(feature = "prepare")]
-mod joined_take;
-#[cfg(feature = "prepare")]
-mod label_check;
-mod lids;
+mod avatar;
+mod built_in;
+mod checks;
 mod marker_map;
-mod operators_pack;
-#[cfg(feature = "prepare")]
 mod prepare;
 mod provenance;
-#[cfg(feature = "prepare")]
-mod recorded;
-#[cfg(feature = "prepare")]
-mod repair_sidecar;
-mod report;
-#[cfg(feature = "prepare")]
 mod segments;
-mod skin;
-#[cfg(feature = "prepare")]
-mod solve_error;
-mod solve_packs;
-#[cfg(feature = "prepare")]
-mod solve_take;
-#[cfg(feature = "prepare")]
-mod split_shapes;
-#[cfg(feature = "prepare")]
 mod suggest_map;
-#[cfg(feature = "prepare")]
-mod surface_avatar;
-#[cfg(feature = "prepare")]
-mod take_adjustments;
-#[cfg(feature = "prepare")]
-mod take_checks;
-#[cfg(feature = "prepare")]
-mod take_lids;
-mod take_pack;
-#[cfg(feature = "prepare")]
-mod take_provenance;
-#[cfg(feature = "prepare")]
-mod take_segment;
-mod tracks;
-#[cfg(feature = "prepare")]
-mod training;
-#[cfg(feature = "prepare")]
-mod vertex_frames;
-#[cfg(feature = "prepare")]
-mod weight_steps;
-mod weights_file;
+mod take;
+mod weights;
 
-#[cfg(feature = "prepare")]
-pub use bank_diagnosis::{BankDiagnosis, DependentShape, MarkerDiagnosis};
-#[cfg(feature = "prepare")]
-pub use head_check::{HeadMarker, STILL_MM};
-#[cfg(feature = "prepare")]
-pub use joined_take::{JoinedTake, SetUp};
-#[cfg(feature = "prepare")]
-pub use label_check::{LabelFault, LabelProblem};
-pub use lids::{Lid, LidEdge};
+pub use avatar::{AvatarSkin, SplitError, VertexFrames, lock_shapes, split_shapes, surface_avatar};
+pub use built_in::{built_in_capture, built_in_map, built_in_training, built_in_weights};
+pub use checks::{
+    BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
+};
 pub use marker_map::{
     Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
     REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use operators_pack::{decode_inflated_operators, decode_operators, encode_operators};
-#[cfg(feature = "prepare")]
 pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
-pub use provenance::{Provenance, SOLVER_VERSION, sha256_hex, sha256_of_file, weights_hash};
-#[cfg(feature = "prepare")]
-pub use recorded::{Driven, RecordedNames, RecordedWeights};
-#[cfg(feature = "prepare")]
-pub use repair_sidecar::{FileHash, RepairSidecar, SidecarError, sidecar_path};
-#[cfg(feature = "prepare")]
-pub use report::SolveReport;
-pub use report::{FrameRow, FrameStatistics, RegressionSummary, StageSeconds};
-#[cfg(feature = "prepare")]
+pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
     Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
     SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment, Timeline,
     TimelineSegment, cut, read_segments, study_segments, suggest, write_segments,
 };
-pub use skin::{AvatarSkin, lock_shapes};
-#[cfg(feature = "prepare")]
-pub use solve_error::SolveError;
-pub use solve_packs::{SolvePacksError, SolvedTake, solve_inflated, solve_packs, solve_segment};
-#[cfg(feature = "prepare")]
-pub use solve_take::{SolvedCapture, TakeOptions, solve_take};
-#[cfg(feature = "prepare")]
-pub use split_shapes::{SplitError, split_shapes};
-#[cfg(feature = "prepare")]
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,
 };
-#[cfg(feature = "prepare")]
-pub use surface_avatar::surface_avatar;
-pub use take_pack::{
-    SegmentMarkers, TakeContent, TakePack, decode_take, encode_take, encode_take_in_steps,
+pub use take::{
+    FileHash, FrameRow, JoinedTake, Lid, LidEdge, RegressionSummary, RepairSidecar, SetUp,
+    SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds, TakeOptions, Training,
+    sidecar_path, solve_take,
 };
-#[cfg(feature = "prepare")]
-pub use training::Training;
-#[cfg(feature = "prepare")]
-pub use vertex_frames::VertexFrames;
-#[cfg(feature = "prepare")]
-pub use weight_steps::{WeightSteps, weight_steps};
-pub use weights_file::{WeightsFileError, WeightsTable};
+pub use weights::{Driven, RecordedNames, RecordedWeights, WeightSteps, weight_steps};

@@ -1,133 +1,81 @@
-//! Hashes: of weights, and of everything that a stimulus is made of.
+//! The hash of everything that something is made of: stimuli, packs in the cache, training takes.
 //!
-//! The provenance of a stimulus is SHA-256 over a canonical form: named entries sorted by name,
-//! each as name, kind and length-prefixed content, numbers as little-endian f64.
+//! A provenance is a JSON object of named entries; its hash is SHA-256 of the object's canonical text
+//! ([`mimique_study::canonical`]: keys sorted, nothing between the tokens). Long lists of numbers stand
+//! in it as their count and the SHA-256 of their bytes (f64, little-endian), pictures by their hash. No
+//! entry depends on how a type is named or written in the program.
 
-use std::collections::BTreeMap;
+use std::path::Path;
 
+use mimique_clip::{SOLVER_VERSION, sha256_hex, weights_hash};
 use mimique_solver::MethodSpec;
-use serde_json::Value;
+use mimique_study::canonical;
+use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-/// Changes with every change of the solver or of the way to it that moves a bit of any weight.
-pub const SOLVER_VERSION: &str =
-    concat!("mimique-solver ", env!("CARGO_PKG_VERSION"), ", arithmetic 3");
+/// What something is made of, entry by entry.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Provenance {
+    entries: Map<String, Value>,
+}
 
-/// SHA-256, lower-case hexadecimal.
-pub fn sha256_hex(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
+impl Provenance {
+    /// Nothing yet, except the solver's version.
+    pub fn new() -> Self {
+        Self::default().json("solver", SOLVER_VERSION)
+    }
+
+    /// An entry that is JSON: a text (such as another hash), a number, an object.
+    pub fn json(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.entries.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// An entry of many numbers.
+    pub fn numbers(self, name: &str, numbers: &[f64]) -> Self {
+        self.json(name, numbers_of(numbers))
+    }
+
+    /// The method and every parameter that it uses, defaults written out.
+    pub fn method(self, spec: &MethodSpec) -> Self {
+        // A method is words, numbers and lists: it can always be written.
+        self.json("method", serde_json::to_value(spec.resolved()).unwrap_or(Value::Null))
+    }
+
+    /// The hash, lower-case hexadecimal.
+    pub fn hash(&self) -> String {
+        sha256_hex(canonical(&Value::Object(self.entries.clone())).as_bytes())
+    }
+}
+
+/// Many numbers as an entry: how many there are, and the hash of their bits.
+pub(crate) fn numbers_of(numbers: &[f64]) -> Value {
+    json!({ "count": numbers.len(), "sha256": weights_hash(numbers) })
 }
 
 /// SHA-256 of a file's bytes, lower-case hexadecimal; the file is read as a stream.
 ///
 /// # Errors
 /// What the system says.
-pub fn sha256_of_file(path: &std::path::Path) -> std::io::Result<String> {
+pub fn sha256_of_file(path: &Path) -> std::io::Result<String> {
     let mut file = std::fs::File::open(path)?;
-    let (mut hash, mut chunk) = (Sha256::new(), vec![0; 1 << 18]);
-    loop {
-        match std::io::Read::read(&mut file, &mut chunk) {
-            Ok(0) => return Ok(hexadecimal(&hash.finalize())),
-            Ok(read) => hash.update(&chunk[..read]),
-            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(e) => return Err(e),
-        }
-    }
-}
-
-/// SHA-256 of the numbers as little-endian f64, lower-case hexadecimal.
-pub fn weights_hash(weights: &[f64]) -> String {
     let mut hash = Sha256::new();
-    weights.iter().for_each(|w| hash.update(w.to_le_bytes()));
-    hexadecimal(&hash.finalize())
+    std::io::copy(&mut file, &mut HashWriter(&mut hash))?;
+    Ok(hex::encode(hash.finalize()))
 }
 
-/// What a stimulus is made of, entry by entry.
-#[derive(Debug, Clone, Default)]
-pub struct Provenance {
-    entries: BTreeMap<String, Vec<u8>>,
-}
+/// What is written into it is hashed.
+struct HashWriter<'a>(&'a mut Sha256);
 
-impl Provenance {
-    /// Nothing yet, except the solver's version.
-    pub fn new() -> Self {
-        Self::default().text("solver", SOLVER_VERSION)
+impl std::io::Write for HashWriter<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
     }
 
-    /// An entry that is a text (such as another hash).
-    pub fn text(mut self, name: &str, text: &str) -> Self {
-        self.entries.insert(name.to_owned(), entry(b't', text.as_bytes()));
-        self
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
     }
-
-    /// An entry of numbers.
-    pub fn numbers(mut self, name: &str, numbers: &[f64]) -> Self {
-        let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
-        self.entries.insert(name.to_owned(), entry(b'n', &bytes));
-        self
-    }
-
-    /// The method and every parameter that it uses, defaults written out.
-    pub fn method(mut self, spec: &MethodSpec) -> Self {
-        let mut bytes = Vec::new();
-        canonical(&serde_json::to_value(spec.resolved()).unwrap_or(Value::Null), &mut bytes);
-        self.entries.insert("method".to_owned(), entry(b'j', &bytes));
-        self
-    }
-
-    /// The hash, lower-case hexadecimal.
-    pub fn hash(&self) -> String {
-        let mut hash = Sha256::new();
-        for (name, content) in &self.entries {
-            hash.update((name.len() as u64).to_le_bytes());
-            hash.update(name.as_bytes());
-            hash.update(content);
-        }
-        hexadecimal(&hash.finalize())
-    }
-}
-
-fn entry(kind: u8, content: &[u8]) -> Vec<u8> {
-    let mut out = vec![kind];
-    out.extend((content.len() as u64).to_le_bytes());
-    out.extend(content);
-    out
-}
-
-/// JSON with sorted keys and numbers as f64: a letter for the kind, counts as u64.
-fn canonical(value: &Value, out: &mut Vec<u8>) {
-    match value {
-        Value::Null => out.push(b'0'),
-        Value::Bool(b) => out.extend([b'b', u8::from(*b)]),
-        Value::Number(n) => {
-            out.push(b'n');
-            out.extend(n.as_f64().unwrap_or(f64::NAN).to_le_bytes());
-        }
-        Value::String(text) => out.extend(entry(b't', text.as_bytes())),
-        Value::Array(items) => {
-            out.push(b'a');
-            out.extend((items.len() as u64).to_le_bytes());
-            items.iter().for_each(|item| canonical(item, out));
-        }
-        Value::Object(map) => {
-            let sorted: BTreeMap<&String, &Value> = map.iter().collect();
-            out.push(b'o');
-            out.extend((sorted.len() as u64).to_le_bytes());
-            for (key, item) in sorted {
-                out.extend(entry(b't', key.as_bytes()));
-                canonical(item, out);
-            }
-        }
-    }
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 16] = b"0123456789abcdef";
-    bytes
-        .iter()
-        .flat_map(|b| [DIGITS[usize::from(b >> 4)], DIGITS[usize::from(b & 15)]])
-        .map(char::from)
-        .collect()
 }
 
 #[cfg(test)]
@@ -137,19 +85,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hashes_are_those_of_any_tool() {
-        // printf abc | sha256sum
-        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(sha256_hex(b"abc"), abc);
-        assert_eq!(weights_hash(&[1.0]), sha256_hex(&1f64.to_le_bytes()));
-    }
-
-    #[test]
     fn provenance_knows_no_order_and_every_difference() {
         let spec = |alpha| MethodSpec { alpha, ..MethodSpec::new(Method::Lsts) };
         let hash = |alpha, avatar: &str| {
             Provenance::new()
-                .text("avatar", avatar)
+                .json("avatar", avatar)
                 .numbers("neutral", &[0.0, 60.0])
                 .method(&spec(alpha))
                 .hash()
@@ -157,11 +97,26 @@ mod tests {
         let turned = Provenance::new()
             .method(&spec(Some(0.3)))
             .numbers("neutral", &[0.0, 60.0])
-            .text("avatar", "a");
+            .json("avatar", "a");
         assert_eq!(hash(Some(0.3), "a"), turned.hash());
         // A default that is written out is the same stimulus.
         assert_eq!(hash(None, "a"), turned.hash());
         assert_ne!(hash(Some(0.31), "a"), turned.hash());
         assert_ne!(hash(Some(0.3), "b"), turned.hash());
+    }
+
+    #[test]
+    fn the_hash_is_that_of_a_text_that_any_tool_can_write() {
+        let made =
+            Provenance::default().json("b", json!({"y": 0.5, "x": [1, null]})).json("a", "é");
+        // printf '{"a":"é","b":{"x":[1,null],"y":0.5}}' | sha256sum
+        assert_eq!(made.hash(), "93fc7b12f7cd07f9a838f8da9eb73feab2213570dde5928dafceb3f1fdc44844");
+        let spec = MethodSpec { head_lowpass_hz: Some(10.0), ..MethodSpec::new(Method::Lsts) };
+        let text = r#"{"method":{"alpha":0.3,"gain":1,"gaze":"rest","headLowpassHz":10,"kB":1,"kS":1,"kappa":0.1,"laplacian":"uniform","method":"lsts"}}"#;
+        assert_eq!(Provenance::default().method(&spec).hash(), sha256_hex(text.as_bytes()));
+        let numbers = Provenance::default().numbers("n", &[1.0, f64::NAN]);
+        let bytes = [1f64.to_le_bytes(), f64::NAN.to_le_bytes()].concat();
+        let text = format!(r#"{{"n":{{"count":2,"sha256":"{}"}}}}"#, sha256_hex(&bytes));
+        assert_eq!(numbers.hash(), sha256_hex(text.as_bytes()));
     }
 }

@@ -1,15 +1,17 @@
 //! Kouadio's tools end to end: associations, scale factors, depth, halves, the five rules; and that
 //! packs, threads and the browser's function give the bits of the whole.
 
-use mimique_face::{
-    Avatar, Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
+use mimique_actor::{
+    Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
 };
+use mimique_avatar::Avatar;
+use mimique_clip::{encode_operators, encode_take, solve_packs, solve_segment};
+use mimique_geometry::{Point, coordinates};
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_solver::{Association, Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, BankDiagnosis, Depth, JoinedTake, MappedMarker, MarkerAssociation, MarkerMap,
-    MarkerPlace, ScaleRule, SolvedCapture, TakeOptions, encode_operators, encode_take, solve_packs,
-    solve_segment, solve_take, split_shapes,
+    MarkerPlace, ScaleRule, SolvedCapture, TakeOptions, solve_take, split_shapes,
 };
 
 struct Scene {
@@ -87,7 +89,7 @@ fn positions_are_tied_to_vertices_or_triangles() {
         let t = mesh.triangles.iter().find(|t| t.contains(&(v as u32))).unwrap();
         let w = t.iter().find(|w| **w as usize != v).unwrap();
         let (p, q) = (mesh.positions[v], mesh.positions[*w as usize]);
-        [0, 1, 2].map(|a| 0.6 * p[a] + 0.4 * q[a])
+        p + (q - p) * 0.4
     };
     let mut map = scene.map.clone();
     for (marker, site) in map.face.iter_mut().zip(&sites) {
@@ -119,7 +121,7 @@ fn positions_are_tied_to_vertices_or_triangles() {
     assert_eq!(two[0].vertex(), nearest[0].vertex());
     assert_ne!(two[1].vertex(), two[0].vertex());
     // Far off the skin nothing is tied.
-    map.face[2].place = MarkerPlace::Position([0.5, 0.5, 0.5]);
+    map.face[2].place = MarkerPlace::Position(Point::new(0.5, 0.5, 0.5));
     assert!(map.resolve(&scene.skin).unwrap_err().to_string().contains("within 10 mm of it"));
 }
 
@@ -142,9 +144,9 @@ fn automatic_factors_take_each_marker_to_the_bank_s_range() {
     let joined = JoinedTake::new(&scene.skin, &scene.capture, &scene.map, &options).unwrap();
     let operators = joined.operators(&spec).unwrap();
     let take = joined.segment(&operators, &spec, 0..frames).unwrap();
-    let mimique_stimulus::TakeContent::Markers(markers) = &take.content else { panic!("weights") };
+    let mimique_clip::TakeContent::Markers(markers) = &take.content else { panic!("weights") };
     let scales = markers.scales.as_ref().unwrap();
-    let all = scales.positive.iter().chain(&scales.negative).flatten();
+    let all = coordinates(&scales.positive).iter().chain(coordinates(&scales.negative));
     assert!(all.clone().any(|x| *x != 1.0) && all.clone().all(|x| x.is_finite() && *x >= 0.0));
     let automatic = scene.solve(&spec, &options);
     assert!(rms(&plain, &automatic.table.weights) > 1e-3);
@@ -182,7 +184,7 @@ fn a_flat_capture_gets_its_depth_from_the_surface() {
                 let row = &deltas[(3 * m + a) * n..(3 * m + a + 1) * n];
                 1e3 * (p[a] + row.iter().zip(c).map(|(d, c)| d * c).sum::<f64>())
             };
-            positions.push([at(0), at(1), 0.0]);
+            positions.push(Point::new(at(0), at(1), 0.0));
         }
     }
     drop(joined);
@@ -198,7 +200,7 @@ fn a_flat_capture_gets_its_depth_from_the_surface() {
     scene.map.depth = Depth::Surface;
     let flat = scene.solve(&spec, &TakeOptions::default());
     // Where the weights put the markers: in the image as measured, in depth mostly.
-    let axis = |table: &mimique_stimulus::WeightsTable, a: usize| -> Vec<f64> {
+    let axis = |table: &mimique_mocap::WeightsTable, a: usize| -> Vec<f64> {
         (60..table.frames.len())
             .flat_map(|frame| {
                 (deltas.chunks_exact(3 * n)).map(move |rows| {
@@ -243,7 +245,7 @@ fn packs_carry_associations_factors_and_depth_bit_for_bit() {
         let mut take = joined.segment(&operators, &spec, 100..260).unwrap();
         // The pack rounds positions: with rounded ones nothing is lost.
         let packed = encode_take(&take);
-        take = mimique_stimulus::decode_take(&packed).unwrap();
+        take = mimique_clip::decode_take(&packed).unwrap();
         let direct = solve_segment(&operators, &take, &spec).unwrap();
         let from_packs = solve_packs(&encode_operators(&operators), &packed, &spec).unwrap();
         assert_eq!(direct.weights_hash, from_packs.weights_hash);
@@ -265,7 +267,7 @@ fn halves_add_up_to_the_shape_on_every_mesh() {
     assert_eq!(split.shape_names[k], format!("{name}_L"));
     assert_eq!(split.shape_names[k + 1], format!("{name}_R"));
     for (whole, cut) in scene.avatar.meshes.iter().zip(&split.meshes) {
-        let dense = |shape: &mimique_face::SparseShape| {
+        let dense = |shape: &mimique_avatar::SparseShape| {
             let mut out = vec![[0.0f32; 3]; whole.positions.len()];
             for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
                 out[v as usize] = *d;
@@ -326,8 +328,10 @@ fn diagnosis_names_what_was_planted() {
             off(a).total_cmp(&off(b))
         })
         .unwrap();
-    let away =
-        mimique_solver::SparseDeltas { vertices: vec![far as u32], deltas: vec![[0.0, 0.01, 0.0]] };
+    let away = mimique_solver::SparseDeltas {
+        vertices: vec![far as u32],
+        deltas: vec![[0.0, 0.01, 0.0].into()],
+    };
     mesh.shapes.extend([mimique_solver::SparseDeltas::default(), half, away]);
     let names = ["neutralFace", "halfOfFive", "ponytail"].map(str::to_owned);
     scene.skin.shape_names.extend(names);
@@ -390,5 +394,7 @@ fn the_seconds_of_each_stage_are_those_of_the_clock() {
     let solved =
         solve_take(&scene.skin, &scene.capture, &scene.map, &spec, &options, &mut clock).unwrap();
     let s = solved.report.seconds;
-    assert_eq!((s.set_up, s.front_end, s.solve, s.check), (2.0, 3.0, 4.0, 5.0));
+    // Steps 2 and 3 are of the take's set-up and of its front end, 5, 6 and 7 of the pipeline, 9 of the
+    // checks; 4 and 8 lie between them.
+    assert_eq!((s.set_up, s.front_end, s.solve, s.check), (2.0 + 5.0, 3.0 + 6.0, 7.0, 9.0));
 }

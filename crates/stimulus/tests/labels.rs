@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use mimique_face::{
+use mimique_actor::{
     Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
 };
 use mimique_mocap::{Capture, LengthUnit};
@@ -46,7 +46,8 @@ fn built_in() -> Scene {
 }
 
 fn animface(root: &Path, take: &str) -> Scene {
-    let avatar = mimique_face::read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap();
+    let avatar =
+        mimique_avatar_files::read_avatar(&root.join("ict-facekit/ict-facekit.glb")).unwrap();
     let text = std::fs::read_to_string(root.join("animface/markers-ict-facekit.json")).unwrap();
     Scene {
         skin: AvatarSkin::of(&avatar.avatar).unwrap(),
@@ -56,7 +57,7 @@ fn animface(root: &Path, take: &str) -> Scene {
 }
 
 fn planted_take(root: &Path) -> Scene {
-    let avatar = mimique_face::read_avatar(&root.join("lsts/avatar_skin.glb")).unwrap();
+    let avatar = mimique_avatar_files::read_avatar(&root.join("lsts/avatar_skin.glb")).unwrap();
     let text = std::fs::read_to_string(root.join("lsts/mapping.csv")).unwrap();
     Scene {
         skin: AvatarSkin::of(&avatar.avatar).unwrap(),

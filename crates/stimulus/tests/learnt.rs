@@ -1,17 +1,21 @@
 //! Surface and regression from captures to weights and packs: the built-in actor's range of motion
 //! teaches emotions; packs, worker's function and the direct way agree; bad training is refused.
 
-use mimique_face::pack::{decode_pack, encode_pack};
-use mimique_face::{
-    Avatar, Clip, Density, Emotion, HeadSpec, Identity, MarkerSites, SyntheticTake, build_head,
+use mimique_actor::{
+    Clip, Density, Emotion, HeadSpec, Identity, MarkerSites, SyntheticTake, build_head,
     marker_sites, range_of_motion_take, synthetic_take,
 };
-use mimique_mocap::{Capture, LengthUnit};
+use mimique_avatar::Avatar;
+use mimique_avatar::pack::{decode_pack, encode_pack};
+use mimique_clip::{
+    decode_operators, decode_take, encode_operators, encode_take, solve_packs, solve_segment,
+};
+use mimique_geometry::coordinates;
+use mimique_mocap::{Capture, LengthUnit, WeightsTable};
 use mimique_solver::{Fit, Inference, METRES_PER_WEIGHT, Method, MethodSpec, Operators};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, SetUp, SolvedCapture,
-    TakeOptions, Training, VertexFrames, WeightsTable, decode_operators, decode_take,
-    encode_operators, encode_take, solve_packs, solve_segment, solve_take, surface_avatar,
+    TakeOptions, Training, VertexFrames, solve_take, surface_avatar,
 };
 
 struct Scene {
@@ -213,7 +217,7 @@ fn a_surface_travels_as_an_avatar_of_markers() {
         });
         eprintln!("{} ({:?}): moves by {:.2} mm", mesh.name, mesh.part, 1e3 * way);
         assert!(way < 0.03);
-        if matches!(mesh.part, mimique_face::Part::EyeLeft | mimique_face::Part::EyeRight) {
+        if matches!(mesh.part, mimique_avatar::Part::EyeLeft | mimique_avatar::Part::EyeRight) {
             assert_eq!(way, 0.0);
         }
     }
@@ -247,7 +251,7 @@ fn the_vertices_written_are_those_of_the_weights() {
     for row in [0, 63, 64, 310, count - 1] {
         let bytes = &npy[data + 12 * row * vertices..][..12 * vertices];
         let written = bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b)));
-        for (x, y) in written.zip(frames.positions(row).as_flattened()) {
+        for (x, y) in written.zip(coordinates(&frames.positions(row))) {
             // Positions of some 0.2 m in single precision, and sums of it.
             assert!((x - y).abs() < 2e-7, "row {row}: {x} {y}");
         }

@@ -1,12 +1,10 @@
 //! Lids follow their markers: planted on the built-in head, recovered natively and through packs.
 
-use mimique_face::{HeadSpec, build_head};
+use mimique_actor::{HeadSpec, build_head};
+use mimique_clip::{encode_operators, encode_take, solve_packs};
 use mimique_mocap::{Capture, LengthUnit};
 use mimique_solver::{Method, MethodSpec};
-use mimique_stimulus::{
-    AvatarSkin, JoinedTake, MarkerMap, TakeOptions, encode_operators, encode_take, solve_packs,
-    solve_take,
-};
+use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, TakeOptions, solve_take};
 
 /// A map of vertices on the skin: a grid over the face, and the vertex that each lid moves most.
 fn map(skin: &AvatarSkin) -> (MarkerMap, Vec<usize>) {
@@ -35,14 +33,14 @@ fn map(skin: &AvatarSkin) -> (MarkerMap, Vec<usize>) {
         "cheekPuff",
     ] {
         let moved = &skin.mesh.shapes[shape(name)];
-        let length = |i: usize| moved.deltas[i].iter().map(|d| d * d).sum::<f64>();
+        let length = |i: usize| moved.deltas[i].length_squared();
         let most = (0..moved.vertices.len())
             .filter(|&i| !vertices.contains(&(moved.vertices[i] as usize)))
             .max_by(|&a, &b| length(a).total_cmp(&length(b)))
             .unwrap();
         vertices.push(moved.vertices[most] as usize);
     }
-    let place = |v: usize| skin.mesh.positions[v];
+    let place = |v: usize| skin.mesh.positions[v].to_array();
     let markers: Vec<String> = vertices
         .iter()
         .enumerate()
@@ -114,7 +112,7 @@ fn planted_blinks_and_a_jaw_are_recovered_natively_and_through_packs() {
 
     // The same through packs, as the server and the browser do.
     let joined = JoinedTake::new(&skin, &capture, &map, &options).unwrap();
-    let spec = joined.with_lids_locked(&spec);
+    let spec = joined.with_shapes_held(&spec);
     let operators = joined.operators(&spec).unwrap();
     let take = joined.segment(&operators, &spec, 80..340).unwrap();
     let solved = solve_packs(&encode_operators(&operators), &encode_take(&take), &spec).unwrap();

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use mimique_face::pack::decode_pack;
-use mimique_stimulus::{Places, Prepared, prepare, sha256_hex, solve_packs};
+use mimique_avatar::pack::decode_pack;
+use mimique_clip::{sha256_hex, solve_packs};
+use mimique_stimulus::{Places, Prepared, prepare};
 use mimique_study::Study;
 use mimique_test_support::real_data;
 use serde_json::{Value, json};
@@ -88,7 +89,7 @@ fn built_in_stimuli_are_prepared_once_and_play() {
         assert_eq!(source.method.head_lowpass_hz, Some(10.0));
     }
     // One avatar, one set of operators (both methods ask for the same), one take a performance.
-    let packs = |of: fn(&mimique_study::wire::ClipSource) -> &String| {
+    let packs = |of: fn(&mimique_study::ClipSource) -> &String| {
         prepared.clips.values().map(of).collect::<std::collections::BTreeSet<_>>().len()
     };
     assert_eq!((packs(|c| &c.avatar), packs(|c| &c.operators), packs(|c| &c.take)), (1, 1, 2));
@@ -107,6 +108,19 @@ fn built_in_stimuli_are_prepared_once_and_play() {
     let before = files(folder.path());
     assert_eq!(prepare(&study, &places, &mut |_| {}).unwrap(), prepared);
     assert_eq!(files(folder.path()), before);
+}
+
+#[test]
+fn a_rate_without_room_for_the_low_pass_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stimuli = builtin();
+    stimuli["captures"]["actor"]["rateHz"] = json!(20.0);
+    let prepared = prepare(&study(stimuli), &places(folder.path(), None), &mut |_| {}).unwrap();
+    assert!(prepared.clips.values().all(|clip| clip.method.head_lowpass_hz == Some(0.0)));
+    let said =
+        "the head is not filtered: 20 frames per second leave no room for a low-pass of 10 Hz";
+    let of_capture = prepared.warnings.iter().filter(|(at, _)| at == "/stimuli/captures/actor");
+    assert_eq!(of_capture.filter(|(_, what)| what.starts_with(said)).count(), 1);
 }
 
 /// A capture of 200 Hz shown at 60 has the frames of 60 Hz, the same motion, and a third of the
@@ -289,7 +303,7 @@ fn a_surface_and_a_regression_are_prepared_and_play() {
         eprintln!("{id}: {moved:.4} m, {} bytes", source.bytes);
         assert!((0.002..0.08).contains(&moved), "{id} moves by {moved} m");
     }
-    let pack = |clip: &str, of: fn(&mimique_study::wire::ClipSource) -> &String| {
+    let pack = |clip: &str, of: fn(&mimique_study::ClipSource) -> &String| {
         of(&prepared.clips[&format!("joy3.{clip}")]).clone()
     };
     // A surface has an avatar of its own; how hard the markers pull changes none of the packs.
@@ -420,7 +434,7 @@ fn the_actor_s_own_head_shows_the_performance_that_a_solve_recovers() {
 
 /// A capture file of somebody who acts, its labels `[a, b]` exchanged in some frames, and its map.
 fn labelled_take(folder: &Path, swapped: std::ops::Range<usize>) -> [String; 2] {
-    use mimique_face::{
+    use mimique_actor::{
         Clip, Density, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take,
     };
     let head =

@@ -1,10 +1,11 @@
 //! Expressions planted one after the other in long takes are found again.
 
-use mimique_face::{Clip, Emotion, HeadSpec, build_head, marker_sites, synthetic_take};
-use mimique_mocap::{Capture, LengthUnit, stabilise};
+use mimique_actor::{Clip, Emotion, HeadSpec, build_head, marker_sites, synthetic_take};
+use mimique_geometry::coordinates;
+use mimique_mocap::{Capture, LengthUnit, WeightOptions, read_weights, stabilise};
 use mimique_stimulus::{
-    AvatarSkin, Channels, MarkerMap, SuggestOptions, Suggestion, TakeOptions, TakeSegment,
-    WeightsTable, cut, read_segments, solve_take, suggest,
+    AvatarSkin, Channels, MarkerMap, SuggestOptions, Suggestion, TakeOptions, TakeSegment, cut,
+    read_segments, solve_take, suggest,
 };
 
 const EMOTIONS: [Emotion; 6] = [
@@ -31,7 +32,7 @@ fn of(values: &[f64], count: usize, rate_hz: f64) -> Suggestion {
 }
 
 /// The 18 performances in one take, by the built-in head; what was planted.
-fn long_take() -> (mimique_face::SyntheticTake, Vec<TakeSegment>) {
+fn long_take() -> (mimique_actor::SyntheticTake, Vec<TakeSegment>) {
     let clips: Vec<Clip> = EMOTIONS
         .into_iter()
         .flat_map(|emotion| (1..=3).map(move |intensity| Clip { emotion, intensity, seed: 5 }))
@@ -81,11 +82,11 @@ fn eighteen_built_in_performances_in_one_take_from_markers() {
         rate_hz: take.rate_hz,
         first_frame: 0,
         unit: LengthUnit::Millimetre,
-        positions: take.positions.clone(),
+        positions: take.positions.iter().map(|&p| p.into()).collect(),
         notes: Vec::new(),
     };
     stabilise(&mut capture, &take.head_labels).unwrap();
-    let values = capture.positions.as_flattened();
+    let values = coordinates(&capture.positions);
     let found = of(values, 3 * capture.labels.len(), take.rate_hz);
     let (mean, least) = overlaps(&found.segments, &truth);
     eprintln!("from markers: mean overlap {mean:.3}, least {least:.3}");
@@ -132,12 +133,13 @@ fn the_segments_of_the_planted_capture() {
     let text = std::fs::read_to_string(data.join("lsts/segments.csv")).unwrap();
     let truth = read_segments(&text).unwrap();
     assert_eq!(truth.len(), 18);
-    let planted = WeightsTable::from_csv(
-        &std::fs::read_to_string(data.join("lsts/truth.csv")).unwrap(),
-        Some(200.0),
+    let planted = read_weights(
+        &std::fs::read(data.join("lsts/truth.csv")).unwrap(),
+        &WeightOptions { rate_hz: Some(200.0), ..WeightOptions::default() },
     )
     .unwrap();
-    let avatar = mimique_face::read_avatar(&data.join("lsts/avatar_skin.glb")).unwrap().avatar;
+    let avatar =
+        mimique_avatar_files::read_avatar(&data.join("lsts/avatar_skin.glb")).unwrap().avatar;
     let skin = AvatarSkin::of(&avatar).unwrap();
     let capture = mimique_mocap::read(&data.join("lsts/take_n01.csv")).unwrap();
     let map =

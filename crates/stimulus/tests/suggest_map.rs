@@ -1,8 +1,8 @@
 //! The suggested marker map against maps made by hand, whatever way up the capture is.
 
-use mimique_face::{Clip, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take};
+use mimique_actor::{Clip, Emotion, HeadSpec, Identity, build_head, marker_sites, synthetic_take};
+use mimique_geometry::{DQuat, Displacement, RigidMotion};
 use mimique_mocap::{Capture, LengthUnit};
-use mimique_solver::RigidMotion;
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, MarkerRole, SuggestMapError, SuggestedMap, suggest_map,
 };
@@ -25,11 +25,11 @@ fn errors_mm(skin: &AvatarSkin, map: &MarkerMap, suggested: &SuggestedMap) -> Ve
 
 /// The capture turned, moved and in another unit.
 fn turned(capture: &Capture, quaternion: [f64; 4]) -> Capture {
-    let motion = RigidMotion::from_quaternion(quaternion);
-    let positions = capture.positions.iter().map(|&p| {
-        let q = motion.apply(p);
-        [q[0] + 1200.0, q[1] - 300.0, q[2] + 77.0]
-    });
+    let motion = RigidMotion::turn(DQuat::from_array(quaternion));
+    let positions = capture
+        .positions
+        .iter()
+        .map(|&p| motion.apply(p) + Displacement::new(1200.0, -300.0, 77.0));
     Capture { positions: positions.collect(), ..capture.clone() }
 }
 
@@ -39,12 +39,12 @@ fn unit(q: [f64; 4]) -> [f64; 4] {
 }
 
 const WAYS: [[f64; 4]; 6] = [
-    [1.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0],
-    [1.0, 0.0, 1.0, 0.0],
-    [0.1, 0.2, -0.9, 0.3],
-    [0.5, -0.5, 0.5, 0.5],
-    [0.3, 0.8, 0.1, -0.4],
+    [0.0, 0.0, 0.0, 1.0],
+    [1.0, 0.0, 0.0, 1.0],
+    [0.0, 1.0, 0.0, 1.0],
+    [0.2, -0.9, 0.3, 0.1],
+    [-0.5, 0.5, 0.5, 0.5],
+    [0.8, 0.1, -0.4, 0.3],
 ];
 
 #[test]
@@ -95,7 +95,8 @@ fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
     let Some(data) = real_data("real_takes_are_laid_on_ict_facekit_as_by_hand") else { return };
     let read = |path: &str| mimique_mocap::read(&data.join(path)).unwrap();
     let skin = |path: &str| {
-        AvatarSkin::of(&mimique_face::read_avatar(&data.join(path)).unwrap().avatar).unwrap()
+        AvatarSkin::of(&mimique_avatar_files::read_avatar(&data.join(path)).unwrap().avatar)
+            .unwrap()
     };
     let text = |path: &str| std::fs::read_to_string(data.join(path)).unwrap();
     let ict = skin("ict-facekit/ict-facekit.glb");
@@ -134,7 +135,7 @@ fn too_little_is_refused_with_a_remedy() {
         (0..4).map(|i| format!("M{i}")).collect(),
         100.0,
         LengthUnit::Millimetre,
-        (0..400).map(|i| [f64::from(i % 4), f64::from(i % 4 % 2), 0.0]).collect(),
+        (0..400).map(|i| [f64::from(i % 4), f64::from(i % 4 % 2), 0.0]),
     );
     let error = suggest_map(&skin, &capture, None).unwrap_err();
     assert!(matches!(error, SuggestMapError::TooFew { seen: 4, .. }), "{error}");

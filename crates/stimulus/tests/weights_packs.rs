@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use mimique_face::pack::decode_pack;
-use mimique_stimulus::{
-    Places, SolvedTake, TakeContent, TakePack, decode_take, encode_take_in_steps, prepare,
-    solve_packs, weight_steps,
+use mimique_avatar::pack::decode_pack;
+use mimique_clip::{
+    SolvedTake, TakeContent, TakePack, decode_take, encode_take_in_steps, solve_packs,
 };
+use mimique_stimulus::{Places, prepare, weight_steps};
 use mimique_study::Study;
 use serde_json::json;
 

@@ -1,9 +1,13 @@
 //! Whether an answer fits its question, and whether a question is asked at all.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
-use crate::event::Answers;
-use crate::study_file::{Choice, Condition, Question, QuestionKind};
+use crate::question::{Condition, KindOfQuestion as _, Question};
+
+/// Answers by question identifier.
+pub type Answers = BTreeMap<String, Value>;
 
 /// Why an answer cannot be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,11 +33,6 @@ pub enum AnswerProblem {
     /// A row, or a place in the ranking, is missing.
     Incomplete,
 }
-
-/// Most characters of a line of text, if the study does not say.
-pub const SHORT_TEXT: usize = 200;
-/// Most characters of several lines of text, if the study does not say.
-pub const LONG_TEXT: usize = 5_000;
 
 impl Question {
     /// Whether the page may go on with this answer (`None`: none given).
@@ -77,113 +76,9 @@ impl Condition {
 }
 
 /// Equal as answers: 3 and 3.0 are the same.
-pub(crate) fn alike(left: &Value, right: &Value) -> bool {
+pub fn alike(left: &Value, right: &Value) -> bool {
     match (left.as_f64(), right.as_f64()) {
         (Some(left), Some(right)) => left == right,
         _ => left == right,
     }
-}
-
-impl QuestionKind {
-    fn accept(&self, value: &Value) -> Result<(), AnswerProblem> {
-        match self {
-            Self::SingleChoice(question) => one_of(&question.options, value),
-            Self::MultipleChoice(question) => {
-                let chosen = several_of(&question.options, value)?;
-                let fewest = question.minimum.unwrap_or(0);
-                let most = question.maximum.unwrap_or(usize::MAX);
-                if chosen < fewest {
-                    Err(AnswerProblem::TooFew(fewest))
-                } else if chosen > most {
-                    Err(AnswerProblem::TooMany(most))
-                } else {
-                    Ok(())
-                }
-            }
-            Self::Likert(scale) => {
-                let number = value.as_i64().ok_or(AnswerProblem::NotAnOption)?;
-                if (scale.start..=scale.end()).contains(&number) {
-                    Ok(())
-                } else {
-                    Err(AnswerProblem::NotAnOption)
-                }
-            }
-            Self::Slider(slider) => within(value, Some(slider.minimum), Some(slider.maximum)),
-            Self::Number(field) => {
-                within(value, field.minimum, field.maximum)?;
-                if field.integer && value.as_f64().is_some_and(|number| number.fract() != 0.0) {
-                    Err(AnswerProblem::NotWhole)
-                } else {
-                    Ok(())
-                }
-            }
-            Self::ShortText(field) => no_longer(value, field.max_length.unwrap_or(SHORT_TEXT)),
-            Self::LongText(field) => no_longer(value, field.max_length.unwrap_or(LONG_TEXT)),
-            Self::Matrix(matrix) => {
-                let map = value.as_object().ok_or(AnswerProblem::NotAnOption)?;
-                for (row, chosen) in map {
-                    if !matrix.rows.iter().any(|each| each.value == *row) {
-                        return Err(AnswerProblem::NotAnOption);
-                    }
-                    one_of(&matrix.options, chosen)?;
-                }
-                if map.len() < matrix.rows.len() {
-                    return Err(AnswerProblem::Incomplete);
-                }
-                Ok(())
-            }
-            Self::Ranking(ranking) => {
-                if several_of(&ranking.options, value)? < ranking.options.len() {
-                    return Err(AnswerProblem::Incomplete);
-                }
-                Ok(())
-            }
-            Self::Comparison(comparison) => match value.as_str() {
-                Some("left" | "right") => Ok(()),
-                Some("same") if comparison.allow_same => Ok(()),
-                _ => Err(AnswerProblem::NotAnOption),
-            },
-            Self::ValenceArousal(grid) => {
-                for axis in ["valence", "arousal"] {
-                    let number = value.get(axis).and_then(Value::as_i64);
-                    let number = number.ok_or(AnswerProblem::Incomplete)?;
-                    if !(1..=i64::from(grid.num_items)).contains(&number) {
-                        return Err(AnswerProblem::NotAnOption);
-                    }
-                }
-                Ok(())
-            }
-        }
-    }
-}
-
-fn one_of(options: &[Choice], value: &Value) -> Result<(), AnswerProblem> {
-    let known = value.as_str().is_some_and(|word| options.iter().any(|each| each.value == word));
-    if known { Ok(()) } else { Err(AnswerProblem::NotAnOption) }
-}
-
-/// How many different options are chosen.
-fn several_of(options: &[Choice], value: &Value) -> Result<usize, AnswerProblem> {
-    let chosen = value.as_array().ok_or(AnswerProblem::NotAnOption)?;
-    for (index, each) in chosen.iter().enumerate() {
-        one_of(options, each)?;
-        if chosen[..index].contains(each) {
-            return Err(AnswerProblem::NotAnOption);
-        }
-    }
-    Ok(chosen.len())
-}
-
-fn within(value: &Value, minimum: Option<f64>, maximum: Option<f64>) -> Result<(), AnswerProblem> {
-    let number = value.as_f64().ok_or(AnswerProblem::NotANumber)?;
-    match (minimum, maximum) {
-        (Some(least), _) if number < least => Err(AnswerProblem::TooLow(least)),
-        (_, Some(most)) if number > most => Err(AnswerProblem::TooHigh(most)),
-        _ => Ok(()),
-    }
-}
-
-fn no_longer(value: &Value, most: usize) -> Result<(), AnswerProblem> {
-    let text = value.as_str().ok_or(AnswerProblem::NotAnOption)?;
-    if text.chars().count() > most { Err(AnswerProblem::TooLong(most)) } else { Ok(()) }
 }

@@ -12,12 +12,12 @@ use serde::forward_to_deserialize_any;
 use serde_json::{Error, Value};
 
 /// Reads a type from a value.
-pub(crate) fn read_value<T: DeserializeOwned>(value: Value) -> Result<T, Error> {
+pub fn read_value<T: DeserializeOwned>(value: Value) -> Result<T, Error> {
     T::deserialize(Json(value))
 }
 
 /// A value as a reader.
-pub(crate) struct Json(pub Value);
+pub struct Json(pub Value);
 
 impl IntoDeserializer<'_, Error> for Json {
     type Deserializer = Self;

@@ -6,30 +6,46 @@ extern crate self as mimique_study;
 mod answer;
 mod canonical;
 mod check;
-mod event;
-pub mod flow;
+mod clip_source;
+pub mod columns;
+mod device;
 pub mod from_json;
 mod instant;
-mod json_reader;
+pub mod json_reader;
 pub mod json_text;
 mod order;
-pub mod responses;
-mod session_file;
+mod pairs;
+mod practice;
+mod question;
 mod sorted_map;
 mod study_file;
-mod tagged;
+pub mod tagged;
 pub mod text;
-pub mod wire;
 
-pub use answer::{AnswerProblem, LONG_TEXT, SHORT_TEXT};
+pub use answer::{AnswerProblem, Answers, alike};
 pub use canonical::{canonical, config_hash};
 pub use check::{
-    CheckedStudy, FileLookup, Issue, Report, SCHEMA_ADDRESS, Severity, check, json_schema,
+    CheckedStudy, Count, FileLookup, Issue, Issues, JsonType, Known, Names, Nearest, Problem,
+    Report, SCHEMA_ADDRESS, Severity, Shown, Wanted, check, json_schema,
 };
-pub use event::{Answers, Calibrated, Client, Display, EventKind, PlayLog, ShownBeside};
+pub use clip_source::ClipSource;
+pub use device::{Display, Unmet};
 pub use instant::instant_ms;
-pub use mimique_solver::number_text;
-pub use order::{Draw, OrderError, OrderedItem, Stream, drawn_condition, option_order, order};
-pub use session_file::{SessionFile, SessionFileError};
+pub use order::{
+    Draw, NoOrder, OrderError, OrderedItem, Sides, Stream, drawn_condition, option_order, order,
+};
+pub use pairs::AnswerOfPair;
+pub use practice::right_answers;
+pub use question::{
+    AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
+    KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,
+    Question, QuestionKind, QuestionKindView, Ranking, SHORT_TEXT, Scale, ShortText, Showing,
+    Simulated, SingleChoice, Slider, Summary, Told,
+};
 pub use sorted_map::SortedMap;
 pub use study_file::*;
+
+/// A number as text: the fewest digits that are read as the same number, without an exponent.
+pub fn number_text(number: f64) -> String {
+    number.to_string()
+}

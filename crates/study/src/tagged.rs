@@ -12,7 +12,7 @@ use crate::json_reader::read_value;
 
 /// `{"type": "likert", "numItems": 7}` -> `{"likert": {"numItems": 7}}`; without further keys ->
 /// `"likert"`.
-pub(crate) fn outside_from_inside(value: Value) -> Result<Value, &'static str> {
+pub fn outside_from_inside(value: Value) -> Result<Value, &'static str> {
     let Value::Object(mut map) = value else { return Err("an object with a \"type\" is missing") };
     match map.remove("type") {
         Some(Value::String(word)) if map.is_empty() => Ok(Value::String(word)),
@@ -22,7 +22,7 @@ pub(crate) fn outside_from_inside(value: Value) -> Result<Value, &'static str> {
 }
 
 /// The way back.
-pub(crate) fn inside_from_outside(value: Value) -> Value {
+pub fn inside_from_outside(value: Value) -> Value {
     let (word, rest) = match value {
         Value::String(word) => (word, Map::new()),
         Value::Object(map) => match map.into_iter().next() {
@@ -38,7 +38,7 @@ pub(crate) fn inside_from_outside(value: Value) -> Value {
 }
 
 /// Reads a JSON value, and from it what is wanted.
-pub(crate) fn read<'de, D: Deserializer<'de>, T>(
+pub fn read<'de, D: Deserializer<'de>, T>(
     deserializer: D,
     from: impl FnOnce(Value) -> Result<T, serde_json::Error>,
 ) -> Result<T, D::Error> {
@@ -47,17 +47,17 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T>(
 }
 
 /// Reads a value of a type.
-pub(crate) fn from<T: DeserializeOwned>(value: Value) -> Result<T, serde_json::Error> {
+pub fn from<T: DeserializeOwned>(value: Value) -> Result<T, serde_json::Error> {
     read_value(value)
 }
 
 /// A mistake with these words.
-pub(crate) fn mistake(words: &str) -> serde_json::Error {
+pub fn mistake(words: &str) -> serde_json::Error {
     serde_json::Error::custom(words)
 }
 
 /// Writes what was written with its tag outside.
-pub(crate) fn write<S: Serializer>(
+pub fn write<S: Serializer>(
     outside: Result<Value, serde_json::Error>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
@@ -70,15 +70,16 @@ pub(crate) fn write<S: Serializer>(
 
 /// Reads and writes an enum with its tag inside. The enum derives both with
 /// `#[serde(remote = "Self")]`, which leaves the tag outside.
+#[macro_export]
 macro_rules! tagged_by_type {
     ($name:ty) => {
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                crate::tagged::read(deserializer, |value| {
-                    let outside = crate::tagged::outside_from_inside(value)
-                        .map_err(crate::tagged::mistake)?;
+                $crate::tagged::read(deserializer, |value| {
+                    let outside = $crate::tagged::outside_from_inside(value)
+                        .map_err($crate::tagged::mistake)?;
                     // The derived reader.
-                    <$name>::deserialize(crate::json_reader::Json(outside))
+                    <$name>::deserialize($crate::json_reader::Json(outside))
                 })
             }
         }
@@ -86,7 +87,7 @@ macro_rules! tagged_by_type {
         impl serde::Serialize for $name {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 // The derived writer.
-                crate::tagged::write(
+                $crate::tagged::write(
                     <$name>::serialize(self, serde_json::value::Serializer),
                     serializer,
                 )
@@ -94,4 +95,3 @@ macro_rules! tagged_by_type {
         }
     };
 }
-pub(crate) use tagged_by_type;

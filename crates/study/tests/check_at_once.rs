@@ -9,7 +9,7 @@ use support::study_text;
 /// Code and place of each problem.
 fn found(file: &Value) -> Vec<(String, &'static str)> {
     let report = check(&file.to_string(), &|_| Ok(()));
-    report.issues.into_iter().map(|Issue { pointer, code, .. }| (pointer, code)).collect()
+    report.issues.into_iter().map(|issue| (issue.pointer.clone(), issue.code())).collect()
 }
 
 #[test]
@@ -56,19 +56,22 @@ fn what_a_misspelt_key_holds_is_checked_at_its_own_place() {
     assert_eq!(found(&file), wanted.map(|(pointer, code)| (pointer.to_owned(), code)));
 }
 
-/// What README.md shows of `mimique check bad.json`.
+/// What docs/guide/study-file.md shows of `mimique check docs/guide/data/bad.json`.
 #[test]
-fn the_example_of_the_readme_says_what_is_printed_there() {
-    let readme =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+fn the_example_of_the_guide_says_what_is_printed_there() {
+    let page = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../docs/guide/study-file.md"
+    ))
+    .unwrap();
     let report = check(r#"{ "id": "x", "languges": ["en"], "components": {} }"#, &|_| Ok(()));
-    for Issue { pointer, message, hint, .. } in &report.issues {
-        let place = if pointer.is_empty() { "/" } else { pointer };
-        let line = format!("\nerror: bad.json: {place}: {message}; {hint}\n");
-        assert!(readme.contains(&line), "{line}");
+    for issue in &report.issues {
+        let (place, message, remedy) = (issue.place(), issue.message(), issue.remedy());
+        let line = format!("\nerror: docs/guide/data/bad.json: {place}: {message}; {remedy}\n");
+        assert!(page.contains(&line), "{line}");
     }
-    let count = format!("\nbad.json: {} errors, 0 warnings\n", report.errors());
-    assert!(readme.contains(&count), "{count}");
+    let count = format!("\ndocs/guide/data/bad.json: {} errors, 0 warnings\n", report.errors());
+    assert!(page.contains(&count), "{count}");
 }
 
 /// The pointers of everything in a file.
@@ -104,12 +107,12 @@ fn a_wrong_value_makes_nothing_up_elsewhere() {
                 *file.pointer_mut(&pointer).unwrap() = wrong.clone();
                 let report = check(&file.to_string(), &|_| Ok(()));
                 let wrong_type = |issue: &Issue| {
-                    ["wrong-type", "unknown-key", "missing-key"].contains(&issue.code)
+                    ["wrong-type", "unknown-key", "missing-key"].contains(&issue.code())
                 };
                 if !report
                     .issues
                     .iter()
-                    .any(|issue| issue.code == "wrong-type" && issue.pointer == pointer)
+                    .any(|issue| issue.code() == "wrong-type" && issue.pointer == pointer)
                 {
                     unread += 1;
                     continue;
@@ -144,7 +147,7 @@ fn a_missing_key_makes_nothing_up_elsewhere() {
             let Some(Value::Object(map)) = file.pointer_mut(parent) else { continue };
             map.remove(&key.replace("~1", "/").replace("~0", "~"));
             let report = check(&file.to_string(), &|_| Ok(()));
-            if report.issues.first().is_none_or(|issue| issue.code != "missing-key") {
+            if report.issues.first().is_none_or(|issue| issue.code() != "missing-key") {
                 continue;
             }
             missing += 1;

@@ -114,13 +114,13 @@ fn samples_under_constraints_have_an_order_for_everybody() {
         );
         let report = check(&file.to_string(), &|_| Ok(()));
         let Some(checked) = report.study else {
-            let codes: BTreeSet<&str> = report.issues.iter().map(|issue| issue.code).collect();
+            let codes: BTreeSet<&str> = report.issues.iter().map(|issue| issue.code()).collect();
             assert!(codes.contains("unsatisfiable-order"), "{codes:?}");
             refused += 1;
             continue;
         };
         passed += 1;
-        uneven += usize::from(report.issues.iter().any(|issue| issue.code == "uneven-samples"));
+        uneven += usize::from(report.issues.iter().any(|issue| issue.code() == "uneven-samples"));
         let mut shown: BTreeMap<String, usize> = BTreeMap::new();
         let cycle = (1_usize..).find(|cycle| (cycle * samples).is_multiple_of(count)).unwrap();
         for participant in 0..200 {
@@ -169,9 +169,9 @@ fn the_check_warns_where_samples_cannot_be_balanced() {
     };
     let reports = (0..20).map(of).filter(|report| report.study.is_some());
     let issues: Vec<Issue> = reports.flat_map(|report| report.issues).collect();
-    let issue = issues.iter().find(|issue| issue.code == "uneven-samples").expect("a warning");
+    let issue = issues.iter().find(|issue| issue.code() == "uneven-samples").expect("a warning");
     assert_eq!(issue.pointer, "/sequence/numSamples");
-    assert!(issue.message.contains("of 20 rounds"), "{}", issue.message);
+    assert!(issue.message().contains("of 20 rounds"), "{}", issue.message());
 }
 
 #[test]
@@ -185,9 +185,9 @@ fn samples_beyond_proof_are_refused_with_a_number_that_can_be_taken() {
         check(&file.to_string(), &|_| Ok(()))
     };
     let report = of(&sequence);
-    let issue = report.issues.iter().find(|issue| issue.code == "too-many").unwrap();
+    let issue = report.issues.iter().find(|issue| issue.code() == "too-many").unwrap();
     assert_eq!(issue.pointer, "/sequence/numSamples");
-    assert!(issue.hint.contains("divides 1012"), "{}", issue.hint);
+    assert!(issue.remedy().contains("divides 1012"), "{}", issue.remedy());
     sequence["numSamples"] = 253.into();
     let report = of(&sequence);
     let checked = report.study.expect("4 samples are proved");

@@ -132,8 +132,8 @@ fn passes_if_and_only_if_there_is_an_order() {
             let report = check(&design.file.to_string(), &|_| Ok(()));
             *counts.entry((family, report.study.is_some())).or_default() += 1;
             let Some(checked) = report.study else {
-                let mut errors = report.issues.iter().filter(|issue| issue.code != "unused");
-                assert!(errors.all(|issue| issue.message.contains("meets them")), "{here}");
+                let mut errors = report.issues.iter().filter(|issue| issue.code() != "unused");
+                assert!(errors.all(|issue| issue.message().contains("meets them")), "{here}");
                 assert!(!design.expected(), "an order exists: {here}");
                 continue;
             };

@@ -1,4 +1,4 @@
-// A study with every type of question, a signed video, a picture, and a clip beside another.
+// A study with every type of question, a sign-language video, a picture, and a clip beside another.
 
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -21,6 +21,7 @@ export const questions = [
   { id: "long", type: "longText", prompt: text("In some words?"), required: false },
   { id: "ranking", type: "ranking", prompt: text("In which order?"), options: [signed("eyes"), option("mouth"), option("skin")] },
   { id: "grid", type: "valenceArousal", prompt: text("How do you feel?"), leftLabel: text("bad"), rightLabel: text("good"), bottomLabel: text("calm"), topLabel: text("excited"), signs: [signed("bad")] },
+  { id: "extremes", type: "bestWorst", prompt: text("Which are the extremes?"), bestLabel: text("most lifelike"), worstLabel: text("least lifelike"), options: [signed("eyes"), option("mouth"), option("skin")] },
 ];
 export const study = small("access", {
   demographics: { title: text("About you"), questions },

@@ -15,7 +15,7 @@ export function mimique(args, options = {}) {
   return execFileSync(binary, args, { encoding: "utf8", cwd: root, maxBuffer: 1 << 28, ...options });
 }
 
-/** A running server: `{url, folder, database, researcher(), stop()}`. */
+/** A running server: `{url, folder, database, said(), log(), researcher(), stop()}`. */
 export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port } = {}) {
   port ??= await freePort();
   const database = `sqlite:${join(folder, "answers.sqlite")}`;
@@ -46,6 +46,7 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
     folder,
     database,
     said: () => out,
+    log: () => err,
     /** The address that makes the first account, or the page to log in where there is one. */
     researcher: () => JSON.parse(out).researcher,
     kill: async () => {

@@ -1,10 +1,14 @@
-//! What Mimique's tests find outside the repository: real data, Python, R.
+//! What Mimique's tests share: real data, Python and R outside the repository, and random numbers.
 //!
 //! Each finder gives its find, or says that the test is skipped and gives `None`. With
 //! `MIMIQUE_NO_SKIP=1` a test that would skip fails instead.
 
+mod random;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+pub use random::Random;
 
 /// The folder of the real data: `MIMIQUE_DATA`, else `../shared/data` beside the repository.
 ///
@@ -76,6 +80,20 @@ pub fn skip(test: &str, why: &str) {
 /// The repository's root.
 pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Where the studies of the repository are.
+pub fn study_folder() -> PathBuf {
+    repository().join("study-config")
+}
+
+/// The text of a study of the repository, by its path inside `study-config`.
+///
+/// # Panics
+/// When there is no such file.
+pub fn study_text(name: &str) -> String {
+    let path = study_folder().join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 fn runs(program: &Path, arguments: &[&str]) -> bool {

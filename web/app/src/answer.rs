@@ -4,7 +4,7 @@
 //! [`Refusal`] is the server's word; everything else is a network that does not work, and what waits
 //! is kept and sent again.
 
-use mimique_study::wire::Refusal;
+use mimique_session::wire::Refusal;
 
 /// Why a request brought nothing.
 #[derive(Debug, Clone, PartialEq)]

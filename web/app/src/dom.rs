@@ -1,26 +1,68 @@
-//! Elements as they should stand, and the mending of those that do: what a page says is built anew
-//! with every change, and only what differs is touched. Focus, carets and running videos stay.
+//! A virtual DOM and its diff: what a page shows is described anew with every change, and only what
+//! differs is touched. Focus, carets and running videos stay.
 //!
-//! No type parameters but at the border: one copy of the code serves every page.
+//! What happens to an element comes out as an [`Act`], which goes to the one [`Dispatch`] of the mount:
+//! no page holds the session. Nothing has type parameters but at the border: one copy of the code serves
+//! every page. (A framework costs 122 KB more, `docs/measured/page-speed.md`.)
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
-use wasm_bindgen::closure::Closure;
-use wasm_bindgen::{JsCast as _, JsValue};
+use gloo_events::{EventListener, EventListenerOptions};
+use gloo_utils::document;
+use wasm_bindgen::JsCast as _;
+use web_sys::{Event, HtmlElement, HtmlInputElement, HtmlTextAreaElement, KeyboardEvent, Node};
 
-use crate::page;
+use crate::act::Act;
 
-/// What a field says when something happens to it: its value (of a key press, the key), and whether
-/// it is checked.
-pub struct Given {
-    /// Value or key.
+/// What a field holds when something happens to it.
+pub struct FieldEvent {
+    /// Value of the field; of a key press, the key, or nothing where it is a shortcut.
     pub value: String,
-    /// Of check boxes.
+    /// Whether a check box is checked.
     pub checked: bool,
 }
 
-type Handler = Rc<dyn Fn(Given)>;
-type Hook = Box<dyn FnOnce(&JsValue)>;
+impl FieldEvent {
+    /// The number that the field holds; none where it holds none.
+    pub fn number(&self) -> Option<f64> {
+        self.value.trim().parse().ok().filter(|number: &f64| number.is_finite())
+    }
+
+    fn of(event: &Event) -> Self {
+        if let Some(press) = event.dyn_ref::<KeyboardEvent>() {
+            let is_shortcut = press.ctrl_key() || press.alt_key() || press.meta_key();
+            let value = if is_shortcut { String::new() } else { press.key() };
+            return Self { value, checked: false };
+        }
+        let Some(target) = event.target() else {
+            return Self { value: String::new(), checked: false };
+        };
+        match target.dyn_into::<HtmlInputElement>() {
+            Ok(input) => Self { value: input.value(), checked: input.checked() },
+            Err(other) => {
+                let area = other.dyn_ref::<HtmlTextAreaElement>();
+                let value = area.map(HtmlTextAreaElement::value).unwrap_or_default();
+                Self { value, checked: false }
+            }
+        }
+    }
+}
+
+/// Where acts go.
+pub type Dispatch = Rc<dyn Fn(Act)>;
+
+type Handler = Rc<dyn Fn(FieldEvent) -> Option<Act>>;
+type Hook = Box<dyn FnOnce(&Node)>;
+
+/// What of an element a value is written to.
+#[derive(Clone, Copy, PartialEq)]
+enum Target {
+    Attribute(&'static str),
+    Style(&'static str),
+    Value,
+    Checked,
+}
 
 /// An element as it should stand.
 pub struct Element(Box<Parts>);
@@ -31,10 +73,10 @@ struct Parts {
     tag: &'static str,
     key: String,
     text: String,
-    attributes: Vec<(&'static str, String)>,
+    settings: Vec<(Target, String)>,
     on: Vec<(&'static str, Handler)>,
     children: Vec<Element>,
-    live: Option<(Hook, fn())>,
+    mounted: Option<(Hook, fn())>,
 }
 
 /// An element of a class ("" for none).
@@ -51,10 +93,29 @@ pub fn words(tag: &'static str, class: &str, text: &str) -> Element {
 }
 
 impl Element {
-    /// An attribute; `.name` is a property, `--name` one of the style.
+    /// An attribute.
+    pub fn set(self, name: &'static str, value: &str) -> Self {
+        self.write(Target::Attribute(name), value)
+    }
+
+    /// A custom property of its style, such as `--stage-width`.
+    pub fn style(self, name: &'static str, value: &str) -> Self {
+        self.write(Target::Style(name), value)
+    }
+
+    /// What a field holds.
+    pub fn value(self, value: &str) -> Self {
+        self.write(Target::Value, value)
+    }
+
+    /// Whether a field is checked.
+    pub fn checked(self, on: bool) -> Self {
+        self.write(Target::Checked, if on { "true" } else { "" })
+    }
+
     #[inline(never)]
-    pub fn set(mut self, name: &'static str, value: &str) -> Self {
-        self.0.attributes.push((name, value.to_owned()));
+    fn write(mut self, target: Target, value: &str) -> Self {
+        self.0.settings.push((target, value.to_owned()));
         self
     }
 
@@ -73,14 +134,8 @@ impl Element {
         if !on {
             return self;
         }
-        let value = if name.starts_with("aria-") || name.starts_with('.') { "true" } else { "" };
+        let value = if name.starts_with("aria-") { "true" } else { "" };
         self.set(name, value)
-    }
-
-    /// Whether a field is checked.
-    #[inline(never)]
-    pub fn checked(self, on: bool) -> Self {
-        self.set(".checked", if on { "true" } else { "" })
     }
 
     /// What tells it from its neighbours: another key is another element.
@@ -130,8 +185,21 @@ impl Element {
         self
     }
 
-    /// What is done when something happens to it.
-    pub fn on(self, name: &'static str, handler: impl Fn(Given) + 'static) -> Self {
+    /// What is asked for when something happens to it.
+    pub fn on<A: Into<Act>>(
+        self,
+        name: &'static str,
+        handler: impl Fn(FieldEvent) -> A + 'static,
+    ) -> Self {
+        self.handle(name, Rc::new(move |event| Some(handler(event).into())))
+    }
+
+    /// What is done, or perhaps asked for, when something happens to it.
+    pub fn handles(
+        self,
+        name: &'static str,
+        handler: impl Fn(FieldEvent) -> Option<Act> + 'static,
+    ) -> Self {
         self.handle(name, Rc::new(handler))
     }
 
@@ -142,152 +210,217 @@ impl Element {
     }
 
     /// What is done with the node once it stands on the page, and once it has gone.
-    pub fn live(mut self, stands: impl FnOnce(&JsValue) + 'static, gone: fn()) -> Self {
-        self.0.live = Some((Box::new(stands), gone));
+    pub fn mounted(mut self, stands: impl FnOnce(&Node) + 'static, gone: fn()) -> Self {
+        self.0.mounted = Some((Box::new(stands), gone));
         self
     }
 }
 
 /// An element that stands on the page.
-struct Standing {
-    node: JsValue,
+struct Mounted {
+    node: Node,
     tag: &'static str,
     key: String,
     text: String,
-    attributes: Vec<(&'static str, String)>,
+    settings: Vec<(Target, String)>,
     listeners: Vec<Listener>,
-    children: Vec<Standing>,
+    children: Vec<Mounted>,
     gone: Option<fn()>,
 }
 
 struct Listener {
     name: &'static str,
-    handler: Rc<std::cell::RefCell<Handler>>,
-    _call: Closure<dyn FnMut(String, bool)>,
+    handler: Rc<RefCell<Handler>>,
+    _listener: EventListener,
 }
 
 /// A place on the page and what stands there.
-pub struct Place {
-    node: JsValue,
-    standing: Vec<Standing>,
+pub struct Mount {
+    node: Node,
+    children: Vec<Mounted>,
+    dispatch: Dispatch,
 }
 
-impl Place {
-    /// The place of the pages.
-    pub fn root() -> Self {
-        Self { node: page::root(), standing: Vec::new() }
+impl Mount {
+    /// A place whose elements send their acts to `dispatch`.
+    pub fn new(node: Node, dispatch: Dispatch) -> Self {
+        Self { node, children: Vec::new(), dispatch }
     }
 
-    /// Mends what stands there.
+    /// Makes what stands there what it should be.
     pub fn show(&mut self, elements: Vec<Element>) {
-        let mut hooks = Vec::new();
-        mend_children(&self.node, &mut self.standing, elements, &mut hooks);
-        for (hook, node) in hooks {
+        let mut diff = Diff { dispatch: &self.dispatch, hooks: Vec::new() };
+        diff.children(&self.node, &mut self.children, elements);
+        for (hook, node) in diff.hooks {
             hook(&node);
         }
     }
 }
 
-type Hooks = Vec<(Hook, JsValue)>;
-
-fn create(Element(parts): Element, hooks: &mut Hooks) -> Standing {
-    let Parts { tag, key, text, attributes, on, children, live } = *parts;
-    let node = if tag.is_empty() { page::text(&text) } else { page::element(tag) };
-    for (name, value) in &attributes {
-        page::set(&node, name, value);
-    }
-    let children: Vec<Standing> = children
-        .into_iter()
-        .map(|child| {
-            let child = create(child, hooks);
-            page::insert(&node, &child.node, &JsValue::UNDEFINED);
-            child
-        })
-        .collect();
-    let listeners = on.into_iter().map(|(name, handler)| listener(&node, name, handler)).collect();
-    let gone = live.map(|(stands, gone)| {
-        hooks.push((stands, node.clone()));
-        gone
-    });
-    Standing { node, tag, key, text, attributes, listeners, children, gone }
+/// One pass over the elements of a place.
+struct Diff<'a> {
+    dispatch: &'a Dispatch,
+    /// What is done once everything stands.
+    hooks: Vec<(Hook, Node)>,
 }
 
-fn listener(node: &JsValue, name: &'static str, handler: Handler) -> Listener {
-    let handler = Rc::new(std::cell::RefCell::new(handler));
-    let now = Rc::clone(&handler);
-    let call = Closure::<dyn FnMut(String, bool)>::new(move |value, checked| {
-        let handler = Rc::clone(&*now.borrow());
-        handler(Given { value, checked });
-    });
-    page::listen(node, name, call.as_ref().unchecked_ref());
-    Listener { name, handler, _call: call }
-}
+impl Diff<'_> {
+    fn create(&mut self, Element(parts): Element) -> Mounted {
+        let Parts { tag, key, text, settings, on, children, mounted } = *parts;
+        let node = node(tag, &text);
+        for (target, value) in &settings {
+            target.write(&node, Some(value));
+        }
+        let children: Vec<Mounted> = children
+            .into_iter()
+            .map(|child| {
+                let child = self.create(child);
+                insert(&node, &child.node, None);
+                child
+            })
+            .collect();
+        let listeners =
+            on.into_iter().map(|(name, handler)| self.listener(&node, name, handler)).collect();
+        let gone = mounted.map(|(stands, gone)| {
+            self.hooks.push((stands, node.clone()));
+            gone
+        });
+        Mounted { node, tag, key, text, settings, listeners, children, gone }
+    }
 
-fn mend(old: &mut Standing, Element(parts): Element, hooks: &mut Hooks) {
-    let parts = *parts;
-    if old.tag.is_empty() {
-        if old.text != parts.text {
-            page::set_text(&old.node, &parts.text);
-            old.text = parts.text;
-        }
-        return;
-    }
-    for (name, value) in &parts.attributes {
-        let before = old.attributes.iter().find(|(each, _)| each == name);
-        if before.is_none_or(|(_, before)| before != value) {
-            page::set(&old.node, name, value);
-        }
-    }
-    for (name, _) in &old.attributes {
-        if !parts.attributes.iter().any(|(each, _)| each == name) {
-            page::unset(&old.node, name);
-        }
-    }
-    old.attributes = parts.attributes;
-    for (name, handler) in parts.on {
-        match old.listeners.iter().find(|each| each.name == name) {
-            Some(listener) => *listener.handler.borrow_mut() = handler,
-            None => old.listeners.push(listener(&old.node, name, handler)),
-        }
-    }
-    mend_children(&old.node, &mut old.children, parts.children, hooks);
-}
-
-/// Elements keep their order, so one pass finds those that stay.
-fn mend_children(node: &JsValue, old: &mut Vec<Standing>, new: Vec<Element>, hooks: &mut Hooks) {
-    let mut rest = std::mem::take(old);
-    // The next one is the last.
-    rest.reverse();
-    for element in new {
-        let same = |each: &Standing| each.tag == element.0.tag && each.key == element.0.key;
-        if let Some(at) = rest.iter().rposition(same) {
-            for gone in rest.drain(at + 1..) {
-                take_out(&gone);
+    fn listener(&self, node: &Node, name: &'static str, handler: Handler) -> Listener {
+        let handler = Rc::new(RefCell::new(handler));
+        let (now, dispatch) = (Rc::clone(&handler), Rc::clone(self.dispatch));
+        let options = EventListenerOptions::enable_prevent_default();
+        let listener = EventListener::new_with_options(node, name, options, move |event| {
+            if name == "submit" {
+                event.prevent_default();
             }
-            if let Some(mut stays) = rest.pop() {
-                mend(&mut stays, element, hooks);
-                old.push(stays);
+            let handler = Rc::clone(&*now.borrow());
+            if let Some(act) = handler(FieldEvent::of(event)) {
+                dispatch(act);
             }
-        } else {
-            let new = create(element, hooks);
-            let before = rest.last().map_or(JsValue::UNDEFINED, |next| next.node.clone());
-            page::insert(node, &new.node, &before);
-            old.push(new);
+        });
+        Listener { name, handler, _listener: listener }
+    }
+
+    fn update(&mut self, old: &mut Mounted, Element(parts): Element) {
+        let parts = *parts;
+        if old.tag.is_empty() {
+            if old.text != parts.text {
+                old.node.set_text_content(Some(&parts.text));
+                old.text = parts.text;
+            }
+            return;
+        }
+        for (target, value) in &parts.settings {
+            let before = old.settings.iter().find(|(each, _)| each == target);
+            if before.is_none_or(|(_, before)| before != value) {
+                target.write(&old.node, Some(value));
+            }
+        }
+        for (target, _) in &old.settings {
+            if !parts.settings.iter().any(|(each, _)| each == target) {
+                target.write(&old.node, None);
+            }
+        }
+        old.settings = parts.settings;
+        for (name, handler) in parts.on {
+            match old.listeners.iter().find(|each| each.name == name) {
+                Some(listener) => *listener.handler.borrow_mut() = handler,
+                None => old.listeners.push(self.listener(&old.node, name, handler)),
+            }
+        }
+        self.children(&old.node, &mut old.children, parts.children);
+    }
+
+    /// Elements keep their order, so that one pass finds those that stay.
+    fn children(&mut self, node: &Node, old: &mut Vec<Mounted>, new: Vec<Element>) {
+        let mut rest = std::mem::take(old);
+        // The next one is the last.
+        rest.reverse();
+        for element in new {
+            let same = |each: &Mounted| each.tag == element.0.tag && each.key == element.0.key;
+            if let Some(at) = rest.iter().rposition(same) {
+                for gone in rest.drain(at + 1..) {
+                    remove(&gone);
+                }
+                if let Some(mut stays) = rest.pop() {
+                    self.update(&mut stays, element);
+                    old.push(stays);
+                }
+            } else {
+                let new = self.create(element);
+                insert(node, &new.node, rest.last().map(|next| &next.node));
+                old.push(new);
+            }
+        }
+        for gone in &rest {
+            remove(gone);
         }
     }
-    for gone in &rest {
-        take_out(gone);
+}
+
+/// An element, or a piece of text where there is no tag.
+fn node(tag: &str, text: &str) -> Node {
+    let element = (!tag.is_empty()).then(|| document().create_element(tag).ok()).flatten();
+    match element {
+        Some(element) => element.into(),
+        None => document().create_text_node(text).into(),
     }
 }
 
-fn take_out(gone: &Standing) {
-    page::remove(&gone.node);
-    farewell(gone);
+fn insert(parent: &Node, node: &Node, before: Option<&Node>) {
+    if parent.insert_before(node, before).is_err() {
+        // An extension of the browser (a translator) has moved what stood there.
+        let _ = parent.append_child(node);
+    }
 }
 
-fn farewell(gone: &Standing) {
+fn remove(gone: &Mounted) {
+    if let Some(parent) = gone.node.parent_node() {
+        let _ = parent.remove_child(&gone.node);
+    }
+    unmount(gone);
+}
+
+fn unmount(gone: &Mounted) {
     if let Some(hook) = gone.gone {
         hook();
     }
-    gone.children.iter().for_each(farewell);
+    gone.children.iter().for_each(unmount);
+}
+
+impl Target {
+    /// Writes a value, or takes it off again. No attribute here has a name that a browser refuses.
+    fn write(self, node: &Node, value: Option<&str>) {
+        match self {
+            Self::Attribute(name) => {
+                if let Some(element) = node.dyn_ref::<web_sys::Element>() {
+                    let _ = match value {
+                        Some(value) => element.set_attribute(name, value),
+                        None => element.remove_attribute(name),
+                    };
+                }
+            }
+            Self::Style(name) => {
+                if let Some(element) = node.dyn_ref::<HtmlElement>() {
+                    let _ = element.style().set_property(name, value.unwrap_or_default());
+                }
+            }
+            Self::Checked => {
+                if let Some(input) = node.dyn_ref::<HtmlInputElement>() {
+                    input.set_checked(value.is_some_and(|value| !value.is_empty()));
+                }
+            }
+            Self::Value => {
+                let value = value.unwrap_or_default();
+                if let Some(input) = node.dyn_ref::<HtmlInputElement>() {
+                    input.set_value(value);
+                } else if let Some(area) = node.dyn_ref::<HtmlTextAreaElement>() {
+                    area.set_value(value);
+                }
+            }
+        }
+    }
 }

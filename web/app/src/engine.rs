@@ -6,22 +6,25 @@
 use std::cell::{Cell, Ref, RefCell};
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
+use std::time::Duration;
 
-use mimique_study::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_session::PlayLog;
+use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_session::wire::{Event, Refusal};
 use mimique_study::json_text;
 use mimique_study::text::Words;
-use mimique_study::wire::{Event, Refusal};
-use mimique_study::{Display, MEDIA_PREFIX, PlayLog, SortedMap};
+use mimique_study::{Display, MEDIA_PREFIX, SortedMap};
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 
-use crate::answer::is_gone;
-use crate::memory::{Identity, Keep};
-use crate::network::{self, Failure};
+use crate::answer::{Failure, is_gone};
+use crate::browser::{clock, focus, host, random, reason};
+use crate::client::client;
+use crate::event_store::{EventStore, Identity};
 use crate::outbox::{Outbox, back_off};
-use crate::{bridge, page, screen};
+use crate::service::Service;
 
 /// What the header has to say about the connection.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -43,8 +46,12 @@ pub struct Engine {
     /// What the header says.
     connection: RefCell<Connection>,
     clips: BTreeMap<String, Value>,
-    keep: Keep,
-    to_keep: RefCell<VecDeque<Event>>,
+    /// Path of a picture or a sign-language video -> address of what has been fetched.
+    media: RefCell<SortedMap<String, String>>,
+    /// Who answers.
+    pub service: Service,
+    store: EventStore,
+    to_store: RefCell<VecDeque<Event>>,
     writing: Cell<bool>,
     outbox: RefCell<Outbox>,
     sending: Cell<bool>,
@@ -56,28 +63,44 @@ pub struct Engine {
     prepared: RefCell<SortedMap<String, ()>>,
     /// False until the first page stands: a page that was just loaded is read from its top.
     open: Cell<bool>,
+    /// Called when something changed that the screen shows.
+    changed: Rc<dyn Fn()>,
+}
+
+/// What a session starts from.
+pub struct Beginning {
+    /// What this participant goes through.
+    pub plan: Plan,
+    /// Where the session is.
+    pub state: State,
+    /// `wire::ClipSource` of every clip.
+    pub clips: BTreeMap<String, Value>,
+    /// Who answers.
+    pub service: Service,
+    /// Where events are kept until they are acknowledged.
+    pub store: EventStore,
+    /// Number of events that the server has without a gap.
+    pub stored: u64,
+    /// What the server has not acknowledged yet.
+    pub unsent: Vec<Event>,
 }
 
 impl Engine {
-    /// An engine at `state`, with what the server has not acknowledged yet in `unsent`.
-    pub fn new(
-        plan: Plan,
-        state: State,
-        clips: BTreeMap<String, Value>,
-        keep: Keep,
-        stored: u64,
-        unsent: Vec<Event>,
-    ) -> Rc<Self> {
+    /// An engine; `changed` is called whenever something changed that the screen shows.
+    pub fn new(beginning: Beginning, changed: Rc<dyn Fn()>) -> Rc<Self> {
+        let Beginning { plan, state, clips, service, store, stored, unsent } = beginning;
         let mut outbox = Outbox::new(stored);
         unsent.into_iter().for_each(|event| outbox.push(event));
-        let connection = Connection { fleeting: !keep.is_lasting(), ..Connection::default() };
+        let connection = Connection { fleeting: !store.is_lasting(), ..Connection::default() };
         Rc::new(Self {
             plan,
             state: RefCell::new(state),
             connection: RefCell::new(connection),
             clips,
-            keep,
-            to_keep: RefCell::default(),
+            media: RefCell::default(),
+            service,
+            store,
+            to_store: RefCell::default(),
             writing: Cell::new(false),
             outbox: RefCell::new(outbox),
             sending: Cell::new(false),
@@ -86,15 +109,16 @@ impl Engine {
             preparing: RefCell::default(),
             prepared: RefCell::default(),
             open: Cell::new(false),
+            changed,
         })
     }
 
     /// One input: the state moves on, the effects are carried out.
     pub fn dispatch(self: &Rc<Self>, input: Input) {
         let before = self.state.take();
-        let (after, effects) = update(&self.plan, before, input, page::now());
+        let (after, effects) = update(&self.plan, before, input, clock::now());
         self.state.replace(after);
-        screen::changed();
+        (self.changed)();
         for effect in effects {
             self.carry_out(effect);
         }
@@ -120,16 +144,21 @@ impl Engine {
         self.plan.words(&self.state.borrow().record.language)
     }
 
+    /// The address of a picture or a sign-language video of the study, once it has been fetched.
+    pub fn media(&self, path: &str) -> Option<String> {
+        self.media.borrow().get(path).cloned()
+    }
+
     /// The header says something else.
     fn connection_is(&self, change: impl FnOnce(&mut Connection)) {
         change(&mut self.connection.borrow_mut());
-        screen::changed();
+        (self.changed)();
     }
 
     fn carry_out(self: &Rc<Self>, effect: Effect) {
         match effect {
             Effect::Store(event) => {
-                self.to_keep.borrow_mut().push_back(event);
+                self.to_store.borrow_mut().push_back(event);
                 self.write();
             }
             Effect::Flush => self.flush(),
@@ -146,13 +175,13 @@ impl Engine {
                 self.prepare();
             }
             Effect::PlayClip { clip, beside } => self.play(clip, beside),
-            Effect::StopClip => bridge::stop_clip(),
+            Effect::StopClip => host::stop_clip(),
             Effect::MeasureDevice => self.measure(),
-            Effect::RequestFullscreen => bridge::request_fullscreen(),
-            Effect::LeaveFullscreen => bridge::leave_fullscreen(),
+            Effect::RequestFullscreen => host::request_fullscreen(),
+            Effect::LeaveFullscreen => host::leave_fullscreen(),
             Effect::Complete { events } => self.complete(events),
             Effect::Withdraw => self.withdraw(),
-            Effect::FocusHeading if self.open.get() => page::focus_heading(),
+            Effect::FocusHeading if self.open.get() => focus::focus_heading(),
             Effect::FocusHeading => {}
             // An effect of a later version of the flow: the page is older than the study.
             _ => {}
@@ -163,7 +192,7 @@ impl Engine {
     fn measure(self: &Rc<Self>) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            let measured = bridge::measure().await.ok().and_then(|text| text.as_string());
+            let measured = host::measure().await.ok().and_then(|text| text.as_string());
             let display = measured.and_then(|text| crate::json::read(&text).ok());
             engine.dispatch(Input::Measured(display.unwrap_or_default()));
         });
@@ -178,7 +207,7 @@ impl Engine {
             state.record.display.clone().filter(|_| gate)
         };
         if let Some(display) = known {
-            let now = crate::start::client();
+            let now = client();
             let (viewport, device_pixel_ratio) = (now.viewport, now.device_pixel_ratio);
             self.dispatch(Input::Measured(Display { viewport, device_pixel_ratio, ..display }));
         }
@@ -203,9 +232,9 @@ impl Engine {
         let engine = Rc::clone(self);
         spawn_local(async move {
             loop {
-                let next = engine.to_keep.borrow_mut().pop_front();
+                let next = engine.to_store.borrow_mut().pop_front();
                 let Some(event) = next else { break };
-                if engine.keep.put(&event).await.is_err() {
+                if engine.store.put(&event).await.is_err() {
                     engine.connection_is(|connection| connection.fleeting = true);
                 }
                 engine.outbox.borrow_mut().push(event);
@@ -228,19 +257,19 @@ impl Engine {
                     break;
                 }
                 let session = &engine.plan.started.session;
-                match network::append(session, batch.clone()).await {
+                match engine.service.append(session, batch.clone()).await {
                     Ok(answer) => {
                         failures = 0;
                         let gone = engine.outbox.borrow_mut().acknowledge(&batch, &answer);
                         // What cannot be forgotten here is sent again after a reload, and refused
                         // as known: no harm.
-                        let _ = engine.keep.forget(&gone).await;
+                        let _ = engine.store.forget(&gone).await;
                         engine.connected();
                         let stored = engine.outbox.borrow().stored();
                         engine.dispatch(Input::Acknowledged { stored });
                         if gone.is_empty() {
                             // The server took nothing of what was sent: do not run in circles.
-                            page::sleep(1_000.0).await;
+                            clock::sleep(Duration::from_secs(1)).await;
                         }
                     }
                     Err(Failure::Unreachable(_)) => {
@@ -291,10 +320,10 @@ impl Engine {
     /// Waits before the next try; `flush` ends the wait.
     async fn wait(&self, failures: u32) {
         self.wake.set(false);
-        let mut left = back_off(failures, page::random()).as_millis() as u32;
-        while left > 0 && !self.wake.get() {
-            let slice = left.min(200);
-            page::sleep(f64::from(slice)).await;
+        let mut left = back_off(failures, random::fraction());
+        while !left.is_zero() && !self.wake.get() {
+            let slice = left.min(Duration::from_millis(200));
+            clock::sleep(slice).await;
             left -= slice;
         }
     }
@@ -328,7 +357,7 @@ impl Engine {
             return self.dispatch(Input::ClipFailed { clip, message });
         };
         let loaded = match clip.strip_prefix(MEDIA_PREFIX) {
-            Some(path) => screen::load_media(path, source).await,
+            Some(path) => self.load_media(path, source).await,
             None => self.load_clip(&clip, source).await,
         };
         match loaded {
@@ -337,10 +366,19 @@ impl Engine {
                 self.dispatch(Input::ClipPrepared { clip });
             }
             Err(thrown) => {
-                let message = bridge::reason(&thrown);
+                let message = reason(&thrown);
                 self.dispatch(Input::ClipFailed { clip, message });
             }
         }
+    }
+
+    /// Fetches a picture or a sign-language video, from the bundle's `source`.
+    async fn load_media(&self, path: &str, source: &Value) -> Result<(), JsValue> {
+        let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default();
+        let address = host::media_address(text("avatar"), text("film")).await?;
+        let address = address.as_string().unwrap_or_default();
+        self.media.borrow_mut().insert(path.to_owned(), address);
+        Ok(())
     }
 
     async fn load_clip(self: &Rc<Self>, clip: &str, source: &Value) -> Result<(), JsValue> {
@@ -349,7 +387,7 @@ impl Engine {
             move |fraction| engine.dispatch(Input::ClipProgress { clip: clip.clone(), fraction })
         });
         let source = json_text::write(source);
-        bridge::prepare_clip(clip, &source, progress.as_ref().unchecked_ref()).await?;
+        host::prepare_clip(clip, &source, progress.as_ref().unchecked_ref()).await?;
         Ok(())
     }
 
@@ -357,9 +395,9 @@ impl Engine {
     pub fn show(self: &Rc<Self>, clip: String, beside: Option<String>) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            if let Err(thrown) = bridge::show_clip(&clip, beside).await {
+            if let Err(thrown) = host::show_clip(&clip, beside).await {
                 engine.prepared.borrow_mut().remove(&clip);
-                let message = bridge::reason(&thrown);
+                let message = reason(&thrown);
                 engine.dispatch(Input::ClipFailed { clip, message });
             }
         });
@@ -368,10 +406,10 @@ impl Engine {
     fn play(self: &Rc<Self>, clip: String, beside: Option<String>) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            let input = match bridge::play_clip(&clip, beside).await.map(|log| play_log(&log)) {
+            let input = match host::play_clip(&clip, beside).await.map(|log| play_log(&log)) {
                 Ok(Ok(log)) => Input::Played(log),
                 Ok(Err(message)) => Input::ClipFailed { clip, message },
-                Err(thrown) => Input::ClipFailed { clip, message: bridge::reason(&thrown) },
+                Err(thrown) => Input::ClipFailed { clip, message: reason(&thrown) },
             };
             engine.dispatch(input);
         });
@@ -384,13 +422,13 @@ impl Engine {
             loop {
                 // After a reload at the end something may still be on its way.
                 while engine.sending.get() {
-                    page::sleep(100.0).await;
+                    clock::sleep(Duration::from_millis(100)).await;
                 }
                 // Whoever takes everything back needs no receipt.
                 if engine.is_withdrawing() {
                     break;
                 }
-                match network::complete(&engine.plan.started.session, events).await {
+                match engine.service.complete(&engine.plan.started.session, events).await {
                     Ok(receipt) => {
                         engine.connected();
                         engine.dispatch(Input::ReceiptArrived(receipt));
@@ -412,9 +450,8 @@ impl Engine {
             let started = &engine.plan.started;
             let mut failures = 0;
             loop {
-                let answer =
-                    network::withdraw(&started.session, started.withdrawal_code.clone()).await;
-                match answer {
+                let (session, code) = (&started.session, &started.withdrawal_code);
+                match engine.service.withdraw(session, code).await {
                     Ok(_) => break,
                     // It is gone already: the answer that said so was never heard here.
                     Err(Failure::Refused(refusal)) if is_gone(&refusal) => break,
@@ -426,7 +463,7 @@ impl Engine {
                 }
             }
             *engine.outbox.borrow_mut() = Outbox::new(u64::MAX);
-            let _ = engine.keep.clear().await;
+            let _ = engine.store.clear().await;
             Identity::forget(&engine.plan.study.id);
             engine.connected();
             engine.dispatch(Input::WithdrawalConfirmed);

@@ -5,8 +5,6 @@ use mimique_study::from_json::{self, FromJson, Mistake};
 use mimique_study::json_text;
 use serde::Serialize;
 
-use crate::page;
-
 /// Reads a type from text.
 pub fn read<T: FromJson>(text: &str) -> Result<T, Mistake> {
     from_json::read(&json_text::read_with(text, number)?)
@@ -17,7 +15,6 @@ pub fn write(from: &impl Serialize) -> String {
     json_text::write(&serde_json::to_value(from).unwrap_or_default())
 }
 
-/// Reads a number as the browser does; none where the text is not one.
-pub fn number(text: &str) -> Option<f64> {
-    Some(page::number(text)).filter(|number| number.is_finite())
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok()
 }

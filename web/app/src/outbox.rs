@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use mimique_study::wire::{Acknowledged, Event};
+use mimique_session::wire::{Acknowledged, Event};
 
 /// Events that the server has not acknowledged.
 #[derive(Debug, Clone, Default, PartialEq)]

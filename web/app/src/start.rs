@@ -1,98 +1,73 @@
-//! From the address to a running session: fetch the study, begin or resume, mount the pages.
+//! From the address to a running session: fetch the study, begin or resume.
 
 use std::rc::Rc;
 
-use mimique_study::flow::{Input, Plan, State};
-use mimique_study::text::{Words, primary_language, words};
-use mimique_study::wire::{Event, SessionStarted, StartSession};
-use mimique_study::{Client, SortedMap, Study};
-use wasm_bindgen::JsCast as _;
-use wasm_bindgen::closure::Closure;
-use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen_futures::spawn_local;
+use mimique_session::Client;
+use mimique_session::flow::{Input, Plan, State};
+use mimique_session::wire::{Event, Refusal, SessionStarted, StartSession};
+use mimique_study::Study;
+use mimique_study::text::{Words, primary_language};
 
 use crate::address::Address;
-use crate::answer::is_gone;
-use crate::engine::Engine;
-use crate::memory::{Identity, Keep};
-use crate::network::{self, Bundle, Failure};
+use crate::answer::{Failure, is_gone};
+use crate::browser::{clock, document, host, random};
+use crate::client::{about, client};
+use crate::engine::{Beginning, Engine};
+use crate::event_store::{EventStore, Identity, Store};
 use crate::outbox::{back_off, put};
-use crate::pages::failure::Trouble;
-use crate::screen::{self, Boot};
-use crate::{bridge, page, site};
+use crate::server::Bundle;
+use crate::service::Service;
 
-/// The module's entry.
-#[wasm_bindgen(start)]
-pub fn start() {
-    // Words that builds for the public leave out (`cargo xtask web --no-opt` keeps them).
-    std::panic::set_hook(Box::new(|panic| page::report(&panic.to_string())));
-    screen::open();
-    screen::boot(Boot::Opening);
-    begin_again();
+/// What keeps the page from beginning.
+#[derive(Debug)]
+pub enum Trouble {
+    /// The address names no study.
+    NoStudy,
+    /// The server cannot be reached.
+    Unreachable(String),
+    /// The server refuses.
+    Refused(Refusal),
+    /// The study cannot be read by this page.
+    Unreadable(String),
+    /// The session is open in another tab.
+    OtherTab,
 }
 
-/// Fetches the study and goes on where the session is.
-pub fn begin_again() {
-    spawn_local(async move {
-        let mut fixed = words(&page::language()).clone();
-        match begin(&mut fixed).await {
-            Ok(engine) => {
-                screen::boot(Boot::Running(engine));
-                listen();
-            }
-            Err(trouble) => screen::boot(Boot::Trouble(trouble, fixed)),
-        }
-    });
-}
-
-/// Everything before the first page; what is said if it fails, in the study's own words as soon as it
-/// is there.
-async fn begin(fixed: &mut Words) -> Result<Rc<Engine>, Trouble> {
-    let place = page::place();
-    let place = |part: u32| place.get(part).as_string().unwrap_or_default();
-    let (path, query) = (place(0), place(1));
-    let address = match site::study() {
-        Some(study) => Address::of_study(&study, &query),
-        None => Address::parse(&path, &query).ok_or(Trouble::NoStudy)?,
+/// Everything before the first page; `fixed` becomes what is said if it fails, in the study's own words
+/// as soon as it is there. `changed` is called when something changed that the screen shows.
+pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine>, Trouble> {
+    let service = Service::of_document();
+    let query = document::query();
+    let address = match service.site() {
+        Some(site) => Address::of_study(site.study(), &query),
+        None => Address::parse(&document::path(), &query).ok_or(Trouble::NoStudy)?,
     };
-    // The address's language first, then the browser's.
-    let languages = place(2);
-    let wanted: Vec<&str> =
-        address.language.as_deref().into_iter().chain(languages.split(' ')).collect();
-
-    let bundle = bundle(&address.study).await?;
+    let bundle = bundle(&service, &address.study).await?;
     let study =
         Study::from_value(&bundle.study).map_err(|error| Trouble::Unreadable(error.to_string()))?;
-    let language = wanted
-        .iter()
-        .find(|each| primary_language(study.language_for(each)) == primary_language(each))
-        .map_or_else(
-            || study.default_language().to_owned(),
-            |each| study.language_for(each).to_owned(),
-        );
+    let language = language(&address, &study);
     *fixed = study.words(&language);
-    page::describe(&language, study.study_metadata.title.in_language(&language));
+    document::describe(&language, study.study_metadata.title.in_language(&language));
 
-    if !bridge::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
+    if !host::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab);
     }
-    let known = resume(&address).await?;
-    let (started, events) = match known {
+    let (started, events) = match resume(&service, &address).await? {
         Some(known) => known,
-        None => (begin_session(&address, &study, &language).await?, Vec::new()),
+        None => (begin_session(&service, &address, &study, &language).await?, Vec::new()),
     };
-    let keep = Keep::open(&started.session).await;
+    let store = EventStore::open(Store::Outbox, &started.session).await;
     let stored =
         (0_u64..).zip(&events).take_while(|(n, event)| event.sequence == *n).count() as u64;
     let mut all: Vec<Event> = Vec::new();
-    let unsent = keep.all().await.unwrap_or_default();
+    let unsent = store.all().await.unwrap_or_default();
     for event in unsent.iter().cloned().chain(events) {
         put(&mut all, event);
     }
     // What the server has need not be kept: the answer that said so was never heard here.
     let known: Vec<u64> =
         unsent.iter().map(|event| event.sequence).filter(|number| *number < stored).collect();
-    let _ = keep.forget(&known).await;
+    let _ = store.forget(&known).await;
 
     let plan = Plan::new(study, started).map_err(|error| Trouble::Unreadable(error.to_string()))?;
     let (state, input): (State, fn(Client) -> Input) = if all.is_empty() {
@@ -100,21 +75,33 @@ async fn begin(fixed: &mut Words) -> Result<Rc<Engine>, Trouble> {
     } else {
         (State::replay(&plan, &all), Input::Resumed)
     };
-    let engine = Engine::new(plan, state, bundle.clips, keep, stored, unsent);
+    let clips = bundle.clips;
+    let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
+    let engine = Engine::new(beginning, changed);
     engine.dispatch(input(client()));
     engine.open();
     Ok(engine)
 }
 
+/// The language of the pages: the address's first, then the browser's, of those that the study has.
+fn language(address: &Address, study: &Study) -> String {
+    let of_browser = document::languages();
+    let mut wanted = address.language.iter().chain(&of_browser);
+    wanted
+        .find(|each| primary_language(study.language_for(each)) == primary_language(each))
+        .map_or_else(|| study.default_language(), |each| study.language_for(each))
+        .to_owned()
+}
+
 /// The study as it is today; or, in the middle of a session that began before the study was
 /// changed, the version that it began with.
-async fn bundle(study: &str) -> Result<Bundle, Trouble> {
-    let today = persist(|| network::bundle(study, None)).await?;
+async fn bundle(service: &Service, study: &str) -> Result<Bundle, Trouble> {
+    let today = persist(|| service.bundle(study, None)).await?;
     let begun = Identity::load(study).and_then(|identity| identity.started);
     let Some(begun) = begun.filter(|begun| begun.config_hash != today.config_hash) else {
         return Ok(today);
     };
-    match persist(|| network::bundle(study, Some(&begun.config_hash))).await {
+    match persist(|| service.bundle(study, Some(&begun.config_hash))).await {
         Ok(earlier) => Ok(earlier),
         Err(Trouble::Refused(refusal)) if refusal.code == "unknown-study" => {
             // The server has never had that version: the session is not of this server.
@@ -126,11 +113,14 @@ async fn bundle(study: &str) -> Result<Bundle, Trouble> {
 }
 
 /// The session that this browser is in the middle of, and its events on the server.
-async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)>, Trouble> {
+async fn resume(
+    service: &Service,
+    address: &Address,
+) -> Result<Option<(SessionStarted, Vec<Event>)>, Trouble> {
     let Some(started) = Identity::load(&address.study).and_then(|identity| identity.started) else {
         return Ok(None);
     };
-    match persist(|| network::resume(&started.session)).await {
+    match persist(|| service.resume(&started.session)).await {
         Ok(resume) => Ok(Some((resume.started, resume.events))),
         Err(Trouble::Refused(refusal)) if is_gone(&refusal) => {
             Identity::forget(&address.study);
@@ -141,13 +131,20 @@ async fn resume(address: &Address) -> Result<Option<(SessionStarted, Vec<Event>)
 }
 
 async fn begin_session(
+    service: &Service,
     address: &Address,
     study: &Study,
     language: &str,
 ) -> Result<SessionStarted, Trouble> {
-    let mut identity = Identity::load(&address.study)
-        .filter(|identity| identity.started.is_none())
-        .unwrap_or_else(|| Identity { nonce: page::nonce(16), started: None });
+    let known = Identity::load(&address.study).filter(|identity| identity.started.is_none());
+    let mut identity = match known {
+        Some(known) => known,
+        None => {
+            let nonce =
+                random::nonce(16).map_err(|error| Trouble::Unreadable(error.to_string()))?;
+            Identity { nonce, started: None }
+        }
+    };
     // Kept before it is sent: a reload in between starts the same session again, not a second one.
     identity.save(&address.study);
     let body = StartSession {
@@ -157,7 +154,7 @@ async fn begin_session(
         language: language.to_owned(),
         client: about(),
     };
-    let started = persist(|| network::start(study, &body)).await?;
+    let started = persist(|| service.start(study, &body)).await?;
     identity.started = Some(started.clone());
     identity.save(&address.study);
     Ok(started)
@@ -171,7 +168,7 @@ where
 {
     const TRIES: u32 = 6;
     const LONGEST_MS: f64 = 60_000.0;
-    let begun = page::now();
+    let begun = clock::now();
     let mut failures = 0;
     loop {
         match request().await {
@@ -179,48 +176,11 @@ where
             Err(Failure::Refused(refusal)) => return Err(Trouble::Refused(refusal)),
             Err(Failure::Unreachable(reason)) => {
                 failures += 1;
-                if failures >= TRIES || page::now() - begun > LONGEST_MS {
+                if failures >= TRIES || clock::now() - begun > LONGEST_MS {
                     return Err(Trouble::Unreachable(reason));
                 }
-                page::sleep(back_off(failures, page::random()).as_millis() as f64).await;
+                clock::sleep(back_off(failures, random::fraction())).await;
             }
         }
     }
-}
-
-fn about() -> SortedMap<String, String> {
-    crate::json::read(&bridge::about()).unwrap_or_default()
-}
-
-/// The display and the page, as events record them.
-pub fn client() -> Client {
-    let viewport = page::viewport();
-    let number = |part: u32| viewport.get(part).as_f64().unwrap_or(0.0);
-    Client {
-        viewport: [number(0) as u32, number(1) as u32],
-        device_pixel_ratio: number(2),
-        about: about(),
-    }
-}
-
-/// What the window reports: focus, visibility, connection, time.
-fn listen() {
-    let happens = Closure::<dyn Fn(String)>::new(|what: String| match what.as_str() {
-        "blur" => screen::send(Input::FocusLost),
-        "focus" => screen::send(Input::FocusGained),
-        "fullscreenchange" => screen::send(Input::Fullscreen(bridge::is_fullscreen())),
-        "tick" => screen::send(Input::Tick),
-        other => {
-            let Some(engine) = screen::engine() else { return };
-            match other {
-                "resize" => engine.resized(),
-                // Online again; or hidden, and a hidden page may never come back: what waits goes
-                // out now.
-                _ => engine.flush(),
-            }
-        }
-    });
-    page::watch(happens.as_ref().unchecked_ref());
-    // It lives as long as the page.
-    happens.forget();
 }

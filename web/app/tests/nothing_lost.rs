@@ -10,11 +10,12 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use mimique_app::outbox::{Outbox, back_off, patience};
-use mimique_study::flow::{
+use mimique_session::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
-use mimique_study::wire::{Acknowledged, Event, Receipt, SessionStarted};
-use mimique_study::{Client, Display, PlayLog, Study};
+use mimique_session::wire::{Acknowledged, Event, Receipt, SessionStarted};
+use mimique_session::{Client, PlayLog};
+use mimique_study::{Display, Study};
 use serde_json::{Value, json};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same run for the same session.
@@ -378,7 +379,7 @@ impl<'p> World<'p> {
 }
 
 /// The first question without an answer.
-fn open(questions: &[mimique_study::flow::QuestionView]) -> Option<(String, QuestionKindView)> {
+fn open(questions: &[mimique_session::flow::QuestionView]) -> Option<(String, QuestionKindView)> {
     let question = questions.iter().find(|question| question.value.is_none())?;
     Some((question.id.clone(), question.kind.clone()))
 }

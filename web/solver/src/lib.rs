@@ -1,26 +1,28 @@
 //! The solver's worker: operators and a take in, weights out.
 //!
 //! ```js
-//! const solved = solve(await inflated(operators), take, clip.method); // inflated.js
+//! const solved = solve(await inflated(operators), take, JSON.stringify(clip.method)); // stage/inflated.js
 //! solved.weights();       // Float32Array, frames x shapes
 //! solved.weights_hash();  // compare with clip.weights_hash
 //! ```
 //!
-//! It is the function that the server has called before ([`mimique_stimulus::solve_inflated`]), so the
+//! It is the function that the server has called before ([`mimique_clip::solve_inflated`]), so the
 //! weights have the same bits; they leave here in single precision, which is what is drawn.
 
-mod report;
-mod spec_reader;
-mod tree;
-
-use mimique_stimulus::{SolvedTake, solve_inflated};
+use mimique_clip::{SolvedTake, solve_inflated};
+use mimique_solver::MethodSpec;
+use serde_json::json;
 use wasm_bindgen::prelude::*;
-
-use crate::tree::Tree;
 
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]
 static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+
+/// The module's entry.
+#[wasm_bindgen(start)]
+pub fn start() {
+    mimique_web_panics::report_panics("solver", "");
+}
 
 /// The weights of one clip.
 #[wasm_bindgen]
@@ -29,16 +31,15 @@ pub struct Solved {
     take: SolvedTake,
 }
 
-/// Solves the take pack with the operators pack, whose body is inflated already; `method` is a
-/// `MethodSpec`, as the object that its JSON is. It is the browser that inflates, and reads and writes
-/// JSON: our own ways would be a third of the module.
+/// Solves the take pack with the operators pack, whose body the browser has inflated; `method` is a
+/// `MethodSpec` as JSON.
 ///
 /// # Errors
 /// Throws an `Error` whose message says place, what and remedy: a damaged pack, packs that do not
 /// belong together, a method that is none or does not solve with these operators.
 #[wasm_bindgen]
-pub fn solve(operators: &[u8], take: &[u8], method: &JsValue) -> Result<Solved, JsError> {
-    let spec = spec_reader::read_spec(&Tree::from(method)).map_err(|e| JsError::new(&e))?;
+pub fn solve(operators: &[u8], take: &[u8], method: &str) -> Result<Solved, JsError> {
+    let spec: MethodSpec = serde_json::from_str(method)?;
     let take = solve_inflated(operators, take, &spec)?;
     Ok(Solved { take })
 }
@@ -60,7 +61,7 @@ impl Solved {
         self.take.shape_names.len()
     }
 
-    /// Frames a second.
+    /// Frames per second.
     pub fn rate_hz(&self) -> f64 {
         self.take.rate_hz
     }
@@ -70,8 +71,15 @@ impl Solved {
         self.take.weights_hash.clone()
     }
 
-    /// `{"shapeNames": [...], "statistics": {...} or null, "warnings": [...]}`.
-    pub fn report(&self) -> JsValue {
-        JsValue::from(&report::report(&self.take))
+    /// JSON: `{"shapeNames": [...], "gazeAtRest": [...], "statistics": {...} or null, "warnings": [...]}`.
+    pub fn report(&self) -> String {
+        let SolvedTake { shape_names, gaze_at_rest, statistics, warnings, .. } = &self.take;
+        json!({
+            "shapeNames": shape_names,
+            "gazeAtRest": gaze_at_rest,
+            "statistics": statistics,
+            "warnings": warnings,
+        })
+        .to_string()
     }
 }

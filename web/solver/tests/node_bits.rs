@@ -6,12 +6,13 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mimique_face::{Avatar, Mesh, Part, SparseShape};
-use mimique_mocap::{Capture, LengthUnit};
+use mimique_avatar::{Avatar, Mesh, Part, SparseShape};
+use mimique_clip::{encode_operators, encode_take, solve_packs};
+use mimique_geometry::Point;
+use mimique_mocap::{Capture, LengthUnit, WeightsTable};
 use mimique_solver::{MarkerSite, Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, Training,
-    WeightsTable, encode_operators, encode_take, solve_packs,
 };
 use serde_json::json;
 
@@ -36,7 +37,7 @@ fn web_dist(test: &str) -> Option<PathBuf> {
     None
 }
 
-/// A bulging sheet of skin whose eight shapes are bumps here and there.
+/// A bulging sheet of skin whose eight shapes are bumps here and there; the last would turn the eyes.
 fn avatar() -> Avatar {
     let (w, h, n) = (21u32, 25u32, 8usize);
     let at = |v: u32| (f64::from(v % w) / 20.0 - 0.5, f64::from(v / w) / 24.0 - 0.5);
@@ -66,7 +67,9 @@ fn avatar() -> Avatar {
         .collect();
     Avatar {
         name: "sheet".into(),
-        shape_names: (0..n).map(|k| format!("bump{k}")).collect(),
+        shape_names: (0..n)
+            .map(|k| if k + 1 < n { format!("bump{k}") } else { "eyeLookUpLeft".to_owned() })
+            .collect(),
         meshes: vec![Mesh { part: Part::Skin, positions, triangles, shapes, ..Mesh::default() }],
         ..Avatar::default()
     }
@@ -98,19 +101,19 @@ fn capture(skin: &AvatarSkin, map: &MarkerMap) -> Capture {
             }
             p
         });
-        for (m, p) in face.chain(skull).enumerate() {
+        for (m, p) in face.chain(skull.map(Point::from)).enumerate() {
             let mut jitter = || {
                 noise = noise.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
                 ((noise >> 40) as f64 / 16_777_216.0 - 0.5) * 0.3
             };
-            let [x, y, z] = p.map(|c| c * 1080.0);
+            let [x, y, z] = p.map(|c| c * 1080.0).to_array();
             let moved = [
                 turn.cos() * x + turn.sin() * z + 10.0 * t + jitter(),
                 y + 1200.0 + jitter(),
                 turn.cos() * z - turn.sin() * x + jitter(),
             ];
             let hidden = m == 5 && (120..140).contains(&frame);
-            positions.push(if hidden { [f64::NAN; 3] } else { moved });
+            positions.push(if hidden { Point::UNSEEN } else { moved.into() });
         }
     }
     let (unit, notes) = (LengthUnit::Millimetre, vec![]);

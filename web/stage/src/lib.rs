@@ -1,14 +1,14 @@
 //! The canvas module: heads in the browser, built once for WebGPU and once for WebGL2.
 //!
 //! Avatar packs and weights in, frames on a canvas out. It knows no clock, no network and no
-//! answers; `static/stage-host.js` drives it.
+//! answers; `static/stage/host.js` drives it.
 #![cfg(target_arch = "wasm32")]
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use js_sys::Uint8Array;
-use mimique_face::{Image, MOST_TEXTURE_SIDE};
+use mimique_avatar::{Image, MOST_TEXTURE_SIDE};
 use mimique_stage::wgpu;
 use mimique_stage::{Head, Look, Renderer, View};
 use wasm_bindgen::prelude::*;
@@ -17,6 +17,13 @@ use wgpu::CurrentSurfaceTexture as Frame;
 
 #[global_allocator]
 static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+
+/// The module's entry.
+#[wasm_bindgen(start)]
+pub fn start() {
+    let backend = if cfg!(feature = "webgl") { "webgl2" } else { "webgpu" };
+    mimique_web_panics::report_panics("stage", backend);
+}
 
 /// Why the canvas shows nothing any more, written by the browser's callbacks.
 type Lost = Arc<Mutex<Option<String>>>;
@@ -124,7 +131,7 @@ impl Canvas {
         widths: &[u32],
         pixels: Vec<Uint8Array>,
     ) -> Result<usize, JsError> {
-        let avatar = mimique_face::pack::decode_pack(pack).map_err(error)?;
+        let avatar = mimique_avatar::pack::decode_pack(pack).map_err(error)?;
         let pictures = widths.iter().zip(&pixels).enumerate().map(|(index, (width, rgba))| {
             Image::of_pixels(*width as usize, rgba.to_vec()).ok_or_else(|| {
                 JsError::new(&format!(

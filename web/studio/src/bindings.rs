@@ -4,6 +4,12 @@ use wasm_bindgen::prelude::*;
 
 use crate::desk::{Desk, Problem};
 
+/// The module's entry.
+#[wasm_bindgen(start)]
+pub fn start() {
+    mimique_web_panics::report_panics("studio", "");
+}
+
 /// The studio's desk.
 #[wasm_bindgen]
 #[derive(Debug, Default)]
@@ -144,13 +150,17 @@ impl Studio {
         self.desk.map_json()
     }
 
-    /// [`Desk::solve`].
+    /// [`Desk::solve`]; of a method with wrong parameters `{"problems": [...]}`, each with the field
+    /// and the entry that it is about.
     pub fn solve(
         &mut self,
         slot: &str,
         method: &str,
         hold_unseen: bool,
     ) -> Result<String, JsError> {
+        if let Some(problems) = crate::method_fields::problems(method) {
+            return Ok(text(problems));
+        }
         self.desk.solve(slot, method, hold_unseen).map(text).map_err(error)
     }
 
@@ -264,5 +274,5 @@ impl Studio {
 /// `[{"name": "lsts", "parameters": ["alpha", ...]}, ...]`.
 #[wasm_bindgen]
 pub fn methods() -> String {
-    text(crate::desk::methods())
+    text(crate::method_fields::methods())
 }

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use mimique_face::{
-    AvatarSettings, Clip, Density, Emotion, HeadSpec, Identity, ReadAvatar, build_head,
-    marker_sites, read_avatar_bytes, synthetic_take,
+use mimique_actor::{
+    Clip, Density, Emotion, HeadSpec, NOISE_MM, build_head, marker_sites, synthetic_take,
 };
-use mimique_mocap::{Capture, CaptureFacts, Format, LengthUnit, ReadOptions, Recording};
-use mimique_solver::Method;
+use mimique_avatar_files::{AvatarSettings, ReadAvatar, read_avatar_bytes};
+use mimique_mocap::{
+    Capture, CaptureFacts, Format, LengthUnit, ReadOptions, Recording, WeightOptions, WeightsTable,
+    read_weights,
+};
 use mimique_stimulus::{
-    AvatarSkin, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, WeightsTable,
+    AvatarSkin, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, built_in_capture,
 };
 use serde_json::{Value, json};
 
@@ -63,17 +65,6 @@ pub(crate) enum Take {
     Weights { name: String, table: WeightsTable },
 }
 
-/// Every method with its parameters.
-pub fn methods() -> Value {
-    let methods = Method::ALL.iter();
-    methods.map(|m| json!({"name": m.to_string(), "parameters": m.parameters()})).collect()
-}
-
-/// Seeds of actors, so that the actor is never the avatar's own person.
-const ACTORS: u64 = 0x6163_746f_7273_0000;
-/// Noise of the built-in actor's sensors, millimetres.
-pub(crate) const NOISE_MM: f64 = 0.1;
-
 impl Desk {
     /// An empty desk.
     pub fn new() -> Self {
@@ -106,8 +97,7 @@ impl Desk {
     /// # Errors
     /// None for heads that this version builds.
     pub fn built_in_avatar(&mut self, seed: u64, vertices: usize) -> Result<Value, Problem> {
-        let spec =
-            HeadSpec { identity: Identity::from_seed(seed), density: Density::nearest(vertices) };
+        let spec = HeadSpec { density: Density::nearest(vertices), ..HeadSpec::person(seed) };
         let sites = marker_sites(&spec);
         let face = sites.face_labels().iter().zip(&sites.vertices).map(|(label, &vertex)| {
             MappedMarker { label: label.clone(), place: MarkerPlace::Vertex(vertex) }
@@ -153,7 +143,7 @@ impl Desk {
     /// # Errors
     /// [`Problem`]: no avatar yet.
     pub fn avatar_pack(&self) -> Result<Vec<u8>, Problem> {
-        Ok(mimique_face::pack::encode_pack(&self.face()?.read.avatar).bytes)
+        Ok(mimique_avatar::pack::encode_pack(&self.face()?.read.avatar).bytes)
     }
 
     /// Takes a capture, or recorded weights (Live Link Face, CSV of `mimique solve`), from a file.
@@ -167,14 +157,10 @@ impl Desk {
         unit: Option<&str>,
         rate_hz: Option<f64>,
     ) -> Result<Value, Problem> {
-        let format = mimique_mocap::recognise(bytes);
-        let is_weights = match format {
-            Some(Format::LiveLinkCsv) => true,
-            Some(_) => false,
-            None => bytes.starts_with(b"frame,time,"),
-        };
-        if is_weights {
-            let table = WeightsTable::from_recording(bytes).map_err(|e| Problem::of(file, e))?;
+        if mimique_mocap::recognise(bytes).is_some_and(Format::holds_weights) {
+            let shape_names = self.face().map_or(&[][..], |face| &face.read.avatar.shape_names);
+            let options = WeightOptions { rate_hz, shape_names };
+            let table = read_weights(bytes, &options).map_err(|e| Problem::of(file, e))?;
             return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
         }
         let recording = read_capture(file, bytes, unit, rate_hz)?;
@@ -184,7 +170,7 @@ impl Desk {
 
     /// Takes the built-in actor's performance of six emotions, each weak, middling and strong.
     pub fn built_in_take(&mut self, actor: u64) -> Value {
-        let spec = built_in_actor(actor);
+        let spec = HeadSpec::actor(actor);
         let clips: Vec<Clip> = Emotion::ALL
             .iter()
             .flat_map(|&emotion| (1..=3).map(move |intensity| (emotion, intensity)))
@@ -192,10 +178,10 @@ impl Desk {
             .collect();
         let take =
             synthetic_take(&build_head(&spec), &marker_sites(&spec), &clips, actor, NOISE_MM);
-        let capture = performed(take.labels, take.rate_hz, take.positions);
+        let capture = built_in_capture(&take);
         let recording = Recording {
             capture,
-            format: Format::WideCsv,
+            format: &mimique_mocap::WIDE_CSV,
             system: None,
             analog_channels: 0,
             events: Vec::new(),
@@ -255,18 +241,6 @@ impl Desk {
             None => Err(Problem("no capture yet; open one first".to_owned())),
         }
     }
-}
-
-/// The person who performs as the built-in actor of that number.
-pub(crate) fn built_in_actor(actor: u64) -> HeadSpec {
-    HeadSpec { identity: Identity::from_seed(actor ^ ACTORS), density: Density::default() }
-}
-
-/// What the built-in actor performed, as a capture from its first frame on. `positions` as in
-/// [`Capture`], millimetres.
-pub(crate) fn performed(labels: Vec<String>, rate_hz: f64, positions: Vec<[f64; 3]>) -> Capture {
-    let unit = LengthUnit::Millimetre;
-    Capture::new(labels, rate_hz, unit, positions)
 }
 
 /// The capture of a file; `unit` and `rate_hz` are for files that do not say them.

@@ -1,5 +1,6 @@
 //! The expressions of a take: suggested, mended on the timeline, carried to CSV and ELAN and back.
 
+use mimique_geometry::coordinates;
 use mimique_mocap::stabilise;
 use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, cut, read_segments, suggest,
@@ -179,7 +180,7 @@ impl Desk {
         Ok(Track {
             count: 3 * capture.labels.len(),
             rate_hz: capture.rate_hz,
-            values: capture.positions.into_flattened(),
+            values: coordinates(&capture.positions).to_vec(),
         })
     }
 }

@@ -18,6 +18,7 @@ mod desk;
 mod difference;
 mod expressions;
 mod markers;
+mod method_fields;
 mod picture;
 mod solved;
 mod training;

@@ -2,6 +2,7 @@
 //! vertex under a click. Both work without a graphics device.
 
 use crate::desk::{Desk, Problem};
+use mimique_geometry::Point;
 
 /// A picture of `width` x `height` pixels.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,7 +83,7 @@ impl Desk {
 /// The vertex under a point of the picture: of the nearest triangle there, the corner that is
 /// nearest on the screen.
 pub fn pick(
-    positions: &[[f64; 3]],
+    positions: &[Point],
     triangles: &[[u32; 3]],
     camera: &[f32; 16],
     size: [usize; 2],
@@ -109,8 +110,8 @@ fn matrix(camera: &[f32]) -> Result<[f32; 16], Problem> {
     })
 }
 
-fn project(m: &[f32; 16], p: [f64; 3], [width, height]: [usize; 2]) -> Seen {
-    let p = p.map(|x| x as f32);
+fn project(m: &[f32; 16], p: Point, [width, height]: [usize; 2]) -> Seen {
+    let p = p.as_vec3();
     let row = |r: usize| m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
     let w = row(3);
     Seen {
@@ -157,12 +158,8 @@ fn each_pixel(
 }
 
 /// Cosine between a triangle's normal and straight forward, 0 to 1.
-fn facing(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f32 {
-    let side = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
-    let (u, v) = (side(b), side(c));
-    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if length > 0.0 { (n[2] / length).max(0.0) as f32 } else { 0.0 }
+fn facing(a: Point, b: Point, c: Point) -> f32 {
+    (b - a).cross(c - a).normalize_or_zero().z.max(0.0) as f32
 }
 
 /// From dark blue (0) over green to yellow (1): lightness rises evenly, so that it reads in grey
@@ -202,7 +199,8 @@ mod tests {
             [-0.8, -0.8, 0.5],
             [0.8, -0.8, 0.5],
             [0.0, 0.8, 0.5],
-        ];
+        ]
+        .map(Point::from);
         let triangles = [[3, 4, 5], [0, 1, 2], [6, 8, 7]];
         let at = |x, y| pick(&positions, &triangles, &STRAIGHT, [100, 100], [x, y]);
         assert_eq!(at(20.0, 85.0), Some(0));

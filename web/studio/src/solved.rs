@@ -1,10 +1,12 @@
 //! The take by one method: weights, what the markers asked for, residuals; its exports.
 
-use mimique_face::Avatar;
-use mimique_solver::{MarkerSite, Method, MethodSpec, SparseDeltas, SurfaceResponse};
+use mimique_avatar::Avatar;
+use mimique_clip::weights_hash;
+use mimique_geometry::{DVec3, Point};
+use mimique_mocap::WeightsTable;
+use mimique_solver::{MarkerSite, Method, MethodSpec, Needs, SparseDeltas, SurfaceResponse};
 use mimique_stimulus::{
-    RecordedWeights, SolvedCapture, TakeOptions, WeightsTable, lock_shapes, solve_take,
-    surface_avatar, weights_hash,
+    RecordedWeights, SolvedCapture, TakeOptions, lock_shapes, solve_take, surface_avatar,
 };
 use serde_json::{Value, json};
 
@@ -38,18 +40,23 @@ impl Desk {
     /// # Errors
     /// [`Problem`]: avatar, take or map are missing or do not fit, or the method does not solve.
     pub fn solve(&mut self, slot: &str, method: &str, hold_unseen: bool) -> Result<Value, Problem> {
-        let mut spec: MethodSpec =
-            serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
-        spec.validate().map_err(|e| Problem::of("method", e))?;
+        let given: Value = serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
+        let mut spec = match MethodSpec::checked(&given) {
+            Ok(spec) => spec,
+            Err(problems) => {
+                let words: Vec<String> = problems.iter().map(ToString::to_string).collect();
+                return Err(Problem::of("method", words.join("\n")));
+            }
+        };
         let face = self.face()?;
         lock_shapes(&mut spec, &face.read.locked);
-        let (solved, mut facts) = match (&self.take, spec.method) {
-            (Some(Take::Weights { name, table }), Method::Recorded) => recorded(face, name, table)?,
+        let (solved, mut facts) = match (&self.take, spec.method.needs()) {
+            (Some(Take::Weights { name, table }), Needs::Weights) => recorded(face, name, table)?,
             (Some(Take::Weights { name, .. }), _) => {
                 let what = "holds weights, no markers; take the method recorded";
                 return Err(Problem::of(name, what));
             }
-            (_, Method::Recorded) => {
+            (_, Needs::Weights) => {
                 let what =
                     "recorded needs weights; open a Live Link Face file, or a CSV of weights";
                 return Err(Problem::of("method", what));
@@ -77,9 +84,8 @@ impl Desk {
             site.parts().for_each(|(vertex, _)| marked[vertex] = true);
         }
         let moves_marker = |shape: &SparseDeltas| {
-            let length = |d: &[f64; 3]| d.iter().map(|x| x * x).sum::<f64>().sqrt();
             (shape.vertices.iter().zip(&shape.deltas))
-                .any(|(&v, d)| marked[v as usize] && length(d) >= UNSEEN_M)
+                .any(|(&v, d)| marked[v as usize] && d.length() >= UNSEEN_M)
         };
         let shapes = face.skin.shape_names.iter().zip(&face.skin.mesh.shapes);
         Ok(shapes.filter(|(_, s)| !moves_marker(s)).map(|(name, _)| name.clone()).collect())
@@ -91,8 +97,8 @@ impl Desk {
             let what = "empty; suggest one, or open one";
             return Err(Problem::of("marker map", what));
         }
-        let training = match spec.method {
-            Method::Regression => Some(Box::new(self.training()?)),
+        let training = match spec.method.needs() {
+            Needs::Training => Some(Box::new(self.training()?)),
             _ => None,
         };
         let options = TakeOptions { training, ..TakeOptions::default() };
@@ -110,6 +116,8 @@ impl Desk {
             "method": report.method,
             "frames": table.frames.len(),
             "rate_hz": report.rate_hz,
+            "head_lowpass_hz": report.head_lowpass_hz,
+            "gaze_at_rest": report.gaze_at_rest,
             "shapes": table.shape_names,
             "neutral": report.neutral,
             "markers": report.markers,
@@ -169,7 +177,7 @@ impl Desk {
         Ok(self.slot(slot)?.table.weights.iter().map(|&w| w as f32).collect())
     }
 
-    /// A value a frame: `residual` (mm), `kkt`, `iterations`; empty for recorded weights.
+    /// A value per frame: `residual` (mm), `kkt`, `iterations`; empty for recorded weights.
     ///
     /// # Errors
     /// [`Problem`]: nothing is solved under `slot`, no such series.
@@ -189,12 +197,12 @@ impl Desk {
     /// [`Problem`]: nothing is solved under `slot`.
     pub fn slot_pack(&self, slot: &str) -> Result<Vec<u8>, Problem> {
         match &self.slot(slot)?.avatar {
-            Some(own) => Ok(mimique_face::pack::encode_pack(own).bytes),
+            Some(own) => Ok(mimique_avatar::pack::encode_pack(own).bytes),
             None => self.avatar_pack(),
         }
     }
 
-    /// Where the markers ask the skin to be in a frame, and where it is: 6 numbers a marker, metres,
+    /// Where the markers ask the skin to be in a frame, and where it is: 6 numbers per marker, metres,
     /// NaN where the marker is lost.
     ///
     /// # Errors
@@ -206,23 +214,19 @@ impl Desk {
         let width = 3 * solved.sites.len();
         let mut out = Vec::with_capacity(2 * width);
         for (m, site) in solved.sites.iter().enumerate() {
-            let at = |points: &[[f64; 3]]| {
-                let mut p = [0.0; 3];
-                for (v, share) in site.parts() {
-                    (0..3).for_each(|a| p[a] += share * points[v][a]);
-                }
-                p
+            let at = |points: &[Point]| {
+                site.parts().fold(DVec3::ZERO, |sum, (v, share)| sum + share * points[v].0)
             };
             let (from, is) = (at(rest), at(&moved));
             let asked = &solved.displacements[frame * width + 3 * m..][..3];
             out.extend((0..3).map(|a| (from[a] + asked[a]) as f32));
-            out.extend(is.map(|x| x as f32));
+            out.extend(is.as_vec3().to_array());
         }
         Ok(out)
     }
 
     /// The welded skin in a frame, metres.
-    pub(crate) fn moved_skin(&self, slot: &str, frame: usize) -> Result<Vec<[f64; 3]>, Problem> {
+    pub(crate) fn moved_skin(&self, slot: &str, frame: usize) -> Result<Vec<Point>, Problem> {
         let solved = self.slot(slot)?;
         let frames = solved.table.frames.len();
         if frame >= frames {
@@ -235,12 +239,12 @@ impl Desk {
         let mesh = &self.face()?.skin.mesh;
         if let Some(surface) = &solved.surface {
             let moved = surface.displacements(weights).into_iter().zip(&mesh.positions);
-            return Ok(moved.map(|(d, p)| [p[0] + d[0], p[1] + d[1], p[2] + d[2]]).collect());
+            return Ok(moved.map(|(d, p)| *p + d).collect());
         }
         let mut out = mesh.positions.clone();
         for (shape, w) in mesh.shapes.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
             for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                (0..3).for_each(|a| out[v as usize][a] += w * d[a]);
+                out[v as usize] += *w * *d;
             }
         }
         Ok(out)
@@ -269,7 +273,7 @@ impl Desk {
         let count = solved.table.shape_names.len();
         let weights: Vec<f32> =
             solved.table.weights[first * count..end * count].iter().map(|&w| w as f32).collect();
-        mimique_face::write_glb(avatar, &weights, solved.rate_hz)
+        mimique_avatar_files::write_glb(avatar, &weights, solved.rate_hz)
             .map_err(|e| Problem::of("animation", e))
     }
 }

@@ -2,17 +2,15 @@
 
 use std::ops::Range;
 
-use mimique_face::{build_head, marker_sites, range_of_motion_take};
-use mimique_mocap::Capture;
-use mimique_stimulus::{Training, WeightsTable};
+use mimique_actor::NOISE_MM;
+use mimique_mocap::{Capture, WeightOptions, WeightsTable, read_weights};
+use mimique_stimulus::{Training, built_in_training};
 use serde_json::{Value, json};
 
-use crate::desk::{Desk, NOISE_MM, Problem, built_in_actor, performed, read_capture};
+use crate::desk::{Desk, Problem, read_capture};
 
 /// Neutral frames of a training take where nobody names others, as in `mimique solve`.
 const NEUTRAL: Range<usize> = 0..60;
-/// A range of motion has noise of its own.
-const TRAINING: u64 = 0x726f_6d00_0000_0000;
 
 /// The two files, each with its name.
 #[derive(Debug, Default)]
@@ -43,33 +41,26 @@ impl Desk {
         Ok(self.training_state())
     }
 
-    /// Takes the weights that were played in it: CSV or Live Link Face, a row a frame.
+    /// Takes the weights that were played in it: CSV or Live Link Face, a row per frame.
     ///
     /// # Errors
     /// [`Problem`] with the file's name.
     pub fn training_weights(&mut self, file: &str, bytes: &[u8]) -> Result<Value, Problem> {
-        let table = WeightsTable::from_recording(bytes).map_err(|e| Problem::of(file, e))?;
+        let table =
+            read_weights(bytes, &WeightOptions::default()).map_err(|e| Problem::of(file, e))?;
         self.training.weights = Some((file.to_owned(), table));
         Ok(self.training_state())
     }
 
     /// Takes the built-in actor's range of motion, two minutes with every shape in it.
     pub fn built_in_training(&mut self, actor: u64) -> Value {
-        let spec = built_in_actor(actor);
-        let take = range_of_motion_take(
-            &build_head(&spec),
-            &marker_sites(&spec),
-            actor ^ TRAINING,
-            NOISE_MM,
-        );
-        let weights = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
-        let capture = performed(take.labels, take.rate_hz, take.positions);
+        let learnt_from = built_in_training(actor, NOISE_MM);
         let name = || "built-in actor".to_owned();
         self.training = TrainingFiles {
-            take: Some((name(), capture)),
-            weights: Some((name(), weights)),
-            neutral: Some(take.neutral[0]..take.neutral[1]),
-            head: Some(take.head_labels),
+            take: Some((name(), learnt_from.capture)),
+            weights: Some((name(), learnt_from.weights)),
+            neutral: learnt_from.neutral,
+            head: learnt_from.head,
         };
         self.training_state()
     }
@@ -122,7 +113,7 @@ impl Desk {
                 let (frames, rows) = (capture.frames(), table.frames.len());
                 (frames != rows).then(|| {
                     format!(
-                        "{take} has {frames} frames, {name} {rows}; give a row of weights a frame"
+                        "{take} has {frames} frames, {name} {rows}; give a row of weights per frame"
                     )
                 })
             }

@@ -1,8 +1,7 @@
 //! The studio's desk as the page uses it.
 
-use mimique_face::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
-use mimique_mocap::{Capture, LengthUnit};
-use mimique_stimulus::WeightsTable;
+use mimique_actor::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
+use mimique_mocap::{Capture, LengthUnit, WeightsTable};
 use mimique_test_support::real_data;
 use mimique_web_studio::Desk;
 use serde_json::Value;
@@ -31,11 +30,17 @@ fn the_built_in_actor_is_solved_without_any_file() {
         assert_eq!(desk.series("a", series).unwrap().len(), frames);
     }
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{facts}");
-    // Gaze moves no marker: the eyes rest unless one asks for them.
+    assert_eq!(facts["head_lowpass_hz"], 10.0);
+    // No gaze is given: the eyes rest unless one asks for them.
+    assert_eq!(facts["gaze_at_rest"].as_array().unwrap().len(), 8, "{facts}");
     let held = facts["held"].as_array().unwrap();
     assert!(held.contains(&"eyeLookInLeft".into()) && held.len() < 10, "{held:?}");
     assert_eq!(facts["warnings"], serde_json::json!([]));
-    let free = desk.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
+    let resting = desk.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
+    assert_eq!(resting["weights_hash"], facts["weights_hash"]);
+    let asked = r#"{"method": "lsts", "alpha": 0.3, "gaze": "markers"}"#;
+    let free = desk.solve("b", asked, false).unwrap();
+    assert_eq!(free["gaze_at_rest"], serde_json::json!([]));
     assert!(free["warnings"][0].as_str().unwrap().contains("eyeLookInLeft"), "{free}");
 
     // Where the skin is and where it is asked to be agree with the residual.
@@ -166,7 +171,7 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
     let before = column(&desk.weights("a").unwrap(), "jawOpen");
     assert!(before.iter().any(|&w| w > 0.3) && before.iter().any(|&w| w < 0.1));
 
-    // Gaze moves no marker, but its bounds were given: it is not held.
+    // No gaze is given, but the bounds of one of its shapes are: it is not held.
     let method = r#"{"method": "lsts", "locked": ["mouthPucker"], "importance": {"chin": 0.0},
         "bounds": {"jawOpen": [0.1, 0.2], "eyeLookInLeft": [0.25, 0.25]}}"#;
     let facts = desk.solve("b", method, true).unwrap();

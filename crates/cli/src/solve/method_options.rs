@@ -1,110 +1,48 @@
 //! The method and its parameters, from the options or from a file of settings.
 
 use std::path::Path;
-use std::str::FromStr as _;
 
 use anyhow::{Context as _, anyhow};
-use mimique_solver::{Method, MethodSpec};
-use serde_json::json;
+use mimique_solver::{MethodSpec, Parameter, SpecError};
+use serde_json::{Value, json};
 
 use super::args::Args;
-use super::values::unique;
 
 /// The method that the options name, checked.
 pub(super) fn method_spec(args: &Args) -> anyhow::Result<MethodSpec> {
     if let Some(file) = &args.settings {
         return settings(file);
     }
-    let option =
-        |e: mimique_solver::SpecError| anyhow!("--{}: {}", option_name(&e.field), e.message);
-    let method = Method::from_str(&args.method).map_err(option)?;
-    let mut spec = MethodSpec {
-        alpha: args.alpha,
-        kappa: args.kappa,
-        k_s: args.k_s,
-        k_b: args.k_b,
-        laplacian: None,
-        association: None,
-        soft_bounds: args.soft_bounds.map(|p| p.0),
-        s: args.s,
-        eps: args.eps,
-        sigma: args.sigma.map(|l| l.0),
-        bounds_weight: args.bounds_weight,
-        unit: None,
-        stiffness: args.stiffness,
-        basis_vectors: args.basis_vectors,
-        length_scale: args.length_scale,
-        signal: args.signal,
-        noise: args.noise,
-        locked: args.lock.clone(),
-        importance: unique("--importance", &args.importance)?,
-        bounds: unique("--bounds", &args.bounds)?.into_iter().map(|(k, p)| (k, p.0)).collect(),
-        head_lowpass_hz: args.head_lowpass,
-        ..MethodSpec::new(method)
-    };
-    if let Some(word) = &args.laplacian {
-        spec.laplacian = Some(serde_json::from_value(json!(word)).map_err(|_| {
-            anyhow!("--laplacian: {word:?}; use uniform, umbrella, cotan-clamped or cotan-literal")
-        })?);
-    }
-    if let Some(word) = &args.hold {
-        spec.hold = Some(
-            serde_json::from_value(json!(word))
-                .map_err(|_| anyhow!("--hold: {word:?}; use unmoved or nothing"))?,
-        );
-    }
-    if let Some(word) = &args.inference {
-        spec.inference = Some(
-            serde_json::from_value(json!(word))
-                .map_err(|_| anyhow!("--inference: {word:?}; use sparse or exact"))?,
-        );
-    }
-    if let Some(word) = &args.association {
-        spec.association = Some(
-            serde_json::from_value(json!(word))
-                .map_err(|_| anyhow!("--association: {word:?}; use points, zones or triangles"))?,
-        );
-    }
-    if let Some(word) = &args.unit {
-        spec.unit = Some(
-            serde_json::from_value(json!(word))
-                .map_err(|_| anyhow!("--unit: {word:?}; use m, cm or mm"))?,
-        );
-    }
-    spec.validate().map_err(option)?;
-    Ok(spec)
+    let mut method = args.parameters.to_json()?;
+    method.insert("method".to_owned(), json!(args.method));
+    checked(&Value::Object(method), |problem| {
+        let option = Parameter::of(&problem.field).map_or(problem.field.clone(), Parameter::option);
+        let entry = problem.entry.as_ref().map_or(String::new(), |entry| format!(" {entry}:"));
+        format!("--{option}:{entry} {}; {}", problem.message(), problem.remedy())
+    })
 }
 
 /// The method of a file of settings, checked.
 fn settings(file: &Path) -> anyhow::Result<MethodSpec> {
     let text = std::fs::read_to_string(file)
         .with_context(|| format!("{}: cannot be read; check the path", file.display()))?;
-    let spec: MethodSpec = serde_json::from_str(&text)
+    let value: Value = serde_json::from_str(&text)
         .map_err(|e| anyhow!("{}: {e}; save the settings again in the studio", file.display()))?;
-    spec.validate().map_err(|e| anyhow!("{}: {e}", file.display()))?;
-    Ok(spec)
+    checked(&value, |problem| format!("{}: {problem}", file.display()))
 }
 
-/// The command line's name of a field of the method: `headLowpassHz` is `head-lowpass`.
-fn option_name(field: &str) -> String {
-    let field = field.split('.').next().unwrap_or(field);
-    match field {
-        "headLowpassHz" => "head-lowpass".to_owned(),
-        "locked" => "lock".to_owned(),
-        _ => field
-            .chars()
-            .flat_map(|c| {
-                let dash = c.is_ascii_uppercase().then_some('-');
-                dash.into_iter().chain(c.to_lowercase())
-            })
-            .collect(),
-    }
+/// A method without problems, or all of them, a line each.
+fn checked(value: &Value, words: impl Fn(&SpecError) -> String) -> anyhow::Result<MethodSpec> {
+    MethodSpec::checked(value).map_err(|problems| {
+        let lines: Vec<String> = problems.iter().map(words).collect();
+        anyhow!(lines.join("\nerror: "))
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-    use mimique_solver::Hold;
+    use clap::{CommandFactory as _, Parser};
+    use mimique_solver::{Hold, Method, PARAMETERS};
 
     use super::*;
 
@@ -183,7 +121,11 @@ mod tests {
         assert_eq!(found.bounds.get("jawOpen"), Some(&[0.1, 0.5]));
         for (text, part) in [
             (r#"{"method": "box", "alpha": 0.3}"#, "a.json: alpha: 'box' does not use it"),
-            (r#"{"method": "box", "lock": []}"#, "a.json: unknown field `lock`"),
+            (r#"{"method": "box", "lock": []}"#, "a.json: lock: unknown parameter"),
+            (
+                r#"{"method": "box", "locked": [], "bounds": 1}"#,
+                "a.json: bounds: is 1; give an object",
+            ),
             (r#"{"method": "box", "bounds": {"a": [1, 0]}}"#, "a.json: bounds.a: is [1, 0]"),
         ] {
             let error = of(text, &[]).unwrap_err().to_string();
@@ -215,6 +157,79 @@ mod tests {
         }
         for words in [["--sigma", "12"], ["--neutral", "60:0"], ["--bounds", "jawOpen"]] {
             assert!(spec(&words).is_err(), "{words:?}");
+        }
+    }
+
+    #[test]
+    fn every_parameter_of_the_table_has_its_option_under_its_heading() {
+        let command = Line::command();
+        for row in PARAMETERS {
+            let option = command.get_arguments().find(|arg| arg.get_long() == Some(&row.option()));
+            let option = option.unwrap_or_else(|| panic!("--{}", row.option()));
+            assert_eq!(option.get_help_heading(), Some(row.about.group.heading()), "{}", row.key);
+            let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+            assert!(help.contains(row.help.trim_end_matches('.')), "{help}");
+        }
+        let options = PARAMETERS.iter().map(Parameter::option);
+        // The names that commands of papers and of README have.
+        let known = [
+            "alpha",
+            "kappa",
+            "k-s",
+            "k-b",
+            "laplacian",
+            "soft-bounds",
+            "s",
+            "eps",
+            "association",
+            "sigma",
+            "bounds-weight",
+            "unit",
+            "stiffness",
+            "hold",
+            "inference",
+            "basis-vectors",
+            "length-scale",
+            "signal",
+            "noise",
+            "lock",
+            "importance",
+            "bounds",
+            "head-lowpass",
+        ];
+        assert!(known.iter().all(|name| options.clone().any(|option| option == *name)));
+    }
+
+    #[test]
+    fn every_problem_of_the_options_is_said_at_once() {
+        let words = ["--alpha", "2", "--kappa", "much", "--sigma", "12mm", "--lock", "a,a"];
+        let error = spec(&words).unwrap_err().to_string();
+        for part in [
+            "--alpha: is 2; give a number between 0 and 1",
+            "--kappa: is \"much\"; give a number",
+            "--sigma: 'lsts' does not use it",
+            "--lock: 1: 'a' is named twice",
+        ] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        let off = spec(&["--head-lowpass", "none"]).unwrap();
+        assert_eq!(off.head_lowpass_hz, Some(0.0));
+    }
+
+    #[test]
+    fn every_method_has_its_row_in_the_documentation() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let mut text = std::fs::read_to_string(root.join("README.md")).unwrap();
+        for page in std::fs::read_dir(root.join("docs/guide")).unwrap() {
+            let page = page.unwrap().path();
+            if page.extension().is_some_and(|extension| extension == "md") {
+                text += &std::fs::read_to_string(page).unwrap();
+            }
+        }
+        for method in Method::ALL {
+            let name = format!("`{method}`");
+            let row = text.lines().find(|line| line.starts_with("| `") && line.contains(&name));
+            assert!(row.is_some(), "{method}: add its row to the table of methods");
         }
     }
 }

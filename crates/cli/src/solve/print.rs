@@ -41,13 +41,24 @@ pub(super) fn print(
     )?;
     writeln!(
         out,
-        "residual {:.3} mm rms, {:.3} mm at worst; {:.1} iterations a frame, {} at most; KKT error {:.1e} at worst",
+        "residual {:.3} mm rms, {:.3} mm at worst; {:.1} iterations per frame, {} at most; KKT error {:.1e} at worst",
         summary.residual_rms_mm,
         summary.residual_worst_mm,
         summary.iterations_mean,
         summary.iterations_most,
         summary.kkt_worst,
     )?;
+    match report.head_lowpass_hz {
+        Some(cutoff_hz) => writeln!(out, "head low-pass {cutoff_hz} Hz")?,
+        None => writeln!(out, "head low-pass none")?,
+    }
+    if !report.gaze_at_rest.is_empty() {
+        let count = report.gaze_at_rest.len();
+        writeln!(
+            out,
+            "gaze at rest: no gaze is given, so {count} shapes that turn the eyes stay at 0"
+        )?;
+    }
     if let Some(learnt) = &report.regression {
         writeln!(
             out,

@@ -4,10 +4,13 @@ use std::io::Write as _;
 use std::path::Path;
 
 use anyhow::bail;
-use mimique_stimulus::{Provenance, RecordedWeights, WeightsTable, sha256_of_file, weights_hash};
+use mimique_clip::weights_hash;
+use mimique_mocap::{WeightOptions, read_weights_file};
+use mimique_stimulus::{Provenance, RecordedWeights, sha256_of_file};
 use serde_json::json;
 
-use super::{Args, blame, write_whole};
+use super::{Args, blame, write_weights};
+use crate::output;
 
 /// SHA-256 of a file.
 fn hash_of(file: &Path) -> anyhow::Result<String> {
@@ -19,15 +22,20 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     if args.vertices.is_some() || args.markers.is_some() || args.training.is_some() {
         bail!("--method: recorded solves nothing; remove --markers, --vertices and --training");
     }
-    let avatar = mimique_face::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let recorded = WeightsTable::from_file(&args.mocap).map_err(|e| blame(&args.mocap, e))?;
+    let avatar =
+        mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
+    let recorded = read_weights_file(
+        &args.mocap,
+        &WeightOptions { rate_hz: args.mocap_rate, shape_names: &avatar.avatar.shape_names },
+    )
+    .map_err(|e| blame(&args.mocap, e))?;
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &avatar.avatar.shape_names);
     let hash = weights_hash(&table.weights);
     let provenance = Provenance::new()
-        .text("avatar", &hash_of(&args.avatar)?)
-        .text("recorded", &hash_of(&args.mocap)?)
-        .text("weights", &hash)
+        .json("avatar", hash_of(&args.avatar)?)
+        .json("recorded", hash_of(&args.mocap)?)
+        .json("weights", hash.as_str())
         .hash();
     let warnings = names.warnings();
     let report = json!({
@@ -42,10 +50,10 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "provenance": provenance,
         "files": {"avatar": args.avatar, "mocap": args.mocap, "out": args.out},
     });
-    write_whole(&args.out, |out| out.write_all(table.to_csv().as_bytes()))?;
+    write_weights(&table, &args.out)?;
     if let Some(path) = &args.report {
         let text = serde_json::to_string_pretty(&report)? + "\n";
-        write_whole(path, |out| out.write_all(text.as_bytes()))?;
+        output::write(path, text.as_bytes())?;
     }
     let mut out = std::io::stdout().lock();
     if json {

@@ -1,14 +1,10 @@
-//! Values of options: pairs, spans, lengths, factors, and what is given by name.
+//! Values of options: spans, lengths, factors, and what is given by name.
 
 use litemap::LiteMap;
 use std::ops::Range;
 use std::str::FromStr;
 
 use anyhow::bail;
-
-/// `LOW:HIGH`.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Pair(pub(super) [f64; 2]);
 
 /// `FIRST:END`.
 #[derive(Debug, Clone)]
@@ -38,16 +34,6 @@ pub(super) fn unique<T: Clone>(
         }
     }
     Ok(map)
-}
-
-impl FromStr for Pair {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers =
-            text.split_once(':').and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
-        numbers.map(Pair).ok_or_else(|| "give two numbers as LOW:HIGH".to_owned())
-    }
 }
 
 impl FromStr for Factors {

@@ -1,11 +1,14 @@
 //! What a capture holds and what looks wrong with it.
 
 mod motion;
+mod neutral;
 
-use crate::repair::Swap;
-use crate::{Event, LengthUnit, Recording, Stillest, gaps, stillest, unit};
+use crate::capture::unit;
+use crate::repair::{Swap, gaps};
+use crate::{Event, LengthUnit, Recording};
 
 pub use motion::{Frozen, Jump};
+pub use neutral::{Stillest, stillest};
 
 /// Facts of a capture, to be printed or serialised.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -14,7 +17,7 @@ pub struct CaptureFacts {
     pub format: &'static str,
     /// Recording system, in the file's words.
     pub system: Option<String>,
-    /// Frames a second.
+    /// Frames per second.
     pub rate_hz: f64,
     /// Unit of the coordinates.
     pub unit: LengthUnit,
@@ -84,7 +87,7 @@ impl CaptureFacts {
         }
         let (swaps, jumps) = motion::swaps_and_jumps(capture);
         let mut facts = Self {
-            format: recording.format.name(),
+            format: recording.format.name,
             system: recording.system.clone(),
             rate_hz: capture.rate_hz,
             unit: capture.unit,
@@ -146,7 +149,8 @@ impl CaptureFacts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Capture, Format};
+    use crate::Capture;
+    use mimique_geometry::Point;
 
     /// Five face markers that all sway; 200 frames at 100 Hz, millimetres.
     fn recording() -> Recording {
@@ -161,7 +165,7 @@ mod tests {
             .flat_map(|f| {
                 let t = f64::from(f) / 100.0;
                 rest.map(|[x, y, z]| {
-                    [x + 5.0 * (3.0 * t).sin(), y + 4.0 * (2.0 * t).cos(), z + 1500.0]
+                    Point::new(x + 5.0 * (3.0 * t).sin(), y + 4.0 * (2.0 * t).cos(), z + 1500.0)
                 })
             })
             .collect();
@@ -174,7 +178,7 @@ mod tests {
                 positions,
                 notes: Vec::new(),
             },
-            format: Format::WideCsv,
+            format: &crate::WIDE_CSV,
             system: None,
             analog_channels: 0,
             events: Vec::new(),
@@ -201,7 +205,7 @@ mod tests {
             positions[5 * frame + 3] = positions[5 * 140 + 3];
         }
         for frame in 10..14 {
-            positions[5 * frame + 1] = [f64::NAN; 3];
+            positions[5 * frame + 1] = Point::UNSEEN;
         }
         let facts = CaptureFacts::of(&faulty);
         let frames: Vec<usize> = facts.swaps.iter().map(|s| s.frame).collect();

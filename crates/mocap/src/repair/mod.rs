@@ -1,17 +1,24 @@
 //! A capture mended: swaps, spikes, gaps; then filtered, resampled, its head held still. What was
 //! changed is recorded frame by frame.
 
+pub(crate) mod gaps;
+mod low_pass;
 mod record;
+mod resample;
 mod spikes;
+mod stabilise;
+pub(crate) mod sudden;
 mod swaps;
 
-use crate::{
-    Capture, FilterError, GapFill, LowPass, ResampleError, StabiliseError, fill_gaps, resample,
-    stabilise,
-};
+use crate::Capture;
+use mimique_geometry::Point;
 
+pub use gaps::{FilledGap, Gap, GapFill, GapRepair, fill_gaps, gaps};
+pub use low_pass::{FilterError, LowPass};
 pub use record::{ChangedFrame, RepairRecord, RepairedGap};
+pub use resample::{ResampleError, resample};
 pub use spikes::Spike;
+pub use stabilise::{Stabilisation, StabiliseError, stabilise};
 pub(crate) use swaps::swaps_and_others;
 pub use swaps::{MendedSwap, Swap};
 
@@ -26,7 +33,7 @@ pub struct RepairPlan {
     pub gaps: GapFill,
     /// Low-pass of every coordinate.
     pub low_pass: Option<LowPass>,
-    /// Frames a second of what comes out.
+    /// Frames per second of what comes out.
     pub resample_hz: Option<f64>,
     /// Labels of the markers that hold the head still; none = the head is left alone.
     pub head: Vec<String>,
@@ -83,7 +90,7 @@ pub fn repair(mut capture: Capture, plan: &RepairPlan) -> Result<Repaired, Repai
     let markers = capture.labels.len();
     for (marker, spike) in &spikes {
         for frame in spike.first..spike.end {
-            capture.positions[frame * markers + marker] = [f64::NAN; 3];
+            capture.positions[frame * markers + marker] = Point::UNSEEN;
         }
     }
     let gaps: Vec<RepairedGap> = fill_gaps(&mut capture, &plan.gaps)

@@ -45,11 +45,11 @@ pub struct RepairRecord {
     pub markers: usize,
     /// Frames of the capture as it was read; all frames below are counted in these.
     pub frames: usize,
-    /// Frames a second of the capture as it was read.
+    /// Frames per second of the capture as it was read.
     pub rate_hz: f64,
     /// Frames that came out.
     pub frames_out: usize,
-    /// Frames a second that came out.
+    /// Frames per second that came out.
     pub rate_hz_out: f64,
     /// Swaps.
     pub swaps: Vec<MendedSwap>,

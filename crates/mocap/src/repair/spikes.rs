@@ -1,7 +1,7 @@
 //! Spikes: a marker that is elsewhere for an instant and comes back.
 
+use super::sudden::{MEMORY_S, SUDDEN_M, distance, step_around, usual_step};
 use crate::Capture;
-use crate::sudden::{MEMORY_S, SUDDEN_M, distance, step_around, usual_step};
 
 /// A marker that leaves its place for an instant.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -78,7 +78,7 @@ pub(crate) fn find_spikes(capture: &Capture) -> Vec<(usize, Spike)> {
             let off = (first..end)
                 .map(|frame| {
                     let t = (frame - from) as f64 / (after - from) as f64;
-                    distance(at(frame), [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k])))
+                    distance(at(frame), p + (q - p) * t)
                 })
                 .fold(0.0, f64::max);
             let label = capture.labels[marker].clone();

@@ -4,8 +4,9 @@
 //! most of its frames is its own; where it had another one, that stretch is mended, unless its
 //! markers then lie worse among the others than they do as labelled.
 
+use super::sudden::{Sudden, distance, each_sudden};
 use crate::Capture;
-use crate::sudden::{Sudden, distance, each_sudden};
+use mimique_geometry::Point;
 use std::ops::Range;
 
 /// Markers whose labels change places.
@@ -74,7 +75,7 @@ pub(crate) fn mend_swaps(capture: &mut Capture) -> Vec<MendedSwap> {
             if mended {
                 for frame in piece.frames.clone() {
                     let row = &mut capture.positions[frame * markers..(frame + 1) * markers];
-                    let old: Vec<[f64; 3]> = group.iter().map(|(_, label)| row[*label]).collect();
+                    let old: Vec<Point> = group.iter().map(|(_, label)| row[*label]).collect();
                     for ((own, _), p) in group.iter().zip(old) {
                         row[*own] = p;
                     }

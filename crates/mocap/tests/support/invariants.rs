@@ -1,14 +1,20 @@
 //! What must hold of a reader whatever it is given; used by tests and fuzz targets.
 
-use mimique_mocap::{CaptureFile, ReadError, ReadOptions, Recording, read_recording, read_weights};
+use mimique_geometry::coordinates;
+use mimique_mocap::{
+    CaptureFile, ReadError, ReadOptions, Recording, WeightOptions, WeightsTable, read_recording,
+    read_weights,
+};
 use std::io::{BufReader, Cursor};
 
 /// Read with and without a rate, so that the paths after it are reached; a capture that comes out
 /// is whole and not larger than its file allows.
 pub fn read_anyhow(bytes: &[u8]) {
-    if let Ok(take) = read_weights(bytes) {
-        assert!(take.weights.len() <= 8 * bytes.len() + 4096 * take.names.len());
-        assert!(take.frames() * take.names.len() == take.weights.len() && take.rate_hz > 0.0);
+    let names: Vec<String> = (0..4).map(|k| format!("shape{k}")).collect();
+    for options in
+        [WeightOptions::default(), WeightOptions { rate_hz: Some(60.0), shape_names: &names }]
+    {
+        weights_are_whole(bytes, &read_weights(bytes, &options));
     }
     for rate_hz in [None, Some(100.0)] {
         let options = ReadOptions { rate_hz, ..ReadOptions::default() };
@@ -24,7 +30,7 @@ pub fn read_anyhow(bytes: &[u8]) {
                 assert!(capture.rate_hz.is_finite() && capture.rate_hz > 0.0);
                 assert!(capture.positions.len() <= 32 * bytes.len() + 4096);
                 for p in &capture.positions {
-                    assert!(p.iter().all(|v| v.is_finite()) || p.iter().all(|v| v.is_nan()));
+                    assert!(p.is_finite() || p.is_nan_mask().all());
                 }
                 let mut labels = capture.labels;
                 labels.sort();
@@ -35,6 +41,22 @@ pub fn read_anyhow(bytes: &[u8]) {
                 let text = error.to_string();
                 assert!(text.contains(": ") && text.contains("; "), "{text}");
             }
+        }
+    }
+}
+
+/// A table of weights that comes out is whole and not larger than its file allows.
+fn weights_are_whole(bytes: &[u8], read: &Result<WeightsTable, ReadError>) {
+    match read {
+        Ok(table) => {
+            let (frames, shapes) = (table.frames.len(), table.shape_names.len());
+            assert!(shapes > 0 && frames * shapes == table.weights.len());
+            assert!(table.weights.len() <= 8 * bytes.len() + 4096 * shapes);
+            assert!(table.times.len() == frames && table.weights.iter().all(|w| w.is_finite()));
+        }
+        Err(error) => {
+            let text = error.to_string();
+            assert!(text.contains(": ") && text.contains("; "), "{text}");
         }
     }
 }
@@ -53,7 +75,7 @@ fn same_in_pieces(bytes: &[u8], options: &ReadOptions, read: &Result<Recording, 
 /// Whether two recordings are the same, bit for bit.
 fn same(a: &Recording, b: &Recording) -> bool {
     let bits = |r: &Recording| -> Vec<u64> {
-        r.capture.positions.as_flattened().iter().map(|v| v.to_bits()).collect()
+        coordinates(&r.capture.positions).iter().map(|v| v.to_bits()).collect()
     };
     let (c, d) = (&a.capture, &b.capture);
     let said = |r: &Recording| {

@@ -1,10 +1,11 @@
 //! The log: who did what, when, in which study. Never an answer, never a reason's words.
 
-use super::Researcher;
-use crate::app::App;
+use mimique_storage::{AuditEntry, Storage, StorageError};
+
+use super::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::storage::{AuditEntry, Storage, StorageError};
+use crate::state::App;
 
 /// Writes down what a person or a script did. `study` is empty where it concerns none.
 pub(crate) async fn audit(

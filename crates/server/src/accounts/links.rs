@@ -1,12 +1,15 @@
 //! One-time links: for the first owner, for people invited, for a forgotten password. Only the
 //! secret's hash is kept; looking at the link does not use it up.
 
-use super::{normal_email, password};
-use crate::app::{App, AppError};
+use mimique_storage::{Account, AccountLink, LinkPurpose, Role, Storage};
+
+use super::email::normal_email;
+use super::password;
 use crate::clock::now_ms;
 use crate::error::Error;
 use crate::secret;
-use crate::storage::{Account, AccountLink, LinkPurpose, Role, Storage};
+use crate::state::App;
+use crate::state::start_error::AppError;
 
 /// A link works for two days.
 const LINK_LIFETIME_MS: i64 = 2 * 24 * 3600 * 1000;
@@ -28,13 +31,9 @@ pub(crate) async fn new_link(
 
 /// A link for a person to be invited.
 pub(crate) async fn invite(app: &App, email: &str, role: Role) -> Result<String, Error> {
-    let email = normal_email(email)
-        .ok_or_else(|| Error::bad_request("this is no e-mail address", "write name@host"))?;
+    let email = normal_email(email).ok_or(Error::NotAnEmail)?;
     if app.storage.account_by_email(&email).await?.is_some() {
-        return Err(Error::bad_request(
-            "somebody has an account by this address",
-            "give them a link for a new password instead",
-        ));
+        return Err(Error::AccountExists);
     }
     Ok(new_link(&app.storage, LinkPurpose::Invitation, &email, role).await?)
 }
@@ -50,8 +49,7 @@ pub(crate) async fn use_link(
     // Nothing is worked at for one who only guesses.
     let link = app.storage.link(&hash, now_ms()).await?.ok_or(Error::DeadLink)?;
     let email = match link.purpose {
-        LinkPurpose::FirstOwner => normal_email(email)
-            .ok_or_else(|| Error::bad_request("this is no e-mail address", "write name@host"))?,
+        LinkPurpose::FirstOwner => normal_email(email).ok_or(Error::NotAnEmail)?,
         _ => link.email,
     };
     password::check_length(password)?;
@@ -60,24 +58,22 @@ pub(crate) async fn use_link(
     used.ok_or(Error::DeadLink)
 }
 
-impl Storage {
-    /// A one-time link that sets a new password (and enables a disabled account): the way back for
-    /// one who can reach the database.
-    ///
-    /// # Errors
-    /// Nobody has an account by this address, or storage failed.
-    pub async fn reset_link(&self, email: &str) -> Result<String, AppError> {
-        let known = normal_email(email).unwrap_or_default();
-        let Some(account) = self.account_by_email(&known).await? else {
-            let accounts = self.accounts().await?;
-            let known: Vec<_> = accounts.into_iter().map(|account| account.email).collect();
-            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-            return Err(AppError::NoAccount { email: email.to_owned(), known });
-        };
-        let link = new_link(self, LinkPurpose::Reset, &account.email, account.role).await?;
-        super::command(self, "reset link", &account.email).await?;
-        Ok(link)
-    }
+/// A one-time link that sets a new password (and enables a disabled account): the way back for one
+/// who can reach the database.
+///
+/// # Errors
+/// Nobody has an account by this address, or storage failed.
+pub async fn reset_link(storage: &Storage, email: &str) -> Result<String, AppError> {
+    let known = normal_email(email).unwrap_or_default();
+    let Some(account) = storage.account_by_email(&known).await? else {
+        let accounts = storage.accounts().await?;
+        let known: Vec<_> = accounts.into_iter().map(|account| account.email).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        return Err(AppError::NoAccount { email: email.to_owned(), known });
+    };
+    let link = new_link(storage, LinkPurpose::Reset, &account.email, account.role).await?;
+    super::audit::command(storage, "reset link", &account.email).await?;
+    Ok(link)
 }
 
 impl App {

@@ -2,14 +2,16 @@
 //! attempts at one address, known or not, have to wait.
 
 use axum::http::{HeaderMap, HeaderValue};
+use mimique_storage::Account;
 
-use super::researcher::{LONGEST_SESSION_S, SESSION_COOKIE};
-use super::{cookies, normal_email, password};
-use crate::app::App;
+use super::email::normal_email;
+use super::identity::{LONGEST_SESSION_S, SESSION_COOKIE};
+use super::password;
 use crate::clock::now_ms;
 use crate::error::Error;
+use crate::http::cookies;
 use crate::secret;
-use crate::storage::Account;
+use crate::state::App;
 
 /// Attempts at one address within the window.
 const MOST_ATTEMPTS: u64 = 8;
@@ -53,7 +55,7 @@ pub(crate) async fn log_in_as(
     if let Some(before) = cookies::find(headers, &name) {
         app.storage.log_out(&secret::hash(before)).await?;
     }
-    let fresh = secret::random::<16>().map_err(|error| Error::Internal(error.to_string()))?;
+    let fresh = secret::random::<16>().map_err(Error::internal)?;
     let now = now_ms();
     let expires = now + LONGEST_SESSION_S * 1000;
     app.storage.log_in(&secret::hash(&fresh), account.key, now, expires).await?;
@@ -84,5 +86,5 @@ pub(super) async fn forgive(app: &App, email: &str) -> Result<(), Error> {
 }
 
 fn subject(app: &App, email: &str) -> String {
-    secret::hex(&secret::derive(&app.token_key, &["attempts", email])[..16])
+    hex::encode(&secret::derive(&app.token_key, &["attempts", email])[..16])
 }

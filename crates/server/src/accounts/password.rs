@@ -5,9 +5,9 @@ use argon2::password_hash::phc::PasswordHash;
 use argon2::{Argon2, PasswordHasher, PasswordVerifier};
 use tokio::sync::Semaphore;
 
-use super::Researcher;
-use crate::app::App;
+use super::identity::Researcher;
 use crate::error::Error;
+use crate::state::App;
 
 /// Characters of a password at least (NIST SP 800-63B asks for 8 beside a second factor, 15 without).
 pub(crate) const SHORTEST_PASSWORD: usize = 12;
@@ -29,13 +29,10 @@ const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$AAAAAAAAAAAAAAAAAAAAAA\
 /// Why a password cannot be taken, if it cannot.
 pub(super) fn check_length(password: &str) -> Result<(), Error> {
     if password.chars().count() < SHORTEST_PASSWORD {
-        return Err(Error::bad_request(
-            format!("the password has fewer than {SHORTEST_PASSWORD} characters"),
-            "choose a longer one, for example four words",
-        ));
+        return Err(Error::ShortPassword { least: SHORTEST_PASSWORD });
     }
     if password.len() > LONGEST_PASSWORD {
-        return Err(Error::bad_request("the password is too long", "choose a shorter one"));
+        return Err(Error::LongPassword);
     }
     Ok(())
 }
@@ -43,7 +40,7 @@ pub(super) fn check_length(password: &str) -> Result<(), Error> {
 /// The hash to keep.
 pub(super) async fn hash(password: &str) -> Result<String, Error> {
     let mut salt = [0; 16];
-    getrandom::fill(&mut salt).map_err(|error| Error::Internal(error.to_string()))?;
+    getrandom::fill(&mut salt).map_err(Error::internal)?;
     let password = password.as_bytes().to_vec();
     in_turn(move || hash_now(&password, &salt)).await?
 }
@@ -70,7 +67,7 @@ pub(crate) async fn change_password(
     let session = who.session().ok_or(Error::NotAllowed)?;
     super::login::throttle(app, &who.account.email).await?;
     if !verify(old, Some(&who.account.password_hash)).await? {
-        return Err(Error::bad_request("the old password is wrong", "type it again"));
+        return Err(Error::WrongOldPassword);
     }
     super::login::forgive(app, &who.account.email).await?;
     let hash = hash(new).await?;
@@ -80,14 +77,14 @@ pub(crate) async fn change_password(
 
 async fn in_turn<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T, Error> {
     let _place = QUEUE.try_acquire().map_err(|_| Error::TooManyAttempts)?;
-    let closed = |_| Error::Internal("the queue of passwords is closed".into());
+    let closed = |_| Error::internal("the queue of passwords is closed");
     let _turn = TURNS.acquire().await.map_err(closed)?;
-    tokio::task::spawn_blocking(work).await.map_err(|error| Error::Internal(error.to_string()))
+    tokio::task::spawn_blocking(work).await.map_err(Error::internal)
 }
 
 fn hash_now(password: &[u8], salt: &[u8]) -> Result<String, Error> {
     let hash: Result<PasswordHash, _> = Argon2::default().hash_password_with_salt(password, salt);
-    hash.map(|hash| hash.to_string()).map_err(|error| Error::Internal(error.to_string()))
+    hash.map(|hash| hash.to_string()).map_err(Error::internal)
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! JSON lines: tidy rows, or stored events.
 
-use mimique_study::responses::{Column, iso_time};
-use mimique_study::wire::{Event, SessionStarted};
+use mimique_session::rows::{Column, iso_time};
+use mimique_session::wire::{Event, SessionStarted};
+use mimique_storage::Storage;
 use serde_json::{Map, Value, json};
 
-use super::ExportError;
+use super::error::ExportError;
 use super::table::{Merged, Sources, as_started};
-use crate::storage::Storage;
 
 /// One object a row, its keys in alphabetical order.
 pub(super) fn rows(table: &Merged) -> Result<Vec<u8>, ExportError> {

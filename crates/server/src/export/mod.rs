@@ -11,110 +11,21 @@
 //! A study that was changed while it ran has several versions; each session is read by its own, and
 //! the table has the columns of all.
 
+pub(crate) mod error;
+pub(crate) mod exported;
+pub(crate) mod format;
 mod lines;
 mod psych_ds;
-mod table;
+pub(crate) mod table;
 mod unstored;
 
-use std::io;
-use std::path::{Path, PathBuf};
-
+pub use error::ExportError;
+pub use exported::Exported;
+pub use format::Format;
+use mimique_storage::Storage;
 pub use table::Cells;
-pub(crate) use table::{Sources, Version, as_started};
+use table::Sources;
 pub use unstored::{Unstored, Written};
-
-use crate::atomic_file;
-use crate::storage::{Storage, StorageError};
-
-/// Form of an export.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Tidy CSV.
-    Csv,
-    /// Wide CSV.
-    Wide,
-    /// Tidy rows as JSON lines.
-    Json,
-    /// Stored events as JSON lines.
-    Events,
-    /// A Psych-DS data set.
-    PsychDs,
-}
-
-impl Format {
-    /// Every format.
-    pub const ALL: [Self; 5] = [Self::Csv, Self::Wide, Self::Json, Self::Events, Self::PsychDs];
-
-    /// Its name on the command line and in addresses.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Wide => "wide",
-            Self::Json => "json",
-            Self::Events => "events",
-            Self::PsychDs => "psych-ds",
-        }
-    }
-
-    /// The format of this name.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.word() == word)
-    }
-}
-
-/// An export in memory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Exported {
-    /// The study.
-    pub study_id: String,
-    /// The files by their paths: one, or those of a Psych-DS folder.
-    pub files: Vec<(String, Vec<u8>)>,
-    /// How many participants it has rows of.
-    pub participants: usize,
-    /// How many rows (or events) it has.
-    pub rows: usize,
-}
-
-/// Export failed.
-#[derive(Debug, thiserror::Error)]
-pub enum ExportError {
-    /// Storage failed.
-    #[error(transparent)]
-    Storage(#[from] StorageError),
-    /// The database holds no study, or none of this name.
-    #[error("study {id}: not in this database, which holds {known}; choose one of these")]
-    UnknownStudy {
-        /// The identifier asked for.
-        id: String,
-        /// Those it holds.
-        known: String,
-    },
-    /// The database holds several studies and none was chosen.
-    #[error("the database holds {known}; choose one by --study")]
-    SeveralStudies {
-        /// Those it holds.
-        known: String,
-    },
-    /// A session's version of the study is not stored.
-    #[error("study {id}: version {config_hash} is not in the database; restore it from a backup")]
-    MissingVersion {
-        /// The study.
-        id: String,
-        /// The version.
-        config_hash: String,
-    },
-    /// A file cannot be written.
-    #[error("{path}: {error}; choose another place by --out")]
-    File {
-        /// The file.
-        path: String,
-        /// What went wrong.
-        error: io::Error,
-    },
-    /// A file cannot be put together.
-    #[error("the export cannot be put together: {0}; this is a mistake of Mimique's")]
-    Form(String),
-}
 
 /// What may be asked of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -175,39 +86,6 @@ pub async fn export(
         }
     };
     Ok(Exported { study_id, files, participants, rows })
-}
-
-impl Exported {
-    /// All files in one ZIP archive, in a folder named by the study.
-    pub fn into_zip(self) -> Result<Vec<u8>, ExportError> {
-        let folder = format!("{}_psych-ds", self.study_id);
-        psych_ds::zip(&folder, &self.files)
-    }
-
-    /// Writes the export: one file to `out`; several to a folder `out`, or into it as a ZIP archive
-    /// where its name ends in `.zip`. A file is whole or absent. Returns what was written.
-    pub fn write(self, out: &Path) -> Result<Vec<PathBuf>, ExportError> {
-        let at = |path: &Path, error| ExportError::File { path: path.display().to_string(), error };
-        let is_zip = out.extension().is_some_and(|end| end.eq_ignore_ascii_case("zip"));
-        let files = if self.files.len() == 1 {
-            let mut files = self.files;
-            files.pop().map(|(_, bytes)| (out.to_owned(), bytes)).into_iter().collect()
-        } else if is_zip {
-            vec![(out.to_owned(), self.into_zip()?)]
-        } else {
-            let files = self.files.into_iter();
-            files.map(|(name, bytes)| (out.join(name), bytes)).collect::<Vec<_>>()
-        };
-        let mut written = Vec::with_capacity(files.len());
-        for (path, bytes) in files {
-            if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-                std::fs::create_dir_all(folder).map_err(|error| at(folder, error))?;
-            }
-            atomic_file::write(&path, &bytes).map_err(|error| at(&path, error))?;
-            written.push(path);
-        }
-        Ok(written)
-    }
 }
 
 /// The data dictionary as CSV: every column of the tidy form with its kind, unit, levels, description.

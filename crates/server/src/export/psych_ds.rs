@@ -2,11 +2,11 @@
 
 use std::io::{Cursor, Write};
 
-use mimique_study::responses::{self, Column, Table};
+use mimique_session::rows::{self, Column, Table};
 use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 
-use super::ExportError;
+use super::error::ExportError;
 use super::table::Sources;
 
 /// The files by their paths in the data set, in alphabetical order. `csv` is the tidy table with these
@@ -21,7 +21,7 @@ pub(super) fn files(
     let latest = sources.latest()?;
     // The data dictionary needs the columns alone.
     let columns = Table { columns: columns.to_vec(), rows: Vec::new() };
-    let description = responses::psych_ds_description(&latest.study, &columns);
+    let description = rows::psych_ds_description(&latest.study, &columns);
     // Values of Psych-DS keywords are letters and digits.
     let name: String = sources.study_id.chars().filter(char::is_ascii_alphanumeric).collect();
     let mut files = vec![

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use mimique_session::rows::{self, Column, Table};
+use mimique_session::wire::SessionStarted;
+use mimique_storage::{SessionRecord, Storage, StorageError, StudyVersion};
+use mimique_study::ClipSource;
 use mimique_study::Study;
-use mimique_study::responses::{self, Column, ColumnKind, EXCLUSION_COLUMNS, Table};
-use mimique_study::wire::{ClipSource, Event, SessionStarted};
+use mimique_study::columns::{ColumnKind, EXCLUSION_COLUMNS};
 use serde_json::Value;
 
-use super::ExportError;
-use crate::storage::{SessionRecord, Storage, StorageError, StudyVersion};
+use super::error::ExportError;
 
 /// What an export is made from: versions, sessions, identifiers. Events are read session by session.
 pub(crate) struct Sources {
@@ -121,7 +123,7 @@ impl Sources {
     pub async fn tidy(&self, storage: &Storage) -> Result<Merged, ExportError> {
         let mut merged = self.merged();
         for version in &self.versions {
-            merged.add_columns(&responses::tidy(&version.study, &version.clips, []).columns);
+            merged.add_columns(&rows::tidy(&version.study, &version.clips, []).columns);
         }
         merged.add_exclusion_columns();
         self.add_identifier_columns(&mut merged);
@@ -129,8 +131,8 @@ impl Sources {
             let version = self.version(&session.config_hash)?;
             let events = storage.events(session.key).await?;
             let started = as_started(session);
-            let record = response_session(&started, session, &events);
-            let table = responses::tidy(&version.study, &version.clips, [record]);
+            let record = rows::SessionRecord { started: &started, events: &events };
+            let table = rows::tidy(&version.study, &version.clips, [record]);
             self.add_rows(&mut merged, &table);
         }
         Ok(merged)
@@ -144,12 +146,11 @@ impl Sources {
             let mut sessions = Vec::new();
             for session in self.sessions.iter().filter(|s| s.config_hash == version.config_hash) {
                 let events = storage.events(session.key).await?;
-                sessions.push((as_started(session), session, events));
+                sessions.push((as_started(session), events));
             }
-            let records = sessions
-                .iter()
-                .map(|(started, session, events)| response_session(started, session, events));
-            let table = responses::wide(&version.study, &version.clips, records);
+            let records =
+                sessions.iter().map(|(started, events)| rows::SessionRecord { started, events });
+            let table = rows::wide(&version.study, &version.clips, records);
             merged.add_columns(&table.columns);
             tables.push(table);
         }
@@ -169,7 +170,7 @@ impl Sources {
     pub fn columns(&self) -> Vec<Column> {
         let mut merged = self.merged();
         for version in &self.versions {
-            merged.add_columns(&responses::tidy(&version.study, &version.clips, []).columns);
+            merged.add_columns(&rows::tidy(&version.study, &version.clips, []).columns);
         }
         merged.add_exclusion_columns();
         merged.columns
@@ -299,7 +300,7 @@ impl Identifiers {
 pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
     SessionStarted {
         session: String::new(),
-        participant_id: crate::participant_id(session.participant),
+        participant_id: crate::participant_id::participant_id(session.participant),
         participant: session.participant,
         slot: session.slot,
         condition: session.condition.clone(),
@@ -308,17 +309,6 @@ pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
         config_hash: session.config_hash.clone(),
         withdrawal_code: String::new(),
     }
-}
-
-/// A session and its events as `study` reads them. That a session is complete is the server's word
-/// only together with the page's: one that was declined has a receipt too.
-fn response_session<'a>(
-    started: &'a SessionStarted,
-    session: &SessionRecord,
-    events: &'a [Event],
-) -> responses::SessionRecord<'a> {
-    let status = session.status.is_deleted().then(|| session.status.word());
-    responses::SessionRecord { started, events, status }
 }
 
 /// A table as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.

@@ -3,15 +3,18 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::responses::{self, Column, SessionRecord};
-use mimique_study::wire::{ClipSource, Event, SessionStarted};
+use mimique_session::rows::{self, Column, SessionRecord};
+use mimique_session::wire::{Event, SessionStarted};
+use mimique_study::ClipSource;
 use mimique_study::{StudyFileError, config_hash};
 use serde_json::Value;
 
+use super::error::ExportError;
+use super::exported::Exported;
+use super::format::Format;
 use super::lines::{add_event, add_row};
 use super::psych_ds;
 use super::table::{self, Cells, Merged, Sources, Version};
-use super::{ExportError, Exported, Format};
 
 /// Writes sessions one by one, in any number of threads, and joins them to an export.
 pub struct Unstored {
@@ -38,7 +41,7 @@ impl Unstored {
         format: Format,
     ) -> Result<Self, StudyFileError> {
         let study = mimique_study::Study::from_value(&file)?;
-        let columns = Merged::of_everybody(responses::tidy(&study, &clips, []), 0).columns;
+        let columns = Merged::of_everybody(rows::tidy(&study, &clips, []), 0).columns;
         let study_id = study.id.clone();
         let version = Version { config_hash: config_hash(&file), file, study, clips };
         Ok(Self { sources: Sources::without_storage(study_id, version), format, columns })
@@ -71,8 +74,8 @@ impl Unstored {
                 written.session = Some((started.clone(), without_frames(events)));
             }
             Format::Csv | Format::Json | Format::PsychDs => {
-                let record = SessionRecord { started, events, status: None };
-                let table = responses::tidy(&version.study, &version.clips, [record]);
+                let record = SessionRecord { started, events };
+                let table = rows::tidy(&version.study, &version.clips, [record]);
                 let rows = Merged::of_everybody(table, 1).rows;
                 written.rows = rows.len();
                 match self.format {
@@ -115,12 +118,9 @@ impl Unstored {
             }
             Format::Wide => {
                 let version = self.sources.latest()?;
-                let records = whole.iter().map(|(started, events)| SessionRecord {
-                    started,
-                    events,
-                    status: None,
-                });
-                let table = responses::wide(&version.study, &version.clips, records);
+                let records =
+                    whole.iter().map(|(started, events)| SessionRecord { started, events });
+                let table = rows::wide(&version.study, &version.clips, records);
                 (participants, rows) = (table.rows.len(), table.rows.len());
                 let merged = Merged::of_everybody(table, participants);
                 vec![(format!("{study_id}_wide.csv"), table::csv(&merged, Cells::AsTheyAre)?)]

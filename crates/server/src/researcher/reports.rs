@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_stats::{Language, Report, Table, analyze};
+use mimique_analysis::{Language, Report, analyze};
+use mimique_stats::Table;
+use mimique_storage::Storage;
 use mimique_study::Study;
 use tokio::sync::Semaphore;
 
-use crate::accounts::Tongue;
 use crate::error::Error;
 use crate::export::{Format, Options, export};
-use crate::hosted::HostedStudy;
-use crate::storage::Storage;
+use crate::state::hosted_study::HostedStudy;
 
 /// A report takes a core for some seconds: one at a time.
 static TURN: Semaphore = Semaphore::const_new(1);
@@ -33,9 +33,9 @@ impl Reports {
         &self,
         storage: &Storage,
         study: &HostedStudy,
-        tongue: Tongue,
+        language: Language,
     ) -> Result<Arc<Report>, Error> {
-        let key = (study.id().to_owned(), tongue.code());
+        let key = (study.id().to_owned(), language.code());
         let beats = storage.pulse().await?;
         let beat = beats.into_iter().find(|(id, _)| id == study.id()).map(|(_, beat)| beat);
         let state = format!("{} {}", study.config_hash(), beat.unwrap_or_default());
@@ -45,14 +45,13 @@ impl Reports {
         {
             return Ok(report);
         }
-        let closed = |_| Error::Internal("the queue of reports is closed".into());
+        let closed = |_| Error::internal("the queue of reports is closed");
         let _turn = TURN.acquire().await.map_err(closed)?;
         let exported = export(storage, Some(study.id()), Format::Csv, Options::default()).await?;
         let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
         let study = study.study().clone();
-        let language = tongue.pick(Language::English, Language::French);
         let made = tokio::task::spawn_blocking(move || make(&csv, &study, language));
-        let report = made.await.map_err(|error| Error::Internal(error.to_string()))??;
+        let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
         let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         if kept.len() >= MOST_KEPT {
@@ -65,6 +64,10 @@ impl Reports {
 
 fn make(csv: &[u8], study: &Study, language: Language) -> Result<Report, Error> {
     // Without any row there is no table.
-    let table = Table::parse(csv).map_err(|refusal| Error::NoReport(refusal.to_string()))?;
-    analyze(&table, study, language).map_err(|refusal| Error::NoReport(refusal.to_string()))
+    let table = Table::parse(csv).map_err(no_report)?;
+    analyze(&table, study, language).map_err(no_report)
+}
+
+fn no_report(refusal: impl ToString) -> Error {
+    Error::NoReport { problem: refusal.to_string() }
 }

@@ -8,6 +8,8 @@ use std::path::{Component, Path, PathBuf};
 
 use zip::ZipArchive;
 
+use crate::error::Error;
+
 /// Bytes of an upload.
 pub(super) const LARGEST_UPLOAD: u64 = 512 * 1024 * 1024;
 /// Bytes of everything in it, unpacked.
@@ -19,35 +21,8 @@ const DEEPEST: usize = 12;
 /// Bytes of a name.
 const LONGEST_NAME: usize = 400;
 
-/// An upload cannot be unpacked.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ArchiveError {
-    #[error("this is neither a ZIP archive nor a study file: {0}; upload a .zip or a .json")]
-    NotAnArchive(String),
-    #[error("the archive has {0} entries; {MOST_ENTRIES} are taken at most")]
-    TooMany(usize),
-    #[error("entry {0:?}: the name leads out of the archive; pack the folder anew")]
-    Outside(String),
-    #[error("entry {0:?}: it is a link; put the file itself into the archive")]
-    Link(String),
-    #[error("entry {0:?}: another entry has this name, or one like it; rename one of them")]
-    Twice(String),
-    #[error(
-        "entry {0:?}: the archive holds more than 2 GiB unpacked; leave out what the study does not name"
-    )]
-    TooLarge(String),
-    #[error("entry {entry:?}: it is damaged or encrypted ({problem}); pack the folder anew")]
-    Damaged { entry: String, problem: String },
-    #[error(
-        "there is no study file at the top of the archive; name it study.json, or put only one .json there"
-    )]
-    NoStudyFile,
-    #[error("the server cannot write the files: {0}; see that its disk has room")]
-    Disk(#[from] io::Error),
-}
-
 /// Unpacks an upload (a ZIP archive, or a study file alone) into an empty folder; gives the study file.
-pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
+pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
     fs::create_dir_all(folder)?;
     let mut start = [0; 4];
     let read = File::open(upload)?.read(&mut start)?;
@@ -55,9 +30,9 @@ pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveErr
         return single_file(upload, folder);
     }
     let mut archive = ZipArchive::new(File::open(upload)?)
-        .map_err(|error| ArchiveError::NotAnArchive(error.to_string()))?;
+        .map_err(|error| Error::NotAnArchive { problem: error.to_string() })?;
     if archive.len() > MOST_ENTRIES {
-        return Err(ArchiveError::TooMany(archive.len()));
+        return Err(Error::TooManyEntries { entries: archive.len(), most: MOST_ENTRIES });
     }
     let mut left = LARGEST_CONTENT;
     let mut names = BTreeSet::new();
@@ -69,9 +44,9 @@ pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveErr
             Ok(name) => name.into_owned(),
             Err(error) => return Err(damaged(index.to_string(), error.to_string())),
         };
-        let inside = inside(&name).ok_or_else(|| ArchiveError::Outside(name.clone()))?;
+        let inside = inside(&name).ok_or_else(|| Error::EntryOutside { entry: name.clone() })?;
         if entry.is_symlink() {
-            return Err(ArchiveError::Link(name));
+            return Err(Error::EntryLink { entry: name });
         }
         if entry.is_dir() {
             fs::create_dir_all(folder.join(inside))?;
@@ -79,7 +54,7 @@ pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveErr
         }
         // Two names may be one on a disk that does not tell large letters from small ones.
         if !names.insert(inside.to_string_lossy().to_lowercase()) {
-            return Err(ArchiveError::Twice(name));
+            return Err(Error::EntryTwice { entry: name });
         }
         let path = folder.join(&inside);
         if let Some(parent) = path.parent() {
@@ -101,7 +76,7 @@ fn inside(name: &str) -> Option<PathBuf> {
 }
 
 /// Copies an entry, never more than is left; how many bytes it had.
-fn copy(entry: &mut impl Read, path: &Path, left: u64, name: &str) -> Result<u64, ArchiveError> {
+fn copy(entry: &mut impl Read, path: &Path, left: u64, name: &str) -> Result<u64, Error> {
     let damaged = |error: io::Error| damaged(name.to_owned(), error.to_string());
     let mut file = File::options().write(true).create_new(true).open(path)?;
     let mut buffer = vec![0; 64 * 1024];
@@ -113,17 +88,17 @@ fn copy(entry: &mut impl Read, path: &Path, left: u64, name: &str) -> Result<u64
         }
         copied += read as u64;
         if copied > left {
-            return Err(ArchiveError::TooLarge(name.to_owned()));
+            return Err(Error::ContentTooLarge { entry: name.to_owned() });
         }
         file.write_all(&buffer[..read])?;
     }
 }
 
-fn damaged(entry: String, problem: String) -> ArchiveError {
-    ArchiveError::Damaged { entry, problem }
+fn damaged(entry: String, problem: String) -> Error {
+    Error::EntryDamaged { entry, problem }
 }
 
-fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
+fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
     const LARGEST_STUDY: u64 = 8 * 1024 * 1024;
     let size = fs::metadata(upload)?.len();
     let mut start = [0; 64];
@@ -131,7 +106,7 @@ fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
     let first = start[..read].iter().find(|byte| !byte.is_ascii_whitespace());
     // An object, or the comment before it.
     if size > LARGEST_STUDY || !matches!(first, Some(b'{' | b'/')) {
-        return Err(ArchiveError::NotAnArchive("it begins like neither".to_owned()));
+        return Err(Error::NotAnArchive { problem: "it begins like neither".to_owned() });
     }
     let path = folder.join("study.json");
     fs::copy(upload, &path)?;
@@ -140,7 +115,7 @@ fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, ArchiveError> {
 
 /// `study.json`, or the only `.json` beside which no other could be it; at the top, or in the only
 /// folder that stands there (as archives of a folder have it).
-fn study_file(folder: &Path) -> Result<PathBuf, ArchiveError> {
+fn study_file(folder: &Path) -> Result<PathBuf, Error> {
     let mut files = Vec::new();
     let mut folders = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -170,7 +145,7 @@ fn study_file(folder: &Path) -> Result<PathBuf, ArchiveError> {
     match (studies.next(), studies.next()) {
         (Some(only), None) => Ok(only.clone()),
         (None, _) if files.is_empty() && folders.len() == 1 => study_file(&folders[0]),
-        _ => Err(ArchiveError::NoStudyFile),
+        _ => Err(Error::NoStudyFile),
     }
 }
 
@@ -178,6 +153,7 @@ fn study_file(folder: &Path) -> Result<PathBuf, ArchiveError> {
 mod tests {
     use std::io::Cursor;
 
+    use mimique_analysis::Language;
     use zip::write::SimpleFileOptions;
 
     use super::*;
@@ -197,7 +173,7 @@ mod tests {
         fs::write(&upload, bytes).unwrap();
         let found = unpack(&upload, &folder.path().join("files"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing is written elsewhere");
-        let found = found.map_err(|error| error.to_string())?;
+        let found = found.map_err(|error| error.sentence(Language::English))?;
         Ok(found.strip_prefix(folder.path().join("files")).unwrap().display().to_string())
     }
 
@@ -251,7 +227,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut endless = io::repeat(0);
         let error = copy(&mut endless, &folder.path().join("a"), 1_000_000, "a").unwrap_err();
-        assert!(matches!(error, ArchiveError::TooLarge(_)), "{error}");
+        assert!(matches!(error, Error::ContentTooLarge { .. }), "{error:?}");
         assert!(fs::metadata(folder.path().join("a")).unwrap().len() <= 1_000_000);
         let entries: Vec<String> = (0..=MOST_ENTRIES).map(|index| format!("{index}")).collect();
         let entries: Vec<_> = entries.iter().map(|name| (name.as_str(), b"".as_slice())).collect();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Component, Path};
 
-use mimique_study::{CheckedStudy, Issue, Severity, check};
+use mimique_study::{CheckedStudy, Issue, Problem, check};
 use serde_json::Value;
 
 /// What the check found, and the study if it can be hosted.
@@ -19,31 +19,29 @@ pub(super) fn check_upload(study_file: &Path) -> Checked {
         Ok(Ok(text)) => text,
         Ok(Err(error)) => {
             let place = error.utf8_error().valid_up_to();
-            return refused(format!("byte {place}: not UTF-8"), "save the file as UTF-8");
+            return refused(Problem::NotUtf8 { byte: place });
         }
-        Err(error) => return refused(format!("it cannot be read ({error})"), "pack it anew"),
+        Err(error) => return refused(Problem::Unreadable { reason: error.to_string() }),
     };
     let report = check(&text, &|path| look_up(path, folder));
     let mut issues = report.issues;
     if let Some(study) = &report.study
         && let Some(path) = leads_out(study.value(), folder)
     {
-        let message = format!("{path:?} leads out of the archive");
-        issues.push(error(message, "put the file into the archive and mend the path"));
+        issues.push(Issue::error("", Problem::LeadsOut { path }));
         return Checked { issues, study: None };
     }
     Checked { issues, study: report.study }
 }
 
-fn look_up(path: &str, folder: &Path) -> Result<(), (String, String)> {
-    let remedy = "put the file into the archive and name it from the study file's folder";
+fn look_up(path: &str, folder: &Path) -> Result<(), Problem> {
     if !is_inside(path) {
-        return Err((format!("{path:?} is not in the archive"), remedy.to_owned()));
+        return Err(Problem::OutsideArchive { path: path.to_owned() });
     }
     if folder.join(path).is_file() {
         return Ok(());
     }
-    Err((format!("no file {path:?} in the archive"), remedy.to_owned()))
+    Err(Problem::NoFileInArchive { path: path.to_owned() })
 }
 
 fn is_inside(path: &str) -> bool {
@@ -64,18 +62,8 @@ fn leads_out(value: &Value, folder: &Path) -> Option<String> {
     }
 }
 
-fn refused(message: String, hint: &str) -> Checked {
-    Checked { issues: vec![error(message, hint)], study: None }
-}
-
-fn error(message: String, hint: &str) -> Issue {
-    Issue {
-        pointer: String::new(),
-        severity: Severity::Error,
-        code: "upload",
-        message,
-        hint: hint.to_owned(),
-    }
+fn refused(problem: Problem) -> Checked {
+    Checked { issues: vec![Issue::error("", problem)], study: None }
 }
 
 #[cfg(test)]

@@ -6,57 +6,37 @@
 
 mod archive;
 mod checked;
+pub(crate) mod handlers;
+mod pages;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::PoisonError;
 
 use mimique_stimulus::{Places, Progress, prepare};
+use mimique_storage::{UploadedStudy, durable_file};
 use mimique_study::{CheckedStudy, Issue};
 use sha2::{Digest, Sha256};
 use tokio::io::AsyncWriteExt;
 use tokio::sync::Semaphore;
 
-pub(crate) use archive::ArchiveError;
 use archive::unpack;
 use checked::{Checked, check_upload};
 
-use crate::accounts::{Researcher, audit};
-use crate::app::App;
+use crate::accounts::audit::audit;
+use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::hosted::{HostedStudy, Stage};
-use crate::packs::PackStore;
+use crate::files::packs::PackStore;
 use crate::secret;
-use crate::storage::UploadedStudy;
+use crate::state::App;
+use crate::state::hosted_study::{HostedStudy, Stage};
+use crate::state::preparations::{Preparation, Preparations, Preparing};
 
 /// Bytes of an upload.
 pub(crate) const LARGEST_UPLOAD: u64 = archive::LARGEST_UPLOAD;
 
 /// Preparing takes a core and much memory: one study at a time.
 static TURN: Semaphore = Semaphore::const_new(1);
-
-/// Where preparing a study stands.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Preparing {
-    /// So many clips of so many are ready.
-    Under { done: usize, of: usize },
-    /// It is hosted; what should be said of its stimuli.
-    Ready { warnings: Vec<String> },
-    /// Its stimuli cannot be prepared.
-    Failed { problem: String },
-}
-
-/// A study that was uploaded since the server started.
-#[derive(Debug, Clone)]
-pub(crate) struct Preparation {
-    pub state: Preparing,
-    /// What the check found: warnings.
-    pub issues: Vec<Issue>,
-}
-
-/// The studies that were uploaded since the server started, by identifier.
-pub(crate) type Preparations = Arc<Mutex<BTreeMap<String, Preparation>>>;
 
 /// An upload while it comes in: written to a file, counted and hashed.
 pub(crate) struct Incoming {
@@ -81,10 +61,10 @@ impl Drop for Arrived {
 impl Incoming {
     pub async fn open(app: &App) -> Result<Self, Error> {
         let folder = uploads_folder(app)?;
-        tokio::fs::create_dir_all(&folder).await.map_err(on_disk)?;
-        let random = secret::random::<8>().map_err(|e| Error::Internal(e.to_string()))?;
+        tokio::fs::create_dir_all(&folder).await?;
+        let random = secret::random::<8>().map_err(Error::internal)?;
         let path = folder.join(format!(".incoming-{random}"));
-        let file = tokio::fs::File::create_new(&path).await.map_err(on_disk)?;
+        let file = tokio::fs::File::create_new(&path).await?;
         Ok(Self { path, file, hasher: Sha256::new(), bytes: 0 })
     }
 
@@ -94,12 +74,12 @@ impl Incoming {
             return Err(Error::UploadTooLarge);
         }
         self.hasher.update(chunk);
-        self.file.write_all(chunk).await.map_err(on_disk)
+        Ok(self.file.write_all(chunk).await?)
     }
 
     pub async fn finish(mut self) -> Result<Arrived, Error> {
-        self.file.flush().await.map_err(on_disk)?;
-        let hash = secret::hex(&self.hasher.clone().finalize());
+        self.file.flush().await?;
+        let hash = hex::encode(self.hasher.clone().finalize());
         Ok(Arrived { path: std::mem::take(&mut self.path), hash })
     }
 }
@@ -123,41 +103,30 @@ pub(crate) enum Taken {
 /// Unpacks and checks what has arrived; if it has no errors, preparing it begins.
 pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Result<Taken, Error> {
     let folder = uploads_folder(app)?;
-    let random = secret::random::<8>().map_err(|error| Error::Internal(error.to_string()))?;
-    let fresh = folder.join(format!(".unpacked-{random}"));
     let place = folder.join(&arrived.hash);
     let hash = arrived.hash.clone();
-    let work = move || -> Result<(Checked, PathBuf), ArchiveError> {
-        let outcome = (|| {
-            let study_file = unpack(&arrived.path, &fresh)?;
-            let checked = check_upload(&study_file);
-            let inside = study_file.strip_prefix(&fresh).unwrap_or(&study_file).to_owned();
-            if checked.study.is_some() && !place.exists() {
-                std::fs::rename(&fresh, &place)?;
-            }
-            Ok((checked, place.join(inside)))
-        })();
-        let _ = std::fs::remove_dir_all(&fresh);
-        outcome
+    let work = move || -> Result<(Checked, PathBuf), Error> {
+        let fresh = durable_file::folder_beside(&place)?;
+        let study_file = unpack(&arrived.path, fresh.path())?;
+        let checked = check_upload(&study_file);
+        let inside = study_file.strip_prefix(fresh.path()).unwrap_or(&study_file).to_owned();
+        if checked.study.is_some() && !place.exists() {
+            std::fs::rename(fresh.path(), &place)?;
+        }
+        Ok((checked, place.join(inside)))
     };
     let done = tokio::task::spawn_blocking(work).await;
-    let (checked, study_file) = done.map_err(|error| Error::Internal(error.to_string()))??;
+    let (checked, study_file) = done.map_err(Error::internal)??;
     let Some(study) = checked.study.clone() else { return Ok(Taken::Refused(checked.issues)) };
     let study_id = study.study().id.clone();
     if app.study(&study_id).is_ok() && !is_uploaded(app, &study_id).await? {
-        return Err(Error::bad_request(
-            format!("study {study_id:?} is hosted from the server's own files"),
-            "give the study another id",
-        ));
+        return Err(Error::OwnStudy { study: study_id });
     }
     {
         let mut preparations = app.preparations.lock().unwrap_or_else(PoisonError::into_inner);
         let known = preparations.get(&study_id).map(|known| &known.state);
         if matches!(known, Some(Preparing::Under { .. })) {
-            return Err(Error::bad_request(
-                format!("study {study_id:?} is being prepared"),
-                "wait until that is done",
-            ));
+            return Err(Error::BeingPrepared { study: study_id });
         }
         let state = Preparing::Under { done: 0, of: 0 };
         let issues = checked.issues;
@@ -269,12 +238,7 @@ pub(crate) async fn is_uploaded(app: &App, study_id: &str) -> Result<bool, Error
 async fn find(app: &App, study_id: &str) -> Result<UploadedStudy, Error> {
     let uploads = app.storage.uploads().await?;
     let found = uploads.into_iter().find(|upload| upload.study_id == study_id);
-    found.ok_or_else(|| {
-        Error::bad_request(
-            "this study is hosted from the server's own files",
-            "change it where the server is started",
-        )
-    })
+    found.ok_or(Error::NotUploaded)
 }
 
 impl App {
@@ -290,7 +254,7 @@ impl App {
     ///
     /// # Errors
     /// Storage failed. A study whose packs are not in the data folder is left out, and that is logged.
-    pub async fn host_uploads(&self) -> Result<(), crate::StorageError> {
+    pub async fn host_uploads(&self) -> Result<(), mimique_storage::StorageError> {
         let Some(folder) = &self.data_folder else { return Ok(()) };
         let uploads = self.storage.uploads().await?;
         let mut hosted = self.uploaded.lock().await;
@@ -343,21 +307,6 @@ impl App {
 }
 
 fn uploads_folder(app: &App) -> Result<PathBuf, Error> {
-    let folder = app.data_folder.as_ref().ok_or_else(|| {
-        Error::bad_request("this server has no data folder", "start it with --data-dir")
-    })?;
+    let folder = app.data_folder.as_ref().ok_or(Error::NoDataFolder)?;
     Ok(folder.join("uploads"))
-}
-
-fn on_disk(error: std::io::Error) -> Error {
-    Error::Internal(format!("an upload cannot be written: {error}"))
-}
-
-impl From<ArchiveError> for Error {
-    fn from(error: ArchiveError) -> Self {
-        match error {
-            ArchiveError::Disk(error) => on_disk(error),
-            other => Self::BadUpload(other.to_string()),
-        }
-    }
 }

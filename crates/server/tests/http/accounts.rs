@@ -1,7 +1,8 @@
 //! Accounts: links, log-in, roles, forged forms, tokens, the log.
 
 use axum::http::{Method, StatusCode, header};
-use mimique_server::{Access, Role, router};
+use mimique_server::{Access, reset_link, router};
+use mimique_storage::Role;
 
 use crate::client::{TestServer, events};
 use crate::people::{Browser, ORIGIN, PASSWORD, invited, link_in, owner, script, token};
@@ -356,7 +357,7 @@ pub async fn a_lost_password_is_replaced(server: &TestServer) {
     let person = accounts.iter().find(|account| account.role == Role::Analyst).unwrap();
     let path = format!("/researcher/people/{}", person.key);
     let by_owner = link_in(&owner.send(server, &path, &[("action", "reset")]).await);
-    let by_command = server.storage.reset_link("Analyst@example.org").await.unwrap();
+    let by_command = reset_link(&server.storage, "Analyst@example.org").await.unwrap();
     let mut browser = Browser::default();
     browser.open(server, "/researcher/login").await;
     let fields = [("email", "ignored@x"), ("password", "six words are best of all")];
@@ -369,7 +370,7 @@ pub async fn a_lost_password_is_replaced(server: &TestServer) {
     );
     // Whoever was logged in by the old password is so no more.
     assert_eq!(analyst.open(server, "/researcher").await.status, StatusCode::SEE_OTHER);
-    let unknown = server.storage.reset_link("nobody@example.org").await.unwrap_err();
+    let unknown = reset_link(&server.storage, "nobody@example.org").await.unwrap_err();
     assert!(unknown.to_string().contains("analyst@example.org, owner@example.org"), "{unknown}");
 }
 
@@ -401,7 +402,7 @@ pub async fn the_log_says_who_did_what(server: &TestServer) {
     owner.send(server, &format!("{person}/include"), &[]).await;
     let key = token(server, &mut owner, Role::Analyst).await;
     script(server, Method::GET, "/researcher/studies/faces/export/json", &key).await;
-    server.storage.reset_link("owner@example.org").await.unwrap();
+    reset_link(&server.storage, "owner@example.org").await.unwrap();
     let page = owner.open(server, "/researcher/log").await.text();
     for line in [
         "<td>owner@example.org</td><td>use a link</td>",

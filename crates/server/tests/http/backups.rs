@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use mimique_server::{
+use mimique_storage::{
     BackupError, Deletion, RestoreOptions, Storage, read_deletions, scrub_backup, write_deletions,
 };
 
@@ -38,7 +38,7 @@ pub async fn a_backup_restores_everything(server: &TestServer) {
     let started = server.start(1).await;
     server.stored(&started.session, &events(0..20)).await;
     server.receipt(&started.session, 20).await;
-    let other = mimique_study::wire::Event { at_ms: 0.1, ..event(3) };
+    let other = mimique_session::wire::Event { at_ms: 0.1, ..event(3) };
     server.append(&started.session, &[other]).await;
     let second = server.start(2).await;
     server.stored(&second.session, &[event(7), event(0)]).await;

@@ -5,10 +5,11 @@ use std::future::Future;
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
-use mimique_server::{App, HostedStudy, Storage, router};
-use mimique_study::wire::{
+use mimique_server::{App, HostedStudy, router};
+use mimique_session::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, Withdrawn,
 };
+use mimique_storage::Storage;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use tower::ServiceExt;

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::sync::{Arc, Mutex};
 
 use axum::http::{HeaderName, StatusCode, header};
-use mimique_server::{Settings, StorageError};
+use mimique_server::Settings;
+use mimique_storage::StorageError;
 use serde_json::json;
 
 use crate::client::{TestServer, event};
@@ -99,7 +100,7 @@ pub async fn metrics_are_the_operators(server: &TestServer) {
     };
     ask("Bearer open").await.refused(StatusCode::NOT_FOUND, "not-found");
     let text = ask("Bearer open sesame").await.text();
-    let line = "mimique_sessions{study=\"faces\",stage=\"live\",status=\"started\"} 1";
+    let line = "mimique_sessions{study=\"faces\",stage=\"live\",status=\"active\"} 1";
     assert!(text.contains(line), "{text}");
     assert!(!text.contains("person 1") && !text.contains("p0001"), "{text}");
 }
@@ -107,6 +108,12 @@ pub async fn metrics_are_the_operators(server: &TestServer) {
 /// What was logged, held in memory.
 #[derive(Clone, Default)]
 struct Log(Arc<Mutex<Vec<u8>>>);
+
+impl Log {
+    fn text(&self) -> String {
+        String::from_utf8_lossy(&self.0.lock().unwrap()).into_owned()
+    }
+}
 
 impl Write for Log {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
@@ -119,15 +126,49 @@ impl Write for Log {
     }
 }
 
-/// Even at the finest level, and when the database fails, no answer or identifier is logged.
-pub async fn logs_hold_no_answers(server: &TestServer) {
+/// Writes what is logged from now on, on this thread, into the log that is returned.
+fn logged() -> (Log, tracing::subscriber::DefaultGuard) {
     let log = Log::default();
     let writer = log.clone();
     let subscriber = tracing_subscriber::fmt()
         .with_max_level(tracing::Level::TRACE)
+        .with_ansi(false)
         .with_writer(move || writer.clone())
         .finish();
-    let _guard = tracing::subscriber::set_default(subscriber);
+    (log, tracing::subscriber::set_default(subscriber))
+}
+
+/// A panic of a page's module reaches the log in one line; a report that is too long is refused.
+pub async fn panics_of_pages_are_logged(server: &TestServer) {
+    let (log, _guard) = logged();
+    let report = |message: &str| {
+        json!({
+            "module": "solver", "backend": "", "study": "faces", "message": message,
+            "place": "crates/solver/src/fit.rs:7:9",
+        })
+    };
+    let () = server.post("/api/panics", report("no frame\nWARN forged")).await.ok();
+    let too_long = server.post("/api/panics", report(&"x".repeat(5000))).await;
+    too_long.refused(StatusCode::PAYLOAD_TOO_LARGE, "too-large");
+    let incomplete = server.post("/api/panics", json!({"message": "no module"})).await;
+    incomplete.refused(StatusCode::BAD_REQUEST, "bad-request");
+    let text = log.text();
+    let lines: Vec<&str> = text.lines().filter(|line| line.contains("WARN")).collect();
+    let [line] = lines[..] else { panic!("one warning: {text}") };
+    for part in [
+        "a module panicked in a browser",
+        "module=\"solver\"",
+        "study=\"faces\"",
+        "panic=\"no frame\\nWARN forged\"",
+        "place=\"crates/solver/src/fit.rs:7:9\"",
+    ] {
+        assert!(line.contains(part), "{part} in {line}");
+    }
+}
+
+/// Even at the finest level, and when the database fails, no answer or identifier is logged.
+pub async fn logs_hold_no_answers(server: &TestServer) {
+    let (log, _guard) = logged();
     let started = server.start(1).await;
     let mut secret = event(0);
     secret.body = json!({"type": "answered", "value": "my-secret-answer"});
@@ -140,7 +181,7 @@ pub async fn logs_hold_no_answers(server: &TestServer) {
         server.storage.events(1).await.unwrap_err(),
         StorageError::Database(_) | StorageError::Unavailable
     ));
-    let text = String::from_utf8_lossy(&log.0.lock().unwrap()).into_owned();
+    let text = log.text();
     assert!(text.contains("500 Internal Server Error"), "the failure itself is logged: {text}");
     for private in ["my-secret-answer", "person 1", &started.session, &started.withdrawal_code] {
         assert!(!text.contains(private), "{private} in {text}");

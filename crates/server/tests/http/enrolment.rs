@@ -2,8 +2,9 @@
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use mimique_server::{HostedStudy, Stage, Status};
-use mimique_study::wire::{Event, Refusal, SessionStarted};
+use mimique_server::{HostedStudy, Stage};
+use mimique_session::Standing;
+use mimique_session::wire::{Event, Refusal, SessionStarted};
 use serde_json::{Value, json};
 
 use crate::client::{Answer, TestServer, event};
@@ -57,9 +58,9 @@ async fn let_expire(server: &TestServer, participant: u64) {
     assert!(participant < 10);
     let statement = [
         "",
-        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 1",
-        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 2",
-        "UPDATE sessions SET slot_expires_ms = 1 WHERE participant = 3",
+        "UPDATE sessions SET slot_expires_ms = 1, started_ms = 1, last_event_ms = NULL WHERE participant = 1",
+        "UPDATE sessions SET slot_expires_ms = 1, started_ms = 1, last_event_ms = NULL WHERE participant = 2",
+        "UPDATE sessions SET slot_expires_ms = 1, started_ms = 1, last_event_ms = NULL WHERE participant = 3",
     ][participant as usize];
     server.run_sql(statement).await;
 }
@@ -253,7 +254,7 @@ pub async fn answers_are_deleted_when_their_time_is_over(server: &TestServer) {
     for (session, started) in
         server.storage.sessions("faces").await.unwrap().iter().zip([&first, &second])
     {
-        assert_eq!((session.status, session.event_count), (Status::Erased, 0));
+        assert_eq!((session.is_deleted(), session.event_count), (true, 0));
         assert!(server.storage.events(session.key).await.unwrap().is_empty());
         let answer = server.append(&started.session, &[event(5)]).await;
         answer.refused(StatusCode::GONE, "withdrawn");
@@ -388,7 +389,7 @@ pub async fn conditions_are_balanced_over_those_who_finish(server: &TestServer) 
     assert_eq!(arrived(&server, 12, None).await.condition.as_deref(), Some("hinted"));
     // A session keeps its condition when it ends.
     let sessions = server.storage.sessions("faces").await.unwrap();
-    let finished = sessions.iter().filter(|session| session.finished);
+    let finished = sessions.iter().filter(|session| session.standing == Standing::Completed);
     let finished: Vec<_> = finished.map(|session| session.condition.clone()).collect();
     assert_eq!(finished, vec![Some("plain".to_owned()); 3]);
     // The researchers' page counts them, and follows each on its own way.

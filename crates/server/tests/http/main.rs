@@ -17,6 +17,7 @@ mod researcher;
 mod schemas;
 mod sessions;
 mod simulated;
+mod standings;
 mod storage;
 mod study;
 mod uploads;
@@ -84,6 +85,7 @@ topics! {
     defences::one_address_cannot_ask_without_end,
     defences::metrics_are_the_operators,
     defences::logs_hold_no_answers,
+    defences::panics_of_pages_are_logged,
     enrolment::the_slot_of_a_drop_out_goes_to_the_next,
     enrolment::a_sign_of_life_keeps_the_slot,
     enrolment::slots_are_given_one_after_the_other,
@@ -96,6 +98,7 @@ topics! {
     enrolment::nothing_finer_than_a_browsers_name_is_kept,
     enrolment::answers_are_deleted_when_their_time_is_over,
     enrolment::a_clock_that_jumps_back_loses_nothing,
+    standings::everybody_agrees_on_every_session,
     storage::one_impossible_change_does_not_take_others_with_it,
     storage::what_was_accepted_before_the_end_is_committed,
     storage::a_later_schema_is_refused,

@@ -1,7 +1,7 @@
 //! Pages, assets and packs: their headers and forms.
 
 use axum::http::{StatusCode, header};
-use mimique_study::wire::{Bundle, StudySummary};
+use mimique_session::wire::{Bundle, StudySummary};
 
 use crate::client::TestServer;
 use crate::study;
@@ -34,7 +34,7 @@ pub async fn assets_and_packs_are_kept_for_ever(server: &TestServer) {
     let page = server.get("/s/faces/").await.text();
     let start = page.find("/assets/").unwrap();
     let prefix = &page[start..start + "/assets/".len() + 16];
-    let style = format!("{prefix}/style.css");
+    let style = format!("{prefix}/style/style.css");
     let pack = format!("/packs/{}", study::sha256(&study::pack()));
     for path in [&style, &pack] {
         let plain = server.get(path).await;
@@ -51,10 +51,10 @@ pub async fn assets_and_packs_are_kept_for_ever(server: &TestServer) {
     assert_eq!(server.get(&style).await.header(header::CONTENT_TYPE), "text/css; charset=utf-8");
     assert_eq!(server.get(&pack).await.text(), study::pack());
     for path in [
-        format!("{prefix}/index.html"),
-        format!("{prefix}/../style.css"),
-        format!("{prefix}/%2e%2e/style.css"),
-        "/assets/0000000000000000/style.css".to_owned(),
+        format!("{prefix}/participant/index.html"),
+        format!("{prefix}/../style/style.css"),
+        format!("{prefix}/%2e%2e/style/style.css"),
+        "/assets/0000000000000000/style/style.css".to_owned(),
     ] {
         server.get(&path).await.refused(StatusCode::NOT_FOUND, "not-found");
     }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::flow::{Plan, State, Status, StepKind};
-use mimique_study::wire::{Event, SessionStarted};
-use mimique_study::{Answers, Client, EventKind, PlayLog, Question, QuestionKind, Study};
+use mimique_session::flow::{Plan, State, StepKind};
+use mimique_session::wire::{Event, SessionStarted};
+use mimique_session::{Client, EventKind, PlayLog, Standing};
+use mimique_study::{Answers, Question, QuestionKind, Study};
 use serde_json::{Value, json};
 
 /// What was answered: (participant, step, question) -> answer.
@@ -50,7 +51,7 @@ pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec
     if steps >= plan.steps.len() {
         log.add(EventKind::Finished);
         let state = State::replay(&plan, &log.events);
-        assert_eq!(state.record.status, Status::Finished, "the events fit the study");
+        assert_eq!(state.record.standing, Standing::Completed, "the events fit the study");
         assert_eq!(state.record.unexpected, 0);
     }
     (log.events, planted)
@@ -82,7 +83,7 @@ fn answer(question: &Question, choice: u64) -> Value {
             json!(scale.start + (choice % u64::from(scale.num_items)) as i64)
         }
         QuestionKind::Number(_) => json!(20 + choice),
-        other => panic!("the demo study asks no {}", other.word()),
+        other => panic!("the demo study asks no {other:?}"),
     }
 }
 

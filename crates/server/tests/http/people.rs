@@ -2,7 +2,7 @@
 
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
-use mimique_server::Role;
+use mimique_storage::Role;
 
 use crate::client::{Answer, TestServer};
 

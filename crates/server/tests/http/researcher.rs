@@ -5,7 +5,8 @@ use std::time::Duration;
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
 use mimique_server::export::{Format, Options, export};
-use mimique_server::{Role, Status};
+use mimique_session::Standing;
+use mimique_storage::Role;
 use tokio_stream::StreamExt;
 
 use crate::client::{TestServer, events};
@@ -239,7 +240,7 @@ pub async fn an_owner_deletes_a_participant_who_asks_for_it(server: &TestServer)
     assert_eq!(done.header(header::LOCATION), person, "{}", done.text());
     assert_eq!(stored().await, [before[0], 0]);
     let sessions = server.storage.sessions("demo").await.unwrap();
-    assert_eq!(sessions[1].status, Status::Withdrawn);
+    assert_eq!(sessions[1].standing, Standing::Withdrawn);
     // The next backup knows it, the log too; the page offers it no more.
     assert_eq!(server.storage.deletions().await.unwrap().len(), 1);
     let entries = server.storage.audit_entries(i64::MAX, 50).await.unwrap();

@@ -5,7 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use mimique_server::{Status, Storage};
+use mimique_session::{Record, Standing};
+use mimique_storage::Storage;
 use sqlx::{AssertSqlSafe, Connection, Executor};
 
 use crate::client::block_on;
@@ -13,7 +14,7 @@ use crate::postgres::Cluster;
 use crate::study::sha256;
 
 /// Version that this binary writes.
-const LATEST: usize = 4;
+const LATEST: usize = 5;
 
 fn dump(kind: &str, version: usize) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -67,10 +68,11 @@ async fn is_all_there(url: &str, version: usize) {
         conditions,
         if version < 4 { [None; 5] } else { [plain, named, plain, named, plain] }
     );
-    let finished: Vec<bool> = sessions.iter().map(|session| session.finished).collect();
-    assert_eq!(finished, [true, false, false, false, false]);
-    let standing: Vec<Status> = sessions.iter().map(|session| session.status).collect();
-    assert_eq!(standing[1..3], [Status::Started, Status::Withdrawn]);
+    let standing: Vec<Standing> = sessions.iter().map(|session| session.standing).collect();
+    let (ended, open) = (Standing::Completed, Standing::InProgress);
+    assert_eq!(standing, [ended, open, Standing::Withdrawn, Standing::Declined, open]);
+    let deleted: Vec<bool> = sessions.iter().map(|session| session.is_deleted()).collect();
+    assert_eq!(deleted, [false, false, true, false, false]);
     assert_eq!(sessions[0].receipt, Some(("receipt-1".into(), 3)));
     assert_eq!((sessions[0].seed, sessions[0].event_count), ((-7_i64).cast_unsigned(), 3));
     let events = storage.events(sessions[0].key).await.unwrap();
@@ -90,8 +92,103 @@ async fn is_all_there(url: &str, version: usize) {
         next.conditions = vec!["plain".into()];
     }
     let next = storage.start(next).await.unwrap();
-    let slot = [6, 6, 5, 4][version - 1];
+    let slot = [6, 6, 5, 4, 4][version - 1];
     assert_eq!((next.participant, next.slot), (6, slot));
     assert_eq!(next.condition, (version >= 4).then(|| "plain".into()));
     storage.close().await;
+}
+
+/// The events of sessions of every end, and what version 4 called them.
+const ENDS: [(&str, u8, &[&str]); 12] = [
+    ("started", 0, &[]),
+    ("started", 0, &[OPENED, AGREED]),
+    ("started", 0, &[OPENED, DECLINED]),
+    ("completed", 1, &[OPENED, AGREED, PAGE, FINISHED]),
+    ("started", 0, &[OPENED, AGREED, PAGE, FINISHED]),
+    ("completed", 0, &[OPENED, AGREED, SCREENED_OUT]),
+    ("completed", 0, &[OPENED, AGREED, DEVICE, FINISHED]),
+    ("completed", 0, &[OPENED, AGREED, TRAINING]),
+    ("completed", 0, &[OPENED, AGREED, CHECKS]),
+    ("started", 0, &[OPENED, AGREED, DECLINED, PAGE]),
+    ("completed", 1, &[OPENED, AGREED, PAGE, FINISHED, WITHDRAWN]),
+    ("completed", 0, &[OPENED, AGREED, PAGE]),
+];
+const OPENED: &str = r#"{"client":{},"language":"en","type":"opened"}"#;
+const AGREED: &str = r#"{"language":"en","type":"consented","version":"1"}"#;
+const DECLINED: &str = r#"{"type":"declined"}"#;
+const PAGE: &str = r#"{"answers":{"type":"finished"},"step":"a","type":"page_finished"}"#;
+const FINISHED: &str = r#"{"type":"finished"}"#;
+const SCREENED_OUT: &str =
+    r#"{"details":["age"],"reason":"screening","step":"a","type":"screened_out"}"#;
+const DEVICE: &str =
+    r#"{"details":["kind"],"reason":"device","step":"device","type":"screened_out"}"#;
+const TRAINING: &str = r#"{"details":[],"reason":"training","step":"a","type":"screened_out"}"#;
+const CHECKS: &str = r#"{"failed":2,"type":"checks_failed"}"#;
+const WITHDRAWN: &str = r#"{"type":"withdrawn"}"#;
+
+/// Those sessions as rows of version 4, from participant 101 on.
+fn sessions_of_every_end() -> String {
+    let mut sql = String::new();
+    for (number, (status, finished, events)) in (101..).zip(ENDS) {
+        sql += &format!(
+            "INSERT INTO sessions (token_hash, study_id, participant, config_hash, seed, stage, \
+             language, client, withdrawal_hash, status, started_ms, event_count, next_sequence, \
+             slot, finished) VALUES ('t{number}', 'faces', {number}, 'c1', 1, 'live', 'en', '{{}}', \
+             'w{number}', '{status}', 1, {count}, {count}, {number}, {finished});\n",
+            count = events.len(),
+        );
+        for (sequence, body) in events.iter().enumerate() {
+            sql += &format!(
+                "INSERT INTO events (session_key, sequence, at_ms, received_ms, body) SELECT \
+                 session_key, {sequence}, 1, 1, '{body}' FROM sessions WHERE participant = {number};\n"
+            );
+        }
+    }
+    sql
+}
+
+/// What the migration says of a session is what its events say.
+async fn every_standing_is_that_of_the_events(url: &str) {
+    let storage = Storage::open(url).await.unwrap();
+    let mut found = Vec::new();
+    for session in storage.sessions("faces").await.unwrap() {
+        let events = storage.events(session.key).await.unwrap();
+        if !session.is_deleted() {
+            let standing = Record::of(None, &events).standing;
+            assert_eq!(session.standing, standing, "participant {}", session.participant);
+        }
+        found.push(session.standing);
+    }
+    for standing in Standing::ALL.into_iter().filter(|it| *it != Standing::Abandoned) {
+        assert!(found.contains(&standing), "{standing:?} in {found:?}");
+    }
+    storage.close().await;
+}
+
+#[test]
+fn the_standing_of_old_sessions_is_that_of_their_events_on_sqlite() {
+    let folder = tempfile::tempdir().unwrap();
+    let url = format!("sqlite:{}", folder.path().join("4.sqlite").display());
+    block_on(async {
+        let address = format!("{url}?mode=rwc");
+        let mut connection = sqlx::SqliteConnection::connect(&address).await.unwrap();
+        connection.execute(AssertSqlSafe(dump("sqlite", 4))).await.unwrap();
+        connection.execute(AssertSqlSafe(sessions_of_every_end())).await.unwrap();
+        connection.close().await.unwrap();
+        every_standing_is_that_of_the_events(&url).await;
+    });
+}
+
+#[test]
+fn the_standing_of_old_sessions_is_that_of_their_events_on_postgres() {
+    let name = "the_standing_of_old_sessions_is_that_of_their_events_on_postgres";
+    let Some(cluster) = Cluster::start(name) else { return };
+    block_on(async {
+        let url = cluster.fresh_database("standing").await;
+        let mut connection = sqlx::PgConnection::connect(&url).await.unwrap();
+        connection.execute(AssertSqlSafe(dump("postgres", 4))).await.unwrap();
+        connection.execute(AssertSqlSafe(sessions_of_every_end())).await.unwrap();
+        connection.close().await.unwrap();
+        every_standing_is_that_of_the_events(&url).await;
+    });
 }

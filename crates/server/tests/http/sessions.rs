@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use mimique_server::Status;
-use mimique_study::wire::{Acknowledged, Event, SessionStarted};
+use mimique_session::Standing;
+use mimique_session::wire::{Acknowledged, Event, SessionStarted};
 use serde_json::json;
 
 use crate::client::{TestServer, event, events};
@@ -138,11 +138,11 @@ pub async fn completing_needs_every_event(server: &TestServer) {
         server.complete(&session, 6).await.refused(StatusCode::CONFLICT, "missing-events");
     assert_eq!(refusal.sequences, [1, 4, 5]);
     server.complete(&session, 0).await.refused(StatusCode::BAD_REQUEST, "bad-request");
-    assert_eq!(server.storage.sessions("faces").await.unwrap()[0].status, Status::Started);
+    assert_eq!(server.storage.sessions("faces").await.unwrap()[0].receipt, None);
     server.stored(&session, &[event(1), event(4), event(5)]).await;
     let receipt = server.receipt(&session, 6).await;
     assert_eq!((receipt.stored, receipt.receipt.len()), (6, 64));
-    assert_eq!(server.storage.sessions("faces").await.unwrap()[0].status, Status::Completed);
+    assert!(server.storage.sessions("faces").await.unwrap()[0].receipt.is_some());
 }
 
 pub async fn a_receipt_stays_the_same(server: &TestServer) {
@@ -191,7 +191,7 @@ pub async fn withdrawal_deletes_answers_and_identifiers(server: &TestServer) {
     assert_eq!(server.withdrawn(&started.session, &typed).await.deleted, 4);
     assert_eq!(server.withdrawn(&started.session, &typed).await.deleted, 0);
     let sessions = server.storage.sessions("faces").await.unwrap();
-    assert_eq!((sessions[0].status, sessions[0].event_count), (Status::Withdrawn, 0));
+    assert_eq!((sessions[0].standing, sessions[0].event_count), (Standing::Withdrawn, 0));
     assert_eq!(sessions[0].client, "{}");
     assert!(server.storage.events(sessions[0].key).await.unwrap().is_empty());
     assert_eq!(server.storage.recruitment("faces").await.unwrap().len(), 1);

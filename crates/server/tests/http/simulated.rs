@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use mimique_analysis::{Dropout, Parameters, Simulation};
 use mimique_server::export::{Format, Options, Unstored, export};
-use mimique_stats::{Dropout, Parameters, Simulation};
 use mimique_study::Study;
 
 use crate::client::TestServer;
@@ -44,8 +44,8 @@ pub async fn a_simulated_export_is_the_servers(server: &TestServer) {
         }
     }
     let status = |word: &str| {
-        let of = |s: &&mimique_stats::SimulatedSession| {
-            mimique_study::responses::session_status(&s.events) == word
+        let of = |s: &&mimique_analysis::SimulatedSession| {
+            mimique_session::Record::of(None, &s.events).standing.export_word() == word
         };
         sessions.iter().filter(of).count()
     };

@@ -70,16 +70,18 @@ pub fn assets(folder: &Path) -> Assets {
     std::fs::create_dir_all(&folder).unwrap();
     for (name, text) in [
         (
-            "index.html",
+            "participant/index.html",
             "<!doctype html><html lang=\"{{lang}}\"><title>{{title}}</title>\
              <meta content=\"packs={{packs}}\">\
              <script src=\"{{assets}}/app.js\"></script>",
         ),
-        ("preview.html", "<!doctype html><p>{{assets}}</p>"),
-        ("style.css", &"p { color: black }\n".repeat(100)),
+        ("researcher/preview.html", "<!doctype html><p>{{assets}}</p>"),
+        ("style/style.css", &"p { color: black }\n".repeat(100)),
         ("app.js", "export {};"),
     ] {
-        std::fs::write(folder.join(name), text).unwrap();
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
     }
     Assets::from_folder(&folder).unwrap()
 }

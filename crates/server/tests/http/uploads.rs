@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
 use mimique_server::router;
-use mimique_study::wire::SessionStarted;
+use mimique_session::wire::SessionStarted;
 use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
@@ -99,7 +99,7 @@ pub async fn an_uploaded_study_is_hosted_as_a_pilot(server: &TestServer) {
     assert!(listed.contains("/researcher/studies/uploaded") && listed.contains("<td>pilot</td>"));
     let started: SessionStarted = server.start_in("uploaded", 1).await;
     assert_eq!(started.stage, "pilot");
-    let bundle: mimique_study::wire::Bundle = server.get("/api/studies/uploaded").await.ok();
+    let bundle: mimique_session::wire::Bundle = server.get("/api/studies/uploaded").await.ok();
     let pack = bundle.clips.values().flat_map(|clip| clip.packs()).next().unwrap().to_owned();
     assert_eq!(server.get(&format!("/packs/{pack}")).await.status, StatusCode::OK);
     // Live: sessions that begin now count.

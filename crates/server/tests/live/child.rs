@@ -4,7 +4,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use mimique_server::{App, Settings, Storage};
+use mimique_server::{App, Settings};
+use mimique_storage::Storage;
 
 use crate::{block_on, study};
 

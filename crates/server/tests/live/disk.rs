@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use mimique_server::Storage;
+use mimique_storage::Storage;
 use mimique_test_support::skip;
 use serde_json::{Value, json};
 

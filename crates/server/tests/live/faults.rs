@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use mimique_study::wire::{Acknowledged, SessionStarted};
+use mimique_session::wire::{Acknowledged, SessionStarted};
 use serde_json::{Value, json};
 
 use crate::block_on;
@@ -276,9 +276,9 @@ fn postgres_is_reached_over_tls_and_its_certificate_checked() {
     assert_eq!(begin(server.port).participant, 1);
     // Another authority's word does not count.
     block_on(async {
-        let error = mimique_server::Storage::open(&format!("{url}?sslmode=verify-full")).await;
+        let error = mimique_storage::Storage::open(&format!("{url}?sslmode=verify-full")).await;
         assert!(error.is_err(), "a certificate that nobody vouches for");
-        let storage = mimique_server::Storage::open(&trusting).await.unwrap();
+        let storage = mimique_storage::Storage::open(&trusting).await.unwrap();
         assert_eq!(storage.sessions("faces").await.unwrap().len(), 1);
         storage.close().await;
     });

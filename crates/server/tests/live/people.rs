@@ -6,8 +6,8 @@ use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use mimique_server::Storage;
-use mimique_study::wire::{Acknowledged, Event, SessionStarted};
+use mimique_session::wire::{Acknowledged, Event, SessionStarted};
+use mimique_storage::Storage;
 use serde_json::{Value, json};
 
 /// Somebody who answers.

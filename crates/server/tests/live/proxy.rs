@@ -46,9 +46,9 @@ struct Ports {
     inner: u16,
 }
 
-/// The configuration of `docs/deployment/nginx.conf`, with this test's ports and files.
+/// The configuration of `docs/guide/deployment/nginx.conf`, with this test's ports and files.
 fn configuration(folder: &Path, ports: &Ports, servers: &[u16]) -> String {
-    let template = include_str!("../../../../docs/deployment/nginx.conf");
+    let template = include_str!("../../../../docs/guide/deployment/nginx.conf");
     let Ports { plain, secure, inner } = ports;
     let upstream: String = servers
         .iter()

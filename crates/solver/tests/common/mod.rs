@@ -13,15 +13,15 @@ pub fn skin(data: &Path) -> (SkinMesh, Vec<String>) {
 
 /// The skin of an avatar file, welded, and its shape names.
 pub fn read_skin(file: &Path) -> (SkinMesh, Vec<String>) {
-    let avatar = mimique_face::read_avatar(file).expect("the avatar file").avatar;
+    let avatar = mimique_avatar_files::read_avatar(file).expect("the avatar file").avatar;
     let skin = avatar.skin().expect("a skin");
     let mesh = SkinMesh {
-        positions: skin.positions.iter().map(|p| p.map(f64::from)).collect(),
+        positions: skin.positions.iter().map(|p| p.map(f64::from).into()).collect(),
         triangles: skin.triangles.clone(),
         shapes: (skin.shapes.iter())
             .map(|s| SparseDeltas {
                 vertices: s.vertices.clone(),
-                deltas: s.deltas.iter().map(|d| d.map(f64::from)).collect(),
+                deltas: s.deltas.iter().map(|d| d.map(f64::from).into()).collect(),
             })
             .collect(),
     };

@@ -3,7 +3,9 @@
 
 use std::f32::consts::PI;
 
-use mimique_face::{Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape, Texture, Textured};
+use mimique_avatar::{
+    Avatar, Eyeball, Look as EyeLook, Mesh, Part, SparseShape, Texture, Textured,
+};
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_test_support::skip;
 

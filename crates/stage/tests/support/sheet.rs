@@ -1,6 +1,6 @@
 //! The built-in head's emotions, drawn side by side.
 
-use mimique_face::{Clip, Emotion, HeadSpec, build_head, performance_weights};
+use mimique_actor::{Clip, Emotion, HeadSpec, build_head, performance_weights};
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, StageError, View};
 

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use mimique_face::read_avatar;
+use mimique_avatar_files::read_avatar;
+use mimique_geometry::{DVec3, Displacement, Point};
 use mimique_solver::{SkinMesh, SparseDeltas};
 
 /// All the meshes of the head as one, every triangle cut into `parts` x `parts`; names of its
@@ -20,11 +21,11 @@ pub fn whole_head(data: &Path, parts: usize) -> (SkinMesh, Vec<String>, Vec<(Str
     };
     for mesh in &avatar.meshes {
         let base = whole.positions.len() as u32;
-        whole.positions.extend(mesh.positions.iter().map(|p| p.map(f64::from)));
+        whole.positions.extend(mesh.positions.iter().map(|p| Point::from(p.map(f64::from))));
         whole.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + base)));
         for (to, from) in whole.shapes.iter_mut().zip(&mesh.shapes) {
             to.vertices.extend(from.vertices.iter().map(|v| v + base));
-            to.deltas.extend(from.deltas.iter().map(|d| d.map(f64::from)));
+            to.deltas.extend(from.deltas.iter().map(|d| Displacement::from(d.map(f64::from))));
         }
     }
     let mesh = finer(&whole.weld().expect("a sound head").mesh, parts);
@@ -73,27 +74,25 @@ pub fn finer(mesh: &SkinMesh, parts: usize) -> SkinMesh {
             }
         }
     }
-    let between = |values: &[[f64; 3]], mix: &[(u32, u32); 3]| -> [f64; 3] {
-        std::array::from_fn(|a| {
-            mix.iter().map(|&(v, part)| values[v as usize][a] * f64::from(part)).sum::<f64>()
-                / f64::from(p)
-        })
+    let between = |value: &dyn Fn(usize) -> DVec3, mix: &[(u32, u32); 3]| -> DVec3 {
+        mix.iter().map(|&(v, part)| value(v as usize) * f64::from(part)).sum::<DVec3>()
+            / f64::from(p)
     };
     let mut positions = mesh.positions.clone();
-    positions.extend(mixes.iter().map(|mix| between(&mesh.positions, mix)));
-    let mut dense = vec![[0.0; 3]; mesh.positions.len()];
+    positions.extend(mixes.iter().map(|mix| Point(between(&|v| mesh.positions[v].0, mix))));
+    let mut dense = vec![DVec3::ZERO; mesh.positions.len()];
     let shapes = (mesh.shapes.iter())
         .map(|shape| {
-            dense.fill([0.0; 3]);
+            dense.fill(DVec3::ZERO);
             for (&v, &d) in shape.vertices.iter().zip(&shape.deltas) {
-                dense[v as usize] = d;
+                dense[v as usize] = d.0;
             }
             let mut out = shape.clone();
             for (at, mix) in mixes.iter().enumerate() {
-                let d = between(&dense, mix);
-                if d != [0.0; 3] {
+                let d = between(&|v| dense[v], mix);
+                if d != DVec3::ZERO {
                     out.vertices.push(own + at as u32);
-                    out.deltas.push(d);
+                    out.deltas.push(Displacement(d));
                 }
             }
             out

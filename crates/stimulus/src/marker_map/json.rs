@@ -79,12 +79,39 @@ impl<'de> Deserialize<'de> for Markers {
     }
 }
 
+fn wrong(place: &str, what: String, remedy: &'static str) -> MapFileError {
+    MapFileError { place: place.to_owned(), what, remedy }
+}
+
+/// The markers' places, given in units of some metres, and the factors of single markers.
+fn markers(given: Markers, metres: f64) -> Result<(Vec<MappedMarker>, ScaleRule), MapFileError> {
+    let mut face = Vec::new();
+    let mut scale = ScaleRule::default();
+    for (label, marker) in given.0 {
+        if let Some(given) = marker.scale {
+            let factors = factors(given, &format!("markers.{label}.scale"))?;
+            scale.markers.insert(label.clone(), factors);
+        }
+        let place = match (marker.position, marker.vertex) {
+            (Some(p), _) if p.iter().all(|x| x.is_finite()) => {
+                // Dividing keeps "1 mm" the nearest number to 0.001.
+                MarkerPlace::Position(p.map(|x| x / (1.0 / metres).round()).into())
+            }
+            (None, Some(vertex)) => MarkerPlace::Vertex(vertex),
+            _ => {
+                return Err(wrong(
+                    &format!("markers.{label}"),
+                    "neither position nor vertex".to_owned(),
+                    "give its position on the neutral skin",
+                ));
+            }
+        };
+        face.push(MappedMarker { label, place });
+    }
+    Ok((face, scale))
+}
+
 pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
-    let wrong = |place: &str, what: String, remedy: &'static str| MapFileError {
-        place: place.to_owned(),
-        what,
-        remedy,
-    };
     let file: File = serde_json::from_str(text).map_err(|e| {
         let what = e.to_string();
         let place = if what.starts_with("markers: ") { "markers" } else { "JSON" };
@@ -103,29 +130,7 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
         }
     }
     .metres();
-    let mut face = Vec::new();
-    let mut scale = ScaleRule::default();
-    for (label, marker) in file.markers.0 {
-        if let Some(given) = marker.scale {
-            let factors = factors(given, &format!("markers.{label}.scale"))?;
-            scale.markers.insert(label.clone(), factors);
-        }
-        let place = match (marker.position, marker.vertex) {
-            (Some(p), _) if p.iter().all(|x| x.is_finite()) => {
-                // Dividing keeps "1 mm" the nearest number to 0.001.
-                MarkerPlace::Position(p.map(|x| x / (1.0 / metres).round()))
-            }
-            (None, Some(vertex)) => MarkerPlace::Vertex(vertex),
-            _ => {
-                return Err(wrong(
-                    &format!("markers.{label}"),
-                    "neither position nor vertex".to_owned(),
-                    "give its position on the neutral skin",
-                ));
-            }
-        };
-        face.push(MappedMarker { label, place });
-    }
+    let (face, mut scale) = markers(file.markers, metres)?;
     let neutral = span(file.neutral, "neutral")?;
     scale.automatic = span(file.scale.automatic, "scale.automatic")?;
     scale.global = file.scale.global.map(|given| factors(given, "scale.global")).transpose()?;

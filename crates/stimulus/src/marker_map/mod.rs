@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::Lid;
+use mimique_geometry::Point;
 
 pub use resolve::{MapError, REACH_M, TOLERANCE_M};
 
@@ -102,7 +103,7 @@ pub struct MappedMarker {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MarkerPlace {
     /// Metres; decides within [`TOLERANCE_M`].
-    Position([f64; 3]),
+    Position(Point),
     /// Index in the avatar file's own order.
     Vertex(u32),
 }
@@ -158,7 +159,7 @@ mod tests {
         .unwrap();
         assert_eq!(map.avatar.as_deref(), Some("Ada"));
         assert_eq!(map.face_labels().collect::<Vec<_>>(), ["Z", "A"]);
-        assert_eq!(map.face[0].place, MarkerPlace::Position([0.001, 0.002, 0.003]));
+        assert_eq!(map.face[0].place, MarkerPlace::Position(Point::new(0.001, 0.002, 0.003)));
         assert_eq!(map.face[1].place, MarkerPlace::Vertex(7));
         assert_eq!(map.head, ["Z"]);
         assert_eq!(map.neutral, Some(0..60));

@@ -1,5 +1,6 @@
 //! From places to vertices and triangles of a skin.
 
+use mimique_geometry::Point;
 use mimique_solver::MarkerSite;
 
 use super::{MarkerAssociation, MarkerMap, MarkerPlace};
@@ -124,7 +125,7 @@ impl MarkerMap {
         &self,
         skin: &AvatarSkin,
         label: &str,
-        position: [f64; 3],
+        position: Point,
         before: &[MarkerSite],
     ) -> Option<(MarkerSite, f64)> {
         match self.association {

@@ -5,11 +5,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use mimique_clip::{SOLVER_VERSION, sha256_hex};
+
 use super::PrepareError;
-use crate::provenance::{Provenance, SOLVER_VERSION, sha256_hex};
+use crate::provenance::Provenance;
 
 /// Changes when the same inputs give other packs: what was kept under old keys is not taken.
-const LAYOUT: &str = "5";
+const LAYOUT: u32 = 6;
 
 /// A pack that lies in the folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,15 +36,11 @@ impl Cache {
     /// what it was.
     pub fn pack(
         &self,
-        key: &[&str],
+        key: &Provenance,
         make: impl FnOnce() -> Result<Vec<u8>, PrepareError>,
     ) -> Result<StoredPack, PrepareError> {
-        let mut provenance =
-            Provenance::default().text("layout", LAYOUT).text("by", SOLVER_VERSION);
-        for (i, part) in key.iter().enumerate() {
-            provenance = provenance.text(&i.to_string(), part);
-        }
-        let key_file = self.folder.join("keys").join(provenance.hash());
+        let key = key.clone().json("layout", LAYOUT).json("solver", SOLVER_VERSION);
+        let key_file = self.folder.join("keys").join(key.hash());
         if let Some(pack) = self.kept(&key_file) {
             return Ok(pack);
         }
@@ -107,7 +105,7 @@ mod tests {
         let mut made = 0;
         let mut get = || {
             cache
-                .pack(&["a", "b"], || {
+                .pack(&Provenance::default().json("a", "b"), || {
                     made += 1;
                     Ok(b"pack".to_vec())
                 })
@@ -125,11 +123,25 @@ mod tests {
     }
 
     #[test]
+    fn what_an_older_program_kept_is_not_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::open(folder.path()).unwrap();
+        let key = Provenance::default().json("a", "b");
+        let old = cache.store(b"old".to_vec()).unwrap();
+        let old_key = key.clone().json("layout", LAYOUT - 1).json("solver", SOLVER_VERSION);
+        fs::write(folder.path().join("keys").join(old_key.hash()), old.hash.as_bytes()).unwrap();
+        assert_eq!(cache.pack(&key, || Ok(b"new".to_vec())).unwrap().bytes, b"new");
+        let same = key.json("layout", LAYOUT).json("solver", SOLVER_VERSION);
+        assert!(folder.path().join("keys").join(same.hash()).is_file());
+    }
+
+    #[test]
     fn keys_do_not_run_together() {
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::open(folder.path()).unwrap();
-        cache.pack(&["ab", "c"], || Ok(vec![1])).unwrap();
-        assert_eq!(cache.pack(&["a", "bc"], || Ok(vec![2])).unwrap().bytes, [2]);
+        let key = |a: &str, b: &str| Provenance::default().json("a", a).json("b", b);
+        cache.pack(&key("ab", "c"), || Ok(vec![1])).unwrap();
+        assert_eq!(cache.pack(&key("a", "bc"), || Ok(vec![2])).unwrap().bytes, [2]);
     }
 
     #[test]

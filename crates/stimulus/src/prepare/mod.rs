@@ -4,6 +4,7 @@
 //! inputs is taken from the folder; the weights are solved anew each time, by the function that the
 //! browsers run, so that their hash is that of this program.
 
+mod avatar_key;
 mod builtin;
 mod cache;
 mod solved_clip;
@@ -13,20 +14,18 @@ mod sources;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use mimique_face::Avatar;
-use mimique_solver::{Method, MethodSpec};
-use mimique_study::wire::ClipSource;
+use mimique_avatar::Avatar;
+use mimique_clip::{TakeContent, TakePack, encode_take, solve_packs};
+use mimique_solver::{Group, Method, MethodSpec};
+use mimique_study::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
-use self::cache::Cache;
+use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
-use self::source_files::{Film, Performance, Recording};
+use self::source_files::{AvatarFile, Film, Performance, Recording};
 use self::sources::Sources;
+use crate::RecordedWeights;
 use crate::provenance::Provenance;
-use crate::{RecordedWeights, TakeContent, TakePack, encode_take, solve_packs};
-
-/// Cut-off of the head's low-pass where the study file gives none, Hz.
-const HEAD_LOWPASS_HZ: f64 = 10.0;
 
 /// Where things are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -123,6 +122,19 @@ pub fn prepare(
     Ok(Prepared { clips: ready, warnings })
 }
 
+/// What a clip is played from.
+struct Ingredients {
+    /// The method, the head's low-pass and held shapes written out.
+    spec: MethodSpec,
+    avatar: StoredPack,
+    operators: StoredPack,
+    take: StoredPack,
+    /// Pointer of the segment.
+    pointer: String,
+    /// What the capture's repair is known by.
+    repair: Option<String>,
+}
+
 fn prepare_clip(
     study: &Study,
     clip: &Clip,
@@ -133,65 +145,106 @@ fn prepare_clip(
     if let Some(film) = sources.film(clip)? {
         return prepare_film(study, clip, &film, cache);
     }
-    let avatar = sources.avatar(&clip.avatar)?;
     let entry = study.stimuli.methods.get(&clip.method).ok_or_else(|| {
         PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
     })?;
-    let method_pointer = pointer(&["stimuli", "methods", &clip.method]);
-    let own_pack = || cache.pack(&["avatar", &avatar.key], || Ok(avatar.pack()));
-    let (spec, avatar_pack, operators, take, segment_pointer, repair) =
-        if entry.spec.method == Method::Recorded {
-            let recording = sources.recording(&clip.segment)?;
-            let take = cache.store(recorded(&recording, &avatar.avatar, &mut remarks.warnings)?)?;
-            // Nothing is solved: the page needs no operators, and loads the one pack once.
-            (entry.spec.clone(), own_pack()?, take.clone(), take, recording.pointer, None)
-        } else {
-            let performance = sources.performance(&clip.segment, &avatar)?;
-            let spec = with_lowpass(&entry.spec, &performance);
-            let mut spec = performance.joined()?.with_lids_locked(&spec);
-            crate::lock_shapes(&mut spec, &avatar.locked);
-            spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
-            let learns = spec.method == Method::Regression;
-            let training = learns.then(|| sources.training(&clip.method)).transpose()?;
-            let wanted = Wanted {
-                spec: &spec,
-                training: training.as_deref(),
-                method_pointer: &method_pointer,
-                performance: &performance,
-                avatar: &avatar,
-            };
-            let (moved, operators, take) = to_solve(&wanted, cache, remarks)?;
-            let avatar_pack = moved.map_or_else(own_pack, Ok)?;
-            let repair = performance.repair();
-            (spec, avatar_pack, operators, take, performance.pointer, repair)
-        };
+    let Ingredients { spec, avatar, operators, take, pointer: at, repair } = match entry.spec.method
+    {
+        Method::Recorded => recorded_clip(clip, &entry.spec, sources, cache, remarks)?,
+        _ => marker_clip(clip, &entry.spec, sources, cache, remarks)?,
+    };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
-        .map_err(|e| PrepareError::new(&method_pointer, e))?;
-    remarks.warnings.extend(solved.warnings.iter().map(|w| (segment_pointer.clone(), w.clone())));
-    let provenance = Provenance::new()
-        .text("avatar", &avatar_pack.hash)
-        .text("operators", &operators.hash)
-        .text("take", &take.hash)
+        .map_err(|e| PrepareError::new(method_pointer(clip), e))?;
+    remarks.warnings.extend(solved.warnings.iter().map(|w| (at.clone(), w.clone())));
+    let mut provenance = Provenance::new()
+        .json("avatar", avatar.hash.as_str())
+        .json("operators", operators.hash.as_str())
+        .json("take", take.hash.as_str())
         .method(&spec)
-        .text("weights", &solved.weights_hash);
-    let provenance = match &repair {
-        Some(repair) => provenance.text("repair", repair),
-        None => provenance,
+        .json("weights", solved.weights_hash.as_str());
+    if let Some(repair) = repair {
+        provenance = provenance.json("repair", repair);
     }
-    .hash();
-    let packs = BTreeMap::from([&avatar_pack, &operators, &take].map(|p| (&p.hash, p.bytes.len())));
+    let packs = BTreeMap::from([&avatar, &operators, &take].map(|p| (&p.hash, p.bytes.len())));
     Ok(ClipSource {
         bytes: packs.values().map(|&bytes| bytes as u64).sum(),
         duration_ms: solved.frames() as f64 / solved.rate_hz * 1e3,
-        avatar: avatar_pack.hash,
+        avatar: avatar.hash,
         operators: operators.hash,
         take: take.hash,
         method: spec,
-        provenance,
+        provenance: provenance.hash(),
         weights_hash: solved.weights_hash,
         look: study.stimuli.avatars[&clip.avatar].look.word().to_owned(),
         film: None,
     })
+}
+
+/// A clip of recorded weights. Nothing is solved: the page needs no operators, and loads the one pack
+/// once.
+fn recorded_clip(
+    clip: &Clip,
+    spec: &MethodSpec,
+    sources: &Sources<'_>,
+    cache: &Cache,
+    remarks: &mut Remarks,
+) -> Result<Ingredients, PrepareError> {
+    let avatar = sources.avatar(&clip.avatar)?;
+    let recording = sources.recording(&clip.segment)?;
+    let take = cache.store(recorded(&recording, &avatar.avatar, &mut remarks.warnings)?)?;
+    Ok(Ingredients {
+        spec: spec.clone(),
+        avatar: avatar_pack(&avatar, cache)?,
+        operators: take.clone(),
+        take,
+        pointer: recording.pointer,
+        repair: None,
+    })
+}
+
+/// A clip that is solved from markers.
+fn marker_clip(
+    clip: &Clip,
+    spec: &MethodSpec,
+    sources: &Sources<'_>,
+    cache: &Cache,
+    remarks: &mut Remarks,
+) -> Result<Ingredients, PrepareError> {
+    let avatar = sources.avatar(&clip.avatar)?;
+    let performance = sources.performance(&clip.segment, &avatar)?;
+    let spec = with_lowpass(spec, &performance);
+    let mut spec = performance.joined()?.with_shapes_held(&spec);
+    crate::lock_shapes(&mut spec, &avatar.locked);
+    let method_pointer = method_pointer(clip);
+    spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
+    let learns = spec.method == Method::Regression;
+    let training = learns.then(|| sources.training(&clip.method)).transpose()?;
+    let wanted = Wanted {
+        spec: &spec,
+        training: training.as_deref(),
+        method_pointer: &method_pointer,
+        performance: &performance,
+        avatar: &avatar,
+    };
+    let (moved, operators, take) = to_solve(&wanted, cache, remarks)?;
+    Ok(Ingredients {
+        avatar: moved.map_or_else(|| avatar_pack(&avatar, cache), Ok)?,
+        operators,
+        take,
+        repair: performance.repair(),
+        spec: spec.at_rate(performance.rate_hz()),
+        pointer: performance.pointer,
+    })
+}
+
+/// The pack of an avatar that moves by its own shapes.
+fn avatar_pack(avatar: &AvatarFile, cache: &Cache) -> Result<StoredPack, PrepareError> {
+    let key = Provenance::default().json("pack", "avatar").json("avatar", avatar.key.as_str());
+    cache.pack(&key, || Ok(avatar.pack()))
+}
+
+fn method_pointer(clip: &Clip) -> String {
+    pointer(&["stimuli", "methods", &clip.method])
 }
 
 /// A film is served as it is.
@@ -206,7 +259,7 @@ fn prepare_film(
     Ok(ClipSource {
         bytes: pack.bytes.len() as u64,
         duration_ms: 0.0,
-        provenance: Provenance::new().text("film", &pack.hash).hash(),
+        provenance: Provenance::new().json("film", pack.hash.as_str()).hash(),
         avatar: pack.hash,
         operators: String::new(),
         take: String::new(),
@@ -240,12 +293,11 @@ fn recorded(
     Ok(encode_take(&take))
 }
 
-/// The head's low-pass of a clip: the method's own, or the capture's, or 10 Hz.
+/// The method with the head's low-pass that the capture asks for where the method names none.
 fn with_lowpass(spec: &MethodSpec, performance: &Performance) -> MethodSpec {
     let mut spec = spec.clone();
-    if spec.head_lowpass_hz.is_none() && spec.method.parameters().contains(&"headLowpassHz") {
-        let usual = (2.0 * HEAD_LOWPASS_HZ < performance.rate_hz()).then_some(HEAD_LOWPASS_HZ);
-        spec.head_lowpass_hz = performance.head_lowpass_hz.or(usual);
+    if spec.method.uses(Group::Head) {
+        spec.head_lowpass_hz = spec.head_lowpass_hz.or(performance.head_lowpass_hz);
     }
     spec
 }

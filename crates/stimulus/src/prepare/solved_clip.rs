@@ -1,18 +1,20 @@
 //! A clip that is solved from markers: its operators, its take, and what is to be said of them.
 
 use std::cell::OnceCell;
+use std::collections::{BTreeMap, BTreeSet};
 
-use mimique_face::pack::encode_pack;
-use mimique_solver::{Method, MethodSpec, OperatorOptions, Operators};
+use mimique_avatar::pack::encode_pack;
+use mimique_clip::{decode_operators, encode_operators, encode_take};
+use mimique_solver::{Linking, Method, MethodSpec, OperatorOptions, Operators};
+use serde_json::{Value, json};
 
 use super::cache::{Cache, StoredPack};
 use super::source_files::{AvatarFile, Performance};
 use super::{PrepareError, Remarks};
-use crate::report::unseen_shapes;
-use crate::take_checks::is_fitted;
-use crate::{
-    JoinedTake, SetUp, SolveError, Training, encode_operators, encode_take, surface_avatar,
-};
+use crate::checks::is_fitted;
+use crate::provenance::Provenance;
+use crate::take::unseen_shapes;
+use crate::{JoinedTake, SetUp, SolveError, Training, surface_avatar};
 
 /// Blendshapes that the stage's shader holds.
 const MOST_STAGE_SHAPES: usize = 256;
@@ -58,21 +60,12 @@ pub(super) fn to_solve(
         let said = training.warnings(&avatar.avatar.shape_names);
         remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
     }
+    let unfiltered = joined.unfiltered_head(spec);
+    remarks.warnings.extend(unfiltered.map(|w| (performance.capture_pointer.clone(), w)));
     let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
     remarks.warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
-    let options = format!("{:?}", OperatorOptions::of(spec));
     let markers = joined.marker_key();
-    let more = match spec.method {
-        Method::ThinShellSurface => format!("surface {:?}", spec.hold()),
-        Method::Regression => {
-            let numbers = (spec.basis_vectors(), spec.length_scale, spec.signal, spec.noise);
-            let key = training.map(Training::key).unwrap_or_default();
-            format!("{key} {:?} {numbers:?} {:?}", spec.inference(), spec.head_lowpass_hz)
-        }
-        _ => String::new(),
-    };
-    let mut key = vec!["operators", &avatar.key, &markers, &options];
-    key.extend((!more.is_empty()).then_some(more.as_str()));
+    let key = operators_key(wanted, &markers);
     // Both packs of a surface need it; made once, and only where one of them is not there.
     let set_up = OnceCell::new();
     let ready = || -> Result<&SetUp, PrepareError> {
@@ -82,13 +75,14 @@ pub(super) fn to_solve(
         }
         set_up.get().ok_or_else(|| PrepareError::new(wanted.method_pointer, "not set up"))
     };
-    let operators = cache.pack(&key, || Ok(encode_operators(&ready()?.operators)))?;
-    let opened = crate::decode_operators(&operators.bytes)
+    let operators = cache.pack(&key.clone().json("pack", "operators"), || {
+        Ok(encode_operators(&ready()?.operators))
+    })?;
+    let opened = decode_operators(&operators.bytes)
         .map_err(|e| PrepareError::new(&performance.capture_pointer, e))?;
     look_at_labels(wanted, &joined, &opened, remarks)?;
     let moved = if spec.method == Method::ThinShellSurface {
-        key[0] = "surface avatar";
-        Some(cache.pack(&key, || {
+        Some(cache.pack(&key.json("pack", "surface avatar"), || {
             let surface = ready()?.surface.as_ref().ok_or_else(|| {
                 PrepareError::new(wanted.method_pointer, "the method moves no surface")
             })?;
@@ -111,20 +105,60 @@ pub(super) fn to_solve(
     };
     let unseen = unseen_shapes(&opened, spec);
     remarks.warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
-    // Automatic scale factors follow from the bank between its bounds.
-    let range = if joined.scales_by_bank() {
-        format!("{:?} {:?} {}", spec.bounds, spec.locked, avatar.key)
-    } else {
-        String::new()
-    };
-    let lowpass = format!("{:?}", spec.head_lowpass_hz);
-    let take = cache.pack(&["take", &markers, &performance.key, &lowpass, &range], || {
+    let key = take_key(wanted, &markers, joined.scales_by_bank());
+    let take = cache.pack(&key.json("pack", "take"), || {
         let take = joined
             .segment(&opened, spec, performance.frames.clone())
             .map_err(|e| performance.error(e))?;
         Ok(encode_take(&take))
     })?;
     Ok((moved, operators, take))
+}
+
+/// What the operators follow from.
+fn operators_key(wanted: &Wanted<'_>, markers: &str) -> Provenance {
+    let Wanted { spec, training, avatar, .. } = *wanted;
+    let options = OperatorOptions::of(spec);
+    let association = match options.linking {
+        None => Value::Null,
+        Some(Linking::Points) => json!("points"),
+        Some(Linking::Zones { sigma }) => json!({ "zones": sigma }),
+        Some(Linking::Triangles) => json!("triangles"),
+    };
+    let key = Provenance::default()
+        .json("avatar", avatar.key.as_str())
+        .json("markers", markers)
+        .json("laplacian", json!(options.laplacian))
+        .json("kS", options.k_s)
+        .json("kB", options.k_b)
+        .json("association", association);
+    match spec.method {
+        Method::ThinShellSurface => key.json("hold", json!(spec.hold())),
+        Method::Regression => key
+            .json("training", json!(training.map(Training::key)))
+            .json("inference", json!(spec.inference()))
+            .json("basisVectors", spec.basis_vectors())
+            .json("kernel", json!([spec.length_scale, spec.signal, spec.noise]))
+            .json("headLowpassHz", json!(spec.head_lowpass_hz)),
+        _ => key,
+    }
+}
+
+/// What the take pack follows from. Automatic scale factors follow from the bank between its bounds.
+fn take_key(wanted: &Wanted<'_>, markers: &str, scaled_by_bank: bool) -> Provenance {
+    let Wanted { spec, performance, avatar, .. } = *wanted;
+    let key = Provenance::default()
+        .json("markers", markers)
+        .json("performance", performance.key.as_str())
+        .json("headLowpassHz", json!(spec.head_lowpass_hz(performance.rate_hz())));
+    if !scaled_by_bank {
+        return key;
+    }
+    let bounds: BTreeMap<&String, &[f64; 2]> = spec.bounds.iter().collect();
+    let locked: BTreeSet<&String> = spec.locked.iter().collect();
+    key.json("avatar", avatar.key.as_str())
+        .json("bounds", json!(bounds))
+        .json("locked", json!(locked))
 }
 
 /// Labels of a recorded capture that are swapped or stand at one place, looked for once for all its

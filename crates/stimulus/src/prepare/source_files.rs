@@ -4,13 +4,14 @@ use std::cell::OnceCell;
 use std::ops::Range;
 use std::rc::Rc;
 
-use mimique_face::Avatar;
-use mimique_face::pack::encode_pack;
-use mimique_mocap::{Capture, resample};
+use mimique_avatar::Avatar;
+use mimique_avatar::pack::encode_pack;
+use mimique_mocap::{Capture, WeightsTable, resample};
 use mimique_solver::FrontEndError;
 
 use super::PrepareError;
-use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions, WeightsTable};
+use crate::provenance::Provenance;
+use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions};
 
 /// An avatar, and what its bytes or its making are known by.
 pub(super) struct AvatarFile {
@@ -128,7 +129,8 @@ impl CaptureFile {
             Some((neutral, played)) => Some((shown(neutral)?, shown(played)?)),
             None => None,
         };
-        self.key = format!("{} at {rate_hz} Hz", self.key);
+        let key = Provenance::default().json("capture", self.key.as_str());
+        self.key = key.json("rateHz", rate_hz).hash();
         Ok(self)
     }
 }
@@ -141,7 +143,7 @@ impl Recording {
     pub fn at_rate(self, rate_hz: f64, pointer: &str) -> Result<Self, PrepareError> {
         let Some(recorded_hz) = self.table.rate_hz() else { return Ok(self) };
         lower(rate_hz, recorded_hz, pointer)?;
-        let table = self.table.at(rate_hz);
+        let table = self.table.resampled(rate_hz);
         let frames =
             FrameCount::new([self.table.frames.len(), table.frames.len()], [recorded_hz, rate_hz]);
         let frames = frames.shown(self.frames).map_err(|e| PrepareError::new(&self.pointer, e))?;
@@ -156,7 +158,7 @@ fn lower(rate_hz: f64, recorded_hz: f64, pointer: &str) -> Result<(), PrepareErr
         return Ok(());
     }
     let message =
-        format!("{rate_hz} frames a second of a recording of {recorded_hz}; leave rateHz out");
+        format!("{rate_hz} frames per second of a recording of {recorded_hz}; leave rateHz out");
     Err(PrepareError::new(pointer, message))
 }
 
@@ -186,7 +188,7 @@ impl Performance {
         self.capture.known.is_none()
     }
 
-    /// Frames a second of the capture.
+    /// Frames per second of the capture.
     pub fn rate_hz(&self) -> f64 {
         self.capture.capture.rate_hz
     }

@@ -5,15 +5,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use mimique_mocap::{Capture, LengthUnit, ReadOptions};
+use mimique_clip::sha256_hex;
+use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, read_weights_file};
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
 };
+use serde_json::json;
 
+use super::avatar_key::avatar_key;
 use super::source_files::{AvatarFile, CaptureFile, Film, Performance, Recording};
 use super::{Places, PrepareError, builtin, pointer};
-use crate::provenance::{sha256_hex, sha256_of_file};
-use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, WeightsTable, split_shapes};
+use crate::provenance::{Provenance, sha256_of_file};
+use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -41,16 +44,15 @@ impl<'a> Sources<'a> {
         let (key, avatar, sites, pointer) = match source {
             Some(AvatarSource::Builtin(who)) => {
                 let (avatar, sites) = builtin::avatar(who);
-                (builtin::avatar_key(&avatar), avatar, Some(sites), at("builtin"))
+                (avatar_key(&avatar), avatar, Some(sites), at("builtin"))
             }
             Some(AvatarSource::File(file)) => {
                 let path = self.path(file, &at("file"))?;
-                let read = mimique_face::read_avatar(&path).map_err(|e| {
+                let read = mimique_avatar_files::read_avatar(&path).map_err(|e| {
                     PrepareError::new(at("file"), format!("{}: {e}", path.display()))
                 })?;
                 locked = read.locked;
-                // By content: pictures, buffers and settings may lie in files of their own.
-                (builtin::avatar_key(&read.avatar), read.avatar, None, at("file"))
+                (avatar_key(&read.avatar), read.avatar, None, at("file"))
             }
             Some(AvatarSource::Videos(_)) | None => {
                 let message = "give exactly one of builtin, file and videos";
@@ -63,7 +65,7 @@ impl<'a> Sources<'a> {
         } else {
             let avatar =
                 split_shapes(&avatar, split).map_err(|e| PrepareError::new(at("split"), e))?;
-            (format!("{key} split {}", split.join(" ")), avatar)
+            (avatar_key(&avatar), avatar)
         };
         let file =
             Rc::new(AvatarFile { key, avatar, locked, sites, skin: OnceCell::new(), pointer });
@@ -99,22 +101,7 @@ impl<'a> Sources<'a> {
         let capture_pointer = pointer(&["stimuli", "captures", &segment.capture]);
         let file = self.capture(segment, &at)?;
         let entry = &self.study.stimuli.captures[&segment.capture];
-        let (map, map_key) = match (&entry.markers, &avatar.sites) {
-            (Some(path), _) => {
-                let at = format!("{capture_pointer}/markers");
-                let (path, bytes) = self.read(path, &at)?;
-                let map = MarkerMap::from_text(&String::from_utf8_lossy(&bytes))
-                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
-                (map, sha256_hex(&bytes))
-            }
-            (None, Some(sites)) if file.known.is_some() => (sites.clone(), "sites".to_owned()),
-            (None, _) => {
-                return Err(PrepareError::new(
-                    format!("{capture_pointer}/markers"),
-                    "no marker map; name the file that says where each marker sits on the avatar",
-                ));
-            }
-        };
+        let (map, map_key) = self.marker_map(&segment.capture, &file, avatar)?;
         let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
         let shown = |[first, end]: [usize; 2]| file.frames.shown(first..end);
         let neutral = entry
@@ -141,12 +128,20 @@ impl<'a> Sources<'a> {
                 ));
             }
         };
-        let take_key = format!("{} {map_key} {:?} {:?}", file.key, options.neutral, options.head);
+        let take_key = Provenance::default()
+            .json("capture", file.key.as_str())
+            .json("map", map_key)
+            .json("neutral", json!(options.neutral.as_ref().map(|n| [n.start, n.end])))
+            .json("head", json!(options.head))
+            .hash();
         Ok(Performance {
             pointer: at,
             capture_pointer,
             head_lowpass_hz: entry.head_lowpass_hz,
-            key: format!("{take_key} {frames:?}"),
+            key: Provenance::default()
+                .json("take", take_key.as_str())
+                .json("frames", json!([frames.start, frames.end]))
+                .hash(),
             take_key,
             frames,
             avatar: avatar.clone(),
@@ -154,6 +149,29 @@ impl<'a> Sources<'a> {
             map,
             options,
         })
+    }
+
+    /// The marker map of a capture and what it is known by.
+    fn marker_map(
+        &self,
+        capture: &str,
+        file: &CaptureFile,
+        avatar: &AvatarFile,
+    ) -> Result<(MarkerMap, String), PrepareError> {
+        let at = pointer(&["stimuli", "captures", capture, "markers"]);
+        match (&self.study.stimuli.captures[capture].markers, &avatar.sites) {
+            (Some(path), _) => {
+                let (path, bytes) = self.read(path, &at)?;
+                let map = MarkerMap::from_text(&String::from_utf8_lossy(&bytes))
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                Ok((map, sha256_hex(&bytes)))
+            }
+            (None, Some(sites)) if file.known.is_some() => Ok((sites.clone(), "sites".to_owned())),
+            (None, _) => Err(PrepareError::new(
+                at,
+                "no marker map; name the file that says where each marker sits on the avatar",
+            )),
+        }
     }
 
     /// What the regression of that identifier learns from.
@@ -176,7 +194,7 @@ impl<'a> Sources<'a> {
                 let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
                 let at = format!("{at}/weights");
                 let path = self.path(weights_file, &at)?;
-                let weights = WeightsTable::from_file(&path)
+                let weights = read_weights_file(&path, &WeightOptions::default())
                     .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
                 Training {
                     capture,
@@ -224,7 +242,7 @@ impl<'a> Sources<'a> {
             }
         };
         let path = self.path(file, &pointer)?;
-        let table = WeightsTable::from_file(&path)
+        let table = read_weights_file(&path, &WeightOptions::default())
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
             Some(Span::Frames { first, end }) if end <= table.frames.len() => {
@@ -251,7 +269,7 @@ impl<'a> Sources<'a> {
         let entry = self.study.stimuli.captures.get(id);
         let (name, file) = match (entry.and_then(|c| c.source()), segment.span()) {
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
-                let name = format!("{id} {:?}", what);
+                let name = json!([id, what]).to_string();
                 if let Some(found) = self.captures.borrow().get(&name) {
                     return Ok(found.clone());
                 }
@@ -309,7 +327,8 @@ impl<'a> Sources<'a> {
         let repair = RepairSidecar::beside(&path, || Ok(hash.clone()))
             .map_err(|e| PrepareError::new(&at_file, e))?
             .map(|sidecar| sidecar.hash());
-        Ok((format!("{hash} {unit:?}"), recording.capture, repair))
+        let key = Provenance::default().json("file", hash).json("unit", json!(unit)).hash();
+        Ok((key, recording.capture, repair))
     }
 
     /// The path of a file that the study names.

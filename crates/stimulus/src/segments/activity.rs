@@ -17,9 +17,9 @@ use mimique_mocap::{FilterError, LowPass};
 pub struct Channels<'a> {
     /// Frame-major, `count` a frame; a missing one is NaN.
     pub values: &'a [f64],
-    /// Channels a frame.
+    /// Channels per frame.
     pub count: usize,
-    /// Frames a second.
+    /// Frames per second.
     pub rate_hz: f64,
 }
 
@@ -38,7 +38,7 @@ impl Default for ActivityOptions {
     }
 }
 
-/// Activity of a take, a number a frame.
+/// Activity of a take, a number per frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Activity {
     /// Sum over the channels of |dw/dt| (eq. 4.4), a second.

@@ -7,9 +7,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use quick_xml::XmlVersion;
-use quick_xml::events::{BytesStart, Event};
+use quick_xml::events::Event;
 use quick_xml::reader::Reader;
+
+use super::eaf_read::{Aligned, Reading, at};
 
 /// An annotation: a stretch of time and a word.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,172 +93,28 @@ impl EafDocument {
     /// # Errors
     /// [`EafError`] with the byte.
     pub fn parse(text: &str) -> Result<Self, EafError> {
-        let at = |place: u64, what: String| EafError {
-            place: format!("byte {place}"),
-            what,
-            remedy: REMEDY,
-        };
         // The reader counts from behind a byte order mark; the document keeps it.
-        let marks = (text.len() - text.trim_start_matches('\u{feff}').len()) as u64;
-        let mut reader = Reader::from_str(&text[marks as usize..]);
-        let mut places = Places::default();
-        let mut times: Vec<Option<u64>> = Vec::new();
-        // Tier, slots, value of every annotation.
-        let mut aligned: Vec<(usize, [String; 2], String)> = Vec::new();
-        let mut open: Vec<String> = Vec::new();
-        let mut inside_tier: Option<usize> = None;
-        let mut value: Option<String> = None;
-        let mut property: Option<usize> = None;
+        let marks = text.len() - text.trim_start_matches('\u{feff}').len();
+        let mut reader = Reader::from_str(&text[marks..]);
+        let mut reading = Reading::of(text);
         loop {
-            let from = marks + reader.buffer_position();
+            let from = marks + reader.buffer_position() as usize;
             let event = reader
                 .read_event()
-                .map_err(|e| at(marks + reader.error_position(), e.to_string()))?;
-            let to = marks + reader.buffer_position();
-            let range = from as usize..to as usize;
+                .map_err(|e| at(marks + reader.error_position() as usize, e.to_string()))?;
+            let range = from..marks + reader.buffer_position() as usize;
             match event {
-                Event::Start(ref tag) | Event::Empty(ref tag) => {
-                    let empty = matches!(event, Event::Empty(_));
-                    let name = name_of(tag);
-                    let attributes = attributes(tag).map_err(|what| at(from, what))?;
-                    let attribute = |key: &str| attributes.get(key).cloned();
-                    let needed = |key: &str| {
-                        attribute(key).ok_or_else(|| at(from, format!("{name} without {key}")))
-                    };
-                    if open.is_empty() && name != "ANNOTATION_DOCUMENT" {
-                        return Err(at(from, format!("the document is a {name:?}, not ELAN's")));
-                    }
-                    match name.as_str() {
-                        "TIME_ORDER" => {
-                            places.time_order = Some((range.clone(), None));
-                        }
-                        "TIME_SLOT" => {
-                            let id = needed("TIME_SLOT_ID")?;
-                            let time = attribute("TIME_VALUE")
-                                .map(|t| {
-                                    t.trim().parse::<u64>().map_err(|_| {
-                                        at(from, format!("TIME_VALUE {t:?} is no time"))
-                                    })
-                                })
-                                .transpose()?;
-                            raise(&mut places.slot_number, &id, "ts");
-                            places.slots.push((id, range.clone()));
-                            times.push(time);
-                        }
-                        "TIER" => {
-                            places.tiers.push(TierPlace {
-                                id: needed("TIER_ID")?,
-                                element: range.clone(),
-                                open_tag: range.clone(),
-                                parent: attribute("PARENT_REF"),
-                                refers: false,
-                            });
-                            inside_tier = (!empty).then_some(places.tiers.len() - 1);
-                        }
-                        "ALIGNABLE_ANNOTATION" | "REF_ANNOTATION" => {
-                            let Some(tier) = inside_tier else {
-                                return Err(at(from, format!("{name} outside a tier")));
-                            };
-                            raise(&mut places.annotation_number, &needed("ANNOTATION_ID")?, "a");
-                            if name == "ALIGNABLE_ANNOTATION" {
-                                let slots = [needed("TIME_SLOT_REF1")?, needed("TIME_SLOT_REF2")?];
-                                let id = &places.tiers[tier].id;
-                                places.uses.extend(slots.iter().map(|s| (s.clone(), id.clone())));
-                                aligned.push((tier, slots, String::new()));
-                            } else {
-                                places.tiers[tier].refers = true;
-                            }
-                        }
-                        "ANNOTATION_VALUE" => {
-                            let own = open.last().is_some_and(|o| o == "ALIGNABLE_ANNOTATION");
-                            value = (own && !empty).then(String::new);
-                        }
-                        "LINGUISTIC_TYPE" => {
-                            places.after_tiers.get_or_insert(range.start);
-                            let free = !attributes.contains_key("CONSTRAINTS");
-                            let aligned = attribute("TIME_ALIGNABLE").is_none_or(|a| a == "true");
-                            if free && aligned {
-                                places.alignable_types.push(needed("LINGUISTIC_TYPE_ID")?);
-                            }
-                        }
-                        "PROPERTY"
-                            if attribute("NAME").as_deref() == Some("lastUsedAnnotationId") =>
-                        {
-                            property = (!empty).then_some(range.end);
-                        }
-                        _ => {}
-                    }
-                    if !empty {
-                        open.push(name);
-                    }
-                }
-                Event::Text(text) => {
-                    if let Some(value) = &mut value {
-                        value.push_str(&text.xml10_content());
-                    }
-                }
-                Event::CData(text) => {
-                    if let Some(value) = &mut value {
-                        value.push_str(&text.xml10_content());
-                    }
-                }
-                Event::GeneralRef(reference) => {
-                    if let Some(value) = &mut value {
-                        let character = reference.resolve_char_ref().ok().flatten();
-                        let name = reference.xml10_content();
-                        match (character, quick_xml::escape::resolve_xml_entity(&name)) {
-                            (Some(c), _) => value.push(c),
-                            (None, Some(text)) => value.push_str(text),
-                            (None, None) => {
-                                return Err(at(from, format!("&{name}; is not known")));
-                            }
-                        }
-                    }
-                }
-                Event::End(_) => {
-                    let name = open.pop().unwrap_or_default();
-                    match name.as_str() {
-                        "TIME_ORDER" => {
-                            if let Some((element, end_tag)) = &mut places.time_order {
-                                *end_tag = Some(range.start);
-                                element.end = range.end;
-                            }
-                        }
-                        "TIER" => {
-                            if let Some(tier) = inside_tier.take() {
-                                places.tiers[tier].element.end = range.end;
-                            }
-                        }
-                        "ANNOTATION_VALUE" => {
-                            if let (Some(value), Some(last)) = (value.take(), aligned.last_mut()) {
-                                last.2 = value;
-                            }
-                        }
-                        "PROPERTY" => {
-                            let number = property
-                                .take()
-                                .filter(|start| !text[*start..range.start].contains('<'));
-                            if let Some(start) = number {
-                                places.last_annotation = Some(start..range.start);
-                            }
-                        }
-                        "ANNOTATION_DOCUMENT" => {
-                            places.after_tiers.get_or_insert(range.start);
-                        }
-                        _ => {}
-                    }
-                }
+                Event::Start(tag) => reading.start(&tag, range, false)?,
+                Event::Empty(tag) => reading.start(&tag, range, true)?,
+                Event::Text(text) => reading.characters(&text.xml10_content()),
+                Event::CData(text) => reading.characters(&text.xml10_content()),
+                Event::GeneralRef(reference) => reading.reference(&reference, from)?,
+                Event::End(_) => reading.end(range),
                 Event::Eof => break,
                 Event::Decl(_) | Event::PI(_) | Event::DocType(_) | Event::Comment(_) => {}
             }
         }
-        if places.after_tiers.is_none() || !open.is_empty() {
-            let what = match open.last() {
-                Some(name) => format!("the document ends inside {name}"),
-                None => "no ANNOTATION_DOCUMENT".to_owned(),
-            };
-            return Err(at(text.len() as u64, what));
-        }
+        let Reading { places, times, aligned, .. } = reading.whole()?;
         let tiers = tiers(&places, &times, aligned).map_err(|what| EafError {
             place: "TIME_ORDER".to_owned(),
             what,
@@ -287,7 +144,7 @@ impl EafDocument {
 fn tiers(
     places: &Places,
     times: &[Option<u64>],
-    aligned: Vec<(usize, [String; 2], String)>,
+    aligned: Vec<Aligned>,
 ) -> Result<Vec<EafTier>, String> {
     let mut whole = Vec::with_capacity(times.len());
     for (i, time) in times.iter().enumerate() {
@@ -311,7 +168,7 @@ fn tiers(
         .iter()
         .map(|tier| EafTier { id: tier.id.clone(), annotations: Vec::new() })
         .collect();
-    for (tier, [start, end], value) in aligned {
+    for Aligned { tier, slots: [start, end], value } in aligned {
         let time = |slot: &String| {
             by_name.get(slot.as_str()).copied().ok_or_else(|| format!("no time slot {slot:?}"))
         };
@@ -325,28 +182,4 @@ fn tiers(
         tier.annotations.sort_by_key(|a| (a.start_ms, a.end_ms));
     }
     Ok(tiers)
-}
-
-/// Raise `highest` to the number of an identifier `a12` or `ts12`.
-fn raise(highest: &mut u64, id: &str, prefix: &str) {
-    if let Some(number) = id.strip_prefix(prefix).and_then(|n| n.parse::<u64>().ok()) {
-        // Far below the end of the numbers, so that there are always more.
-        *highest = (*highest).max(number.min(u64::MAX / 2));
-    }
-}
-
-fn name_of(tag: &BytesStart<'_>) -> String {
-    tag.name().as_ref().to_owned()
-}
-
-fn attributes(tag: &BytesStart<'_>) -> Result<BTreeMap<String, String>, String> {
-    tag.attributes()
-        .map(|attribute| {
-            let attribute = attribute.map_err(|e| e.to_string())?;
-            let value =
-                attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| e.to_string())?;
-            let key = attribute.key.as_ref().to_owned();
-            Ok((key, value.into_owned()))
-        })
-        .collect()
 }

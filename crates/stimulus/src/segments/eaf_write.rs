@@ -105,86 +105,70 @@ impl EafDocument {
         old: Option<(Range<usize>, Range<usize>)>,
     ) -> Result<Self, EafError> {
         let places = &self.places;
-        let (mut slot, mut annotation) = (places.slot_number, places.annotation_number);
         // Slots that only the old tier used go with it.
         let unused = |slot: &str| {
             let mut users = places.uses.iter().filter(|(s, _)| s == slot).peekable();
             users.peek().is_some() && users.all(|(_, tier)| tier == id)
         };
-        let mut edits: Vec<(Range<usize>, String)> = places
-            .slots
-            .iter()
+        let mut edits: Vec<Edit> = (places.slots.iter())
             .filter(|(slot, _)| unused(slot))
             .map(|(_, element)| (self.with_blank_before(element), String::new()))
             .collect();
-        // ELAN wants time slots in order of time; those without one stay where they are, so the
-        // new ones go after all that are not later.
-        let mut slots = String::new();
-        let mut tier = String::new();
-        for a in annotations {
-            let [start, end] = [slot + 1, slot + 2];
-            slot += 2;
-            annotation += 1;
-            // Writing to a String does not fail.
-            let _ = write!(
-                slots,
-                "    <TIME_SLOT TIME_SLOT_ID=\"ts{start}\" TIME_VALUE=\"{}\"/>\n        \
-                 <TIME_SLOT TIME_SLOT_ID=\"ts{end}\" TIME_VALUE=\"{}\"/>\n    ",
-                a.start_ms, a.end_ms
-            );
-            let _ = write!(
-                tier,
-                "\n        <ANNOTATION>\n            \
-                 <ALIGNABLE_ANNOTATION ANNOTATION_ID=\"a{annotation}\" \
-                 TIME_SLOT_REF1=\"ts{start}\" TIME_SLOT_REF2=\"ts{end}\">\n                \
-                 <ANNOTATION_VALUE>{}</ANNOTATION_VALUE>\n            \
-                 </ALIGNABLE_ANNOTATION>\n        </ANNOTATION>",
-                escape(&a.value)
-            );
-        }
-        tier.push_str("\n    </TIER>");
-        let after_tiers = places.after_tiers.unwrap_or(self.text.len());
-        let fits = places.alignable_types.first();
-        match old {
-            Some((element, open_tag)) => {
-                let open = self.text[open_tag].trim_end_matches('>').trim_end_matches('/');
-                edits.push((element, format!("{}>{tier}", open.trim_end())));
-            }
-            None => {
-                let kind = fits.map_or(TYPE, String::as_str);
-                let open = format!(
-                    "<TIER LINGUISTIC_TYPE_REF=\"{}\" TIER_ID=\"{}\">",
-                    escape(kind),
-                    escape(id)
-                );
-                let types = match fits {
-                    Some(_) => String::new(),
-                    None => format!(
-                        "<LINGUISTIC_TYPE GRAPHIC_REFERENCES=\"false\" \
-                         LINGUISTIC_TYPE_ID=\"{TYPE}\" TIME_ALIGNABLE=\"true\"/>\n    "
-                    ),
-                };
-                edits.push((after_tiers..after_tiers, format!("{open}{tier}\n    {types}")));
-            }
-        }
-        match &places.time_order {
-            Some((_, Some(end))) => edits.push((*end..*end, slots)),
-            Some((element, None)) => {
-                let whole = format!("<TIME_ORDER>\n    {slots}</TIME_ORDER>");
-                edits.push((element.clone(), whole));
-            }
-            None => {
-                let first = places.tiers.first().map_or(after_tiers, |t| t.element.start);
-                edits.push((first..first, format!("<TIME_ORDER>\n    {slots}</TIME_ORDER>\n    ")));
-            }
-        }
+        let written = Written::of(annotations, places.slot_number, places.annotation_number);
+        edits.push(self.tier_edit(id, &written.tier, old));
+        edits.push(self.slots_edit(&written.slots));
         if let Some(property) = &places.last_annotation {
             let said = self.text[property.clone()].trim().parse::<u64>().unwrap_or(0);
-            edits.push((property.clone(), said.max(annotation).to_string()));
+            edits.push((property.clone(), said.max(written.last_annotation).to_string()));
         }
         // Of two edits at one place the one made first comes first: slots stand before tiers.
         edits.sort_by_key(|(range, text)| (range.start, !text.starts_with("<TIME_ORDER")));
-        let mut text = String::with_capacity(self.text.len() + slots_len(&edits));
+        Self::parse(&self.edited(&edits)?)
+    }
+
+    /// The tier in the place of the old one, or after the others with a linguistic type that it may be of.
+    fn tier_edit(&self, id: &str, tier: &str, old: Option<(Range<usize>, Range<usize>)>) -> Edit {
+        if let Some((element, open_tag)) = old {
+            let open = self.text[open_tag].trim_end_matches('>').trim_end_matches('/');
+            return (element, format!("{}>{tier}", open.trim_end()));
+        }
+        let fits = self.places.alignable_types.first();
+        let kind = fits.map_or(TYPE, String::as_str);
+        let open =
+            format!("<TIER LINGUISTIC_TYPE_REF=\"{}\" TIER_ID=\"{}\">", escape(kind), escape(id));
+        let types = match fits {
+            Some(_) => String::new(),
+            None => format!(
+                "<LINGUISTIC_TYPE GRAPHIC_REFERENCES=\"false\" \
+                 LINGUISTIC_TYPE_ID=\"{TYPE}\" TIME_ALIGNABLE=\"true\"/>\n    "
+            ),
+        };
+        let after_tiers = self.after_tiers();
+        (after_tiers..after_tiers, format!("{open}{tier}\n    {types}"))
+    }
+
+    /// The time slots at the end of the others, or in an element of their own.
+    fn slots_edit(&self, slots: &str) -> Edit {
+        let element = format!("<TIME_ORDER>\n    {slots}</TIME_ORDER>");
+        match &self.places.time_order {
+            Some((_, Some(end))) => (*end..*end, slots.to_owned()),
+            Some((empty, None)) => (empty.clone(), element),
+            None => {
+                let tiers = &self.places.tiers;
+                let first = tiers.first().map_or(self.after_tiers(), |t| t.element.start);
+                (first..first, format!("{element}\n    "))
+            }
+        }
+    }
+
+    fn after_tiers(&self) -> usize {
+        self.places.after_tiers.unwrap_or(self.text.len())
+    }
+
+    /// The text with edits in the order of their places.
+    fn edited(&self, edits: &[Edit]) -> Result<String, EafError> {
+        let new: usize = edits.iter().map(|(_, text)| text.len()).sum();
+        let mut text = String::with_capacity(self.text.len() + new);
         let mut at = 0;
         for (range, new) in edits {
             // A tier inside a property, as no ELAN writes it.
@@ -196,11 +180,11 @@ impl EafDocument {
                 });
             }
             text.push_str(&self.text[at..range.start]);
-            text.push_str(&new);
+            text.push_str(new);
             at = range.end;
         }
         text.push_str(&self.text[at..]);
-        Self::parse(&text)
+        Ok(text)
     }
 
     /// An element and the blanks before it, so that no empty line stays.
@@ -250,6 +234,47 @@ impl EafAnnotation {
     }
 }
 
-fn slots_len(edits: &[(Range<usize>, String)]) -> usize {
-    edits.iter().map(|(_, text)| text.len()).sum()
+/// What takes the place of a part of the text.
+type Edit = (Range<usize>, String);
+
+/// Annotations as ELAN writes them.
+struct Written {
+    /// Their time slots.
+    slots: String,
+    /// The tier from behind its open tag.
+    tier: String,
+    /// Number of the last annotation.
+    last_annotation: u64,
+}
+
+impl Written {
+    /// With the numbers that follow those of the last slot and annotation.
+    fn of(annotations: &[EafAnnotation], mut slot: u64, mut annotation: u64) -> Self {
+        // ELAN wants time slots in order of time; those without one stay where they are, so the
+        // new ones go after all that are not later.
+        let (mut slots, mut tier) = (String::new(), String::new());
+        for a in annotations {
+            let [start, end] = [slot + 1, slot + 2];
+            slot += 2;
+            annotation += 1;
+            // Writing to a String does not fail.
+            let _ = write!(
+                slots,
+                "    <TIME_SLOT TIME_SLOT_ID=\"ts{start}\" TIME_VALUE=\"{}\"/>\n        \
+                 <TIME_SLOT TIME_SLOT_ID=\"ts{end}\" TIME_VALUE=\"{}\"/>\n    ",
+                a.start_ms, a.end_ms
+            );
+            let _ = write!(
+                tier,
+                "\n        <ANNOTATION>\n            \
+                 <ALIGNABLE_ANNOTATION ANNOTATION_ID=\"a{annotation}\" \
+                 TIME_SLOT_REF1=\"ts{start}\" TIME_SLOT_REF2=\"ts{end}\">\n                \
+                 <ANNOTATION_VALUE>{}</ANNOTATION_VALUE>\n            \
+                 </ALIGNABLE_ANNOTATION>\n        </ANNOTATION>",
+                escape(&a.value)
+            );
+        }
+        tier.push_str("\n    </TIER>");
+        Self { slots, tier, last_annotation: annotation }
+    }
 }

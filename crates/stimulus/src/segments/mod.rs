@@ -1,4 +1,4 @@
-//! Expressions in a long take: suggested from its weights, mended by hand in a table or in ELAN,
+//! Expressions in a long take: suggested from its weights, corrected by hand in a table or in ELAN,
 //! cut with neutral before and after.
 //!
 //! ```text
@@ -10,6 +10,7 @@
 mod activity;
 mod csv;
 mod eaf;
+mod eaf_read;
 mod eaf_write;
 mod study;
 mod suggest;

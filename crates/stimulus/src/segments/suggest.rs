@@ -1,4 +1,4 @@
-//! Where the expressions of a take are: a suggestion, to be mended by hand.
+//! Where the expressions of a take are: a suggestion, to be corrected by hand.
 //!
 //! Borders are the frames where the energy of velocity and acceleration peaks, as far as the peak
 //! stands out (thesis 4.4.2). The thesis labels what lies between borders by learning; here a
@@ -62,7 +62,7 @@ pub struct Suggestion {
     pub level: Vec<f64>,
     /// Level above which a face is an expression.
     pub threshold: f64,
-    /// Frames a second.
+    /// Frames per second.
     pub rate_hz: f64,
 }
 
@@ -71,7 +71,7 @@ pub struct Suggestion {
 pub struct Timeline {
     /// Seconds of the take.
     pub duration_s: f64,
-    /// Frames a second.
+    /// Frames per second.
     pub rate_hz: f64,
     /// Frames.
     pub frames: usize,

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use mimique_face::arkit_shapes;
-use mimique_solver::align_rigidly;
+use mimique_avatar::arkit_shapes;
+use mimique_geometry::{DVec3, Point, align_rigidly};
 
+use super::Face;
 use super::label_words::{Region, Side, place_of};
-use super::{Face, minus};
 use crate::AvatarSkin;
 
 /// Fewest places that a face is laid by.
@@ -17,9 +17,9 @@ const FEWEST: usize = 4;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Anchors {
     /// On the actor.
-    pub actor: Vec<[f64; 3]>,
+    pub actor: Vec<Point>,
     /// On the avatar.
-    pub avatar: Vec<[f64; 3]>,
+    pub avatar: Vec<Point>,
     /// Markers that each stands for.
     pub weight: Vec<usize>,
     /// Whether the labels' left is the viewer's.
@@ -33,9 +33,9 @@ impl Anchors {
         skin: &AvatarSkin,
         face: &Face,
         labels: impl Iterator<Item = &'l str>,
-        points: &[[f64; 3]],
+        points: &[Point],
     ) -> Self {
-        let mut groups: BTreeMap<(Region, Side), Vec<[f64; 3]>> = BTreeMap::new();
+        let mut groups: BTreeMap<(Region, Side), Vec<Point>> = BTreeMap::new();
         for (label, p) in labels.zip(points) {
             if let Some(place) = place_of(label) {
                 groups.entry(place).or_default().push(*p);
@@ -66,14 +66,14 @@ impl Anchors {
     fn misfit(&self) -> Option<f64> {
         let motion = align_rigidly(&self.actor, &self.avatar).ok()?;
         let square: f64 = (self.actor.iter().zip(&self.avatar))
-            .map(|(p, q)| minus(motion.apply(*p), *q).iter().map(|x| x * x).sum::<f64>())
+            .map(|(p, q)| (motion.apply(*p) - *q).length_squared())
             .sum();
         Some((square / self.actor.len() as f64).sqrt())
     }
 }
 
 /// Where the avatar's shapes show a part of the face to be.
-fn avatar_place(skin: &AvatarSkin, face: &Face, region: Region, side: Side) -> Option<[f64; 3]> {
+fn avatar_place(skin: &AvatarSkin, face: &Face, region: Region, side: Side) -> Option<Point> {
     // Shapes whose largest displacements lie there, of the left side.
     let (shapes, power): (&[&str], i32) = match region {
         Region::Brow => (&["browDownLeft", "browOuterUpLeft"], 2),
@@ -94,7 +94,7 @@ fn avatar_place(skin: &AvatarSkin, face: &Face, region: Region, side: Side) -> O
             continue;
         }
         for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-            let millimetres = 1e3 * d.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let millimetres = 1e3 * d.length();
             weight[v as usize] += millimetres.powi(power);
         }
     }
@@ -106,17 +106,18 @@ fn avatar_place(skin: &AvatarSkin, face: &Face, region: Region, side: Side) -> O
     let of = || {
         (face.vertices.iter())
             .map(|&v| (skin.mesh.positions[v], weight[v]))
-            .filter(|(p, w)| *w > 0.0 && on_side(p[0]))
+            .filter(|(p, w)| *w > 0.0 && on_side(p.x))
     };
     of().next()?;
     Some(mean(of()))
 }
 
-fn mean(points: impl Iterator<Item = ([f64; 3], f64)>) -> [f64; 3] {
-    let (mut sum, mut total) = ([0.0; 3], 0.0);
+/// The weighted mean of some points.
+fn mean(points: impl Iterator<Item = (Point, f64)>) -> Point {
+    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for (p, w) in points {
-        (0..3).for_each(|a| sum[a] += w * p[a]);
+        sum += w * p.0;
         total += w;
     }
-    sum.map(|x| x / total)
+    Point(sum / total)
 }

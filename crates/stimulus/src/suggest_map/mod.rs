@@ -1,5 +1,5 @@
 //! Where each marker of a capture probably sits on an avatar, without anybody having said so: a
-//! suggestion to be looked at and mended, never used unseen.
+//! suggestion to be looked at and corrected, never used unseen.
 //!
 //! The neutral markers are laid on the part of the skin that shapes move ([`registration`]): from
 //! every way up and round a capture may have, to the nearest vertices, again and again. Labels that
@@ -14,6 +14,7 @@ mod registration;
 
 use std::ops::Range;
 
+use mimique_geometry::{DVec3, Displacement, Point, centroid};
 use mimique_mocap::{Capture, stillest};
 use mimique_solver::SkinMesh;
 use serde::Serialize;
@@ -56,7 +57,7 @@ pub struct SuggestedMarker {
     /// Vertex of the welded skin, of a marker on the face.
     pub vertex: Option<usize>,
     /// The marker's neutral place laid on the avatar, metres.
-    pub place: [f64; 3],
+    pub place: Point,
     /// From there to the skin, millimetres.
     pub distance_mm: f64,
 }
@@ -132,13 +133,13 @@ pub fn suggest_map(
     if seen.len() < FEWEST {
         return Err(SuggestMapError::TooFew { seen: seen.len(), start, end });
     }
-    let points: Vec<[f64; 3]> = seen.iter().filter_map(|&m| rest[m]).collect();
+    let points: Vec<Point> = seen.iter().filter_map(|&m| rest[m]).collect();
     let face = Face::of(&skin.mesh);
     if face.vertices.len() < FEWEST {
         return Err(SuggestMapError::NoFace);
     }
     let motion = marker_motion(capture, &seen, &points);
-    let places: Vec<[f64; 3]> = face.vertices.iter().map(|&v| skin.mesh.positions[v]).collect();
+    let places: Vec<Point> = face.vertices.iter().map(|&v| skin.mesh.positions[v]).collect();
     let reach: Vec<f64> = face.vertices.iter().map(|&v| face.reach[v]).collect();
     let labels = seen.iter().map(|&m| capture.labels[m].as_str());
     let anchors = Anchors::of(skin, &face, labels, &points);
@@ -147,10 +148,37 @@ pub fn suggest_map(
         ranks_agree(&motion, &avatar)
     });
 
-    let laid: Vec<[f64; 3]> = points.iter().map(|&p| fit.apply(p)).collect();
+    let laid: Vec<Point> = points.iter().map(|&p| fit.apply(p)).collect();
     let vertices = face.distinct(&skin.mesh, &laid);
-    let mut markers: Vec<SuggestedMarker> = (seen.iter().zip(&laid).zip(&vertices))
-        .map(|((&m, &place), &(vertex, distance))| {
+    let labels = seen.iter().map(|&m| capture.labels[m].as_str());
+    let mut markers = suggested(labels, &laid, &vertices, &face);
+    let mut notes = Vec::new();
+    let unsteady: Vec<f64> =
+        motion.iter().zip(&vertices).map(|(m, (vertex, _))| m * face.reach[*vertex]).collect();
+    complete_head(capture, &seen, &points, &unsteady, &mut markers, &mut notes);
+    notes.extend(remarks(&markers, &anchors, fit.agreement));
+    let on: Vec<f64> =
+        (markers.iter()).filter(|m| m.vertex.is_some()).map(|m| m.distance_mm).collect();
+    let square: f64 = on.iter().map(|d| d * d).sum();
+    Ok(SuggestedMap {
+        markers,
+        neutral: start..end,
+        distance_rms_mm: (square / on.len().max(1) as f64).sqrt(),
+        scale: fit.scale,
+        motion_agreement: fit.agreement,
+        notes,
+    })
+}
+
+/// The markers laid on the face, by their distance from the skin and whether it moves there.
+fn suggested<'l>(
+    labels: impl Iterator<Item = &'l str>,
+    laid: &[Point],
+    vertices: &[(usize, f64)],
+    face: &Face,
+) -> Vec<SuggestedMarker> {
+    (labels.zip(laid).zip(vertices))
+        .map(|((label, &place), &(vertex, distance))| {
             let on = distance <= OFF_SKIN_M;
             let role = match (on, face.reach[vertex] < SKULL_M) {
                 (false, _) => MarkerRole::None,
@@ -158,18 +186,19 @@ pub fn suggest_map(
                 (true, false) => MarkerRole::Face,
             };
             SuggestedMarker {
-                label: capture.labels[m].clone(),
+                label: label.to_owned(),
                 role,
                 vertex: on.then_some(vertex),
                 place,
                 distance_mm: 1e3 * distance,
             }
         })
-        .collect();
+        .collect()
+}
+
+/// What should be looked at in a suggestion.
+fn remarks(markers: &[SuggestedMarker], anchors: &Anchors, agreement: f64) -> Vec<String> {
     let mut notes = Vec::new();
-    let unsteady: Vec<f64> =
-        motion.iter().zip(&vertices).map(|(m, (vertex, _))| m * face.reach[*vertex]).collect();
-    complete_head(capture, &seen, &points, &unsteady, &mut markers, &mut notes);
     let left_out: Vec<&str> =
         (markers.iter()).filter(|m| m.role == MarkerRole::None).map(|m| m.label.as_str()).collect();
     if !left_out.is_empty() {
@@ -179,10 +208,6 @@ pub fn suggest_map(
             1e3 * OFF_SKIN_M
         ));
     }
-    let on: Vec<f64> =
-        (markers.iter()).filter(|m| m.vertex.is_some()).map(|m| m.distance_mm).collect();
-    let square: f64 = on.iter().map(|d| d * d).sum();
-    let distance_rms_mm = (square / on.len().max(1) as f64).sqrt();
     if anchors.swapped {
         notes.push("the labels' left is the viewer's left, the person's right".to_owned());
     }
@@ -192,20 +217,13 @@ pub fn suggest_map(
                 .to_owned(),
         );
     }
-    if fit.agreement < 0.2 {
+    if agreement < 0.2 {
         notes.push(
             "what moves on the actor is not what moves on the avatar: the face may lie wrongly"
                 .to_owned(),
         );
     }
-    Ok(SuggestedMap {
-        markers,
-        neutral: start..end,
-        distance_rms_mm,
-        scale: fit.scale,
-        motion_agreement: fit.agreement,
-        notes,
-    })
+    notes
 }
 
 impl SuggestedMap {
@@ -230,19 +248,13 @@ impl SuggestedMap {
 }
 
 /// The mean place of each marker in the neutral frames, metres.
-fn neutral_places(capture: &Capture, neutral: Range<usize>) -> Vec<Option<[f64; 3]>> {
+fn neutral_places(capture: &Capture, neutral: Range<usize>) -> Vec<Option<Point>> {
     let metres = capture.unit.metres();
     (0..capture.labels.len())
         .map(|m| {
-            let (mut sum, mut count) = ([0.0; 3], 0.0);
-            for frame in neutral.clone() {
-                let p = capture.frame(frame)[m];
-                if p.iter().all(|x| x.is_finite()) {
-                    (0..3).for_each(|a| sum[a] += p[a]);
-                    count += 1.0;
-                }
-            }
-            (count > 0.0).then(|| sum.map(|x| x * metres / count))
+            let seen = neutral.clone().map(|frame| capture.frame(frame)[m]);
+            let mean = centroid(seen.filter(|p| p.is_finite()));
+            mean.is_seen().then(|| mean.map(|x| x * metres))
         })
         .collect()
 }
@@ -260,27 +272,24 @@ impl Face {
         let mut reach = vec![0.0_f64; mesh.positions.len()];
         for shape in &mesh.shapes {
             for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let most = &mut reach[v as usize];
-                *most = most.max(length);
+                *most = most.max(d.length());
             }
         }
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for (p, _) in mesh.positions.iter().zip(&reach).filter(|(_, r)| **r >= SKULL_M) {
-            for a in 0..3 {
-                low[a] = low[a].min(p[a]);
-                high[a] = high[a].max(p[a]);
-            }
+            low = low.min(p.0);
+            high = high.max(p.0);
         }
         // A forehead stands above what moves.
-        high[1] += 0.25 * (high[1] - low[1]);
+        high.y += 0.25 * (high.y - low.y);
         let normals = normals(mesh);
-        let middle = 0.5 * (low[2] + high[2]);
-        let inside = |p: &[f64; 3]| (0..3).all(|a| low[a] <= p[a] && p[a] <= high[a]);
+        let middle = 0.5 * (low.z + high.z);
+        let inside = |p: Point| p.cmpge(low).all() && p.cmple(high).all();
         let vertices = (0..mesh.positions.len())
             .filter(|&v| {
-                let p = &mesh.positions[v];
-                inside(p) && p[2] > middle && normals[v][2] > 0.0
+                let p = mesh.positions[v];
+                inside(p) && p.z > middle && normals[v].z > 0.0
             })
             .collect();
         Self { vertices, reach }
@@ -288,12 +297,12 @@ impl Face {
 
     /// The nearest vertex of each place, none of them twice, and its distance; the nearest choose
     /// first.
-    fn distinct(&self, mesh: &SkinMesh, places: &[[f64; 3]]) -> Vec<(usize, f64)> {
+    fn distinct(&self, mesh: &SkinMesh, places: &[Point]) -> Vec<(usize, f64)> {
         let mut found = vec![(0, f64::INFINITY); places.len()];
         let mut taken = vec![false; mesh.positions.len()];
-        let nearest = |p: &[f64; 3], taken: &[bool]| {
+        let nearest = |p: &Point, taken: &[bool]| {
             (self.vertices.iter().filter(|&&v| !taken[v]))
-                .map(|&v| (v, distance(&mesh.positions[v], p)))
+                .map(|&v| (v, (mesh.positions[v] - *p).length()))
                 .min_by(|a, b| a.1.total_cmp(&b.1))
                 .unwrap_or((0, f64::INFINITY))
         };
@@ -309,23 +318,14 @@ impl Face {
 }
 
 /// Unit normals of the vertices.
-fn normals(mesh: &SkinMesh) -> Vec<[f64; 3]> {
-    let mut sums = vec![[0.0; 3]; mesh.positions.len()];
+fn normals(mesh: &SkinMesh) -> Vec<Displacement> {
+    let mut sums = vec![Displacement::ZERO; mesh.positions.len()];
     for t in &mesh.triangles {
         let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-        let (u, w) = (minus(b, a), minus(c, a));
-        let n = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
-        for &v in t {
-            (0..3).for_each(|x| sums[v as usize][x] += n[x]);
-        }
+        let n = (b - a).cross(c - a);
+        t.iter().for_each(|&v| sums[v as usize] += n);
     }
-    for n in &mut sums {
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length > 0.0 {
-            *n = n.map(|x| x / length);
-        }
-    }
-    sums
+    sums.into_iter().map(|n| Displacement(n.normalize_or_zero())).collect()
 }
 
 /// Sees to at least three head markers: those off the skin that keep their distances (a headband),
@@ -333,7 +333,7 @@ fn normals(mesh: &SkinMesh) -> Vec<[f64; 3]> {
 fn complete_head(
     capture: &Capture,
     seen: &[usize],
-    points: &[[f64; 3]],
+    points: &[Point],
     unsteady: &[f64],
     markers: &mut [SuggestedMarker],
     notes: &mut Vec<String>,
@@ -372,12 +372,4 @@ fn complete_head(
         still.iter().map(|&i| markers[i].label.as_str()).collect::<Vec<_>>().join(", ")
     ));
     join_rigid(markers, &still);
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    minus(*a, *b).iter().map(|x| x * x).sum::<f64>().sqrt()
 }

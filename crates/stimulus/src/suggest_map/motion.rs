@@ -1,14 +1,14 @@
 //! How much each marker moves on the face, the head's own motion taken out.
 
+use mimique_geometry::{Point, RigidMotion, align_rigidly};
 use mimique_mocap::Capture;
-use mimique_solver::{RigidMotion, align_rigidly};
 
 /// Frames looked at: enough to see every part of the face move.
 const LOOKED_AT: usize = 240;
 
 /// Root mean square way of each marker from its neutral place, metres, every frame laid on the
 /// neutral as a whole.
-pub(super) fn marker_motion(capture: &Capture, seen: &[usize], points: &[[f64; 3]]) -> Vec<f64> {
+pub(super) fn marker_motion(capture: &Capture, seen: &[usize], points: &[Point]) -> Vec<f64> {
     let all: Vec<usize> = (0..seen.len()).collect();
     let moved = rigid_to(capture, seen, points, &all, &all);
     moved.into_iter().map(Option::unwrap_or_default).collect()
@@ -19,7 +19,7 @@ pub(super) fn marker_motion(capture: &Capture, seen: &[usize], points: &[[f64; 3
 pub(super) fn rigid_to(
     capture: &Capture,
     seen: &[usize],
-    points: &[[f64; 3]],
+    points: &[Point],
     head: &[usize],
     of: &[usize],
 ) -> Vec<Option<f64>> {
@@ -30,15 +30,14 @@ pub(super) fn rigid_to(
     for frame in (0..frames).step_by(step) {
         let now = |i: usize| {
             let p = capture.frame(frame)[seen[i]].map(|x| x * metres);
-            p.iter().all(|x| x.is_finite()).then_some(p)
+            p.is_finite().then_some(p)
         };
-        let (from, to): (Vec<[f64; 3]>, Vec<[f64; 3]>) =
+        let (from, to): (Vec<Point>, Vec<Point>) =
             head.iter().filter_map(|&i| Some((now(i)?, points[i]))).unzip();
         let Some(pose) = pose(&from, &to) else { continue };
         for (sum, &i) in sums.iter_mut().zip(of) {
             if let Some(p) = now(i) {
-                let q = pose.apply(p);
-                sum.0 += (0..3).map(|a| (q[a] - points[i][a]).powi(2)).sum::<f64>();
+                sum.0 += (pose.apply(p) - points[i]).length_squared();
                 sum.1 += 1.0;
             }
         }
@@ -46,7 +45,7 @@ pub(super) fn rigid_to(
     sums.into_iter().map(|(sum, count)| (count > 0.0).then(|| f64::sqrt(sum / count))).collect()
 }
 
-fn pose(from: &[[f64; 3]], to: &[[f64; 3]]) -> Option<RigidMotion> {
+fn pose(from: &[Point], to: &[Point]) -> Option<RigidMotion> {
     if from.len() < 3 { None } else { align_rigidly(from, to).ok() }
 }
 

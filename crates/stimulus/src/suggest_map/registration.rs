@@ -1,7 +1,7 @@
 //! Points laid on a surface by a similarity, from every way up and round: iterated closest points
 //! (Besl and McKay 1992), the farthest left out, the best of all starts.
 
-use mimique_solver::{RigidMotion, align_rigidly};
+use mimique_geometry::{DQuat, Point, RigidMotion, align_rigidly, centroid};
 
 use super::anchors::Anchors;
 
@@ -41,7 +41,7 @@ impl From<RigidMotion> for Similarity {
 
 impl Similarity {
     /// Where a point comes to lie.
-    pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
+    pub fn apply(&self, p: Point) -> Point {
         self.motion.apply(p.map(|x| x * self.scale))
     }
 
@@ -54,21 +54,19 @@ impl Similarity {
 /// Lays `points` on `surface` (both metres), drawn to the `anchors`; `judge` says from the nearest vertices (indices into
 /// `surface`) how likely a way of lying is, -1 to 1.
 pub(super) fn register(
-    points: &[[f64; 3]],
-    surface: &[[f64; 3]],
+    points: &[Point],
+    surface: &[Point],
     anchors: &Anchors,
     judge: &dyn Fn(&[usize]) -> f64,
 ) -> Similarity {
     let step = surface.len().div_ceil(COARSE);
     let coarse: Vec<usize> = (0..surface.len()).step_by(step.max(1)).collect();
-    let places: Vec<[f64; 3]> = coarse.iter().map(|&v| surface[v]).collect();
-    let (from, to) = (centre(points), centre(surface));
+    let places: Vec<Point> = coarse.iter().map(|&v| surface[v]).collect();
+    let [from, to] = [points, surface].map(|all| centroid(all.iter().copied()));
     let mut best: Option<Similarity> = None;
-    let by_form = starts().into_iter().map(|rotation| {
-        let turned = rotation.rotate(from);
-        let translation = [to[0] - turned[0], to[1] - turned[1], to[2] - turned[2]];
-        RigidMotion { translation, ..rotation }
-    });
+    let by_form = starts()
+        .into_iter()
+        .map(|rotation| RigidMotion { translation: to - rotation.apply(from), ..rotation });
     let by_labels = align_rigidly(&anchors.actor, &anchors.avatar).ok();
     for motion in by_labels.into_iter().chain(by_form) {
         let (mut fit, nearest) = settle(points, &places, anchors, Similarity::from(motion));
@@ -87,36 +85,36 @@ pub(super) fn register(
 /// Every axis upwards, and turns about it.
 fn starts() -> Vec<RigidMotion> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    // Quaternions (w, x, y, z) that bring +Y, -Y, +Z, -Z, +X, -X upwards.
+    // Quaternions (x, y, z, w) that bring +Y, -Y, +Z, -Z, +X, -X upwards.
     let ups = [
+        [0.0, 0.0, 0.0, 1.0],
         [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [half, -half, 0.0, 0.0],
-        [half, half, 0.0, 0.0],
+        [-half, 0.0, 0.0, half],
         [half, 0.0, 0.0, half],
-        [half, 0.0, 0.0, -half],
+        [0.0, 0.0, half, half],
+        [0.0, 0.0, -half, half],
     ];
     let turn = |i: usize| {
         let angle = std::f64::consts::PI * i as f64 / TURNS as f64;
-        RigidMotion::from_quaternion([angle.cos(), 0.0, angle.sin(), 0.0])
+        RigidMotion::turn(DQuat::from_xyzw(0.0, angle.sin(), 0.0, angle.cos()))
     };
-    let up = ups.map(RigidMotion::from_quaternion);
+    let up = ups.map(|up| RigidMotion::turn(DQuat::from_array(up)));
     (0..TURNS).flat_map(|i| up.iter().map(move |u| turn(i).after(u))).collect()
 }
 
 /// Iterated closest points; the similarity and the nearest place of every point.
 fn settle(
-    points: &[[f64; 3]],
-    surface: &[[f64; 3]],
+    points: &[Point],
+    surface: &[Point],
     anchors: &Anchors,
     mut fit: Similarity,
 ) -> (Similarity, Vec<usize>) {
     let mut nearest = vec![0; points.len()];
     for _ in 0..STEPS {
-        let laid: Vec<[f64; 3]> = points.iter().map(|&p| fit.apply(p)).collect();
+        let laid: Vec<Point> = points.iter().map(|&p| fit.apply(p)).collect();
         let mut order: Vec<(usize, f64)> = Vec::with_capacity(points.len());
         for (m, p) in laid.iter().enumerate() {
-            let (v, square) = closest(p, surface);
+            let (v, square) = closest(*p, surface);
             nearest[m] = v;
             order.push((m, square));
         }
@@ -124,12 +122,11 @@ fn settle(
         let kept = ((KEPT * points.len() as f64).ceil() as usize).clamp(3, points.len());
         let kept = &order[..kept.min(order.len())];
         let rms = (kept.iter().map(|(_, d)| d).sum::<f64>() / kept.len() as f64).sqrt();
-        let (mut from, mut to): (Vec<[f64; 3]>, Vec<[f64; 3]>) =
+        let (mut from, mut to): (Vec<Point>, Vec<Point>) =
             kept.iter().map(|&(m, _)| (points[m], surface[nearest[m]])).unzip();
         let mut square = 0.0;
         for ((&p, &q), &weight) in anchors.actor.iter().zip(&anchors.avatar).zip(&anchors.weight) {
-            let laid = fit.apply(p);
-            square += (0..3).map(|a| (laid[a] - q[a]).powi(2)).sum::<f64>();
+            square += (fit.apply(p) - q).length_squared();
             from.extend(std::iter::repeat_n(p, weight));
             to.extend(std::iter::repeat_n(q, weight));
         }
@@ -147,34 +144,25 @@ fn settle(
 
 /// The motion with the size of the one set in units of the other's. Their spreads say it: the least
 /// squares' own size shrinks with every step, as nearest points are never too far.
-fn similarity(from: &[[f64; 3]], to: &[[f64; 3]], motion: RigidMotion) -> Similarity {
-    let (a, b) = (centre(from), centre(to));
-    let spread = |points: &[[f64; 3]], c: [f64; 3]| -> f64 {
-        points.iter().map(|p| (0..3).map(|x| (p[x] - c[x]).powi(2)).sum::<f64>()).sum()
+fn similarity(from: &[Point], to: &[Point], motion: RigidMotion) -> Similarity {
+    let [a, b] = [from, to].map(|all| centroid(all.iter().copied()));
+    let spread = |points: &[Point], centre: Point| -> f64 {
+        points.iter().map(|p| (*p - centre).length_squared()).sum()
     };
     let (actor, avatar) = (spread(from, a), spread(to, b));
     let scale = if actor > 0.0 { (avatar / actor).sqrt().clamp(SCALES[0], SCALES[1]) } else { 1.0 };
-    let turned = motion.rotate(a.map(|x| x * scale));
-    let translation = [b[0] - turned[0], b[1] - turned[1], b[2] - turned[2]];
+    let turned = RigidMotion { rotation: motion.rotation, ..RigidMotion::IDENTITY };
+    let translation = b - turned.apply(a.map(|x| x * scale));
     Similarity { scale, ..Similarity::from(RigidMotion { translation, ..motion }) }
 }
 
-fn closest(p: &[f64; 3], surface: &[[f64; 3]]) -> (usize, f64) {
+fn closest(p: Point, surface: &[Point]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (v, q) in surface.iter().enumerate() {
-        let (x, y, z) = (p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-        let square = x * x + y * y + z * z;
+        let square = (p - *q).length_squared();
         if square < best.1 {
             best = (v, square);
         }
     }
     best
-}
-
-fn centre(points: &[[f64; 3]]) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for p in points {
-        (0..3).for_each(|a| sum[a] += p[a]);
-    }
-    sum.map(|x| x / points.len().max(1) as f64)
 }

@@ -3,9 +3,9 @@
 
 use super::hypotheses::factor_names;
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
+use super::problem::Problem;
 use super::{Subject, responses};
-use crate::responses::ASSIGNED_CONDITION;
+use crate::columns::ASSIGNED_CONDITION;
 use crate::study_file::{Hypothesis, Layout, Study, TableLayout, TestName};
 
 /// A factor that a hypothesis or a table names at `place`: that there is such a factor.
@@ -15,15 +15,11 @@ pub(super) fn factor(subject: &Subject<'_>, factor: &str, place: String, issues:
         return;
     }
     if factor == ASSIGNED_CONDITION {
-        let message = format!("\"{factor}\" of a study that assigns no condition");
-        let hint = "write nested sequences with \"conditional\": true, one for each condition; or name \
-                    another factor";
-        issues.error(place, "no-conditions", message, hint);
+        issues.error(place, Problem::NoConditions { factor: factor.to_owned() });
         return;
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let message = format!("there is no factor \"{factor}\"");
-    issues.error(place, "unknown-reference", message, suggestion(factor, &names));
+    issues.error(place, Problem::unknown("factor", factor, &names));
 }
 
 /// A test that takes answers of one person at several levels, or levels in an order, is none of
@@ -44,32 +40,23 @@ pub(super) fn hypothesis(
     let named = |name: &&str| !first || levels.is_empty() || levels.iter().any(|it| it == name);
     let compared: Vec<&str> = conditions.into_iter().filter(named).collect();
     asked(subject.study, hypothesis, &compared, pointer, issues);
-    let of_groups = match compared.len() {
-        2 => "take \"mann-whitney\"",
-        _ => "take \"kruskal-wallis\"",
+    let instead = match compared.len() {
+        2 => "mann-whitney",
+        _ => "kruskal-wallis",
     };
-    let (test, hint) = match hypothesis.test {
-        TestName::Wilcoxon => ("wilcoxon", of_groups),
-        TestName::Friedman => ("friedman", of_groups),
-        TestName::AlignedRankTransform => (
-            "aligned-rank-transform",
-            "take \"scheirer-ray-hare\": its interaction with a factor of the clips is tested on each \
-             person's differences",
-        ),
-        TestName::Spearman => {
-            let message = "\"spearman\" of conditions: their names have no order";
-            issues.error(below(pointer, "test"), "no-order", message, of_groups);
-            return;
+    let problem = match hypothesis.test {
+        TestName::Wilcoxon => Problem::DependentSamples { test: "wilcoxon", instead },
+        TestName::Friedman => Problem::DependentSamples { test: "friedman", instead },
+        TestName::AlignedRankTransform => {
+            Problem::DependentTwoWay { test: "aligned-rank-transform" }
         }
+        TestName::Spearman => Problem::ConditionsUnordered { instead },
         TestName::KruskalWallis
         | TestName::MannWhitney
         | TestName::ScheirerRayHare
         | TestName::ChiSquare => return,
     };
-    let message = format!(
-        "\"{test}\" compares answers of one person at several levels; everybody is in one condition"
-    );
-    issues.error(below(pointer, "test"), "dependent-samples", message, hint);
+    issues.error(below(pointer, "test"), problem);
 }
 
 /// Everybody who is compared is asked in some trial.
@@ -84,11 +71,13 @@ fn asked(
     let Some(question) = responses::question(study, response) else { return };
     for condition in compared {
         if !responses::is_asked(study, condition, &question.id) {
-            let message = format!(
-                "nobody in the condition \"{condition}\" is asked \"{response}\" in a trial"
+            issues.error(
+                below(pointer, "response"),
+                Problem::ConditionNotAsked {
+                    condition: (*condition).to_owned(),
+                    response: response.to_owned(),
+                },
             );
-            let hint = "ask it in trials of every condition that is compared, or compare others by \"levels\"";
-            issues.error(below(pointer, "response"), "not-asked", message, hint);
         }
     }
 }
@@ -104,8 +93,5 @@ pub(super) fn table(
     if !is_factor || table.layout != Layout::Pairs || subject.study.conditions().is_empty() {
         return;
     }
-    let message = "the layout \"pairs\" compares answers of one person at two levels; everybody is in \
-                   one condition";
-    let hint = "take \"influences\" or \"means\"; a pair of conditions is a hypothesis of \"mann-whitney\"";
-    issues.error(below(pointer, "layout"), "dependent-samples", message, hint);
+    issues.error(below(pointer, "layout"), Problem::DependentPairs);
 }

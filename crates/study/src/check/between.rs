@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::issue::{Issues, below};
+use super::problem::Problem;
 use crate::study_file::{Sequence, SequenceItem, Study};
 
 /// Most letters of a condition's name.
@@ -33,17 +34,14 @@ pub(super) fn shown_before(
 pub(super) fn examine(sequence: &Sequence, issues: &mut Issues) {
     let mut found = Vec::new();
     if sequence.conditional {
-        let message =
-            "the whole study is conditional: nobody outside of the condition is shown anything";
-        let hint = "write \"conditional\" in nested sequences, one for each condition";
-        issues.error("/sequence/conditional", "bad-condition", message, hint);
+        issues.error("/sequence/conditional", Problem::WholeStudyConditional);
     }
     nested(sequence, "/sequence", None, false, &mut found, issues);
     if let [(name, pointer)] = found.as_slice() {
-        let message = format!("\"{name}\" is the only condition: everybody is in it");
-        let hint = "write a second conditional sequence; \"components\": [] for a condition with \
-                    nothing of its own";
-        issues.warning(below(pointer, "conditional"), "one-condition", message, hint);
+        issues.warning(
+            below(pointer, "conditional"),
+            Problem::OnlyCondition { name: (*name).to_owned() },
+        );
     }
 }
 
@@ -79,35 +77,21 @@ fn one<'a>(
 ) {
     let flag = below(pointer, "conditional");
     let Some(id) = sequence.id.as_deref() else {
-        let message = "a condition without a name";
-        let hint = "add \"id\": the name that addresses say (?condition=...)";
-        issues.error(flag, "bad-condition", message, hint);
+        issues.error(flag, Problem::NamelessCondition);
         return;
     };
     let place = below(pointer, "id");
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
     if id.is_empty() || id.len() > LONGEST || !id.chars().all(plain) {
-        let message = format!("\"{id}\" cannot be the name of a condition: it stands in addresses");
-        let hint = format!("use letters, digits, _ and -, {LONGEST} at most");
-        issues.error(&place, "bad-id", message, hint);
+        issues.error(&place, Problem::ConditionName { name: id.to_owned(), longest: LONGEST });
     }
     if let Some(around) = condition {
-        let message = format!("no condition shows it: it stands inside the condition \"{around}\"");
-        let hint = "move it beside that sequence, or remove \"conditional\"";
-        issues.error(&flag, "never-shown", message, hint);
+        issues.error(&flag, Problem::ConditionInside { around: around.to_owned() });
     } else if sampled {
-        let message = format!(
-            "somebody in the condition \"{id}\" may not be shown it: a sequence around it shows only \
-             some of its parts"
-        );
-        let hint = "remove numSamples there, or move the condition out";
-        issues.error(&flag, "bad-condition", message, hint);
+        issues.error(&flag, Problem::ConditionSampled { name: id.to_owned() });
     }
     if let Some((_, first)) = found.iter().find(|(name, _)| *name == id) {
-        let message = format!("the condition \"{id}\" is at {first} already");
-        let hint = "give it another name, or put all that the condition shows into one sequence; two \
-                    conditions may name the same component";
-        issues.error(place, "duplicate", message, hint);
+        issues.error(place, Problem::ConditionTwice { name: id.to_owned(), first: first.clone() });
         return;
     }
     found.push((id, pointer.to_owned()));

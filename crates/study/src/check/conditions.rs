@@ -5,12 +5,12 @@ use std::cmp::Ordering;
 
 use serde_json::Value;
 
-use super::issue::{Issues, below, listed};
-use super::nearest::suggestion;
+use super::issue::{Issues, below};
+use super::problem::Problem;
+use super::values::Known;
 use super::{Subject, between};
-use crate::study_file::{
-    Component, Condition, OrderRule, Question, QuestionKind, Sequence, SequenceItem,
-};
+use crate::question::{Condition, KindOfQuestion as _, Question};
+use crate::study_file::{Component, OrderRule, Sequence, SequenceItem};
 
 /// Where a question is asked.
 #[derive(Clone, Copy)]
@@ -75,10 +75,14 @@ fn condition(
     let place = below(place, "showIf");
     let wanted = condition.question.as_str();
     let Some(of) = subject.study.all_questions().find(|each| each.id == wanted) else {
-        let known: Vec<&str> = subject.study.all_questions().map(|each| each.id.as_str()).collect();
-        let message = format!("there is no question \"{wanted}\"");
-        let hint = suggestion(wanted, &known);
-        issues.error(below(&place, "question"), "unknown-reference", message, hint);
+        issues.error(
+            below(&place, "question"),
+            Problem::unknown(
+                "question",
+                wanted,
+                subject.study.all_questions().map(|each| &each.id),
+            ),
+        );
         return;
     };
     for &here in asked {
@@ -86,29 +90,20 @@ fn condition(
         match known_before(subject, here, &question.id, wanted) {
             Ok(()) => {}
             Err(Unknown::AskedLater) => {
-                let message = format!("\"{wanted}\" is asked later");
-                issues.error(place, "too-late", message, "put that question first");
+                issues.error(place, Problem::AskedLater { question: wanted.to_owned() });
             }
             Err(Unknown::PerhapsLater) => {
-                let message = format!("\"{wanted}\" may be asked later: their order is drawn");
-                let hint = "put its page first, in a sequence of fixed order";
-                issues.warning(place, "perhaps-too-late", message, hint);
+                issues.warning(place, Problem::PerhapsLater { question: wanted.to_owned() });
             }
             Err(Unknown::Elsewhere) => {
-                let message = format!("nobody who is asked this is asked \"{wanted}\"");
-                let hint = "ask both in one condition, or that one outside of the conditions";
-                issues.error(place, "other-condition", message, hint);
+                issues.error(place, Problem::OtherCondition { question: wanted.to_owned() });
             }
             Err(Unknown::NotKept) => {
-                let message =
-                    format!("\"{wanted}\" is asked in trials, whose answers are not kept");
-                let hint = "ask it before this question in the same trials, or on a page before";
-                issues.error(place, "not-kept", message, hint);
+                issues.error(place, Problem::NotKept { question: wanted.to_owned() });
             }
         }
     }
-    let hint = "mend the bound, or the question's own";
-    values(condition, of, &place, hint, issues);
+    values(condition, of, &place, Asks::Next, issues);
 }
 
 /// Whether the answer to `wanted` is known where `id` is asked.
@@ -188,27 +183,63 @@ fn first(left: &Way, right: &Way) -> Option<Ordering> {
     (*order == OrderRule::Fixed).then(|| left.cmp(right))
 }
 
+/// What a condition on an answer decides.
+#[derive(Clone, Copy)]
+pub(super) enum Asks {
+    /// Whether a question is asked.
+    Next,
+    /// Whom the study takes.
+    Whom,
+}
+
 /// The values of a condition: there are some, and they can be answers to the question.
 pub(super) fn values(
     condition: &Condition,
     question: &Question,
     place: &str,
-    hint: &str,
+    asks: Asks,
     issues: &mut Issues,
 ) {
     let bounds = [condition.at_least, condition.at_most];
     if condition.equals.is_none() && condition.one_of.is_empty() && bounds == [None, None] {
-        let message = "a condition without a value";
-        issues.error(place, "empty", message, "add equals, oneOf, atLeast or atMost");
+        issues.error(place, Problem::EmptyCondition);
     }
+    let id = &question.id;
+    answers(condition, question, place, issues);
+    let Some([least, most]) = question.kind.bounds() else {
+        if bounds != [None, None] {
+            issues.error(place, Problem::AnswersNoNumbers { question: id.clone() });
+        }
+        return;
+    };
+    if let (Some(at_least), Some(at_most)) = (condition.at_least, condition.at_most)
+        && at_least > at_most
+    {
+        issues.error(place, Problem::BoundsCross { least: at_least, most: at_most });
+    }
+    let too_low = condition.at_most.zip(least).filter(|(at_most, least)| at_most < least);
+    let too_high = condition.at_least.zip(most).filter(|(at_least, most)| at_least > most);
+    if let Some((bound, end)) = too_low.or(too_high) {
+        let question = id.clone();
+        let problem = match asks {
+            Asks::Next => Problem::NeverReached { question, end, bound },
+            Asks::Whom => Problem::NeverSaid { question, end, bound },
+        };
+        issues.error(place, problem);
+    }
+}
+
+/// The answers that a condition names can be given.
+fn answers(condition: &Condition, question: &Question, place: &str, issues: &mut Issues) {
     let id = &question.id;
     let options: Vec<&str> =
         question.kind.options().iter().map(|option| option.value.as_str()).collect();
-    let remedy = || match options.as_slice() {
-        [] => "write an answer that can be given".to_owned(),
-        options => format!("there is {}", listed(options)),
+    let several = question.kind.takes_several();
+    let no_answer = |value: &Value| Problem::NoAnswerTo {
+        answer: value.clone(),
+        question: id.clone(),
+        known: Known::of(&options),
     };
-    let several = matches!(question.kind, QuestionKind::MultipleChoice(_));
     for value in &condition.one_of {
         // One of several choices is enough.
         let fits = match several {
@@ -216,41 +247,15 @@ pub(super) fn values(
             false => can_be_given(question, value),
         };
         if !fits {
-            let message = format!("{value} is no answer to \"{id}\"");
-            issues.error(place, "bad-answer", message, remedy());
+            issues.error(place, no_answer(value));
         }
     }
     if let Some(value) = condition.equals.as_ref().filter(|value| !can_be_given(question, value)) {
-        let message = format!("{value} is no answer to \"{id}\"");
-        let hint = match several && value.is_string() {
-            true => format!("write \"oneOf\": [{value}] for whoever chooses it among others"),
-            false => remedy(),
+        let problem = match several && value.is_string() {
+            true => Problem::NotTheWholeAnswer { answer: value.clone(), question: id.clone() },
+            false => no_answer(value),
         };
-        issues.error(place, "bad-answer", message, hint);
-    }
-    let (least, most) = match &question.kind {
-        QuestionKind::Number(field) => (field.minimum, field.maximum),
-        QuestionKind::Slider(slider) => (Some(slider.minimum), Some(slider.maximum)),
-        QuestionKind::Likert(scale) => (Some(scale.start as f64), Some(scale.end() as f64)),
-        _ => {
-            if bounds != [None, None] {
-                let message = format!("the answers to \"{id}\" are not numbers");
-                issues.error(place, "bad-answer", message, "write equals or oneOf");
-            }
-            return;
-        }
-    };
-    if let (Some(at_least), Some(at_most)) = (condition.at_least, condition.at_most)
-        && at_least > at_most
-    {
-        let message = format!("no number is at least {at_least} and at most {at_most}");
-        issues.error(place, "never-holds", message, "make atLeast the smaller one");
-    }
-    let too_low = condition.at_most.zip(least).filter(|(at_most, least)| at_most < least);
-    let too_high = condition.at_least.zip(most).filter(|(at_least, most)| at_least > most);
-    if let Some((bound, end)) = too_low.or(too_high) {
-        let message = format!("the answers to \"{id}\" end at {end}; {bound} never comes");
-        issues.error(place, "never-holds", message, hint);
+        issues.error(place, problem);
     }
 }
 

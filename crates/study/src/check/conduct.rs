@@ -1,10 +1,13 @@
 //! Device, calibration, time limits, practice, screening, attention checks, hosting without a server.
 
+use super::Subject;
+use super::conditions::{self, Asks};
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
-use super::{Subject, conditions};
-use crate::flow::right_answers;
-use crate::study_file::{Component, Question, TimeLimit, Training};
+use super::problem::Problem;
+use super::values::Nearest;
+use crate::practice::right_answers;
+use crate::question::Question;
+use crate::study_file::{Component, TimeLimit, Training};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     device(subject, issues);
@@ -25,13 +28,22 @@ fn device(subject: &Subject<'_>, issues: &mut Issues) {
         [("minimumWidth", rules.minimum_width), ("minimumHeight", rules.minimum_height)]
     {
         if let Some(size) = size.filter(|size| !(1..=4096).contains(size)) {
-            let message = format!("{size} pixels");
-            issues.error(below("/device", key), "out-of-range", message, "take 1 to 4096");
+            issues.error(
+                below("/device", key),
+                Problem::OutOfRange {
+                    value: f64::from(size),
+                    unit: "pixels",
+                    least: 1.0,
+                    most: 4096.0,
+                },
+            );
         }
     }
     if let Some(hz) = rules.minimum_refresh_hz.filter(|hz| !(1.0..=500.0).contains(hz)) {
-        let message = format!("{hz} Hz");
-        issues.error("/device/minimumRefreshHz", "out-of-range", message, "take 1 to 500");
+        issues.error(
+            "/device/minimumRefreshHz",
+            Problem::OutOfRange { value: hz, unit: "Hz", least: 1.0, most: 500.0 },
+        );
     }
 }
 
@@ -39,30 +51,34 @@ fn calibration(subject: &Subject<'_>, issues: &mut Issues) {
     let calibration = subject.study.calibration.as_ref();
     if let Some(rules) = calibration {
         if !rules.card && !rules.ask_distance && rules.distance_cm.is_none() {
-            let message = "the calibration asks nothing";
-            let hint = "remove \"card\": false, or the section";
-            issues.error("/calibration", "empty", message, hint);
+            issues.error("/calibration", Problem::CalibratesNothing);
         }
         if let Some(cm) = rules.distance_cm.filter(|cm| !(15.0..=300.0).contains(cm)) {
-            let message = format!("{cm} cm from the screen");
-            issues.error("/calibration/distanceCm", "out-of-range", message, "take 15 to 300");
+            issues.error(
+                "/calibration/distanceCm",
+                Problem::OutOfRange {
+                    value: cm,
+                    unit: "cm from the screen",
+                    least: 15.0,
+                    most: 300.0,
+                },
+            );
         }
     }
     let look = &subject.study.stimuli.look;
     for (key, size) in [("widthMm", look.width_mm), ("heightMm", look.height_mm)] {
         if let Some(size) = size.filter(|size| !(10.0..=2000.0).contains(size)) {
-            let message = format!("{size} mm");
             let place = below("/stimuli/look", key);
-            issues.error(place, "out-of-range", message, "take 10 to 2000");
+            issues.error(
+                place,
+                Problem::OutOfRange { value: size, unit: "mm", least: 10.0, most: 2000.0 },
+            );
         }
     }
     if look.width_mm.is_some() != look.height_mm.is_some() {
-        let message = "one side in millimetres";
-        issues.error("/stimuli/look", "incomplete", message, "give both widthMm and heightMm");
+        issues.error("/stimuli/look", Problem::OneSideInMillimetres);
     } else if look.width_mm.is_some() && calibration.is_none_or(|rules| !rules.card) {
-        let message = "a size in millimetres on screens that nobody measures";
-        let hint = "add \"calibration\": {\"card\": true, \"required\": true}";
-        issues.error("/stimuli/look/widthMm", "no-calibration", message, hint);
+        issues.error("/stimuli/look/widthMm", Problem::NoCalibration);
     }
 }
 
@@ -85,77 +101,79 @@ fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
     for (pointer, limit) in limits {
         let (pointer, Some(limit)) = (below(&pointer, "timeLimit"), limit) else { continue };
         if !(1.0..=86_400.0).contains(&limit.seconds) {
-            let message = format!("{} seconds", limit.seconds);
             let place = below(&pointer, "seconds");
-            issues.error(place, "out-of-range", message, "take 1 to 86400");
+            issues.error(
+                place,
+                Problem::OutOfRange {
+                    value: limit.seconds,
+                    unit: "seconds",
+                    least: 1.0,
+                    most: 86_400.0,
+                },
+            );
         }
         if limit.extensions < 10 && limit.essential.is_none() {
-            let message = format!(
-                "{} extensions: people who read or move slowly are shut out (WCAG 2.2, 2.2.1)",
-                limit.extensions
+            issues.warning(
+                below(&pointer, "extensions"),
+                Problem::HardTimeLimit { extensions: limit.extensions },
             );
-            let hint = "allow ten, or say why the limit is essential: \"essential\": \"...\"";
-            issues.warning(below(&pointer, "extensions"), "hard-time-limit", message, hint);
         }
     }
 }
 
 fn practice(subject: &Subject<'_>, training: &Training, issues: &mut Issues) {
-    let asked: Vec<&Question> = training
+    let asked: Vec<Question> = training
         .questions
         .iter()
         .filter_map(|id| subject.study.questions.iter().find(|question| question.id == *id))
+        .cloned()
         .collect();
-    for (clip, answers) in &training.answers {
-        let place = below("/training/answers", clip);
-        if !training.clips.contains(clip) {
-            let known: Vec<&str> = training.clips.iter().map(String::as_str).collect();
-            let message = format!("\"{clip}\" is no practice clip");
-            issues.error(&place, "unknown-reference", message, suggestion(clip, &known));
-        }
-        for (id, answer) in answers {
-            let place = below(&place, id);
-            match asked.iter().find(|question| question.id == *id) {
-                None => {
-                    let known: Vec<&str> = training.questions.iter().map(String::as_str).collect();
-                    let message = format!("\"{id}\" is not asked in practice");
-                    issues.error(place, "unknown-reference", message, suggestion(id, &known));
-                }
-                Some(question) if question.accept(Some(answer)).is_err() => {
-                    let message = format!("{answer} is no answer to this question");
-                    let hint = "write an answer that can be given";
-                    issues.error(place, "bad-answer", message, hint);
-                }
-                Some(_) => {}
-            }
-        }
-    }
-    let asked: Vec<Question> = asked.into_iter().cloned().collect();
+    stated_answers(training, &asked, issues);
     let judged = training
         .clips
         .iter()
         .filter(|clip| !right_answers(training, clip, subject.clips, &asked).is_empty())
         .count();
     if training.feedback && judged == 0 {
-        let message = "of no practice clip a right answer is known";
-        let hint = "give a question \"truth\", or state them in \"answers\"";
-        issues.error("/training/feedback", "no-right-answer", message, hint);
+        issues.error("/training/feedback", Problem::NoRightAnswer);
     }
     let Some(rule) = &training.criterion else { return };
     if rule.correct == 0 || rule.correct as usize > judged {
-        let message =
-            format!("{} right clips of {judged} that can be right are wanted", rule.correct);
-        let hint = format!("take 1 to {judged}, or state more right answers in \"answers\"");
-        issues.error("/training/criterion/correct", "out-of-range", message, hint);
+        let problem = Problem::Criterion { correct: rule.correct, judged };
+        issues.error("/training/criterion/correct", problem);
     }
     if !(1..=20).contains(&rule.maximum_rounds) {
-        let message = format!("{} rounds", rule.maximum_rounds);
-        let place = "/training/criterion/maximumRounds";
-        issues.error(place, "out-of-range", message, "take 1 to 20");
+        let value = f64::from(rule.maximum_rounds);
+        let problem = Problem::OutOfRange { value, unit: "rounds", least: 1.0, most: 20.0 };
+        issues.error("/training/criterion/maximumRounds", problem);
     }
     if !training.feedback {
-        let message = "practice is repeated, but nobody is told what was wrong";
-        issues.warning("/training", "no-feedback", message, "add \"feedback\": true");
+        issues.warning("/training", Problem::NoFeedback);
+    }
+}
+
+/// The right answers that the file states: to practice clips, to questions that are asked there.
+fn stated_answers(training: &Training, asked: &[Question], issues: &mut Issues) {
+    for (clip, answers) in &training.answers {
+        let place = below("/training/answers", clip);
+        if !training.clips.contains(clip) {
+            let known = Nearest::to(clip, &training.clips);
+            issues.error(&place, Problem::NotAPracticeClip { clip: clip.clone(), known });
+        }
+        for (id, answer) in answers {
+            let place = below(&place, id);
+            match asked.iter().find(|question| question.id == *id) {
+                None => {
+                    let known = Nearest::to(id, &training.questions);
+                    let problem = Problem::NotAskedInPractice { question: id.clone(), known };
+                    issues.error(place, problem);
+                }
+                Some(question) if question.accept(Some(answer)).is_err() => {
+                    issues.error(place, Problem::NoAnswer { answer: answer.clone() });
+                }
+                Some(_) => {}
+            }
+        }
     }
 }
 
@@ -175,15 +193,20 @@ fn screening(subject: &Subject<'_>, issues: &mut Issues) {
         let condition = &rule.condition;
         let Some(question) = page_questions(subject).find(|each| each.id == condition.question)
         else {
-            let known: Vec<&str> = page_questions(subject).map(|each| each.id.as_str()).collect();
-            let message = format!("no page asks \"{}\"", condition.question);
-            let hint = suggestion(&condition.question, &known);
-            issues.error(below(&place, "question"), "unknown-reference", message, hint);
+            issues.error(
+                below(&place, "question"),
+                Problem::NoPageAsks {
+                    question: condition.question.clone(),
+                    known: Nearest::to(
+                        &condition.question,
+                        page_questions(subject).map(|each| &each.id),
+                    ),
+                },
+            );
             continue;
         };
         // Whoever is to be turned away must be able to say so.
-        let hint = "widen the question's minimum and maximum, so that people can say the truth";
-        conditions::values(condition, question, &place, hint, issues);
+        conditions::values(condition, question, &place, Asks::Whom, issues);
     }
 }
 
@@ -192,13 +215,9 @@ fn attention(subject: &Subject<'_>, issues: &mut Issues) {
     let checks =
         subject.study.all_questions().filter(|each| each.attention_check.is_some()).count();
     if checks == 0 {
-        let message = "no question is an attention check";
-        let hint = "give one \"attentionCheck\": {\"expected\": ...}, or remove the section";
-        issues.error("/attentionChecks", "nothing-to-fail", message, hint);
+        issues.error("/attentionChecks", Problem::NoAttentionCheck);
     } else if rule.allowed_failures == 0 {
-        let message = "one failed check ends the session";
-        let hint = "allow one failure: Prolific accepts that only of studies under five minutes";
-        issues.warning("/attentionChecks/allowedFailures", "unfair-check", message, hint);
+        issues.warning("/attentionChecks/allowedFailures", Problem::OneFailureEnds);
     }
 }
 
@@ -213,14 +232,10 @@ fn codes(subject: &Subject<'_>, issues: &mut Issues) {
         || !study.screening.is_empty()
         || study.training.as_ref().and_then(|it| it.criterion.as_ref()).is_some();
     if screens && recruitment.screened_out_code.is_none() {
-        let message = "people who are screened out have no code to go back with";
-        let hint = "add \"screenedOutCode\": \"...\"";
-        issues.warning("/recruitment", "no-code", message, hint);
+        issues.warning("/recruitment", Problem::NoScreenedOutCode);
     }
     if study.attention_checks.is_some() && recruitment.failed_checks_code.is_none() {
-        let message = "people who fail the attention checks have no code to go back with";
-        let hint = "add \"failedChecksCode\": \"...\"";
-        issues.warning("/recruitment", "no-code", message, hint);
+        issues.warning("/recruitment", Problem::NoFailedChecksCode);
     }
 }
 
@@ -228,8 +243,7 @@ fn hosting(subject: &Subject<'_>, issues: &mut Issues) {
     let Some(hosting) = &subject.study.static_hosting else { return };
     let Some(post) = &hosting.post else {
         if !hosting.download {
-            let message = "answers go nowhere: neither posted nor downloaded";
-            issues.error("/staticHosting", "empty", message, "add \"post\", or let them download");
+            issues.error("/staticHosting", Problem::AnswersGoNowhere);
         }
         return;
     };
@@ -237,7 +251,6 @@ fn hosting(subject: &Subject<'_>, issues: &mut Issues) {
     let plain = |letter: char| letter.is_ascii_graphic() && !"\"'<>\\`;,".contains(letter);
     let secure = post.starts_with("https://") || post.starts_with("http://127.0.0.1:");
     if !secure || !post.replace("{session}", "").chars().all(plain) {
-        let message = format!("\"{post}\" is not a secure address");
-        issues.error(place, "bad-address", message, "write https://HOST/PATH without blanks");
+        issues.error(place, Problem::PostNotSecure { address: post.clone() });
     }
 }

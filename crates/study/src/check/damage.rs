@@ -90,17 +90,24 @@ impl Damage {
 
 fn touches(place: &str, issue: &Issue) -> bool {
     let pointer = issue.pointer.as_str();
+    if issue.code() == "bad-parameter"
+        && !place.ends_with("/method")
+        && element(place) != Some(place)
+    {
+        // A parameter is judged by itself.
+        return is_within(pointer, place);
+    }
     if is_within(pointer, element(place).unwrap_or(place)) {
         return true;
     }
     // A section as a whole is judged by its keys.
     let within = !pointer.is_empty() && is_within(place, pointer);
-    if within && !ABSENT.contains(&issue.code) {
+    if within && !ABSENT.contains(&issue.code()) {
         return true;
     }
     let among =
         |parts: &[&str]| parts.iter().any(|part| is_within(place, part) || is_within(part, place));
-    match issue.code {
+    match issue.code() {
         "missing-translation"
         | "undeclared-language"
         | "untranslated-buttons"
@@ -135,6 +142,7 @@ fn touches(place: &str, issue: &Issue) -> bool {
         | "factor-twice"
         | "no-conditions"
         | "dependent-samples"
+        | "of-two-clips"
         | "no-order"
         | "not-asked"
         | "several-answers"

@@ -3,18 +3,22 @@
 use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
+use super::problem::Problem;
+use super::values::{Count, Nearest};
 use super::{Subject, assigned, responses};
-use crate::responses::ASSIGNED_CONDITION;
-use crate::study_file::{Hypothesis, Measure, Question, QuestionKind, TestName};
+use crate::columns::ASSIGNED_CONDITION;
+use crate::question::KindOfQuestion as _;
+use crate::study_file::{Hypothesis, Measure, TestName};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     let hypotheses = &subject.study.hypotheses;
     for (index, hypothesis) in hypotheses.iter().enumerate() {
         let pointer = below("/hypotheses", index);
         if hypotheses[..index].iter().any(|each| each.id == hypothesis.id) {
-            let message = format!("two hypotheses \"{}\"", hypothesis.id);
-            issues.error(below(&pointer, "id"), "duplicate", message, "give it another name");
+            issues.error(
+                below(&pointer, "id"),
+                Problem::HypothesisTwice { id: hypothesis.id.clone() },
+            );
         }
         response(subject, hypothesis, &pointer, issues);
         assigned::hypothesis(subject, hypothesis, &pointer, issues);
@@ -30,33 +34,24 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
     let Some(question) = responses::tested(subject, response, place, of_conditions, issues) else {
         return;
     };
-    let has_truth =
-        matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
-    if hypothesis.measure == Measure::Correct && !has_truth {
-        let message = format!("\"{}\" has no right answer", question.id);
-        let hint = "give the question \"truth\", or test another measure";
-        issues.error(below(pointer, "measure"), "no-truth", message, hint);
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    for (index, factor) in hypothesis.factors.iter().enumerate() {
+        let compared = if index == 0 { levels.as_slice() } else { &[] };
+        let of_pair = subject.study.answer_of_pair(question, hypothesis.measure, factor, compared);
+        if let Some(of_pair) = of_pair {
+            issues.error(below(&below(pointer, "factors"), index), of_pair.into());
+        }
+    }
+    if hypothesis.measure == Measure::Correct && question.kind.truth().is_none() {
+        issues
+            .error(below(pointer, "measure"), Problem::NoTruthOf { question: question.id.clone() });
     }
     let wants_numbers = !matches!(hypothesis.test, TestName::ChiSquare);
-    if hypothesis.measure == Measure::Answer && wants_numbers && !is_number(question) {
-        let message = format!("the answers to \"{}\" are not numbers", question.id);
-        let hint = "test \"measure\": \"correct\" or \"rt\", or take chi-square";
-        issues.error(below(pointer, "response"), "not-a-number", message, hint);
-    }
-}
-
-/// Whether the answers are numbers: of a matrix those whose options are, of a ranking the places.
-fn is_number(question: &Question) -> bool {
-    match &question.kind {
-        QuestionKind::Likert(_)
-        | QuestionKind::Slider(_)
-        | QuestionKind::Number(_)
-        | QuestionKind::ValenceArousal(_)
-        | QuestionKind::Ranking(_) => true,
-        QuestionKind::Matrix(matrix) => {
-            matrix.options.iter().all(|option| option.value.parse::<f64>().is_ok())
-        }
-        _ => false,
+    if hypothesis.measure == Measure::Answer && wants_numbers && !question.kind.is_numeric() {
+        issues.error(
+            below(pointer, "response"),
+            Problem::NotTested { question: question.id.clone() },
+        );
     }
 }
 
@@ -82,13 +77,10 @@ fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues
         _ => 1..=1,
     };
     if !wanted.contains(&hypothesis.factors.len()) {
-        let message = format!("{} factors for this test", hypothesis.factors.len());
-        let hint = if wanted.start() == wanted.end() {
-            format!("name {}", wanted.start())
-        } else {
-            format!("name {} to {}", wanted.start(), wanted.end())
-        };
-        issues.error(&place, "wrong-length", message, hint);
+        issues.error(
+            &place,
+            Problem::FactorCount { factors: hypothesis.factors.len(), wanted: Count(wanted) },
+        );
     }
     for (index, factor) in hypothesis.factors.iter().enumerate() {
         assigned::factor(subject, factor, below(&place, index), issues);
@@ -111,21 +103,24 @@ fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues:
     for (index, level) in levels.iter().enumerate() {
         let place = below(&place, index);
         if !known.contains(&level.as_str()) {
-            let message = match assigned {
-                true => format!("there is no condition \"{level}\""),
-                false => format!("no clip has {factor} \"{level}\""),
+            let (level, known) = (level.clone(), Nearest::to(level, &known));
+            let problem = match assigned {
+                true => Problem::UnknownReference { what: "condition", name: level, known },
+                false => Problem::NoClipWith { factor: factor.clone(), level, known },
             };
-            issues.error(place, "unknown-reference", message, suggestion(level, &known));
+            issues.error(place, problem);
         } else if levels[..index].contains(level) {
-            let message = format!("the level \"{level}\" stands here twice");
-            issues.error(place, "duplicate", message, "name each level once");
+            issues.error(place, Problem::LevelTwice { level: level.clone() });
         }
     }
     let count = if levels.is_empty() { values.len() } else { levels.len() };
     let two = matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney);
     if (two && count != 2) || count < 2 {
-        let message = format!("{count} levels of \"{factor}\" to compare");
-        let hint = if two { "name two in \"levels\"" } else { "compare at least two" };
-        issues.error(place, "wrong-length", message, hint);
+        let factor = factor.clone();
+        let problem = match two {
+            true => Problem::NotTwoLevels { levels: count, factor },
+            false => Problem::TooFewLevels { levels: count, factor },
+        };
+        issues.error(place, problem);
     }
 }

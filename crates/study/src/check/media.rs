@@ -1,9 +1,11 @@
-//! Pictures and signed videos of questions and their options: there, and of a kind that browsers show.
+//! Pictures and sign-language videos of questions and their options: there, and of a kind that browsers show.
 
 use super::FileLookup;
 use super::Subject;
 use super::issue::{Issues, below};
-use crate::study_file::{Choice, Component, LocalText, Question, QuestionKind, media_type};
+use super::problem::Problem;
+use crate::question::{Choice, KindOfQuestion as _, Question};
+use crate::study_file::{Component, LocalText, media_type};
 
 pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues) {
     let study = subject.study;
@@ -24,21 +26,19 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
             videos(&question.video, &below(&place, "video"), &mut named);
             choices(&question.signs, &below(&place, "signs"), &mut named);
             choices(question.kind.options(), &below(&place, "options"), &mut named);
-            if let QuestionKind::Matrix(matrix) = &question.kind {
-                choices(&matrix.rows, &below(&place, "rows"), &mut named);
-            }
+            choices(question.kind.rows(), &below(&place, "rows"), &mut named);
         }
     }
     for (pointer, path, wanted) in named {
         if !media_type(path).is_some_and(|kind| kind.starts_with(wanted)) {
-            let message = format!("\"{path}\" is no {wanted} that every browser shows");
-            let hint = match wanted {
-                "video" => "take an MP4 or WebM file",
-                _ => "take a PNG, JPEG, WebP or SVG file",
+            let path = path.to_owned();
+            let problem = match wanted {
+                "video" => Problem::BadVideo { path },
+                _ => Problem::BadImage { path },
             };
-            issues.error(&pointer, "bad-file", message, hint);
-        } else if let Err((message, hint)) = lookup(path) {
-            issues.error(&pointer, "missing-file", message, hint);
+            issues.error(&pointer, problem);
+        } else if let Err(problem) = lookup(path) {
+            issues.error(&pointer, problem);
         }
     }
 }

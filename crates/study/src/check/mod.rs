@@ -17,6 +17,7 @@ mod hypotheses;
 mod issue;
 mod media;
 mod nearest;
+mod problem;
 mod questions;
 mod responses;
 mod schema;
@@ -24,15 +25,18 @@ mod sequence;
 mod stimuli;
 mod structure;
 mod tables;
+mod values;
 
 use serde_json::Value;
 
 use crate::canonical::config_hash;
 use crate::from_json::{Faults, FromJson as _};
 use crate::study_file::{Clip, Study, parse};
-use issue::Issues;
-pub use issue::{Issue, Severity};
+pub(crate) use issue::below;
+pub use issue::{Issue, Issues, Severity};
+pub use problem::Problem;
 pub use schema::{SCHEMA_ADDRESS, json_schema};
+pub use values::{Count, JsonType, Known, Names, Nearest, Shown, Wanted};
 
 /// A study that was checked and has no errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +52,7 @@ impl CheckedStudy {
         &self.study
     }
 
-    /// The file as JSON (what [`crate::wire::Bundle`] carries).
+    /// The file as JSON (what the participant's page carries).
     pub fn value(&self) -> &Value {
         &self.value
     }
@@ -80,9 +84,8 @@ impl Report {
     }
 }
 
-/// Whether a file that the study names is there: `Err` says what is wrong and what to do,
-/// `("no such file /studies/a.glb", "put the file there, or mend the path")`.
-pub type FileLookup<'a> = dyn Fn(&str) -> Result<(), (String, String)> + 'a;
+/// Whether a file that the study names is there: `Err` says what is wrong, [`Problem::NoFile`] say.
+pub type FileLookup<'a> = dyn Fn(&str) -> Result<(), Problem> + 'a;
 
 /// Checks the text of a study file. `lookup` is asked for every file that the study names.
 pub fn check(text: &str, lookup: &FileLookup<'_>) -> Report {
@@ -97,9 +100,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     let value = match parse(text) {
         Ok(value) => value,
         Err(error) => {
-            let text = error.to_string();
-            let (message, hint) = text.split_once("; ").unwrap_or((&text, "write JSON"));
-            issues.error("", "syntax", message, hint);
+            issues.error("", error.into());
             return None;
         }
     };
@@ -118,7 +119,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
         Ok(study) => study,
         Err(error) => {
             // The structure is sound, so this is a rule that only the reader knows.
-            issues.error("", "shape", error.to_string(), "mend what the message names");
+            issues.error("", Problem::Shape { what: error.to_string() });
             return None;
         }
     };

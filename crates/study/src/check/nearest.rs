@@ -1,9 +1,5 @@
 //! The name that was probably meant.
 
-use std::collections::BTreeSet;
-
-use super::issue::listed;
-
 /// The known name nearest to `given`, if it is near enough to be what was meant: at most a third of
 /// the letters differ (a swap counts as one), case apart, or one contains the other.
 pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
@@ -19,18 +15,6 @@ pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
         })
         .min()
         .map(|(_, name)| name)
-}
-
-/// A remedy for an unknown name: the nearest one, else the list.
-pub(super) fn suggestion(given: &str, known: &[&str]) -> String {
-    let known: BTreeSet<&str> = known.iter().copied().collect();
-    let known: Vec<&str> = known.into_iter().collect();
-    match nearest(given, &known) {
-        Some(name) => format!("did you mean \"{name}\"?"),
-        None if known.is_empty() => "there is none to name; add it first".to_owned(),
-        None if known.len() > 24 => "name one that is there".to_owned(),
-        None => format!("write {}", listed(&known)),
-    }
 }
 
 #[cfg(test)]

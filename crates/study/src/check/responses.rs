@@ -2,8 +2,9 @@
 
 use super::Subject;
 use super::issue::Issues;
-use super::nearest::suggestion;
-use crate::study_file::{Component, Question, Sequence, SequenceItem, Study, TrialsComponent};
+use super::problem::Problem;
+use crate::question::Question;
+use crate::study_file::{Component, Sequence, SequenceItem, Study, TrialsComponent};
 
 /// The question that gives an answer of this name.
 pub(super) fn question<'s>(study: &'s Study, response: &str) -> Option<&'s Question> {
@@ -22,21 +23,22 @@ pub(super) fn tested<'s>(
     let study = subject.study;
     let Some(question) = question(study, response) else {
         if let Some(whole) = study.all_questions().find(|question| question.id == response) {
-            let message = format!("\"{response}\" gives several answers");
-            let hint = format!("name one of them: \"{}\"", whole.response_ids().join("\", \""));
-            issues.error(place, "several-answers", message, hint);
+            issues.error(
+                place,
+                Problem::SeveralAnswers {
+                    response: response.to_owned(),
+                    answers: format!("\"{}\"", whole.response_ids().join("\", \"")),
+                },
+            );
             return None;
         }
         let known: Vec<String> = study.all_questions().flat_map(Question::response_ids).collect();
         let known: Vec<&str> = known.iter().map(String::as_str).collect();
-        let message = format!("there is no question \"{response}\"");
-        issues.error(place, "unknown-reference", message, suggestion(response, &known));
+        issues.error(place, Problem::unknown("question", response, known));
         return None;
     };
     if !of_conditions && is_asked_in_no_trial(study, &question.id) {
-        let message = format!("no trial asks \"{}\": its answers belong to no clip", question.id);
-        let hint = "ask it in the trials of the sequence, or test a question that is asked there";
-        issues.error(place, "not-asked", message, hint);
+        issues.error(place, Problem::AskedInNoTrial { question: question.id.clone() });
         return None;
     }
     Some(question)

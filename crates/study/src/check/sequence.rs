@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Subject;
 use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
-use crate::order::{CYCLES, Draw, Flaw, prove};
+use super::problem::Problem;
+use super::values::Nearest;
+use crate::order::{CYCLES, Draw, Flaw, OrderError, prove};
 use crate::study_file::{
     Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
 };
@@ -23,16 +24,13 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let pointer = below("/components", name);
         let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
         if name.is_empty() || !name.chars().all(plain) || RESERVED.contains(&name.as_str()) {
-            let message = format!("\"{name}\" cannot be the name of a component");
-            let hint = "use letters, digits, _ and -, and none of the names of the file's sections";
-            issues.error(&pointer, "bad-id", message, hint);
+            issues.error(&pointer, Problem::ComponentName { name: name.clone() });
         }
         match component {
             Component::Trials(block) => trials(subject, block, &questions, &pointer, issues),
             Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
-                let message = format!("a break of {} s", rest.minimum_seconds);
                 let place = below(&pointer, "minimumSeconds");
-                issues.error(place, "out-of-range", message, "take 0 to 3600");
+                issues.error(place, Problem::BreakSeconds { seconds: rest.minimum_seconds });
             }
             _ => {}
         }
@@ -46,40 +44,39 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     sequence(subject, &study.sequence, "/sequence", None, &mut named, issues);
     between::examine(&study.sequence, issues);
     for name in study.components.keys().filter(|name| !named.contains_key(name.as_str())) {
-        let message = format!("component \"{name}\" is never shown");
-        let hint = "name it in /sequence, or remove it";
-        issues.warning(below("/components", name), "unused", message, hint);
+        issues.warning(below("/components", name), Problem::NeverShown { component: name.clone() });
     }
     let mut total = 0;
     for condition in between::each(study) {
         let count = trial_count(subject, &study.sequence, condition);
         if count == 0 {
-            let message = match condition {
-                None => "no trial is shown".to_owned(),
-                Some(name) => format!("no trial is shown in the condition \"{name}\""),
+            let problem = match condition {
+                None => Problem::NoTrials,
+                Some(name) => Problem::NoTrialsIn { condition: name.to_owned() },
             };
-            issues.error("/sequence", "empty", message, "name a component of type \"trials\"");
+            issues.error("/sequence", problem);
         }
         total = total.max(count);
     }
     if total > MOST_TRIALS {
-        let message = format!("{total} trials");
-        let hint = format!("show at most {MOST_TRIALS}");
-        issues.error("/sequence", "too-many", message, hint);
+        issues.error("/sequence", Problem::TooManyTrials { trials: total, most: MOST_TRIALS });
     } else if !issues.errors().any(changes_order) {
         feasible(subject, issues);
     }
 }
 
-fn references(given: &[String], known: &[&str], pointer: &str, what: &str, issues: &mut Issues) {
+fn references(
+    given: &[String],
+    known: &[&str],
+    pointer: &str,
+    what: &'static str,
+    issues: &mut Issues,
+) {
     for (index, name) in given.iter().enumerate() {
         if !known.contains(&name.as_str()) {
-            let message = format!("there is no {what} \"{name}\"");
-            let hint = suggestion(name, known);
-            issues.error(below(pointer, index), "unknown-reference", message, hint);
+            issues.error(below(pointer, index), Problem::unknown(what, name, known));
         } else if what == "question" && given[..index].contains(name) {
-            let message = format!("\"{name}\" is asked twice");
-            issues.error(below(pointer, index), "duplicate", message, "name it once");
+            issues.error(below(pointer, index), Problem::AskedTwice { question: name.clone() });
         }
     }
 }
@@ -93,13 +90,10 @@ fn trials(
 ) {
     references(&block.questions, questions, &below(pointer, "questions"), "question", issues);
     if block.questions.is_empty() {
-        let message = "trials that ask nothing";
-        let hint = "name questions of /questions";
-        issues.warning(below(pointer, "questions"), "empty", message, hint);
+        issues.warning(below(pointer, "questions"), Problem::AsksNothing);
     }
     if block.repetitions == 0 {
-        let message = "each clip is shown 0 times";
-        issues.error(below(pointer, "repetitions"), "out-of-range", message, "write 1 or more");
+        issues.error(below(pointer, "repetitions"), Problem::NoRepetition);
     }
     let ids: Vec<&str> = subject.clips.iter().map(|clip| clip.id.as_str()).collect();
     references(&block.clips.ids, &ids, &format!("{pointer}/clips/ids"), "clip", issues);
@@ -108,17 +102,21 @@ fn trials(
     for (factor, wanted) in &block.clips.factors {
         let place = below(&format!("{pointer}/clips/where"), factor);
         let Some(values) = factors.get(factor) else {
-            let message = format!("there is no factor \"{factor}\"");
-            issues.error(place, "unknown-reference", message, suggestion(factor, &names));
+            issues.error(place, Problem::unknown("factor", factor, &names));
             continue;
         };
         let values: Vec<&str> = values.iter().map(String::as_str).collect();
         for (index, value) in wanted.iter().enumerate() {
             let value = value.to_string();
             if !values.contains(&value.as_str()) {
-                let message = format!("no clip has {factor} \"{value}\"");
-                let hint = suggestion(&value, &values);
-                issues.error(below(&place, index), "unknown-reference", message, hint);
+                issues.error(
+                    below(&place, index),
+                    Problem::NoClipWith {
+                        factor: factor.clone(),
+                        known: Nearest::to(&value, &values),
+                        level: value,
+                    },
+                );
             }
         }
     }
@@ -126,8 +124,7 @@ fn trials(
         beside(subject, block, companion, &below(pointer, "beside"), issues);
     }
     if !subject.clips.iter().any(|clip| block.clips.takes(clip)) {
-        let message = "no clip is chosen";
-        issues.error(below(pointer, "clips"), "empty", message, "loosen the choice");
+        issues.error(below(pointer, "clips"), Problem::NoClip);
     }
 }
 
@@ -148,9 +145,7 @@ fn beside(
         [(method, &methods, "method"), (companion.avatar.as_slice(), &avatars, "avatar")]
     {
         for name in given.iter().filter(|name| !known.contains(&name.as_str())) {
-            let message = format!("there is no {key} \"{name}\"");
-            let hint = suggestion(name, known);
-            issues.error(below(pointer, key), "unknown-reference", message, hint);
+            issues.error(below(pointer, key), Problem::unknown(key, name, known));
         }
     }
     if issues.count() > before {
@@ -159,13 +154,15 @@ fn beside(
     let alone =
         |clip: &&Clip| block.clips.takes(clip) && companion.of(clip, subject.clips).is_none();
     if let Some(clip) = subject.clips.iter().find(alone) {
-        let avatar = companion.avatar.as_ref().unwrap_or(&clip.avatar);
-        let message = format!(
-            "clip \"{}\" has no other clip of segment \"{}\" by \"{}\" on \"{avatar}\" to stand beside it",
-            clip.id, clip.segment, companion.method
+        issues.error(
+            pointer,
+            Problem::NoCompanion {
+                clip: clip.id.clone(),
+                segment: clip.segment.clone(),
+                method: companion.method.clone(),
+                avatar: companion.avatar.as_ref().unwrap_or(&clip.avatar).clone(),
+            },
         );
-        let hint = "make such clips in /stimuli/clips, or leave this clip out of the block";
-        issues.error(pointer, "no-companion", message, hint);
     }
 }
 
@@ -198,8 +195,7 @@ fn sequence<'a>(
     };
     let components: Vec<&str> = subject.study.components.keys().map(String::as_str).collect();
     if here.components.is_empty() && !here.conditional {
-        let message = "an empty sequence";
-        issues.error(below(pointer, "components"), "empty", message, "name a component");
+        issues.error(below(pointer, "components"), Problem::EmptySequence);
     }
     for (index, item) in here.components.iter().enumerate() {
         let place = format!("{pointer}/components/{index}");
@@ -209,36 +205,40 @@ fn sequence<'a>(
             }
             SequenceItem::Component(name) => {
                 if !components.contains(&name.as_str()) {
-                    let message = format!("there is no component \"{name}\"");
-                    issues.error(
-                        &place,
-                        "unknown-reference",
-                        message,
-                        suggestion(name, &components),
-                    );
+                    issues.error(&place, Problem::unknown("component", name, &components));
                 }
                 if let Some(first) = shown_before(named, name, condition) {
-                    let message = format!("\"{name}\" is shown at {first} already");
-                    let hint = "give its trials \"repetitions\", or write a second component";
-                    issues.error(&place, "duplicate", message, hint);
+                    issues.error(&place, Problem::ShownAlready { component: name.clone(), first });
                 }
                 named.entry(name).or_default().push((condition, place));
             }
         }
     }
+    interruptions(subject, here, pointer, condition, named, issues);
+    constraints(subject, here, pointer, issues);
+    reach(subject, here, pointer, issues);
+}
+
+fn interruptions<'a>(
+    subject: &Subject<'a>,
+    here: &'a Sequence,
+    pointer: &str,
+    condition: Option<&'a str>,
+    named: &mut Named<'a>,
+    issues: &mut Issues,
+) {
     for (index, interruption) in here.interruptions.iter().enumerate() {
         let place = format!("{pointer}/interruptions/{index}");
         let name = &interruption.component;
         match subject.study.components.get(name) {
             None => {
-                let message = format!("there is no component \"{name}\"");
-                let hint = suggestion(name, &components);
-                issues.error(below(&place, "component"), "unknown-reference", message, hint);
+                let known = subject.study.components.keys();
+                let problem = Problem::unknown("component", name, known);
+                issues.error(below(&place, "component"), problem);
             }
             Some(Component::Trials(_)) => {
-                let message = format!("\"{name}\" is a block of trials");
-                let hint = "interrupt by a break, a page or a questionnaire";
-                issues.error(below(&place, "component"), "bad-interruption", message, hint);
+                let problem = Problem::InterruptedByTrials { component: name.clone() };
+                issues.error(below(&place, "component"), problem);
             }
             Some(_) => {
                 if shown_before(named, name, condition).is_none() {
@@ -247,12 +247,9 @@ fn sequence<'a>(
             }
         }
         if interruption.spacing == 0 {
-            let message = "after every 0 trials";
-            issues.error(below(&place, "spacing"), "out-of-range", message, "write 1 or more");
+            issues.error(below(&place, "spacing"), Problem::NoSpacing);
         }
     }
-    constraints(subject, here, pointer, issues);
-    reach(subject, here, pointer, issues);
 }
 
 /// Constraints order single trials: a sequence that stays together keeps its own.
@@ -264,13 +261,7 @@ fn reach(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Iss
     if let Some(index) =
         here.components.iter().position(|item| matches!(item, SequenceItem::Sequence(_)))
     {
-        let message = format!(
-            "constraints order single trials, and part {} of this sequence is a sequence that stays \
-             together",
-            index + 1
-        );
-        let hint = "write constraints in the nested sequences, or name their components here";
-        issues.error(pointer, "constraint-on-sequence", message, hint);
+        issues.error(pointer, Problem::ConstraintOnSequence { part: index + 1 });
         return;
     }
     let blocks: Vec<&TrialsComponent> = here
@@ -291,38 +282,35 @@ fn reach(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Iss
         let has = |clip: &&Clip| clip.factor_text(factor).is_some();
         let shown = |clip: &Clip| blocks.iter().any(|block| block.clips.takes(clip));
         if factors.contains_key(factor) && !subject.clips.iter().filter(has).any(shown) {
-            let message = format!("no trial of this sequence has the factor \"{factor}\"");
-            let hint = "move the constraint to the sequence with these trials, or remove it";
-            issues.error(below(&pointer, index), "constraint-on-nothing", message, hint);
+            issues.error(
+                below(&pointer, index),
+                Problem::ConstraintOnNothing { factor: factor.to_owned() },
+            );
         }
     }
 }
 
 fn constraints(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Issues) {
     if here.num_samples == Some(0) {
-        let message = "0 of the parts are shown";
-        issues.error(below(pointer, "numSamples"), "out-of-range", message, "write 1 or more");
+        issues.error(below(pointer, "numSamples"), Problem::NoSamples);
     }
     if !here.constraints.is_empty() && here.order != OrderRule::Random {
-        let message = "constraints on an order that is not random";
-        let hint = "write \"order\": \"random\", or remove the constraints";
-        issues.error(below(pointer, "constraints"), "not-needed", message, hint);
+        issues.error(below(pointer, "constraints"), Problem::OrderNotRandom);
     }
     let factors = all_factors(subject);
     let names: Vec<&str> = factors.keys().map(String::as_str).collect();
     for (index, constraint) in here.constraints.iter().enumerate() {
         let place = format!("{pointer}/constraints/{index}");
         if !names.contains(&constraint.factor.as_str()) {
-            let message = format!("there is no factor \"{}\"", constraint.factor);
-            let hint = suggestion(&constraint.factor, &names);
-            issues.error(below(&place, "factor"), "unknown-reference", message, hint);
+            issues.error(
+                below(&place, "factor"),
+                Problem::unknown("factor", &constraint.factor, &names),
+            );
         }
         if constraint.at_most_alike.is_none() && constraint.minimum_distance.is_none() {
-            let message = "a constraint that asks for nothing";
-            issues.error(place, "empty", message, "add atMostAlike or minimumDistance");
+            issues.error(place, Problem::EmptyConstraint);
         } else if constraint.at_most_alike == Some(0) || constraint.minimum_distance == Some(0) {
-            let message = "0 in a row, or at a distance of 0";
-            issues.error(place, "out-of-range", message, "write 1 or more");
+            issues.error(place, Problem::ConstraintOfZero);
         }
     }
 }
@@ -363,30 +351,20 @@ fn feasible(subject: &Subject<'_>, issues: &mut Issues) {
     };
     for flaw in prove(subject.study, draw) {
         match flaw {
-            Flaw::NoOrder(error) => {
-                let text = error.to_string();
-                let (pointer, message) = text.split_once(": ").unwrap_or(("/sequence", &text));
-                let (message, hint) =
-                    message.split_once("; ").unwrap_or((message, "loosen one of them"));
-                issues.error(pointer, "unsatisfiable-order", message, hint);
+            Flaw::NoOrder(OrderError { pointer, why }) => {
+                issues.error(pointer, Problem::NoOrder { remedy: why.remedy(), why });
             }
             Flaw::TooManySamples { pointer, parts, samples } => {
-                let message = format!(
-                    "{samples} of {parts} parts under constraints are too many samples to try each"
+                issues.error(
+                    below(&pointer, "numSamples"),
+                    Problem::TooManySamples { parts, samples },
                 );
-                let hint =
-                    format!("take a numSamples that divides {parts}, or drop the constraints");
-                issues.error(below(&pointer, "numSamples"), "too-many", message, hint);
             }
             Flaw::Unbalanced { pointer, anew, first } => {
-                let message = format!(
-                    "of {CYCLES} rounds of samples after the first, {anew} had to be drawn anew to meet \
-                     the constraints and {first} repeat the first: some parts will be shown together \
-                     more often than others"
+                issues.warning(
+                    below(&pointer, "numSamples"),
+                    Problem::UnevenSamples { rounds: CYCLES, anew, first },
                 );
-                let hint = "loosen the constraints or take a larger numSamples; each part is still \
-                            shown equally often";
-                issues.warning(below(&pointer, "numSamples"), "uneven-samples", message, hint);
             }
         }
     }

@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
-use super::nearest::suggestion;
+use super::problem::Problem;
 use super::{FileLookup, Subject, avatars};
-use crate::responses::is_reserved_column;
-use crate::study_file::{Capture, CaptureSource, Component, QuestionKind, Sequence, SequenceItem};
+use crate::columns::is_reserved_column;
+use crate::question::KindOfQuestion as _;
+use crate::study_file::{Capture, CaptureSource, Component, Sequence, SequenceItem};
 
 /// Frames a second that a clip can be shown at.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=1000.0;
@@ -42,73 +43,56 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
 fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
     if name.is_empty() || !name.chars().all(plain) {
-        let message = format!("\"{name}\" cannot be part of a clip's identifier");
-        issues.error(pointer, "bad-id", message, "use letters, digits, _ and -");
+        issues.error(pointer, Problem::PartOfClipId { name: name.to_owned() });
     }
 }
 
 fn one_source(builtin: bool, file: bool, pointer: &str, issues: &mut Issues) {
     if builtin == file {
-        let message = if file { "both builtin and file" } else { "neither builtin nor file" };
-        let hint = "give one: \"builtin\": {} or \"file\": \"...\"";
-        issues.error(pointer, "one-source", message, hint);
+        let problem = if file { Problem::TwoSources } else { Problem::NoSource };
+        issues.error(pointer, problem);
     }
 }
 
 fn file(path: Option<&str>, pointer: &str, lookup: &FileLookup<'_>, issues: &mut Issues) {
-    if let Some(Err((message, hint))) = path.map(lookup) {
-        issues.error(pointer, "missing-file", message, hint);
+    if let Some(Err(problem)) = path.map(lookup) {
+        issues.error(pointer, problem);
     }
 }
 
 fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
     if let Some(unit) = capture.unit.as_deref().filter(|unit| !["m", "cm", "mm"].contains(unit)) {
-        let message = format!("\"{unit}\" is not a unit");
-        issues.error(below(pointer, "unit"), "unknown-word", message, "write m, cm or mm");
+        issues.error(below(pointer, "unit"), Problem::Unit { unit: unit.to_owned() });
     }
     if let Some([first, end]) = capture.neutral.filter(|[first, end]| first >= end) {
-        let message = format!("frames {first} to {end} are none");
-        let hint = "write the first frame and the one after the last";
-        issues.error(below(pointer, "neutral"), "bad-range", message, hint);
+        issues.error(below(pointer, "neutral"), Problem::NeutralFrames { first, end });
     }
     if let Some(hertz) = capture.head_lowpass_hz.filter(|hertz| *hertz <= 0.0) {
-        let message = format!("{hertz} Hz lets nothing pass");
-        let hint = "take a frequency above 0, or leave it out";
-        issues.error(below(pointer, "headLowpassHz"), "out-of-range", message, hint);
+        issues.error(below(pointer, "headLowpassHz"), Problem::NothingPasses { hertz });
     }
     if let Some(hertz) = capture.rate_hz.filter(|hertz| !RATES_HZ.contains(hertz)) {
-        let message = format!("{hertz} frames a second show no face as it moves");
-        let hint =
-            "take 60 (what most displays show), another rate from 15 to 1000, or leave it out";
-        issues.error(below(pointer, "rateHz"), "out-of-range", message, hint);
+        issues.error(below(pointer, "rateHz"), Problem::FrameRate { hertz });
     }
     if let Some(CaptureSource::File(_)) = capture.source() {
         if capture.markers.is_none() {
-            let message = "no marker map: nothing says where the markers sit on the avatar";
-            issues.error(pointer, "no-markers", message, "add \"markers\": \"map.json\"");
+            issues.error(pointer, Problem::NoMarkers);
         }
         if capture.neutral.is_none() {
-            let message = "no frames of the neutral face";
-            let hint =
-                "add \"neutral\": [first, end], or make sure that the capture begins with it";
-            issues.warning(pointer, "no-neutral", message, hint);
+            issues.warning(pointer, Problem::NoNeutral);
         }
         match capture.head.len() {
             0 => {
-                let message = "no head markers: the head's own motion stays in the face's";
-                issues.warning(pointer, "no-head", message, "add \"head\": [three labels or more]");
+                issues.warning(pointer, Problem::NoHead);
             }
             count @ 1..3 => {
-                let message = format!("{count} head markers do not fix the head");
-                issues.error(below(pointer, "head"), "too-few", message, "name three or more");
+                issues.error(below(pointer, "head"), Problem::FewHeadMarkers { markers: count });
             }
             _ => {}
         }
     } else if capture.builtin.is_some()
         && (capture.markers.is_some() || capture.unit.is_some() || !capture.head.is_empty())
     {
-        let message = "a built-in actor brings its markers along";
-        issues.error(pointer, "not-needed", message, "remove markers, head and unit");
+        issues.error(pointer, Problem::BuiltinMarkers);
     }
 }
 
@@ -119,40 +103,32 @@ fn segments(subject: &Subject<'_>, issues: &mut Issues) {
         let pointer = below("/stimuli/segments", index);
         identifier(&segment.id, &below(&pointer, "id"), issues);
         if stimuli.segments[..index].iter().any(|each| each.id == segment.id) {
-            let message = format!("two segments \"{}\"", segment.id);
-            issues.error(below(&pointer, "id"), "duplicate", message, "give it another one");
+            issues.error(below(&pointer, "id"), Problem::SegmentTwice { id: segment.id.clone() });
         }
         let Some(capture) = stimuli.captures.get(&segment.capture) else {
-            let message = format!("there is no capture \"{}\"", segment.capture);
-            let hint = suggestion(&segment.capture, &captures);
-            issues.error(below(&pointer, "capture"), "unknown-reference", message, hint);
+            issues.error(
+                below(&pointer, "capture"),
+                Problem::unknown("capture", &segment.capture, &captures),
+            );
             continue;
         };
         match (capture.source(), segment.performance, segment.first, segment.end) {
             (Some(CaptureSource::Builtin(_)), Some(performance), None, None) => {
                 if !(1..=3).contains(&performance.intensity) {
-                    let message = format!("intensity {}", performance.intensity);
                     let place = format!("{pointer}/performance/intensity");
-                    issues.error(place, "out-of-range", message, "write 1, 2 or 3");
+                    issues.error(place, Problem::Intensity { intensity: performance.intensity });
                 }
             }
             (Some(CaptureSource::Builtin(_)), ..) => {
-                let message = "a cut of a built-in actor is a performance, not frames";
-                let hint =
-                    "write \"performance\": {\"expression\": \"joy\", \"intensity\": 2} alone";
-                issues.error(pointer, "bad-segment", message, hint);
+                issues.error(pointer, Problem::CutOfActor);
             }
             (Some(CaptureSource::File(_)), None, Some(first), Some(end)) => {
                 if first >= end {
-                    let message = format!("frames {first} to {end} are none");
-                    let hint = "end is the frame after the last one";
-                    issues.error(pointer, "bad-range", message, hint);
+                    issues.error(pointer, Problem::SegmentFrames { first, end });
                 }
             }
             (Some(CaptureSource::File(_)), ..) => {
-                let message = "a cut of a file is its frames";
-                let hint = "write \"first\" and \"end\", and no performance";
-                issues.error(pointer, "bad-segment", message, hint);
+                issues.error(pointer, Problem::CutOfFile);
             }
             (None, ..) => {}
         }
@@ -163,12 +139,9 @@ fn segments(subject: &Subject<'_>, issues: &mut Issues) {
 fn methods(subject: &Subject<'_>, issues: &mut Issues) {
     for (name, method) in &subject.study.stimuli.methods {
         for problem in method.spec.problems() {
-            let pointer = below(&below("/stimuli/methods", name), problem.field.replace('.', "/"));
-            let (message, hint) = match problem.message.split_once("; ") {
-                Some((message, hint)) => (message.to_owned(), hint.to_owned()),
-                None => (problem.message, "mend the value".to_owned()),
-            };
-            issues.error(pointer.replace("~1", "/"), "bad-parameter", message, hint);
+            let pointer = below("/stimuli/methods", name) + &problem.pointer();
+            let (message, remedy) = (problem.message(), problem.remedy());
+            issues.error(pointer, Problem::Parameter { message, remedy });
         }
     }
 }
@@ -178,37 +151,33 @@ fn training(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues)
     let stimuli = &subject.study.stimuli;
     let captures: Vec<&str> = stimuli.captures.keys().map(String::as_str).collect();
     for (name, method) in &stimuli.methods {
-        let learns = method.spec.method == mimique_solver::Method::Regression;
+        let learns = method.spec.method.needs() == mimique_solver::Needs::Training;
         let pointer = below("/stimuli/methods", name);
         let Some(training) = &method.training else {
             if learns {
-                let message = "no training: a regression learns from a range of motion";
-                let hint = "add \"training\": {\"capture\": \"...\", \"weights\": \"weights.csv\"}";
-                issues.error(pointer, "no-training", message, hint);
+                issues.error(pointer, Problem::NoTraining);
             }
             continue;
         };
         let place = below(&pointer, "training");
         if !learns {
-            let message = format!("\"{}\" learns nothing", method.word());
-            issues.error(place, "not-needed", message, "remove training, or take regression");
+            issues.error(place, Problem::LearnsNothing { method: method.word() });
             continue;
         }
         file(training.weights.as_deref(), &below(&place, "weights"), lookup, issues);
         let Some(capture) = stimuli.captures.get(&training.capture) else {
-            let message = format!("there is no capture \"{}\"", training.capture);
-            let hint = suggestion(&training.capture, &captures);
-            issues.error(below(&place, "capture"), "unknown-reference", message, hint);
+            issues.error(
+                below(&place, "capture"),
+                Problem::unknown("capture", &training.capture, &captures),
+            );
             continue;
         };
         match (capture.source(), &training.weights) {
             (Some(CaptureSource::File(_)), None) => {
-                let message = "no weights: nothing says what the take's frames are";
-                issues.error(place, "no-weights", message, "add \"weights\": \"weights.csv\"");
+                issues.error(place, Problem::NoWeights);
             }
             (Some(CaptureSource::Builtin(_)), Some(_)) => {
-                let message = "a built-in actor brings the weights along";
-                issues.error(below(&place, "weights"), "not-needed", message, "remove weights");
+                issues.error(below(&place, "weights"), Problem::BuiltinWeights);
             }
             _ => {}
         }
@@ -220,10 +189,9 @@ fn references(subject: &Subject<'_>, issues: &mut Issues) {
     let avatars: Vec<&str> = stimuli.avatars.keys().map(String::as_str).collect();
     let segments: Vec<&str> = stimuli.segments.iter().map(|each| each.id.as_str()).collect();
     let methods: Vec<&str> = stimuli.methods.keys().map(String::as_str).collect();
-    let mut refer = |name: &str, known: &[&str], what: &str, pointer: String| {
+    let mut refer = |name: &str, known: &[&str], what: &'static str, pointer: String| {
         if !known.contains(&name) {
-            let message = format!("there is no {what} \"{name}\"");
-            issues.error(pointer, "unknown-reference", message, suggestion(name, known));
+            issues.error(pointer, Problem::unknown(what, name, known));
         }
     };
     if let Some(cross) = &stimuli.clips.cross {
@@ -276,16 +244,14 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
                 let taken = is_reserved_column(factor)
                     || ["clip", "segment", "avatar", "truth"].contains(&factor.as_str());
                 if taken {
-                    let message = format!("\"{factor}\" is the name of a column of every export");
-                    issues.error(place, "name-taken", message, "give the factor another name");
+                    issues.error(place, Problem::FactorIsColumn { factor: factor.clone() });
                 } else if let Some((_, (other, _))) = elsewhere {
-                    let message = format!("\"{factor}\" is a factor of {what} and of {other}");
-                    let hint = "keep it in one place, so that a clip has one value";
-                    issues.error(place, "factor-twice", message, hint);
+                    issues.error(
+                        place,
+                        Problem::FactorTwice { factor: factor.clone(), here: what, there: other },
+                    );
                 } else if !used.contains(factor.as_str()) && complained.insert(factor) {
-                    let message = format!("factor \"{factor}\" is never used");
-                    let hint = "name it in a hypothesis, a constraint, a selection of clips or a truth; or remove it";
-                    issues.warning(place, "unused-factor", message, hint);
+                    issues.warning(place, Problem::UnusedFactor { factor: factor.clone() });
                 }
             }
         }
@@ -312,9 +278,7 @@ fn factors_used<'a>(subject: &Subject<'a>) -> BTreeSet<&'a str> {
         used.extend(table.factors.iter().chain(crossed).map(String::as_str));
     }
     for question in &study.questions {
-        if let QuestionKind::SingleChoice(choice) = &question.kind {
-            used.extend(choice.truth.as_deref());
-        }
+        used.extend(question.kind.truth());
     }
     for component in study.components.values() {
         if let Component::Trials(block) = component {
@@ -329,24 +293,30 @@ fn look(subject: &Subject<'_>, issues: &mut Issues) {
     let look = &subject.study.stimuli.look;
     let digits = look.background.strip_prefix('#').unwrap_or_default();
     if digits.len() != 6 || !digits.chars().all(|digit| digit.is_ascii_hexdigit()) {
-        let message = format!("\"{}\" is not a colour", look.background);
-        issues.error("/stimuli/look/background", "bad-colour", message, "write #rrggbb");
+        issues
+            .error("/stimuli/look/background", Problem::Colour { colour: look.background.clone() });
     }
     for (key, size) in [("width", look.width), ("height", look.height)] {
         if !(64..=4096).contains(&size) {
-            let message = format!("{size} pixels");
             let place = below("/stimuli/look", key);
-            issues.error(place, "out-of-range", message, "take 64 to 4096");
+            issues.error(
+                place,
+                Problem::OutOfRange {
+                    value: f64::from(size),
+                    unit: "pixels",
+                    least: 64.0,
+                    most: 4096.0,
+                },
+            );
         }
     }
 }
 
 fn unused(subject: &Subject<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
-    let mut complain = |name: &str, what: &str, used: bool, pointer: String| {
+    let mut complain = |name: &str, what: &'static str, used: bool, pointer: String| {
         if !used {
-            let message = format!("no clip uses {what} \"{name}\"");
-            issues.warning(pointer, "unused", message, "name it in /stimuli/clips, or remove it");
+            issues.warning(pointer, Problem::UnusedByClips { what, name: name.to_owned() });
         }
     };
     for name in stimuli.avatars.keys() {

@@ -3,9 +3,11 @@
 use serde_json::{Map, Value};
 
 use super::damage::Damage;
-use super::issue::{Issues, below, listed};
-use super::nearest::{nearest, suggestion};
+use super::issue::{Issues, below};
+use super::nearest::nearest;
+use super::problem::Problem;
 use super::schema::json_schema;
+use super::values::{JsonType, Names, Nearest, Shown, Wanted};
 
 /// Examines a file; returns the pointers of all its localised texts, and what cannot be read.
 pub(super) fn examine(value: &Value, issues: &mut Issues) -> (Vec<String>, Damage) {
@@ -82,7 +84,7 @@ impl<'a> Walk<'a> {
     fn any_of(&mut self, alternatives: &'a [Value], value: &Value, pointer: &str) {
         let fitting = alternatives.iter().find(|alternative| {
             self.parts(alternative).iter().any(|part| {
-                part.get("type").is_some_and(|kinds| names(kinds).any(|kind| is_a(value, kind)))
+                part.get("type").is_some_and(|types| has_one(types, value))
                     || part.get("anyOf").is_some()
                     || part.get("oneOf").is_some()
             }) && !(value.is_null() && alternative.get("type") != Some(&Value::from("null")))
@@ -90,24 +92,21 @@ impl<'a> Walk<'a> {
         match fitting {
             Some(alternative) => self.value(alternative, value, pointer),
             None => {
-                let mut kinds: Vec<&str> = Vec::new();
+                let mut types: Vec<JsonType> = Vec::new();
                 for alternative in alternatives {
                     for part in self.parts(alternative) {
-                        kinds.extend(part.get("type").into_iter().flat_map(names).map(kind_name));
+                        types.extend(part.get("type").into_iter().flat_map(types_of));
                     }
                 }
-                kinds.retain(|kind| *kind != "null");
-                kinds.dedup();
-                self.wrong_type(&kinds.join(" or "), value, pointer);
+                types.dedup();
+                self.wrong_type(Wanted::Types(types), value, pointer);
             }
         }
     }
 
-    fn has_type(&mut self, kinds: &Value, part: &Value, value: &Value, pointer: &str) -> bool {
-        if !names(kinds).any(|kind| is_a(value, kind)) {
-            let wanted: Vec<&str> =
-                names(kinds).filter(|kind| *kind != "null").map(kind_name).collect();
-            self.wrong_type(&wanted.join(" or "), value, pointer);
+    fn has_type(&mut self, types: &Value, part: &Value, value: &Value, pointer: &str) -> bool {
+        if !has_one(types, value) {
+            self.wrong_type(Wanted::Types(types_of(types).collect()), value, pointer);
             return false;
         }
         let Some(number) = value.as_f64() else { return true };
@@ -119,34 +118,32 @@ impl<'a> Walk<'a> {
             _ => (-9.1e15, 9.1e15),
         };
         let least = part.get("minimum").and_then(Value::as_f64).unwrap_or(least);
-        if names(kinds).any(|kind| kind == "integer") && !(least..=most).contains(&number) {
-            let message = format!("{value} is out of range");
-            let hint = format!("write a whole number from {least} to {most}");
-            self.fault(pointer, "out-of-range", message, hint);
+        let whole = types_of(types).any(|each| each == JsonType::WholeNumber);
+        if whole && !(least..=most).contains(&number) {
+            self.fault(pointer, Problem::WholeNotInRange { found: value.clone(), least, most });
             return false;
         }
         true
     }
 
-    fn wrong_type(&mut self, wanted: &str, value: &Value, pointer: &str) {
-        let message = format!("{} where {wanted} belongs", shown(value));
-        self.fault(pointer, "wrong-type", message, format!("write {wanted}"));
+    fn wrong_type(&mut self, wanted: Wanted, value: &Value, pointer: &str) {
+        self.fault(pointer, Problem::WrongType { found: Shown(value.clone()), wanted });
     }
 
     /// Says that a value cannot be read as it stands.
-    fn fault(&mut self, pointer: &str, code: &'static str, message: String, hint: String) {
+    fn fault(&mut self, pointer: &str, problem: Problem) {
         self.damage.place(pointer.to_owned());
-        self.issues.error(pointer, code, message, hint);
+        self.issues.error(pointer, problem);
     }
 
     fn wrong_word(&mut self, words: &[&str], value: &Value, pointer: &str) {
+        let names = Names::of(words);
         match value.as_str() {
             Some(word) => {
-                let hint = suggestion(word, words);
-                let message = format!("\"{word}\" is not one of {}", listed(words));
-                self.fault(pointer, "unknown-word", message, hint);
+                let (word, known) = (word.to_owned(), Nearest::to(word, words));
+                self.fault(pointer, Problem::UnknownWord { word, words: names, known });
             }
-            None => self.wrong_type(&format!("one of {}", listed(words)), value, pointer),
+            None => self.wrong_type(Wanted::Words(names), value, pointer),
         }
     }
 
@@ -156,8 +153,7 @@ impl<'a> Walk<'a> {
             || limit("maxItems").is_some_and(|most| items.len() > most)
         {
             let wanted = limit("minItems").unwrap_or_default();
-            let message = format!("{} items where {wanted} belong", items.len());
-            self.fault(pointer, "wrong-length", message, format!("write {wanted} items"));
+            self.fault(pointer, Problem::ItemCount { found: items.len(), wanted });
         }
         if let Some(schema) = part.get("items") {
             for (index, item) in items.iter().enumerate() {
@@ -186,8 +182,9 @@ impl<'a> Walk<'a> {
             } else if rules.closed {
                 let known: Vec<&str> =
                     rules.properties.iter().map(|(name, _)| name.as_str()).collect();
-                let message = format!("unknown key \"{key}\"");
-                self.issues.error(&place, "unknown-key", message, suggestion(key, &known));
+                let problem =
+                    Problem::UnknownKey { key: key.clone(), known: Nearest::to(key, &known) };
+                self.issues.error(&place, problem);
                 let Some(name) = nearest(key, &known) else { continue };
                 // It is read as the key that is meant, so that what it holds is checked too.
                 if !map.contains_key(name) && !meant.contains(&name) {
@@ -203,9 +200,8 @@ impl<'a> Walk<'a> {
         for key in rules.required {
             // A misspelt key is one mistake, not two.
             if !map.contains_key(key) && !meant.contains(&key) {
-                let message = format!("\"{key}\" is missing");
                 self.damage.place(below(pointer, key));
-                self.issues.error(pointer, "missing-key", message, format!("add \"{key}\""));
+                self.issues.error(pointer, Problem::MissingKey { key: key.to_owned() });
             }
         }
     }
@@ -239,9 +235,8 @@ impl<'a> Walk<'a> {
             return true;
         }
         let Some(given) = map.get("type") else {
-            let hint = format!("add \"type\": {}", listed(&words));
             self.damage.place(below(pointer, "type"));
-            self.issues.error(pointer, "missing-key", "\"type\" is missing", hint);
+            self.issues.error(pointer, Problem::MissingType { words: Names::of(&words) });
             return false;
         };
         let chosen = alternatives.iter().find(|each| word_of(each) == given.as_str());
@@ -272,41 +267,17 @@ fn words(part: &Value) -> Option<Vec<&str>> {
     (words.len() == alternatives.len()).then_some(words)
 }
 
-fn names(kinds: &Value) -> impl Iterator<Item = &str> {
-    let list = kinds.as_array().map_or(std::slice::from_ref(kinds), Vec::as_slice);
-    list.iter().filter_map(Value::as_str)
+/// The types that a `type` of a schema allows; `null` is none of them.
+fn types_of(types: &Value) -> impl Iterator<Item = JsonType> {
+    let list = types.as_array().map_or(std::slice::from_ref(types), Vec::as_slice);
+    list.iter().filter_map(Value::as_str).filter_map(JsonType::of_schema)
 }
 
-fn is_a(value: &Value, kind: &str) -> bool {
-    match kind {
-        "string" => value.is_string(),
-        "integer" => value.is_i64() || value.is_u64(),
-        "number" => value.is_number(),
-        "boolean" => value.is_boolean(),
-        "array" => value.is_array(),
-        "object" => value.is_object(),
-        "null" => value.is_null(),
-        _ => false,
-    }
-}
-
-fn kind_name(kind: &str) -> &str {
-    match kind {
-        "string" => "text",
-        "integer" => "a whole number",
-        "number" => "a number",
-        "boolean" => "true or false",
-        "array" => "a list [...]",
-        "object" => "an object {...}",
-        other => other,
-    }
-}
-
-/// A value, short enough for a message.
-fn shown(value: &Value) -> String {
-    let text = value.to_string();
-    match text.char_indices().nth(40) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text,
-    }
+/// Whether a value is of one of the types that a `type` of a schema allows.
+fn has_one(types: &Value, value: &Value) -> bool {
+    let may_be_null = match types {
+        Value::Array(types) => types.iter().any(|each| each == "null"),
+        one => one == "null",
+    };
+    (may_be_null && value.is_null()) || types_of(types).any(|each| each.has(value))
 }

@@ -3,16 +3,18 @@
 use std::ops::RangeInclusive;
 
 use super::issue::{Issues, below};
+use super::problem::Problem;
+use super::values::Count;
 use super::{Subject, assigned, responses};
-use crate::study_file::{Layout, QuestionKind, TableLayout};
+use crate::question::KindOfQuestion as _;
+use crate::study_file::{Layout, Measure, TableLayout};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     let tables = &subject.study.tables;
     for (index, table) in tables.iter().enumerate() {
         let pointer = below("/tables", index);
         if tables[..index].iter().any(|each| each.id == table.id) {
-            let message = format!("two tables \"{}\"", table.id);
-            issues.error(below(&pointer, "id"), "duplicate", message, "give it another name");
+            issues.error(below(&pointer, "id"), Problem::TableTwice { id: table.id.clone() });
         }
         counts(subject, table, &pointer, issues);
         names(subject, table, &pointer, issues);
@@ -40,18 +42,15 @@ fn counts(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mu
         if wanted.contains(&found) {
             continue;
         }
-        let message = format!("{found} {key} in the layout \"{}\"", table.layout.word());
-        let hint = match (*wanted.start(), *wanted.end()) {
-            (_, 0) => "leave them out".to_owned(),
-            (low, usize::MAX) => format!("name at least {low}"),
-            (low, high) if low == high => format!("name {low}"),
-            (low, high) => format!("name {low} to {high}"),
+        let layout = table.layout.word();
+        let problem = match *wanted.end() {
+            0 => Problem::NoneTaken { found, key, layout },
+            _ => Problem::TakenCount { found, key, layout, wanted: Count(wanted) },
         };
-        issues.error(below(pointer, key), "wrong-length", message, hint);
+        issues.error(below(pointer, key), problem);
     }
     if table.layout == Layout::Hypotheses && subject.study.hypotheses.is_empty() {
-        let message = "the study has no hypotheses";
-        issues.error(below(pointer, "layout"), "unknown-reference", message, "state hypotheses");
+        issues.error(below(pointer, "layout"), Problem::NoHypotheses);
     }
 }
 
@@ -60,11 +59,14 @@ fn names(subject: &Subject<'_>, table: &TableLayout, pointer: &str, issues: &mut
         let place = below(&below(pointer, "responses"), index);
         let found = responses::tested(subject, response, place.clone(), false, issues);
         let Some(question) = found else { continue };
-        let has_truth =
-            matches!(&question.kind, QuestionKind::SingleChoice(choice) if choice.truth.is_some());
-        if table.layout == Layout::Confusion && !has_truth {
-            let message = format!("\"{response}\" has no right answer");
-            issues.error(place, "no-truth", message, "give the question \"truth\"");
+        if table.layout == Layout::Confusion && question.kind.truth().is_none() {
+            issues.error(&place, Problem::NoTruthInTable { response: response.clone() });
+        }
+        for factor in table.factors.iter().chain(table.crossings.iter().flatten()) {
+            let measure = Measure::Answer;
+            if let Some(of_pair) = subject.study.answer_of_pair(question, measure, factor, &[]) {
+                issues.error(&place, of_pair.into());
+            }
         }
     }
     let lists = [("factors".to_owned(), table.factors.as_slice())].into_iter().chain(

@@ -17,6 +17,7 @@ mod constrained;
 mod latin_square;
 mod proof;
 mod samples;
+mod sides;
 mod stream;
 mod subset;
 mod turns;
@@ -25,6 +26,7 @@ use crate::sorted_map::SortedMap;
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
 use constrained::{Search, arrange};
 pub(crate) use proof::{CYCLES, Flaw, prove};
+pub use sides::Sides;
 pub use stream::Stream;
 use turns::Turns;
 
@@ -56,37 +58,48 @@ impl OrderedItem {
     }
 }
 
-/// There is no such order.
+/// A sequence has no order.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum OrderError {
-    /// The constraints of a sequence cannot be met.
-    #[error(
-        "{pointer}/constraints: no order of its {parts} parts meets them; loosen or drop one of them"
-    )]
+#[error("{pointer}: {why}; {}", why.remedy())]
+pub struct OrderError {
+    /// JSON pointer of what is wrong.
+    pub pointer: String,
+    /// What is wrong there.
+    pub why: NoOrder,
+}
+
+/// Why a sequence has no order.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoOrder {
+    /// The constraints cannot be met.
+    #[error("no order of its {parts} parts meets them")]
     Unsatisfiable {
-        /// JSON pointer of the sequence.
-        pointer: String,
         /// Number of parts.
         parts: usize,
     },
     /// Whether the constraints can be met was not found out in the time given.
-    #[error(
-        "{pointer}/constraints: no order of its {parts} parts was found within the search's budget; loosen one of them"
-    )]
+    #[error("no order of its {parts} parts was found within the search's budget")]
     NotFound {
-        /// JSON pointer of the sequence.
-        pointer: String,
         /// Number of parts.
         parts: usize,
     },
     /// A sequence names what is not there.
-    #[error("{pointer}: there is no component {name:?}; name one of `components`")]
+    #[error("there is no component {name:?}")]
     UnknownComponent {
-        /// JSON pointer of the name.
-        pointer: String,
         /// The name.
         name: String,
     },
+}
+
+impl NoOrder {
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Unsatisfiable { .. } => "loosen or drop one of them",
+            Self::NotFound { .. } => "loosen one of them",
+            Self::UnknownComponent { .. } => "name one of `components`",
+        }
+    }
 }
 
 /// Whose order is drawn.
@@ -96,7 +109,7 @@ pub struct Draw<'a> {
     pub seed: u64,
     /// Hash of the canonical study file.
     pub config_hash: &'a str,
-    /// The participant's slot ([`crate::wire::SessionStarted::slot`]).
+    /// The participant's slot (`SessionStarted::slot` of the session).
     pub participant: u64,
     /// The participant's condition ([`Study::conditions`]). It decides what is shown and names no
     /// stream: a nested sequence of random order outside of conditions comes in the same order for the
@@ -197,10 +210,8 @@ impl Context<'_> {
         condition: Option<&str>,
     ) -> Result<Vec<Vec<OrderedItem>>, OrderError> {
         let Some(component) = self.study.components.get(name) else {
-            return Err(OrderError::UnknownComponent {
-                pointer: pointer.to_owned(),
-                name: name.to_owned(),
-            });
+            let why = NoOrder::UnknownComponent { name: name.to_owned() };
+            return Err(OrderError { pointer: pointer.to_owned(), why });
         };
         let Component::Trials(trials) = component else {
             return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);
@@ -286,11 +297,11 @@ impl Context<'_> {
 
 impl Search {
     fn error(self, pointer: &str, parts: usize) -> OrderError {
-        let pointer = pointer.to_owned();
-        match self {
-            Self::Impossible => OrderError::Unsatisfiable { pointer, parts },
-            Self::OutOfBudget => OrderError::NotFound { pointer, parts },
-        }
+        let why = match self {
+            Self::Impossible => NoOrder::Unsatisfiable { parts },
+            Self::OutOfBudget => NoOrder::NotFound { parts },
+        };
+        OrderError { pointer: format!("{pointer}/constraints"), why }
     }
 }
 

@@ -10,7 +10,6 @@ use super::{ClipEntry, Study};
 use crate::from_json::{Faults, FromJson};
 use crate::sorted_map::SortedMap;
 use crate::tagged;
-use mimique_solver::number_text;
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = SortedMap<String, FactorValue>;
@@ -73,7 +72,7 @@ impl std::fmt::Display for FactorValue {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Truth(truth) => write!(formatter, "{truth}"),
-            Self::Number(number) => formatter.write_str(&number_text(*number)),
+            Self::Number(number) => write!(formatter, "{number}"),
             Self::Text(text) => formatter.write_str(text),
         }
     }

@@ -7,8 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Condition, LocalText};
+use super::LocalText;
 use crate::from_json::FromJson;
+use crate::question::Condition;
 use crate::sorted_map::SortedMap;
 
 /// What a device must have. It is looked at right after consent; whoever cannot mend what is missing

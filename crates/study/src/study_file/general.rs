@@ -105,20 +105,6 @@ pub struct Recruitment {
     pub reservation_minutes: Option<u32>,
 }
 
-impl Recruitment {
-    /// The code of somebody whose session ended with this status of the export: `completed`,
-    /// `screened_out`, `failed_checks`.
-    pub fn code_for(&self, status: &str) -> Option<&str> {
-        let code = match status {
-            "completed" => &self.completion_code,
-            "screened_out" => &self.screened_out_code,
-            "failed_checks" => &self.failed_checks_code,
-            _ => &None,
-        };
-        code.as_deref()
-    }
-}
-
 /// How a second participation of one person is recognised.
 #[derive(
     Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,

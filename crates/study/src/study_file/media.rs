@@ -1,9 +1,10 @@
-//! The pictures and signed videos that questions and their options show.
+//! The pictures and sign-language videos that questions and their options show.
 
-use super::{Choice, LocalText, Question, QuestionKind, Study};
+use super::{LocalText, Study};
+use crate::question::{Choice, KindOfQuestion as _, Question};
 use crate::sorted_map::SortedMap;
 
-/// What the key of such a file in [`crate::wire::Bundle::clips`] begins with: it is served like a film.
+/// What the key of such a file in a study's clips as the page gets them begins with: it is served like a film.
 pub const MEDIA_PREFIX: &str = "media:";
 
 /// The media type of a picture or a video, by the ending of its name; `None` for what browsers do not
@@ -22,7 +23,7 @@ pub fn media_type(path: &str) -> Option<&'static str> {
 }
 
 impl Study {
-    /// The paths of every picture and signed video of its questions, each once.
+    /// The paths of every picture and sign-language video of its questions, each once.
     pub fn media(&self) -> Vec<&str> {
         fn videos(text: &LocalText) -> Vec<&str> {
             match text {
@@ -46,13 +47,9 @@ impl Study {
 }
 
 impl Question {
-    /// All of it that can have a picture or a signed video: options, rows, ends.
+    /// All of it that can have a picture or a sign-language video: options, rows, ends.
     fn choices(&self) -> [&[Choice]; 3] {
-        let rows = match &self.kind {
-            QuestionKind::Matrix(matrix) => matrix.rows.as_slice(),
-            _ => &[],
-        };
-        [self.kind.options(), rows, &self.signs]
+        [self.kind.options(), self.kind.rows(), &self.signs]
     }
 
     /// The option of a comparison (`left`, `same`, `right`) as the study has it.
@@ -60,7 +57,7 @@ impl Question {
         self.signs.iter().find(|sign| sign.value == value)
     }
 
-    /// The paths of the pictures and signed videos that it shows in a language.
+    /// The paths of the pictures and sign-language videos that it shows in a language.
     pub fn media<'a>(&'a self, language: &'a str) -> Vec<&'a str> {
         let mut paths: Vec<&str> = Vec::new();
         paths.extend(self.video.as_ref().map(|video| video.in_language(language)));

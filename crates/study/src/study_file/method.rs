@@ -1,6 +1,6 @@
 //! A method of the study file: the solver's parameters with factors beside them.
 
-use mimique_solver::MethodSpec;
+use mimique_solver::{Method, MethodSpec, parameter_schemas};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -50,11 +50,13 @@ fn off_page<T: FromJson>(value: &Value, key: &str, faults: &mut Faults) -> Optio
     if cfg!(target_arch = "wasm32") { None } else { from_json::required(value, key, faults) }
 }
 
+/// The keys of an entry beside the solver's parameters.
+const BESIDE: [&str; 3] = ["factors", "label", "training"];
+
 impl FromJson for MethodEntry {
     fn from_json(value: &Value, faults: &mut Faults) -> Self {
-        faults.besides(&["factors", "label", "training"]);
         Self {
-            spec: MethodSpec::from_json(value, faults),
+            spec: from_json::method(value, &BESIDE, faults),
             factors: from_json::or_else(value, "factors", faults, Factors::default),
             label: off_page(value, "label", faults),
             training: off_page(value, "training", faults),
@@ -104,37 +106,17 @@ impl Serialize for MethodEntry {
     }
 }
 
-/// The keys that a method's parameters may have, as the solver itself lists them.
-pub fn method_keys() -> Vec<String> {
-    listed_by(&serde_json::json!({ "method": "box", "?": 0 }))
-}
-
-/// The words that `method` may be, as the solver itself lists them.
-pub(crate) fn method_words() -> Vec<String> {
-    listed_by(&serde_json::json!({ "method": "?" }))
-}
-
-/// The names in back quotes after "expected" in the reader's complaint about `value`.
-fn listed_by(value: &Value) -> Vec<String> {
-    let Err(error) = MethodSpec::deserialize(value) else { return Vec::new() };
-    let text = error.to_string();
-    let Some((_, expected)) = text.split_once("expected") else { return Vec::new() };
-    expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
-}
-
 impl JsonSchema for MethodEntry {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         "Method".into()
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let mut properties = Map::new();
-        for key in method_keys() {
-            properties.insert(key, Value::Bool(true));
-        }
+        let mut properties = parameter_schemas();
+        let methods: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
         properties.insert(
             "method".to_owned(),
-            serde_json::json!({ "type": "string", "enum": method_words() }),
+            serde_json::json!({ "type": "string", "enum": methods, "description": "The method" }),
         );
         properties.insert("factors".to_owned(), generator.subschema_for::<Factors>().into());
         properties.insert("label".to_owned(), generator.subschema_for::<LocalText>().into());

@@ -14,12 +14,12 @@ mod local_text;
 mod media;
 mod method;
 mod paths;
-mod questions;
 mod sequence;
 mod stimuli;
 mod tables;
 
 use crate::from_json::{self, FromJson};
+use crate::question::Question;
 use crate::sorted_map::SortedMap;
 use crate::text::{Words, primary_language, words};
 use schemars::JsonSchema;
@@ -37,12 +37,8 @@ pub use general::{
 pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
-pub use method::{MethodEntry, MethodTraining, method_keys};
-pub use paths::{PathError, resolve_path};
-pub use questions::{
-    AttentionCheck, Choice, Comparison, Condition, Grid, Likert, Matrix, MultipleChoice,
-    NumberField, OptionOrder, Question, QuestionKind, Ranking, SingleChoice, Slider, TextField,
-};
+pub use method::{MethodEntry, MethodTraining};
+pub use paths::{PathError, WrongVariable, resolve_path};
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
@@ -140,16 +136,26 @@ pub struct Study {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StudyFileError {
     /// Not JSON, nor JSON with comments.
-    #[error("{place}: {message}; write JSON (comments and trailing commas are allowed)")]
-    Syntax {
-        /// Line and column, or `study file`.
-        place: String,
-        /// What the parser says.
-        message: String,
-    },
+    #[error(transparent)]
+    Syntax(#[from] SyntaxError),
     /// JSON, but not a study.
     #[error("study file: {0}; run `mimique check` on it for every problem and its place")]
     Shape(String),
+}
+
+/// The text is not JSON, nor JSON with comments.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}; {}", Self::REMEDY)]
+pub struct SyntaxError {
+    /// Line and column, or `study file`.
+    pub place: String,
+    /// What the parser says.
+    pub what: String,
+}
+
+impl SyntaxError {
+    /// What to do about it.
+    pub const REMEDY: &str = "write JSON (comments and trailing commas are allowed)";
 }
 
 impl Study {
@@ -188,23 +194,20 @@ impl Study {
 }
 
 /// Parses the text of a study file: JSON, comments and trailing commas allowed.
-pub fn parse(text: &str) -> Result<serde_json::Value, StudyFileError> {
+pub fn parse(text: &str) -> Result<serde_json::Value, SyntaxError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if let Some(line) = nested_too_deeply(text) {
-        return Err(StudyFileError::Syntax {
+        return Err(SyntaxError {
             place: format!("line {line}"),
-            message: format!("brackets nested more than {DEEPEST} deep"),
+            what: format!("brackets nested more than {DEEPEST} deep"),
         });
     }
-    json5::from_str(text).map_err(|error| StudyFileError::Syntax {
+    json5::from_str(text).map_err(|error| SyntaxError {
         place: error.position().map_or_else(
             || "study file".to_owned(),
             |position| format!("line {}, column {}", position.line + 1, position.column + 1),
         ),
-        message: match error.to_string().split_once(" at line ") {
-            Some((message, _)) => message.to_owned(),
-            None => error.to_string(),
-        },
+        what: error.code().map_or_else(|| error.to_string(), |code| code.to_string()),
     })
 }
 
@@ -291,6 +294,6 @@ impl Study {
 }
 
 /// Name of the component (or of the section of the file) that a step comes from.
-pub(crate) fn component_of(step: &str) -> &str {
+pub fn component_of(step: &str) -> &str {
     step.split(['/', '#']).next().unwrap_or(step)
 }

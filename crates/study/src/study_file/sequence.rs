@@ -7,13 +7,12 @@ use serde_json::Value;
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
 use crate::from_json::{Faults, FromJson};
 use crate::sorted_map::SortedMap;
-use crate::tagged::{self, tagged_by_type};
+use crate::{tagged, tagged_by_type};
 
 /// A part of the study that a sequence names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
 #[serde(remote = "Self", rename_all = "camelCase")]
 #[schemars(tag = "type")]
-#[non_exhaustive]
 pub enum Component {
     /// A block: one trial a clip.
     Trials(TrialsComponent),

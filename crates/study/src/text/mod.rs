@@ -7,7 +7,6 @@ mod translation;
 mod typography;
 
 use crate::sorted_map::SortedMap;
-use mimique_solver::number_text;
 use std::borrow::Cow;
 
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
@@ -78,7 +77,7 @@ trait Shown {
 
 impl Shown for f64 {
     fn shown(&self) -> String {
-        number_text(*self)
+        self.to_string()
     }
 }
 

@@ -3,9 +3,8 @@
 use super::table::{NAMES, Place};
 use super::{Shown, Words};
 use crate::answer::AnswerProblem;
-use crate::flow::Unmet;
+use crate::device::Unmet;
 use crate::study_file::UnknownCondition;
-use crate::wire::Refusal;
 
 impl Words {
     /// "Clip 3 of 12".
@@ -144,10 +143,10 @@ impl Words {
 
     /// What a refusal means for the participant; of a code that is not among the texts, and of people who
     /// cannot begin, the server's own words (those come in the participant's language already).
-    pub fn refused(&self, refusal: &Refusal) -> String {
-        match self.by_code(&refusal.code) {
-            Some(text) if self.refusal(&refusal.code).is_none() => text.to_owned(),
-            _ => format!("{} {}", refusal.message, refusal.remedy).trim().to_owned(),
+    pub fn refused(&self, code: &str, message: &str, remedy: &str) -> String {
+        match self.by_code(code) {
+            Some(text) if self.refusal(code).is_none() => text.to_owned(),
+            _ => format!("{message} {remedy}").trim().to_owned(),
         }
     }
 

@@ -97,7 +97,7 @@ fixed {
         "La lecture a été interrompue. Veuillez revoir l’extrait.";
     /// A clip failed.
     clip_failed: "This clip could not be shown.", "Cet extrait n’a pas pu être affiché.";
-    /// A picture or a signed video of the page failed.
+    /// A picture or a sign-language video of the page failed.
     media_failed:
         "A picture or a video of this page could not be shown.",
         "Une image ou une vidéo de cette page n’a pas pu être affichée.";
@@ -177,6 +177,10 @@ fixed {
     right_one: "The right one (or lower one)", "Celui de droite (ou du bas)";
     /// Answer of a comparison: no difference.
     both_alike: "No difference", "Aucune différence";
+    /// Group of answers: which of the options is best.
+    best: "Best", "Le meilleur";
+    /// Group of answers: which of the options is worst.
+    worst: "Worst", "Le pire";
     /// Button: another person takes part in the same browser.
     another_person: "Start again for another person", "Recommencer pour une autre personne";
     /// Button: the answers as a file, where there is no server.

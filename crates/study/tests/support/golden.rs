@@ -4,9 +4,7 @@
 
 use std::fmt::Write as _;
 
-use mimique_study::flow::{Plan, Step};
-use mimique_study::wire::SessionStarted;
-use mimique_study::{Draw, OrderedItem, Study, option_order, order};
+use mimique_study::{Component, Draw, OrderedItem, Sides, Study, option_order, order};
 use serde_json::{Value, json};
 
 use super::small::small_file;
@@ -110,27 +108,24 @@ fn options() -> String {
 
 /// On which side the companion stands, trial by trial.
 fn sides() -> String {
+    let hash = hash();
+    let study = Study::from_text(&study_text("study2b.json")).unwrap();
     let mut lines = String::new();
     for participant in PARTICIPANTS {
-        let study = Study::from_text(&study_text("study2b.json")).unwrap();
-        let session = SessionStarted {
-            session: String::new(),
-            participant_id: String::new(),
-            participant,
-            slot: participant,
-            condition: None,
-            seed: study.seed,
-            stage: "live".into(),
-            config_hash: hash(),
-            withdrawal_code: String::new(),
-        };
-        let plan = Plan::new(study, session).unwrap();
-        let trials = plan.steps.iter().filter_map(Step::trial).filter(|trial| !trial.training);
-        let sides: String = trials
-            .filter_map(|trial| trial.beside.as_ref())
-            .map(|beside| if beside.left { 'l' } else { 'r' })
-            .collect();
-        writeln!(lines, "{participant}: {sides}").unwrap();
+        let draw = Draw { seed: study.seed, config_hash: &hash, participant, condition: None };
+        let items = order(&study, draw).unwrap();
+        let mut sides = Sides::new(&study, draw, &items);
+        let side = |left: bool| if left { 'l' } else { 'r' };
+        let of = items.iter().filter_map(|item| match item {
+            OrderedItem::Trial { component, .. } => match study.components.get(component) {
+                Some(Component::Trials(block)) => {
+                    block.beside.as_ref().map(|beside| side(sides.is_left(component, beside)))
+                }
+                _ => None,
+            },
+            OrderedItem::Component { .. } => None,
+        });
+        writeln!(lines, "{participant}: {}", of.collect::<String>()).unwrap();
     }
     lines
 }

@@ -1,20 +1,21 @@
 //! One of several, or any of several.
 
-use mimique_study::flow::ChoiceView;
+use mimique_session::flow::ChoiceView;
 use serde_json::Value;
 
-use super::Answering;
-use super::media::{picture, signed_video};
+use super::media::{picture, sign_language_video};
+use super::{Answering, change};
 use crate::dom::{Element, el, words};
+use crate::engine::Engine;
 
 /// Radio buttons.
 pub fn single(answering: &Answering, options: &[ChoiceView]) -> Vec<Element> {
     let tiles = options.iter().map(|option| {
-        let (give, value) = (answering.give.clone(), option.value.clone());
+        let value = option.value.clone();
         let field = answering
             .radio("choice", &option.value, answering.is(&option.value))
-            .on("change", move |_| give.give(Value::from(value.as_str())));
-        tile(field, option)
+            .on("change", answering.gives(move |_| Value::from(value.as_str())));
+        tile(answering.engine, field, option)
     });
     vec![el("div", "choices").all(tiles.collect())]
 }
@@ -30,22 +31,25 @@ pub fn multiple(
     let tiles = options.iter().map(|option| {
         let checked = chosen.contains(&option.value);
         let order: Vec<String> = options.iter().map(|option| option.value.clone()).collect();
-        let (give, toggled) = (answering.give.clone(), option.value.clone());
+        let (question, toggled) = (answering.question.id.clone(), option.value.clone());
         let field = el("input", "")
             .set("type", "checkbox")
             .set("value", &option.value)
             .checked(checked)
             .flag("disabled", full && !checked)
-            .on("change", move |given| {
-                let chosen = texts(give.now().as_ref());
-                let is_on = |value: &&String| match **value == toggled {
-                    true => given.checked,
-                    false => chosen.contains(value),
-                };
-                let now: Vec<String> = order.iter().filter(is_on).cloned().collect();
-                give.give(if now.is_empty() { Value::Null } else { Value::from(now) });
+            .on("change", move |field| {
+                let (order, toggled) = (order.clone(), toggled.clone());
+                change(&question, move |answer| {
+                    let chosen = texts(answer);
+                    let is_on = |value: &&String| match **value == toggled {
+                        true => field.checked,
+                        false => chosen.contains(value),
+                    };
+                    let now: Vec<String> = order.iter().filter(is_on).cloned().collect();
+                    if now.is_empty() { Value::Null } else { Value::from(now) }
+                })
             });
-        tile(field, option)
+        tile(answering.engine, field, option)
     });
     vec![el("div", "choices").all(tiles.collect())]
 }
@@ -56,24 +60,24 @@ pub fn texts(value: Option<&Value>) -> Vec<String> {
     values.iter().filter_map(|each| each.as_str().map(str::to_owned)).collect()
 }
 
-/// A field with its option; the option's signed video stands above it.
-pub fn tile(field: Element, option: &ChoiceView) -> Element {
-    let label = label(option).into_iter().fold(el("label", "choice").with(field), Element::with);
-    el("div", "option-box").key(&option.value).option(video_of(option)).with(label)
+/// A field with its option; the option's sign-language video stands above it.
+pub fn tile(engine: &Engine, field: Element, option: &ChoiceView) -> Element {
+    let label = el("label", "choice").with(field).all(label(engine, option));
+    el("div", "option-box").key(&option.value).option(video_of(engine, option)).with(label)
 }
 
-/// The words of a scale's end or point, below their signed video.
-pub fn signed(sign: &ChoiceView) -> Element {
-    el("div", "option-box").key(&sign.value).option(video_of(sign)).all(label(sign))
+/// The words of a scale's end or point, below their sign-language video.
+pub fn signed(engine: &Engine, sign: &ChoiceView) -> Element {
+    el("div", "option-box").key(&sign.value).option(video_of(engine, sign)).all(label(engine, sign))
 }
 
 /// What an option shows: its picture and its label.
-pub fn label(option: &ChoiceView) -> Vec<Element> {
-    let picture = option.image.as_ref().map(|path| picture(path));
+pub fn label(engine: &Engine, option: &ChoiceView) -> Vec<Element> {
+    let picture = option.image.as_ref().map(|path| picture(engine, path));
     picture.into_iter().chain([words("span", "", &option.label)]).collect()
 }
 
-/// The signed video of an option stands above its tile: its controls are not the tile's.
-pub fn video_of(option: &ChoiceView) -> Option<Element> {
-    option.video.as_ref().map(|path| signed_video(path, &option.label, "option"))
+/// The sign-language video of an option stands above its tile: its controls are not the tile's.
+pub fn video_of(engine: &Engine, option: &ChoiceView) -> Option<Element> {
+    option.video.as_ref().map(|path| sign_language_video(engine, path, &option.label, "option"))
 }

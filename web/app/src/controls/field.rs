@@ -4,8 +4,7 @@ use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, plain};
-use crate::dom::{Element, el, words};
-use crate::json;
+use crate::dom::{Element, FieldEvent, el, words};
 
 /// A number.
 pub fn number(
@@ -20,23 +19,20 @@ pub fn number(
         Some(Value::String(text)) => text.clone(),
         _ => String::new(),
     };
-    let give = answering.give.clone();
+    let answer = |field: FieldEvent| match (field.value.trim(), field.number()) {
+        ("", _) => Value::Null,
+        (_, Some(number)) => plain(number),
+        // The flow says what is wrong with it.
+        (other, None) => Value::from(other),
+    };
     let field = typed(answering, el("input", "").set("type", "number"), "number")
         .set("inputmode", if integer { "numeric" } else { "decimal" })
         .maybe("min", minimum.map(number_text).as_deref())
         .maybe("max", maximum.map(number_text).as_deref())
         .set("step", if integer { "1" } else { "any" })
         .set("autocomplete", "off")
-        .set(".value", &shown)
-        .on("change", move |given| {
-            let text = given.value.trim();
-            give.give(match (text, json::number(text)) {
-                ("", _) => Value::Null,
-                (_, Some(number)) => plain(number),
-                // The flow says what is wrong with it.
-                (other, None) => Value::from(other),
-            });
-        });
+        .value(&shown)
+        .on("change", answering.gives(answer));
     let unit = unit.map(|unit| words("span", "soft", unit));
     vec![el("div", "row").with(field).option(unit)]
 }
@@ -47,14 +43,14 @@ pub fn text(answering: &Answering, long: bool, max_length: usize) -> Vec<Element
         true => el("textarea", ""),
         false => el("input", "").set("type", "text").set("autocomplete", "off"),
     };
-    let give = answering.give.clone();
+    let answer = |field: FieldEvent| match field.value.trim() {
+        "" => Value::Null,
+        _ => Value::from(field.value),
+    };
     let field = typed(answering, field, "text")
         .set("maxlength", &max_length.to_string())
-        .set(".value", answering.value().and_then(Value::as_str).unwrap_or_default())
-        .on("change", move |given| {
-            let empty = given.value.trim().is_empty();
-            give.give(if empty { Value::Null } else { Value::from(given.value) });
-        });
+        .value(answering.value().and_then(Value::as_str).unwrap_or_default())
+        .on("change", answering.gives(answer));
     vec![field]
 }
 

@@ -9,10 +9,9 @@ use crate::dom::{Element, el, words};
 /// bottom to top.
 pub fn grid(answering: &Answering, num_items: u32, edges: [&String; 4]) -> Vec<Element> {
     let [left, right, bottom, top] = edges;
-    let mut cells = el("div", "likert grid").set("--points", &num_items.to_string());
+    let mut cells = el("div", "likert grid").style("--points", &num_items.to_string());
     for arousal in (1..=num_items).rev() {
         for valence in 1..=num_items {
-            let give = answering.give.clone();
             let answer =
                 json_text::object([("valence", valence.into()), ("arousal", arousal.into())]);
             let spoken = format!("{left}–{right}: {valence}, {bottom}–{top}: {arousal}");
@@ -20,7 +19,7 @@ pub fn grid(answering: &Answering, num_items: u32, edges: [&String; 4]) -> Vec<E
             let field = answering
                 .radio("cell", &format!("{valence},{arousal}"), chosen)
                 .set("aria-label", &spoken)
-                .on("change", move |_| give.give(answer.clone()));
+                .on("change", answering.gives(move |_| answer.clone()));
             cells = cells.with(el("label", "point").with(field));
         }
     }

@@ -1,5 +1,6 @@
-//! Questions on the screen: a file a kind. Nothing is pre-selected; each works by keyboard alone.
+//! Questions on the screen: a file per kind. Nothing is pre-selected; each works by keyboard alone.
 
+mod best_worst;
 mod choice;
 mod field;
 mod grid;
@@ -9,37 +10,24 @@ mod media;
 mod ranking;
 mod slider;
 
-use std::rc::Rc;
-
-use mimique_study::flow::{Input, QuestionKindView, QuestionView};
+use mimique_session::flow::{Input, QuestionKindView, QuestionView};
 use serde_json::Value;
 
+use crate::act::Act;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::screen;
 
 /// What every kind of control needs: how to read and to give the answer.
 struct Answering<'a> {
+    engine: &'a Engine,
     /// Begins the names and identifiers of the fields.
     name: String,
     question: &'a QuestionView,
-    /// How the answer is given.
-    give: Give,
 }
 
-/// Gives the answer to a question; null takes it back.
-#[derive(Clone)]
-struct Give(Rc<str>);
-
-impl Give {
-    fn give(&self, value: Value) {
-        screen::send(Input::Answer { question: self.0.to_string(), value });
-    }
-
-    /// The answer of this moment, which the screen may not show yet.
-    fn now(&self) -> Option<Value> {
-        screen::engine()?.state().record.draft(&self.0).cloned()
-    }
+/// An answer to a question; null takes it back. `change` makes it from the answer so far.
+fn change(question: &str, change: impl FnOnce(Option<&Value>) -> Value + 'static) -> Act {
+    Act::Change { question: question.to_owned(), change: Box::new(change) }
 }
 
 impl Answering<'_> {
@@ -51,6 +39,12 @@ impl Answering<'_> {
     /// Whether the answer so far is this text.
     fn is(&self, wanted: &str) -> bool {
         self.value().and_then(Value::as_str) == Some(wanted)
+    }
+
+    /// Gives an answer when something happens to a field; null takes it back.
+    fn gives<E>(&self, answer: impl Fn(E) -> Value + 'static) -> impl Fn(E) -> Input + 'static {
+        let question = self.question.id.clone();
+        move |event| Input::Answer { question: question.clone(), value: answer(event) }
     }
 
     /// What is wrong with the answer.
@@ -104,8 +98,7 @@ fn plain(number: f64) -> Value {
 pub fn question(engine: &Engine, name: &str, question: &QuestionView) -> Element {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let fields: String = "q-".chars().chain(name.chars().map(plain)).chain(['-']).collect();
-    let give = Give(Rc::from(question.id.as_str()));
-    let answering = Answering { name: fields, question, give };
+    let answering = Answering { engine, name: fields, question };
     // One answer out of several is one widget; elsewhere the fields say themselves what is wrong.
     let radios = matches!(
         question.kind,
@@ -131,22 +124,22 @@ pub fn question(engine: &Engine, name: &str, question: &QuestionView) -> Element
         set = set.set("role", "radiogroup");
     }
     if let Some(path) = &question.video {
-        set = set.with(media::signed_video(path, &question.prompt, "prompt"));
+        set = set.with(media::sign_language_video(engine, path, &question.prompt, "prompt"));
     }
     if let Some(text) = &question.help {
         set = set.with(words("p", "hint", text).key("help").set("id", &answering.element("help")));
     }
     if !question.signs.is_empty() {
-        let signs = question.signs.iter().map(choice::signed).collect();
+        let signs = question.signs.iter().map(|sign| choice::signed(engine, sign)).collect();
         set = set.with(el("div", "choices").key("signs").all(signs));
     }
     let problem = wrong.map(|text| {
         words("p", "problem", text).key("problem").set("id", &answering.element("problem"))
     });
-    set.all(control(engine, &answering)).option(problem)
+    set.all(control(&answering)).option(problem)
 }
 
-fn control(engine: &Engine, answering: &Answering) -> Vec<Element> {
+fn control(answering: &Answering) -> Vec<Element> {
     match &answering.question.kind {
         QuestionKindView::SingleChoice { options } => choice::single(answering, options),
         QuestionKindView::MultipleChoice { options, maximum } => {
@@ -156,16 +149,19 @@ fn control(engine: &Engine, answering: &Answering) -> Vec<Element> {
             likert::likert(answering, points, left, right)
         }
         QuestionKindView::Slider { minimum, maximum, step, left, right } => {
-            slider::slider(engine, answering, [*minimum, *maximum, *step], [left, right])
+            slider::slider(answering, [*minimum, *maximum, *step], [left, right])
         }
         QuestionKindView::Number { minimum, maximum, integer, unit } => {
             field::number(answering, *minimum, *maximum, *integer, unit.as_deref())
         }
         QuestionKindView::Text { long, max_length } => field::text(answering, *long, *max_length),
         QuestionKindView::Matrix { rows, options } => matrix::matrix(answering, rows, options),
-        QuestionKindView::Ranking { options } => ranking::ranking(engine, answering, options),
+        QuestionKindView::Ranking { options } => ranking::ranking(answering, options),
         QuestionKindView::ValenceArousal { num_items, left, right, bottom, top } => {
             grid::grid(answering, *num_items, [left, right, bottom, top])
+        }
+        QuestionKindView::BestWorst { best, worst, options } => {
+            best_worst::best_worst(answering, best, worst, options)
         }
         // A kind of a later version of the study file: the page is older than the server.
         _ => vec![words("p", "notice bad", "?").key("unknown")],

@@ -3,22 +3,22 @@
 
 use std::rc::Rc;
 
-use mimique_study::flow::ChoiceView;
+use mimique_session::flow::ChoiceView;
 use serde_json::Value;
 
-use super::Answering;
 use super::choice::{label, texts, video_of};
+use super::{Answering, change};
 use crate::dom::{Element, el, words};
-use crate::engine::Engine;
 
 /// The list, from first to last. It stands once; each place shows what is in it, so that the
 /// keyboard's place stays.
-pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -> Vec<Element> {
+pub fn ranking(answering: &Answering, options: &[ChoiceView]) -> Vec<Element> {
+    let engine = answering.engine;
     let fixed = engine.words();
     let initial: Rc<[String]> = options.iter().map(|option| option.value.clone()).collect();
     let order = order_of(answering.value(), &initial);
     let mover = |verb: &str, sign: &str, option: &ChoiceView, at: usize, with: usize| {
-        let (give, initial) = (answering.give.clone(), Rc::clone(&initial));
+        let (question, initial) = (answering.question.id.clone(), Rc::clone(&initial));
         let there = with < options.len() && at != with;
         words("button", "", sign)
             .key(sign)
@@ -26,11 +26,14 @@ pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -
             .set("aria-label", &[verb, &option.label].join(" "))
             .flag("disabled", !there)
             .on("click", move |_| {
-                let mut now = order_of(give.now().as_ref(), &initial);
-                if at < now.len() && with < now.len() {
-                    now.swap(at, with);
-                }
-                give.give(Value::from(now));
+                let initial = Rc::clone(&initial);
+                change(&question, move |answer| {
+                    let mut now = order_of(answer, &initial);
+                    if at < now.len() && with < now.len() {
+                        now.swap(at, with);
+                    }
+                    Value::from(now)
+                })
             })
     };
     let places = order.iter().enumerate().map(|(at, value)| {
@@ -38,20 +41,23 @@ pub fn ranking(engine: &Engine, answering: &Answering, options: &[ChoiceView]) -
         let Some(option) = options.iter().find(|option| option.value == *value) else {
             return place;
         };
-        let what = el("span", "what").option(video_of(option)).all(label(option));
+        let what = el("span", "what").option(video_of(engine, option)).all(label(engine, option));
         place
             .with(what)
             .with(mover(fixed.move_up(), "\u{2191}", option, at, at.saturating_sub(1)))
             .with(mover(fixed.move_down(), "\u{2193}", option, at, at + 1))
     });
     let list = el("ol", "ranking").all(places.collect());
-    let give = answering.give.clone();
+    let question = answering.question.id.clone();
     let confirm = words("button", "", fixed.confirm_order())
         .key("confirm-order")
         .set("type", "button")
         .set("data-action", "confirm-order")
         .set("aria-pressed", if answering.value().is_some() { "true" } else { "false" })
-        .on("click", move |_| give.give(Value::from(order_of(give.now().as_ref(), &initial))));
+        .on("click", move |_| {
+            let initial = Rc::clone(&initial);
+            change(&question, move |answer| Value::from(order_of(answer, &initial)))
+        });
     vec![list, confirm]
 }
 

@@ -1,27 +1,25 @@
 //! A number on a line. Until it is touched it has no value, and neither shows nor says one.
 
+use mimique_session::flow::Input;
 use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, ends, plain};
-use crate::dom::{Element, Given, el, words};
-use crate::engine::Engine;
-use crate::json;
+use crate::act::Act;
+use crate::dom::{Element, FieldEvent, el, words};
 
 /// The line from minimum to maximum by steps, its ends named above it.
 pub fn slider(
-    engine: &Engine,
     answering: &Answering,
     [minimum, maximum, step]: [f64; 3],
     [left, right]: [&str; 2],
 ) -> Vec<Element> {
     let value = answering.value();
     let middle = (minimum + maximum) / 2.0;
-    let give = answering.give.clone();
-    let touch = move |given: Given| {
-        if let Some(number) = json::number(&given.value) {
-            give.give(plain(number));
-        }
+    let question = answering.question.id.clone();
+    let touch = move |field: FieldEvent| {
+        let value = plain(field.number()?);
+        Some(Act::Input(Input::Answer { question: question.clone(), value }))
     };
     let field = el("input", if value.is_none() { "untouched" } else { "" })
         .key("line")
@@ -30,10 +28,10 @@ pub fn slider(
         .set("max", &number_text(maximum))
         .set("step", &number_text(step))
         // Where the knob stands is no answer, for those who hear it either.
-        .maybe("aria-valuetext", value.is_none().then(|| engine.words().not_answered()))
-        .set(".value", &number_text(value.and_then(Value::as_f64).unwrap_or(middle)))
-        .on("change", touch.clone())
-        .on("click", touch);
+        .maybe("aria-valuetext", value.is_none().then(|| answering.engine.words().not_answered()))
+        .value(&number_text(value.and_then(Value::as_f64).unwrap_or(middle)))
+        .handles("change", touch.clone())
+        .handles("click", touch);
     let shown = value.map_or_else(|| "\u{2013}".to_owned(), json_text::write);
     vec![
         ends(left, right),

@@ -1,11 +1,11 @@
 //! The size of the screen: a card drawn to be made as large as a real one, and the distance.
 
-use mimique_study::flow::{CalibrationView, CardView, DistanceView, Input};
+use mimique_session::flow::{CalibrationView, CardView, DistanceView, Input};
 use mimique_study::number_text;
 
 use super::{button, form, heading, main, problem, progress_line, px, submit};
+use crate::browser::document;
 use crate::dom::{Element, el, words};
-use crate::{json, page, screen};
 
 /// Widths that the slider reaches, CSS pixels: from a phone held far out of scale to a wall.
 const WIDTHS: (f64, f64) = (150.0, 900.0);
@@ -38,7 +38,7 @@ fn distance(shown: &DistanceView) -> Element {
         .maybe("value", shown.value.map(number_text).as_deref())
         .flag("aria-invalid", wrong.is_some())
         .maybe("aria-describedby", wrong.map(|_| "distance-problem"))
-        .on("change", |given| screen::send(Input::Distance(json::number(&given.value))));
+        .on("change", |field| Input::Distance(field.number()));
     fieldset("distance", wrong)
         .with(el("legend", "").with(label))
         .with(field)
@@ -60,8 +60,8 @@ fn card(shown: &CardView) -> Element {
     let width = shown.width_px;
     let picture = el("div", "bank-card")
         .set("aria-hidden", "true")
-        .set("--card-long", &px(width))
-        .set("--card-short", &px(shown.height_px))
+        .style("--card-long", &px(width))
+        .style("--card-short", &px(shown.height_px))
         .with(el("span", "chip"));
     let slider = el("input", "")
         .set("type", "range")
@@ -74,12 +74,8 @@ fn card(shown: &CardView) -> Element {
             if wrong.is_some() { "card-hint card-problem" } else { "card-hint" },
         )
         .flag("aria-invalid", wrong.is_some())
-        .set(".value", &number_text(width))
-        .on("input", |given| {
-            if let Some(px) = json::number(&given.value) {
-                set(px);
-            }
-        });
+        .value(&number_text(width))
+        .handles("input", |field| field.number().map(|px| card_width(px).into()));
     let (smaller, larger) = &shown.steps;
     let no_card = shown.no_card.as_ref().map(|(label, skipped)| {
         button("", "no-card", label)
@@ -87,8 +83,8 @@ fn card(shown: &CardView) -> Element {
             .on("click", super::sends(|| Input::NoCard))
     });
     let row = el("div", "row")
-        .with(button("", "smaller", smaller).on("click", move |_| set(width - 1.0)))
-        .with(button("", "larger", larger).on("click", move |_| set(width + 1.0)))
+        .with(button("", "smaller", smaller).on("click", move |_| card_width(width - 1.0)))
+        .with(button("", "larger", larger).on("click", move |_| card_width(width + 1.0)))
         .option(no_card);
     fieldset("card", wrong)
         .with(words("legend", "", &shown.label))
@@ -99,7 +95,7 @@ fn card(shown: &CardView) -> Element {
         .option(problem(wrong, "card-problem"))
 }
 
-fn set(px: f64) {
-    let device_pixel_ratio = page::pixel_ratio();
-    screen::send(Input::CardWidth { px: px.clamp(WIDTHS.0, WIDTHS.1), device_pixel_ratio });
+fn card_width(px: f64) -> Input {
+    let device_pixel_ratio = document::pixel_ratio();
+    Input::CardWidth { px: px.clamp(WIDTHS.0, WIDTHS.1), device_pixel_ratio }
 }

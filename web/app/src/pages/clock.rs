@@ -1,6 +1,6 @@
 //! How much time is left: seen every second, heard once when the end is near.
 
-use mimique_study::flow::{ClockView, Input};
+use mimique_session::flow::{ClockView, Input};
 
 use super::{button, sends};
 use crate::dom::{Element, el, words};

@@ -1,11 +1,11 @@
 //! The agreement.
 
-use mimique_study::flow::{ContactView, Input, View};
+use mimique_session::flow::{ContactView, Input, View};
 
 use super::{button, heading, main, sends};
+use crate::browser::focus;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::{page, screen};
 
 /// The agreement, with the choice of language.
 pub fn consent(engine: &Engine, view: &View) -> Element {
@@ -47,8 +47,8 @@ fn language(code: &str, name: &str, chosen: bool) -> Element {
         .set("lang", code)
         .set("aria-pressed", if chosen { "true" } else { "false" })
         .on("click", move |_| {
-            screen::send(Input::ChooseLanguage(wanted.clone()));
-            page::focus_later(".languages [aria-pressed=true]");
+            focus::focus_later(&[".languages [aria-pressed=true]"]);
+            Input::ChooseLanguage(wanted.clone())
         })
 }
 

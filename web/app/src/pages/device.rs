@@ -1,6 +1,6 @@
 //! The device gate: what is missing, and what to do about it.
 
-use mimique_study::flow::{DeviceView, Input};
+use mimique_session::flow::{DeviceView, Input};
 
 use super::{button, heading, main, next, progress_line, sends};
 use crate::dom::{Element, el, words};

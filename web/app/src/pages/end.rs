@@ -1,31 +1,29 @@
 //! The last page: everything has arrived, and only now the code.
 
-use mimique_study::flow::EndView;
+use mimique_session::flow::EndView;
 
 use super::message::another_person;
 use super::{button, heading, main};
+use crate::act::Act;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::{bridge, site};
+use crate::site::{Ending, Site};
 
 /// Thanks, completion code, receipt, withdrawal code.
 pub fn end(engine: &Engine, end: &EndView) -> Element {
     let fixed = engine.words();
     let mut card = el("div", "card").with(heading(&end.heading));
-    let ending = site::ending();
+    let ending = engine.service.site().and_then(Site::ending);
     card = match &ending {
         // Without a server nothing has arrived unless it was posted.
-        Some((false, _, email)) if end.outcome == "completed" => {
+        Some(Ending { posted: false, email, .. }) if end.outcome == "completed" => {
             card.with(words("p", "", &fixed.kept_here(email)))
         }
         _ => card.paragraphs(&end.text),
     };
-    if ending.is_some_and(|(_, offered, _)| offered) {
-        let download = button("primary", "download", fixed.download()).on("click", |_| {
-            if let Some((name, text, _)) = site::file() {
-                bridge::download(&name, &text);
-            }
-        });
+    if ending.is_some_and(|ending| ending.offered) {
+        let download = button("primary", "download", fixed.download());
+        let download = download.on("click", |_| Act::Download);
         card = card.with(el("div", "actions").key("download").with(download));
     }
     let code = |class: &str, what: &str, code: &str| {

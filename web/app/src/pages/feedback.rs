@@ -1,6 +1,6 @@
 //! After a practice clip: which answers were right.
 
-use mimique_study::flow::FeedbackView;
+use mimique_session::flow::FeedbackView;
 
 use super::{heading, main, next, progress_line};
 use crate::dom::{Element, el, words};

@@ -1,11 +1,11 @@
 //! Title, state of the connection, and the way out.
 
-use mimique_study::flow::{Input, View};
+use mimique_session::flow::{Input, View};
 
 use super::button;
+use crate::browser::document;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::{page, screen};
 
 /// The header of every page, its notices, and the question whether somebody really means to go.
 pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
@@ -29,14 +29,20 @@ pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
     );
     if can_withdraw {
         let open = button("quiet", "withdraw", fixed.withdraw());
-        header = header.with(open.on("click", |_| page::dialog(true)));
+        header = header.with(open.handles("click", |_| {
+            document::dialog(true);
+            None
+        }));
     }
     let timed_out = engine.state().live.timed_out;
     let connection = engine.connection();
     let notice = |there: bool, class: &str, key: &str, text: &str| {
         there.then(|| words("p", class, text).key(key))
     };
-    let refused = connection.refused.as_ref().map(|refusal| fixed.refused(refusal));
+    let refused = connection
+        .refused
+        .as_ref()
+        .map(|refusal| fixed.refused(&refusal.code, &refusal.message, &refusal.remedy));
     let notices = el("div", "site-notices")
         .key("notices")
         .set("role", "status")
@@ -44,12 +50,14 @@ pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
         .option(notice(connection.offline, "notice warn", "offline", fixed.offline()))
         .option(notice(connection.fleeting, "notice warn", "fleeting", fixed.not_kept()))
         .option(refused.map(|text| words("p", "notice bad", &text).key("refused")));
-    let no = words("button", "", fixed.withdraw_no())
-        .set("type", "button")
-        .on("click", |_| page::dialog(false));
+    let no =
+        words("button", "", fixed.withdraw_no()).set("type", "button").handles("click", |_| {
+            document::dialog(false);
+            None
+        });
     let yes = button("danger", "withdraw-confirm", fixed.withdraw_yes()).on("click", |_| {
-        page::dialog(false);
-        screen::send(Input::Withdraw);
+        document::dialog(false);
+        Input::Withdraw
     });
     let dialog = el("dialog", "card")
         .set("aria-labelledby", "withdraw-question")

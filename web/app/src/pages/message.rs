@@ -3,10 +3,10 @@
 use mimique_study::RepeatPrevention;
 
 use super::{button, heading, main};
+use crate::act::Act;
+use crate::browser::document;
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::memory::Identity;
-use crate::{page, screen};
 
 /// The last answers are on their way.
 pub fn receipt_pending(title: &str, text: &str, stored: u64, total: u64) -> Element {
@@ -38,18 +38,11 @@ pub fn declined(engine: &Engine, title: &str, text: &str) -> Element {
 pub fn another_person(engine: &Engine) -> Option<Element> {
     let recruitment = &engine.plan.study.recruitment;
     // Whoever was sent here by a recruiting site goes back there.
-    let sent = page::arrival().recruitment;
+    let sent = document::arrival().recruitment;
     let offered = matches!(recruitment.repeat_prevention, RepeatPrevention::None)
         && !recruitment.url_parameters.iter().any(|name| sent.contains_key(name));
     offered.then(|| {
         let again = button("", "another-person", engine.words().another_person());
-        let again = again.on("click", |_| {
-            if let Some(engine) = screen::engine() {
-                Identity::forget(&engine.plan.study.id);
-                // Where the browser does not reload, the person does.
-                page::reload();
-            }
-        });
-        el("div", "actions").key("another-person").with(again)
+        el("div", "actions").key("another-person").with(again.on("click", |_| Act::AnotherPerson))
     })
 }

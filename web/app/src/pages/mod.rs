@@ -13,14 +13,14 @@ mod questions;
 mod read;
 mod trial;
 
-use mimique_study::flow::{Input, ProgressView, View};
+use mimique_session::flow::{Input, ProgressView, View};
 use mimique_study::number_text;
 
-use crate::dom::{Element, Given, el, words};
+use crate::browser::focus;
+use crate::dom::{Element, FieldEvent, el, words};
 use crate::engine::Engine;
-use crate::{page, screen};
 
-pub use trial::{Seen, phase_word};
+pub use trial::{WatchedClip, phase_word};
 
 /// What has to be built anew when it changes; everything else changes in place. The canvas stays from
 /// one trial to the next.
@@ -56,7 +56,7 @@ pub fn step_of(view: &View) -> Option<&str> {
 }
 
 /// Header and page.
-pub fn pages(engine: &Engine, view: &View, shape: &str, seen: &Seen) -> Vec<Element> {
+pub fn pages(engine: &Engine, view: &View, shape: &str, watched: &WatchedClip) -> Vec<Element> {
     let main = match view {
         View::Consent { .. } => consent::consent(engine, view),
         View::Questions { .. } => questions::questions(engine, view),
@@ -64,7 +64,7 @@ pub fn pages(engine: &Engine, view: &View, shape: &str, seen: &Seen) -> Vec<Elem
         View::Device(gate) => device::device(gate),
         View::Calibration(shown) => calibration::calibration(shown),
         View::Feedback(feedback) => feedback::feedback(feedback),
-        View::Trial(trial) => trial::trial(engine, trial, seen),
+        View::Trial(trial) => trial::trial(engine, trial, watched),
         View::ReceiptPending { heading, text, stored, total } => {
             message::receipt_pending(heading, text, *stored, *total)
         }
@@ -101,8 +101,8 @@ fn button(class: &str, action: &str, label: &str) -> Element {
 }
 
 /// What a button does that hands in an input.
-fn sends(input: fn() -> Input) -> impl Fn(Given) {
-    move |_| screen::send(input())
+fn sends(input: fn() -> Input) -> impl Fn(FieldEvent) -> Input {
+    move |_| input()
 }
 
 /// The button that leads on.
@@ -113,10 +113,11 @@ fn next(label: &str) -> Element {
 /// A form that leads on when it is sent; what has to be mended then gets the focus.
 fn form() -> Element {
     el("form", "card").set("novalidate", "").on("submit", |_| {
-        screen::send(Input::Next);
-        page::focus_later(
-            "main [data-invalid] :is(input, textarea, button):checked|main [data-invalid] :is(input, textarea, button):not(:disabled)",
-        );
+        focus::focus_later(&[
+            "main [data-invalid] :is(input, textarea, button):checked",
+            "main [data-invalid] :is(input, textarea, button):not(:disabled)",
+        ]);
+        Input::Next
     })
 }
 

@@ -1,6 +1,6 @@
 //! A page of questions, and the list of questions that a trial has too.
 
-use mimique_study::flow::{FailedView, Input, QuestionView, View};
+use mimique_session::flow::{FailedView, Input, QuestionView, View};
 
 use super::clock::clock;
 use super::{button, form, heading, main, progress_line, sends, submit};

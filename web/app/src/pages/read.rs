@@ -1,6 +1,6 @@
 //! A page to read: instructions, a break, the debriefing.
 
-use mimique_study::flow::View;
+use mimique_session::flow::View;
 
 use super::clock::clock;
 use super::{heading, main, next, progress_line};

@@ -1,20 +1,22 @@
 //! A trial: the clip, then its questions. The canvas stays from one trial to the next.
 
-use mimique_study::flow::{BesideView, Input, Phase, TrialView, View};
+use mimique_session::flow::{BesideView, Input, Phase, TrialView, View};
 use mimique_study::number_text;
 
 use super::clock::clock;
 use super::questions::question_list;
 use super::{button, form, heading, hundredth, main, progress_line, px, sends, submit};
+use crate::act::Act;
+use crate::browser::{document, host};
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::{bridge, json, page};
+use crate::json;
 
 /// Which trial's clip has been seen: its questions appear then, and stay while it is played again.
 #[derive(Default)]
-pub struct Seen(Option<String>);
+pub struct WatchedClip(Option<String>);
 
-impl Seen {
+impl WatchedClip {
     /// Takes note of what stands on the screen.
     pub fn look(&mut self, view: &View) {
         match view {
@@ -26,8 +28,8 @@ impl Seen {
 }
 
 /// A trial.
-pub fn trial(engine: &Engine, trial: &TrialView, seen: &Seen) -> Element {
-    let seen = seen.0.is_some();
+pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Element {
+    let seen = watched.0.is_some();
     let failed = match &trial.phase {
         Phase::Failed { reason, retry } => Some((reason, retry)),
         _ => None,
@@ -47,11 +49,7 @@ pub fn trial(engine: &Engine, trial: &TrialView, seen: &Seen) -> Element {
         let can_play = trial.can_play;
         let play = button(if seen { "" } else { "primary" }, "play", &trial.play_label)
             .flag("aria-disabled", !can_play)
-            .on("click", move |_| {
-                if can_play {
-                    crate::screen::send(Input::Play);
-                }
-            });
+            .handles("click", move |_| can_play.then_some(Act::Input(Input::Play)));
         card = card.with(el("div", "actions centred").key("play").with(play));
     }
     let questions = seen.then(|| {
@@ -75,7 +73,7 @@ pub fn trial(engine: &Engine, trial: &TrialView, seen: &Seen) -> Element {
 fn frame(engine: &Engine, trial: &TrialView) -> Element {
     let size = trial.size;
     // In millimetres, the size follows the zoom of the page.
-    let now = page::pixel_ratio();
+    let now = document::pixel_ratio();
     let scale = size.device_pixel_ratio.filter(|_| now > 0.0).map_or(1.0, |then| then / now);
     let (width, height) = (size.width * scale, size.height * scale);
     let look = json::write(&engine.plan.study.stimuli.look);
@@ -95,8 +93,8 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
         .option(caption.map(|text| words("figcaption", "", text)));
     el("div", if beside.is_some() { "stage-frame pair" } else { "stage-frame" })
         .key("stage")
-        .set("--stage-width", &px(width))
-        .set("--stage-aspect", &[hundredth(width).as_str(), &hundredth(height)].join(" / "))
+        .style("--stage-width", &px(width))
+        .style("--stage-aspect", &[hundredth(width).as_str(), &hundredth(height)].join(" / "))
         .with(figure)
         .option(beside.map(|beside| companion(beside, &look)))
 }
@@ -116,11 +114,11 @@ fn canvas(label: &str, look: &str, beside: bool) -> Element {
     let look = look.to_owned();
     let place = if beside { "beside" } else { "clip" };
     let gone: fn() =
-        if beside { || bridge::detach_stage("beside") } else { || bridge::detach_stage("clip") };
+        if beside { || host::detach_stage("beside") } else { || host::detach_stage("clip") };
     el("canvas", "")
         .set("role", "img")
         .maybe("aria-label", (!label.is_empty()).then_some(label))
-        .live(move |canvas| bridge::attach_stage(place, canvas, &look), gone)
+        .mounted(move |canvas| host::attach_stage(place, canvas, &look), gone)
 }
 
 /// The word by which tests and scripts know a phase.

@@ -1,0 +1,88 @@
+//! How a number was computed, as a call that scripts in R and Python can make too.
+
+/// One argument.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Argument {
+    Text(String),
+    List(Vec<String>),
+    Number(usize),
+}
+
+/// What is taken from the trials for a test: a function of `analysis.R` and `analysis.py`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Design {
+    /// Independent groups: of trials, or of one mean per person.
+    Groups,
+    /// Differences between two levels within people, by something about the people.
+    DifferencesByTrait,
+    /// Differences between two levels, one per person.
+    People,
+    /// Differences between two levels, one per matched pair of trials.
+    MatchedTrials,
+    /// One mean per person and level.
+    Blocks,
+    /// Two columns of trials or of people.
+    Columns,
+    /// Each person's own correlation of two columns.
+    Correlations,
+    /// Two factors of trials or of people.
+    TwoFactors,
+    /// One mean per person and combination of two factors.
+    Combinations,
+    /// The trials of one level.
+    Level,
+    /// The mean of the people's means at one level.
+    PersonMean,
+    /// What was shown and what was answered.
+    Answers,
+}
+
+impl Design {
+    /// Its function in both scripts.
+    pub(crate) fn function(self) -> &'static str {
+        match self {
+            Self::Groups => "of_groups",
+            Self::DifferencesByTrait => "of_differences_by_trait",
+            Self::People => "of_people",
+            Self::MatchedTrials => "of_matched_trials",
+            Self::Blocks => "of_blocks",
+            Self::Columns => "of_columns",
+            Self::Correlations => "of_correlations",
+            Self::TwoFactors => "of_two_factors",
+            Self::Combinations => "of_combinations",
+            Self::Level => "of_level",
+            Self::PersonMean => "of_person_means",
+            Self::Answers => "of_answers",
+        }
+    }
+}
+
+/// What is taken from the trials, the test of it, and which columns and levels.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Call {
+    pub design: Design,
+    /// The test's function in both scripts.
+    pub test: &'static str,
+    pub arguments: Vec<Argument>,
+}
+
+impl Call {
+    pub(crate) fn new(design: Design, test: &'static str) -> Self {
+        Self { design, test, arguments: Vec::new() }
+    }
+
+    pub(crate) fn text(mut self, text: &str) -> Self {
+        self.arguments.push(Argument::Text(text.to_owned()));
+        self
+    }
+
+    pub(crate) fn list(mut self, items: &[String]) -> Self {
+        self.arguments.push(Argument::List(items.to_vec()));
+        self
+    }
+
+    pub(crate) fn number(mut self, number: usize) -> Self {
+        self.arguments.push(Argument::Number(number));
+        self
+    }
+}

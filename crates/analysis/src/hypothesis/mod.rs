@@ -1,0 +1,297 @@
+//! The hypotheses of a study file, each tested as in the thesis and as recommended.
+
+pub(crate) mod call;
+pub(crate) mod comparison;
+pub(crate) mod conditions;
+pub(crate) mod not_tested;
+pub(crate) mod person_level;
+pub(crate) mod reading;
+pub(crate) mod test_line;
+pub(crate) mod trial_level;
+pub(crate) mod two_way;
+
+use mimique_stats::{Factor, Labelled, Outcome};
+use mimique_study::columns::ASSIGNED_CONDITION;
+use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
+use serde::Serialize;
+
+use crate::hypothesis::comparison::without_level;
+use crate::hypothesis::conditions::InCondition;
+use crate::hypothesis::not_tested::NotTested;
+use crate::hypothesis::person_level::PersonLevel;
+use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
+use crate::hypothesis::trial_level::TrialLevel;
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::trials::export::{AskedQuestion, Export};
+use crate::trials::measure::{Measure, MeasureKind, as_numbers};
+
+/// A hypothesis and what came out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct HypothesisResult {
+    pub id: String,
+    pub statement: String,
+    pub test: TestName,
+    pub measure: String,
+    pub kind: MeasureKind,
+    pub factors: Vec<String>,
+    pub as_in_the_thesis: TrialLevel,
+    pub recommended: PersonLevel,
+    /// Trials without a value of a factor, such as those of a method without that parameter: not used.
+    pub trials_without_level: usize,
+    /// The people of each condition compared, where the assigned condition is a factor.
+    #[serde(skip_serializing_if = "Labelled::is_empty")]
+    pub people_by_condition: Labelled<InCondition>,
+    /// p of the recommended test that decides.
+    pub p: Option<f64>,
+    /// After Holm's correction over the study's hypotheses.
+    pub p_holm_over_hypotheses: Option<f64>,
+    pub reading: String,
+}
+
+/// What both kinds of test give, or why neither can be computed.
+type Tested = Result<(Vec<Outcome<TestLine>>, PersonLevel), NotTested>;
+
+/// The tests of a hypothesis and what they say.
+struct Read {
+    trials: Vec<Outcome<TestLine>>,
+    people: PersonLevel,
+    reading: String,
+}
+
+/// Tests one hypothesis.
+pub(crate) fn test_hypothesis(
+    naming: &Naming<'_>,
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+) -> HypothesisResult {
+    let language = naming.language;
+    let measure = measure_of(export, study, hypothesis, language);
+    let trials_without_level = measure.as_ref().map_or(0, |measure| {
+        let of_clips = hypothesis.factors.iter().filter(|name| export.factors.contains(name));
+        let counts = of_clips.map(|name| without_level(&measure.factor(export, name, &[])));
+        counts.max().unwrap_or(0)
+    });
+    let Read { trials, people, mut reading } = match (of_pair(study, hypothesis), &measure) {
+        (Some(of_pair), _) => not_tested(language, &NotTested::OfPair(of_pair)),
+        (None, Some(measure)) => match tests(export, study, hypothesis, measure) {
+            Ok((trials, people)) => {
+                let reading = reading_of(naming, hypothesis, measure, &people);
+                Read { trials, people, reading }
+            }
+            Err(why) => not_tested(language, &why),
+        },
+        (None, None) => {
+            let response = hypothesis.response.clone();
+            not_tested(language, &NotTested::NoAnswers { response })
+        }
+    };
+    if trials_without_level > 0 {
+        reading += &language.pick(
+            format!(" {trials_without_level} trials have no value of the factor and take no part."),
+            format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
+        );
+    }
+    let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
+        conditions::people(export, study, hypothesis, measure)
+    });
+    let kind = measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind);
+    reading += &conditions::words(naming, &people_by_condition, kind);
+    HypothesisResult {
+        id: hypothesis.id.clone(),
+        statement: hypothesis.statement.in_language(language.code()).to_owned(),
+        test: hypothesis.test,
+        kind,
+        measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
+        factors: hypothesis.factors.clone(),
+        trials_without_level,
+        people_by_condition,
+        as_in_the_thesis: TrialLevel::new(trials),
+        p: deciding_p(&people),
+        p_holm_over_hypotheses: None,
+        recommended: people,
+        reading,
+    }
+}
+
+/// What the recommended tests say. A hypothesis of two factors is about their interaction, which stands
+/// last.
+fn reading_of(
+    naming: &Naming<'_>,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    people: &PersonLevel,
+) -> String {
+    let mut read = people.clone();
+    if is_two_way(hypothesis.test) {
+        read.overall = read.overall.split_off(read.overall.len().saturating_sub(1));
+    }
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    reading::person_level(naming, &read, measure.kind, factor, &measure.label)
+}
+
+/// In the place of tests, why there are none.
+fn not_tested(language: Language, why: &NotTested) -> Read {
+    let why = why.words(language);
+    let reading = language.pick(format!("Not tested: {why}."), format!("Non testée : {why}."));
+    let people = PersonLevel {
+        people: 0,
+        incomplete: 0,
+        overall: vec![Outcome::undefined(&why)],
+        pairs: Vec::new(),
+    };
+    Read { trials: vec![Outcome::undefined(why)], people, reading }
+}
+
+/// Whether a test is about two factors and their interaction.
+pub(crate) fn is_two_way(test: TestName) -> bool {
+    matches!(test, TestName::ScheirerRayHare | TestName::AlignedRankTransform)
+}
+
+fn measure_of(
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+    language: Language,
+) -> Option<Measure> {
+    let asked = export
+        .questions(study)
+        .into_iter()
+        .find(|asked: &AskedQuestion<'_>| asked.id == hypothesis.response)?;
+    match hypothesis.measure {
+        What::Rt => Measure::response_time(export, &asked, language),
+        What::Answer | What::Correct => Measure::of_question(export, &asked, language),
+    }
+}
+
+fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tested {
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let mut factors = Vec::new();
+    for (place, name) in hypothesis.factors.iter().enumerate() {
+        let chosen = if place == 0 { levels.as_slice() } else { &[] };
+        factors.push(if export.factors.contains(name) {
+            (measure.factor(export, name, chosen), true)
+        } else {
+            (factor_of_people(export, study, measure, name, chosen)?, false)
+        });
+    }
+    for (factor, _) in &factors {
+        if let [] | [_] = factor.levels.as_slice() {
+            return Err(NotTested::TooFewLevels { factor: factor.name.clone() });
+        }
+    }
+    match factors.as_slice() {
+        [(first, first_within), (second, second_within), ..] if is_two_way(hypothesis.test) => {
+            Ok((
+                TestLine::scheirer_ray_hare(&measure.numbers(), [first, second], &Unit::Trials),
+                two_way::two_way(
+                    export,
+                    measure,
+                    [(first, !first_within), (second, !second_within)],
+                ),
+            ))
+        }
+        [(factor, true), ..] => Ok(within_people(export, hypothesis, measure, factor)),
+        [(factor, false), ..] => Ok(between_people(hypothesis, measure, factor)),
+        [] => Err(NotTested::NoFactorNamed),
+    }
+}
+
+/// Why the answers of a hypothesis cannot be told of the levels of its factors, where they are about two
+/// clips.
+pub(crate) fn of_pair(study: &Study, hypothesis: &Hypothesis) -> Option<AnswerOfPair> {
+    let is_asked = |question: &&Question| question.response_ids().contains(&hypothesis.response);
+    let question = study.questions.iter().find(is_asked)?;
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let mut factors = hypothesis.factors.iter().enumerate();
+    factors.find_map(|(place, factor)| {
+        let compared = if place == 0 { levels.as_slice() } else { &[] };
+        study.answer_of_pair(question, hypothesis.measure, factor, compared)
+    })
+}
+
+/// An answer about people, or their condition, as a factor of the `chosen` levels; all if there are none.
+fn factor_of_people(
+    export: &Export,
+    study: &Study,
+    measure: &Measure,
+    name: &String,
+    chosen: &[String],
+) -> Result<Factor, NotTested> {
+    let factor = measure
+        .trait_factor(export, name)
+        .ok_or_else(|| NotTested::NoFactor { factor: name.clone() })?;
+    // Whoever is in a condition that the study no longer has is compared with nobody.
+    let known = |level: &&String| {
+        name != ASSIGNED_CONDITION || study.conditions().contains(&level.as_str())
+    };
+    let wanted = if chosen.is_empty() { factor.levels.as_slice() } else { chosen };
+    let wanted: Vec<String> = wanted
+        .iter()
+        .filter(|level| factor.levels.contains(level))
+        .filter(known)
+        .cloned()
+        .collect();
+    Ok(factor.restricted(&wanted).unwrap_or(factor))
+}
+
+fn within_people(
+    export: &Export,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    factor: &Factor,
+) -> (Vec<Outcome<TestLine>>, PersonLevel) {
+    let mut people = person_level::within(export, measure, factor);
+    let rating = measure.kind != MeasureKind::Recognition;
+    let trials = match hypothesis.test {
+        TestName::Wilcoxon if rating => {
+            trial_level::pairs(export, measure, factor).into_iter().map(|(.., line)| line).collect()
+        }
+        TestName::MannWhitney => {
+            vec![TestLine::mann_whitney(&measure.numbers(), factor, &Unit::Trials)]
+        }
+        TestName::Spearman => {
+            let x = as_numbers(factor);
+            people.overall = vec![person_level::correlation_within_people(&x, measure)];
+            people.pairs.clear();
+            vec![TestLine::spearman(&x, &measure.numbers(), &Unit::Trials)]
+        }
+        TestName::KruskalWallis => {
+            vec![TestLine::kruskal_wallis(&measure.numbers(), factor, &Unit::Trials)]
+        }
+        TestName::ChiSquare => vec![trial_level::chi_square(measure, factor)],
+        _ => vec![trial_level::overall(measure, factor)],
+    };
+    (trials, people)
+}
+
+fn between_people(
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    factor: &Factor,
+) -> (Vec<Outcome<TestLine>>, PersonLevel) {
+    if hypothesis.test == TestName::Spearman {
+        let x = as_numbers(factor);
+        let people = person_level::correlation(&x, measure);
+        return (vec![TestLine::spearman(&x, &measure.numbers(), &Unit::Trials)], people);
+    }
+    let trials = match hypothesis.test {
+        TestName::MannWhitney => TestLine::mann_whitney(&measure.numbers(), factor, &Unit::Trials),
+        TestName::KruskalWallis => {
+            TestLine::kruskal_wallis(&measure.numbers(), factor, &Unit::Trials)
+        }
+        _ => trial_level::overall(measure, factor),
+    };
+    (vec![trials], person_level::between(measure, factor))
+}
+
+/// The p that a hypothesis stands or falls by: the interaction if there is one, the overall test of
+/// several levels, or the one pair.
+fn deciding_p(people: &PersonLevel) -> Option<f64> {
+    match (people.overall.last(), people.pairs.as_slice()) {
+        (Some(last), _) => last.p_that_counts(),
+        (None, [one]) => one.wilcoxon.p(),
+        (None, _) => None,
+    }
+}

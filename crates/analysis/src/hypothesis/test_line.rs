@@ -1,0 +1,304 @@
+//! One line of a table of tests: what any test gives, with what it was a test of.
+
+use mimique_stats::{
+    AlignedRankTransform, Blocks, ChiSquare, Contingency, Factor, Friedman, HodgesLehmann,
+    KruskalWallis, MannWhitney, Numbers, Outcome, Refusal, ScheirerRayHare, Spearman,
+    SumsOfSquares, Term, TestNames, TestResult, TestRow, Wilcoxon, WilcoxonOptions,
+    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
+    spearman, wilcoxon,
+};
+use serde::{Serialize, Serializer};
+
+use crate::hypothesis::call::{Call, Design};
+
+/// What a test counts as one observation.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Unit {
+    /// Every trial.
+    Trials,
+    /// One mean per person, between people.
+    PersonMeans,
+    /// One mean per person and level, within people.
+    MeansWithinPeople,
+    /// Each person's difference between two levels; the pair as `a - b`.
+    DifferencesOfPeople(String),
+    /// Each person's own correlation.
+    CorrelationsOfPeople,
+}
+
+impl Unit {
+    /// Behind the name of a test, as `results.json` has it.
+    fn in_words(&self) -> String {
+        match self {
+            Self::Trials => "of trials".to_owned(),
+            Self::PersonMeans => "of person means".to_owned(),
+            Self::MeansWithinPeople => "on person means".to_owned(),
+            Self::DifferencesOfPeople(pair) => format!("of person differences {pair}"),
+            Self::CorrelationsOfPeople => "of each person's rho".to_owned(),
+        }
+    }
+
+    /// As the scripts in R and Python are told it.
+    fn in_scripts(&self) -> &'static str {
+        match self {
+            Self::Trials => "trials",
+            _ => "person means",
+        }
+    }
+}
+
+/// One test's numbers, whatever the test.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TestLine {
+    /// What the test, its statistic and its effect size are called.
+    pub names: TestNames,
+    /// What was tested.
+    pub unit: Unit,
+    /// The numbers.
+    pub row: TestRow,
+    /// p after Holm's correction, where several were tested.
+    pub p_holm: Option<f64>,
+    /// How other programs compute it.
+    pub call: Call,
+}
+
+impl Serialize for TestLine {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        /// A line as `results.json` has it.
+        #[derive(Serialize)]
+        struct Written<'l> {
+            /// Name and variant.
+            test: String,
+            #[serde(skip_serializing_if = "Term::is_whole")]
+            term: &'l Term,
+            statistic_name: &'l str,
+            statistic: f64,
+            df: String,
+            p_value: f64,
+            ln_p: f64,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            p_holm: Option<f64>,
+            effect_name: &'l str,
+            effect: Option<f64>,
+            n: usize,
+        }
+        let variant = match self.row.variant.as_str() {
+            "" => String::new(),
+            variant => format!(", {variant}"),
+        };
+        Written {
+            test: format!("{} {}{variant}", self.names.test, self.unit.in_words()),
+            term: &self.row.term,
+            statistic_name: self.names.statistic,
+            statistic: self.row.statistic,
+            df: self.degrees_of_freedom(),
+            p_value: self.row.p_value,
+            ln_p: self.row.ln_p,
+            p_holm: self.p_holm,
+            effect_name: self.names.effect,
+            effect: self.row.effect,
+            n: self.row.n,
+        }
+        .serialize(serializer)
+    }
+}
+
+/// The p of a test that may be undefined.
+pub(crate) trait OutcomeP {
+    /// p, where there is one.
+    fn p(&self) -> Option<f64>;
+
+    /// p after a correction over several tests, where there was one.
+    fn p_that_counts(&self) -> Option<f64>;
+}
+
+impl OutcomeP for Outcome<TestLine> {
+    fn p(&self) -> Option<f64> {
+        match self {
+            Self::Ok(line) => Some(line.row.p_value),
+            Self::Undefined { .. } => None,
+        }
+    }
+
+    fn p_that_counts(&self) -> Option<f64> {
+        match self {
+            Self::Ok(line) => Some(line.p_that_counts()),
+            Self::Undefined { .. } => None,
+        }
+    }
+}
+
+impl TestLine {
+    /// `2` or `2, 48`; empty where the statistic has none.
+    fn degrees_of_freedom(&self) -> String {
+        let degrees = self.row.degrees_of_freedom.iter().map(usize::to_string);
+        degrees.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The same in brackets.
+    pub(crate) fn degrees_in_brackets(&self) -> String {
+        match self.degrees_of_freedom() {
+            none if none.is_empty() => none,
+            degrees => format!("({degrees})"),
+        }
+    }
+
+    /// p after a correction over several tests, where there was one.
+    pub(crate) fn p_that_counts(&self) -> f64 {
+        self.p_holm.unwrap_or(self.row.p_value)
+    }
+
+    /// The same with another term.
+    pub(crate) fn with_term(mut self, term: Term) -> Self {
+        self.row.term = term;
+        self
+    }
+
+    /// Every row of a test's result. A refusal inside a report is a stated impossibility.
+    fn all<T: TestResult>(
+        result: Result<Outcome<T>, Refusal>,
+        unit: &Unit,
+        call: impl Fn(usize) -> Call,
+    ) -> Vec<Outcome<Self>> {
+        let rows = match result {
+            Err(refusal) => vec![Outcome::undefined(refusal.to_string())],
+            Ok(Outcome::Undefined { reason }) => vec![Outcome::Undefined { reason }],
+            Ok(Outcome::Ok(result)) => result.rows(),
+        };
+        let line = |(place, row): (usize, Outcome<TestRow>)| {
+            row.map(|row| Self {
+                names: T::NAMES,
+                unit: unit.clone(),
+                row,
+                p_holm: None,
+                call: call(place),
+            })
+        };
+        rows.into_iter().enumerate().map(line).collect()
+    }
+
+    /// The row of a test that has one.
+    fn one<T: TestResult>(
+        result: Result<Outcome<T>, Refusal>,
+        unit: &Unit,
+        call: Call,
+    ) -> Outcome<Self> {
+        let rows = Self::all(result, unit, |_| call.clone());
+        rows.into_iter().next().unwrap_or_else(|| Outcome::undefined("no row"))
+    }
+
+    /// A test of independent groups.
+    fn groups<T: TestResult>(
+        result: Result<Outcome<T>, Refusal>,
+        values: &Numbers,
+        factor: &Factor,
+        unit: &Unit,
+    ) -> Outcome<Self> {
+        let call = Call::new(Design::Groups, T::NAMES.function)
+            .text(&values.name)
+            .text(&factor.name)
+            .list(&factor.levels)
+            .text(unit.in_scripts());
+        Self::one(result, unit, call)
+    }
+
+    /// Kruskal-Wallis.
+    pub(crate) fn kruskal_wallis(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+        Self::groups::<KruskalWallis>(kruskal_wallis(values, factor), values, factor, unit)
+    }
+
+    /// Mann-Whitney.
+    pub(crate) fn mann_whitney(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+        Self::groups::<MannWhitney>(mann_whitney(values, factor), values, factor, unit)
+    }
+
+    /// Mann-Whitney of two groups, Kruskal-Wallis of more.
+    pub(crate) fn of_groups(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+        if factor.levels.len() == 2 {
+            Self::mann_whitney(values, factor, unit)
+        } else {
+            Self::kruskal_wallis(values, factor, unit)
+        }
+    }
+
+    /// Chi-square of a factor and answers, Yates for two by two.
+    pub(crate) fn chi_square(rows: &Factor, answers: &Factor) -> Outcome<Self> {
+        let result = Contingency::of(rows, answers).and_then(|table| chi_square(&table));
+        let call = Call::new(Design::Groups, ChiSquare::NAMES.function)
+            .text(&answers.name)
+            .text(&rows.name)
+            .list(&rows.levels)
+            .text(Unit::Trials.in_scripts());
+        Self::one(result.map(Outcome::Ok), &Unit::Trials, call)
+    }
+
+    /// Wilcoxon's signed rank test with the Hodges-Lehmann estimate that goes with it.
+    pub(crate) fn wilcoxon(
+        differences: &Numbers,
+        options: WilcoxonOptions,
+        unit: &Unit,
+        call: Call,
+    ) -> (Outcome<Self>, Option<HodgesLehmann>) {
+        let result = wilcoxon(differences, options);
+        let interval = match &result {
+            Ok(Outcome::Ok(result)) => Some(result.hodges_lehmann_ci),
+            _ => None,
+        };
+        let line = Self::one::<Wilcoxon>(result, unit, call);
+        (line.map(|line| line.with_term(Term::Differences(differences.name.clone()))), interval)
+    }
+
+    /// Spearman.
+    pub(crate) fn spearman(x: &Numbers, y: &Numbers, unit: &Unit) -> Outcome<Self> {
+        let call = Call::new(Design::Columns, Spearman::NAMES.function)
+            .text(&x.name)
+            .text(&y.name)
+            .text(unit.in_scripts());
+        let line = Self::one::<Spearman>(spearman(x, y), unit, call);
+        line.map(|line| line.with_term(Term::Relation([y.name.clone(), x.name.clone()])))
+    }
+
+    /// Friedman with Iman and Davenport's F.
+    pub(crate) fn friedman(blocks: &Blocks, call: Call) -> Outcome<Self> {
+        Self::one::<Friedman>(Ok(friedman(blocks)), &Unit::MeansWithinPeople, call)
+    }
+
+    /// Scheirer-Ray-Hare with type I sums of squares: both factors and their interaction.
+    pub(crate) fn scheirer_ray_hare(
+        values: &Numbers,
+        factors: [&Factor; 2],
+        unit: &Unit,
+    ) -> Vec<Outcome<Self>> {
+        let result = scheirer_ray_hare(values, factors, SumsOfSquares::One);
+        let call = |effect: usize| {
+            two_factors(Design::TwoFactors, ScheirerRayHare::NAMES, values, factors)
+                .number(effect + 1)
+                .text(unit.in_scripts())
+        };
+        Self::all::<ScheirerRayHare>(result, unit, call)
+    }
+
+    /// Aligned rank transform: both factors and their interaction.
+    pub(crate) fn aligned_rank_transform(
+        values: &Numbers,
+        factors: [&Factor; 2],
+        person: &Factor,
+    ) -> Vec<Outcome<Self>> {
+        let result = aligned_rank_transform(values, &factors, person);
+        let call = |effect: usize| {
+            two_factors(Design::Combinations, AlignedRankTransform::NAMES, values, factors)
+                .number(effect + 1)
+        };
+        Self::all::<AlignedRankTransform>(result, &Unit::PersonMeans, call)
+    }
+}
+
+/// A call of a test of two factors.
+fn two_factors(design: Design, names: TestNames, values: &Numbers, factors: [&Factor; 2]) -> Call {
+    Call::new(design, names.function)
+        .text(&values.name)
+        .text(&factors[0].name)
+        .list(&factors[0].levels)
+        .text(&factors[1].name)
+        .list(&factors[1].levels)
+}

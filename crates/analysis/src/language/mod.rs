@@ -1,0 +1,88 @@
+//! The language of a report.
+
+pub(crate) mod naming;
+
+use mimique_study::text::primary_language;
+
+/// English or French.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// French.
+    French,
+}
+
+impl Language {
+    /// From a code such as `fr` or `en-GB`; none for a language that no report is written in.
+    pub fn from_code(code: &str) -> Option<Self> {
+        match primary_language(code).to_ascii_lowercase().as_str() {
+            "en" => Some(Self::English),
+            "fr" => Some(Self::French),
+            _ => None,
+        }
+    }
+
+    /// `en` or `fr`.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::French => "fr",
+        }
+    }
+
+    /// One of two texts.
+    pub fn pick<T>(self, english: T, french: T) -> T {
+        match self {
+            Self::English => english,
+            Self::French => french,
+        }
+    }
+
+    /// A number with this language's decimal mark.
+    pub(crate) fn number(self, value: f64) -> String {
+        self.mark(mimique_stats::format_number(value))
+    }
+
+    /// A number with a fixed count of decimals.
+    pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
+        let text = format!("{value:.decimals$}");
+        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
+        self.mark(if zero { text.trim_start_matches('-').to_owned() } else { text })
+    }
+
+    /// A share in percent.
+    pub(crate) fn percent(self, share: f64) -> String {
+        format!("{:.0} %", share * 100.0)
+    }
+
+    /// `p = 0.012`, or `p < 0.001`.
+    pub(crate) fn p(self, p: f64) -> String {
+        if p < 0.001 {
+            return format!("p < {}", self.mark("0.001".to_owned()));
+        }
+        // Rounding must not carry a p over the border.
+        let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
+        format!("p = {}", self.fixed(p, decimals))
+    }
+
+    /// A p-value in a table: three decimals, or its order of magnitude.
+    pub(crate) fn p_cell(self, p: f64, ln_p: f64) -> String {
+        if p >= 0.001 {
+            let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
+            return self.fixed(p, decimals);
+        }
+        if p > 1e-300 {
+            return self.mark(format!("{p:.1e}"));
+        }
+        self.mark(mimique_stats::format_p(p, ln_p).trim_start_matches("= ").to_owned())
+    }
+
+    fn mark(self, text: String) -> String {
+        match self {
+            Self::English => text,
+            Self::French => text.replace('.', ","),
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Power: the study's own analysis over simulated answers, against the number of people and of clips.
+//!
+//! Each run simulates a whole study and tests every hypothesis of its file in both columns of the report:
+//! as in the thesis (trials taken for independent observations) and recommended (one value a person).
+//! With the effects of the parameters the share of runs with p below alpha is the power, without them the
+//! rate of false positives.
+
+mod clips;
+mod curve;
+mod dataset;
+mod design;
+mod table;
+
+use mimique_stats::{Adjustment, Outcome, proportion};
+use mimique_study::{Hypothesis, OrderError, Problem, Study};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::hypothesis::test_line::{OutcomeP, TestLine};
+use crate::hypothesis::{is_two_way, of_pair, test_hypothesis};
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::simulate::{Draws, Model, Parameters, ParametersError};
+pub use curve::power_curve;
+use design::Design;
+pub(crate) use table::enough;
+pub use table::{no_effect, power_csv, power_markdown};
+
+/// What is varied, and how often it is simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PowerOptions {
+    /// Numbers of people.
+    pub participants: Vec<usize>,
+    /// Numbers of clips; empty: the study's own.
+    pub clips: Vec<usize>,
+    /// Simulated studies a point.
+    pub runs: usize,
+    /// Seed of everything.
+    pub seed: u64,
+    /// A test is positive below this p.
+    pub alpha: f64,
+    /// Whether false positives are counted too, in as many runs again.
+    pub false_positives: bool,
+}
+
+/// The power of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Power {
+    /// Identifier of the study.
+    pub study: String,
+    /// Simulated studies a point.
+    pub runs: usize,
+    /// Seed.
+    pub seed: u64,
+    /// A test is positive below this p.
+    pub alpha: f64,
+    /// A point for each number of people and of clips, in this order.
+    pub points: Vec<PowerPoint>,
+}
+
+/// One number of people and of clips.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PowerPoint {
+    /// People who arrive.
+    pub participants: usize,
+    /// Clips of the study.
+    pub clips: usize,
+    /// People left after dropout and exclusions, on average.
+    pub people_used: f64,
+    /// The study's hypotheses.
+    pub hypotheses: Vec<HypothesisPower>,
+}
+
+/// One hypothesis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HypothesisPower {
+    /// Its identifier.
+    pub id: String,
+    /// Whether the parameters hold an effect for it ([`Parameters::has_effect`]). Without one, what is
+    /// counted as power is false positives.
+    pub effect: bool,
+    /// With the effects of the parameters.
+    pub power: Columns,
+    /// Without the effects that the hypotheses look for.
+    pub false_positives: Option<Columns>,
+}
+
+/// Shares of positive tests.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Columns {
+    /// The thesis's tests of single trials.
+    pub as_in_the_thesis: Rate,
+    /// The recommended test of one value a person.
+    pub recommended: Rate,
+    /// The same with Holm's correction over the study's hypotheses.
+    pub recommended_holm: Rate,
+}
+
+/// A share of positive tests.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Rate {
+    /// Runs with p below alpha.
+    pub positive: u64,
+    /// All runs.
+    pub runs: u64,
+    /// Runs whose test was undefined; they count as not positive.
+    pub undefined: u64,
+    /// positive / runs.
+    pub share: f64,
+    /// Wilson's 95 % interval.
+    pub interval: [f64; 2],
+}
+
+/// Why power cannot be computed.
+#[derive(Debug, thiserror::Error)]
+pub enum PowerError {
+    /// The study names no hypothesis.
+    #[error("/hypotheses: the study has none; name what is tested, with its response and factors")]
+    NoHypotheses,
+    /// A hypothesis is about answers to two clips at once.
+    #[error("{place}: {}; {}", .problem.message(), .problem.remedy())]
+    OfPair {
+        /// Its place in the study file.
+        place: String,
+        /// What is wrong.
+        problem: Box<Problem>,
+    },
+    /// Nothing can be simulated.
+    #[error("{0}")]
+    Parameters(#[from] ParametersError),
+    /// There is no order of trials.
+    #[error("{0}")]
+    Order(#[from] OrderError),
+    /// A number that cannot be.
+    #[error("{option}: {value} is not possible; give {remedy}")]
+    Option {
+        /// Which option.
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// What to give.
+        remedy: &'static str,
+    },
+}
+
+/// What one run found: people used, and the p-values of each hypothesis.
+struct Run {
+    people: usize,
+    found: Vec<Found>,
+}
+
+#[derive(Clone, Copy)]
+struct Found {
+    thesis: Option<f64>,
+    recommended: Option<f64>,
+    holm: Option<f64>,
+}
+
+/// Simulates and tests. `config_hash` is that of the study's file (with the study's seed it decides the
+/// orders of trials); `progress` is told each finished run, from any thread. The result depends on the
+/// arguments alone, not on the number of threads.
+pub fn power(
+    study: &Study,
+    config_hash: &str,
+    parameters: &Parameters,
+    options: &PowerOptions,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Power, PowerError> {
+    check(study, options)?;
+    parameters.check(study)?;
+    let null = parameters.without_effects(study);
+    let effects: Vec<bool> =
+        study.hypotheses.iter().map(|each| parameters.has_effect(study, each)).collect();
+    let most = options.participants.iter().copied().max().unwrap_or(0);
+    let own_clips = study.clips().len();
+    let sizes: Vec<Option<usize>> = match options.clips.as_slice() {
+        [] => vec![None],
+        given => given.iter().map(|&clips| (clips != own_clips).then_some(clips)).collect(),
+    };
+    let mut points = Vec::new();
+    for clips in sizes {
+        let design = Design::new(study, config_hash, most, clips)?;
+        let model = design.model(parameters);
+        let null_model = options.false_positives.then(|| design.model(&null));
+        for &participants in &options.participants {
+            let all = |model: &Model<'_>, purpose: &str| -> Vec<Run> {
+                let run = |run: usize| {
+                    let seed = run_seed(options.seed, purpose, run);
+                    let result = one_run(study, &design, model, seed, participants);
+                    progress();
+                    result
+                };
+                (0..options.runs).into_par_iter().map(run).collect()
+            };
+            let with = all(&model, "with effects");
+            let without = null_model.as_ref().map(|model| all(model, "without effects"));
+            let hypotheses = study
+                .hypotheses
+                .iter()
+                .enumerate()
+                .map(|(place, hypothesis)| HypothesisPower {
+                    id: hypothesis.id.clone(),
+                    effect: effects[place],
+                    power: columns(&with, place, options.alpha),
+                    false_positives: without
+                        .as_ref()
+                        .map(|runs| columns(runs, place, options.alpha)),
+                })
+                .collect();
+            points.push(PowerPoint {
+                participants,
+                clips: design.clips.clips.len(),
+                people_used: with.iter().map(|run| run.people as f64).sum::<f64>()
+                    / options.runs as f64,
+                hypotheses,
+            });
+        }
+    }
+    Ok(Power {
+        study: study.id.clone(),
+        runs: options.runs,
+        seed: options.seed,
+        alpha: options.alpha,
+        points,
+    })
+}
+
+/// How many runs [`power`] makes.
+pub fn power_runs(options: &PowerOptions) -> u64 {
+    let kinds = if options.false_positives { 2 } else { 1 };
+    (options.participants.len() * options.clips.len().max(1) * options.runs * kinds) as u64
+}
+
+fn check(study: &Study, options: &PowerOptions) -> Result<(), PowerError> {
+    if study.hypotheses.is_empty() {
+        return Err(PowerError::NoHypotheses);
+    }
+    for (index, hypothesis) in study.hypotheses.iter().enumerate() {
+        if let Some(of_pair) = of_pair(study, hypothesis) {
+            let place = format!("/hypotheses/{index}/factors");
+            return Err(PowerError::OfPair { place, problem: Box::new(of_pair.into()) });
+        }
+    }
+    let wrong = |option, value: String, remedy| Err(PowerError::Option { option, value, remedy });
+    if let Some(n) = options.participants.iter().find(|n| !(2..=100_000).contains(*n)) {
+        return wrong("participants", n.to_string(), "2 to 100000");
+    }
+    if options.participants.is_empty() {
+        return wrong("participants", "nothing".to_owned(), "numbers of people");
+    }
+    if let Some(n) = options.clips.iter().find(|n| !(2..=10_000).contains(*n)) {
+        return wrong("clips", n.to_string(), "2 to 10000");
+    }
+    if !(1..=1_000_000).contains(&options.runs) {
+        return wrong("runs", options.runs.to_string(), "1 to 1000000");
+    }
+    if !(options.alpha > 0.0 && options.alpha < 1.0) {
+        return wrong("alpha", options.alpha.to_string(), "a number between 0 and 1");
+    }
+    Ok(())
+}
+
+/// The seed of one run. Runs of one number share it over numbers of people, so that more people are the
+/// same ones and further ones: curves are smoother than with people of their own at each point.
+fn run_seed(seed: u64, purpose: &str, run: usize) -> u64 {
+    let mut draws = Draws::new(seed, Some(run as u64), &format!("run {purpose}"));
+    (draws.unit() * (1_u64 << 53) as f64) as u64
+}
+
+fn one_run(
+    study: &Study,
+    design: &Design<'_>,
+    model: &Model<'_>,
+    seed: u64,
+    participants: usize,
+) -> Run {
+    let export = design.answers(model, seed, participants);
+    let naming = Naming { language: Language::English, study };
+    let mut found: Vec<Found> = study
+        .hypotheses
+        .iter()
+        .map(|hypothesis| {
+            let result = test_hypothesis(&naming, &export, study, hypothesis);
+            let thesis = thesis_p(hypothesis, &result.as_in_the_thesis.tests);
+            Found { thesis, recommended: result.p, holm: None }
+        })
+        .collect();
+    let p: Vec<Option<f64>> = found.iter().map(|found| found.recommended).collect();
+    for (found, holm) in found.iter_mut().zip(Adjustment::Holm.apply(&p)) {
+        found.holm = holm;
+    }
+    Run { people: export.flow.people_used, found }
+}
+
+/// The p that the thesis would have decided by: the interaction of two factors, the one test, or the
+/// smallest of several pairs (it did not correct them).
+fn thesis_p(hypothesis: &Hypothesis, tests: &[Outcome<TestLine>]) -> Option<f64> {
+    if is_two_way(hypothesis.test) {
+        return tests.last().and_then(Outcome::p);
+    }
+    tests.iter().filter_map(Outcome::p).reduce(f64::min)
+}
+
+fn columns(runs: &[Run], place: usize, alpha: f64) -> Columns {
+    let rate = |p: fn(&Found) -> Option<f64>| {
+        let all = runs.iter().map(|run| p(&run.found[place]));
+        let positive = all.clone().flatten().filter(|p| *p < alpha).count() as u64;
+        let undefined = all.filter(Option::is_none).count() as u64;
+        let estimate = proportion(positive, runs.len() as u64);
+        Rate {
+            positive,
+            runs: runs.len() as u64,
+            undefined,
+            share: estimate.proportion.unwrap_or(0.0),
+            interval: estimate.wilson.unwrap_or([0.0, 1.0]),
+        }
+    };
+    Columns {
+        as_in_the_thesis: rate(|found| found.thesis),
+        recommended: rate(|found| found.recommended),
+        recommended_holm: rate(|found| found.holm),
+    }
+}

@@ -1,0 +1,242 @@
+//! Analysis plan and exclusions in words. What is said here is what `report::hypothesis` computes.
+
+use mimique_stats::{
+    ChiSquare, Friedman, KruskalWallis, MannWhitney, ScheirerRayHare, Spearman, TestNames,
+    TestResult, Wilcoxon,
+};
+use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, TestName};
+
+use super::{Preregistration, Text};
+use crate::hypothesis::is_two_way;
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::simulate::{factor_levels, traits};
+
+pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let (language, study) = (from.language, from.study);
+    text.heading(2, "Analysis plan", "Plan d’analyse");
+    text.heading(3, "Statistical models", "Modèles statistiques");
+    for hypothesis in &study.hypotheses {
+        let (recommended, thesis) = tests(from, hypothesis);
+        let factors: Vec<String> =
+            hypothesis.factors.iter().map(|each| naming.factor(each)).collect();
+        let of = match hypothesis.measure {
+            Measure::Answer => format!("`{}`", hypothesis.response),
+            Measure::Correct => language.pick(
+                format!("right answers to `{}`", hypothesis.response),
+                format!("bonnes réponses à `{}`", hypothesis.response),
+            ),
+            Measure::Rt => language.pick(
+                format!("response time of `{}`", hypothesis.response),
+                format!("temps de réponse à `{}`", hypothesis.response),
+            ),
+        };
+        let by = factors.join(" × ");
+        text.line(&format!("- **{}** ({of}, {by}){}", hypothesis.id, language.pick(":", " :")));
+        if !hypothesis.levels.is_empty() {
+            let levels: Vec<String> = hypothesis
+                .levels
+                .iter()
+                .map(|level| naming.level(&hypothesis.factors[0], &level.to_string()))
+                .collect();
+            let words = language.pick("levels compared: ", "niveaux comparés : ");
+            text.line(&format!("  - {words}{}", levels.join(", ")));
+        }
+        text.line(&format!("  - {} {recommended}.", language.pick("decides:", "décide :")));
+        text.line(&format!(
+            "  - {} {thesis}.",
+            language.pick(
+                "for comparison with earlier work, not evidence (trials of one person are not independent):",
+                "pour comparaison avec les travaux antérieurs, sans valeur de preuve (les essais d’une personne ne sont pas indépendants) :"
+            )
+        ));
+    }
+    text.line("");
+    text.both(
+        "All are computed by `mimique analyze` on the export, with this study file.",
+        "Tous sont calculés par `mimique analyze` sur l’export, avec ce fichier d’étude.",
+    );
+    text.heading(3, "Transformations", "Transformations");
+    text.both(
+        "None, beyond the means a person and level above. Ratings are used as coded on the scale.",
+        "Aucune, au-delà des moyennes par personne et niveau ci-dessus. Les notes sont utilisées telles que codées sur l’échelle.",
+    );
+    text.heading(3, "Inference criteria", "Critères d’inférence");
+    let count = study.hypotheses.len();
+    let alpha = language.number(from.power.alpha);
+    let words = language.pick(
+        format!("Two-sided tests at α = {alpha}, after Holm’s correction over the {count} hypotheses. Comparisons of pairs within a hypothesis are corrected by Holm among themselves. Effect sizes with 95 % intervals are reported whatever the outcome: rank-biserial correlation and Hodges-Lehmann difference of pairs, Kendall’s W of several levels, partial η² of the aligned rank transform. A test that is not significant is not taken as evidence that there is no difference."),
+        format!("Tests bilatéraux à α = {alpha}, après correction de Holm sur les {count} hypothèses. Les comparaisons par paires au sein d’une hypothèse sont corrigées entre elles par Holm. Les tailles d’effet et leurs intervalles à 95 % sont rapportés quel que soit le résultat : corrélation bisériale des rangs et différence de Hodges-Lehmann pour les paires, W de Kendall pour plusieurs niveaux, η² partiel pour la transformation des rangs alignés. Un test non significatif n’est pas pris pour la preuve d’une absence de différence."),
+    );
+    text.line(&words);
+    text.line("");
+    text.heading(3, "Data exclusion", "Exclusion de données");
+    for rule in exclusions(from, language) {
+        text.line(&format!("- {rule}"));
+    }
+    text.line("");
+    text.both(
+        "Each exclusion is counted by its reason in the report’s flow chart. There are no others.",
+        "Chaque exclusion est comptée par motif dans le diagramme de flux du rapport. Il n’y en a pas d’autre.",
+    );
+    text.heading(3, "Missing data", "Données manquantes");
+    text.both(
+        "A person without a value at every level that a test compares is left out of that test and counted. Nothing is imputed.",
+        "Une personne sans valeur à chacun des niveaux qu’un test compare est écartée de ce test et comptée. Rien n’est imputé.",
+    );
+    text.heading(3, "Exploratory analysis", "Analyses exploratoires");
+    text.both(
+        "Everything else in the report (confusion matrices, other factors, response times, order and fatigue, late frames) is exploratory and will be called so. With one clip for a combination of performance and method, results are about these clips: they do not generalise to other performances.",
+        "Tout le reste du rapport (matrices de confusion, autres facteurs, temps de réponse, ordre et fatigue, images en retard) est exploratoire et sera présenté comme tel. Avec un seul extrait par combinaison de performance et de méthode, les résultats portent sur ces extraits : ils ne se généralisent pas à d’autres performances.",
+    );
+}
+
+/// The test that decides and the one of the thesis, in words.
+fn tests(from: &Preregistration<'_>, hypothesis: &Hypothesis) -> (String, String) {
+    let (language, study) = (from.language, from.study);
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let clips = study.clips();
+    let of_clips = study.factor_names().iter().any(|name| name == factor);
+    let levels = match hypothesis.levels.len() {
+        0 => factor_levels(study, &clips).get(factor).map_or(0, Vec::len),
+        named => named,
+    };
+    let asked = study.all_questions().find(|question| question.id == hypothesis.response);
+    let recognition = hypothesis.measure != Measure::Rt
+        && asked.is_some_and(|question| question.kind.truth().is_some());
+    let about_people = |factor: &str| {
+        !study.factor_names().iter().any(|name| name == factor)
+            && (traits(study).contains_key(factor)
+                || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor))
+    };
+    let is_trait = about_people(factor);
+    let traits_of_two = hypothesis.factors.iter().take(2).filter(|f| about_people(f)).count();
+    let name = |names: TestNames| names.in_words[language.pick(0, 1)];
+    let of_trials = |names| {
+        let name = name(names);
+        language.pick(format!("{name} of trials"), format!("{name} sur les essais"))
+    };
+    let of_people = |names| {
+        let name = name(names);
+        language.pick(
+            format!("{name} on one mean a person"),
+            format!("{name} sur une moyenne par personne"),
+        )
+    };
+    let wilcoxon = name(Wilcoxon::NAMES);
+    let wilcoxon = language.pick(
+        format!("{wilcoxon} on person means, exact and conditional on the observed ranks, zeros by Pratt"),
+        format!("{wilcoxon} sur les moyennes par personne, exact et conditionnel aux rangs observés, zéros selon Pratt"),
+    );
+    let recommended = if is_two_way(hypothesis.test) && traits_of_two == 1 {
+        language.pick(
+            "interaction by people’s differences: for each pair of levels of the factor within people, whether each person’s difference of means depends on the factor about people (Mann-Whitney of two groups, Kruskal-Wallis of more), smallest p after Holm’s correction over the pairs",
+            "interaction par les différences des personnes : pour chaque paire de niveaux du facteur intra-personnes, la différence des moyennes de chaque personne dépend-elle du facteur propre aux personnes (Mann-Whitney pour deux groupes, Kruskal-Wallis au-delà), plus petit p après correction de Holm sur les paires",
+        )
+        .to_owned()
+    } else if is_two_way(hypothesis.test) && traits_of_two == 2 {
+        language
+            .pick(
+                "interaction of the Scheirer-Ray-Hare test on one mean a person",
+                "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
+            )
+            .to_owned()
+    } else if is_two_way(hypothesis.test) {
+        language.pick(
+            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
+            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",
+        )
+        .to_owned()
+    } else if is_trait {
+        match (hypothesis.test, levels) {
+            (TestName::Spearman, _) => {
+                let name = name(Spearman::NAMES);
+                language.pick(
+                    format!("{name} with person means"),
+                    format!("{name} avec les moyennes par personne"),
+                )
+            }
+            (_, 2) => of_people(MannWhitney::NAMES),
+            _ => of_people(KruskalWallis::NAMES),
+        }
+    } else if hypothesis.test == TestName::Spearman {
+        language.pick(
+            "signed rank test of each person’s own Spearman correlation against zero",
+            "test des rangs signés des corrélations de Spearman propres à chaque personne contre zéro",
+        )
+        .to_owned()
+    } else if levels == 2 {
+        wilcoxon
+    } else {
+        let friedman = name(Friedman::NAMES);
+        language.pick(
+            format!("{friedman} on person means with Iman and Davenport’s F; then, for pairs, {wilcoxon}, corrected by Holm"),
+            format!("{friedman} sur les moyennes par personne, F d’Iman et Davenport ; puis, pour les paires, {wilcoxon}, corrigé par Holm"),
+        )
+    };
+    let thesis = match hypothesis.test {
+        _ if is_two_way(hypothesis.test) => of_trials(ScheirerRayHare::NAMES) + ", type I",
+        TestName::Spearman => of_trials(Spearman::NAMES),
+        TestName::MannWhitney => of_trials(MannWhitney::NAMES),
+        TestName::Wilcoxon if !recognition && of_clips => language
+            .pick(
+                "Wilcoxon’s test of matched trials as R computed it in 2019",
+                "test de Wilcoxon sur les essais appariés tel que R le calculait en 2019",
+            )
+            .to_owned(),
+        TestName::KruskalWallis => of_trials(KruskalWallis::NAMES),
+        _ if recognition => of_trials(ChiSquare::NAMES),
+        TestName::ChiSquare if of_clips => of_trials(ChiSquare::NAMES),
+        _ => of_trials(KruskalWallis::NAMES),
+    };
+    (recommended, thesis)
+}
+
+fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
+    let rules = from.study.exclusions.clone().unwrap_or_default();
+    let mut words = vec![
+        language
+            .pick(
+                "people who do not agree or who take their answers back (their answers are deleted)",
+                "les personnes qui refusent ou qui retirent leurs réponses (elles sont effacées)",
+            )
+            .to_owned(),
+        language.pick("pilot sessions", "les sessions pilotes").to_owned(),
+    ];
+    if rules.incomplete {
+        words.push(
+            language
+                .pick("people who do not finish", "les personnes qui ne terminent pas")
+                .to_owned(),
+        );
+    }
+    if let Some(most) = rules.failed_attention_checks {
+        words.push(language.pick(
+            format!("people who fail more than {most} attention checks"),
+            format!("les personnes qui échouent à plus de {most} contrôles d’attention"),
+        ));
+    }
+    if let Some(share) = rules.late_frame_share {
+        let percent = language.fixed(100.0 * share, 0);
+        words.push(language.pick(
+            format!("trials with more than {percent} % late frames"),
+            format!("les essais ayant plus de {percent} % d’images en retard"),
+        ));
+    }
+    if let Some(longest) = rules.longest_frame_ms {
+        words.push(language.pick(
+            format!("trials with a frame longer than {longest} ms"),
+            format!("les essais ayant une image de plus de {} ms", language.number(longest)),
+        ));
+    }
+    if let Some(shortest) = rules.shortest_rt_ms {
+        words.push(language.pick(
+            format!("trials answered sooner than {shortest} ms after the onset"),
+            format!(
+                "les essais répondus en moins de {} ms après le début",
+                language.number(shortest)
+            ),
+        ));
+    }
+    words
+}

@@ -1,0 +1,223 @@
+//! Drawing of figures as SVG that stands alone: its own colours for light, dark and print.
+
+use std::fmt::Write;
+
+use crate::report::document::escape;
+
+/// Width of every figure, so that text has the same size in all of them.
+pub(crate) const WIDTH: f64 = 440.0;
+
+/// Blues from light to dark, even steps of lightness: readable in grey and by the colour-blind.
+const LIGHTEST: [f64; 3] = [227.0, 238.0, 249.0];
+const DARKEST: [f64; 3] = [8.0, 48.0, 107.0];
+
+/// A drawing that grows downwards.
+pub(crate) struct Svg {
+    body: String,
+    height: f64,
+    title: String,
+}
+
+/// Where a text is anchored.
+#[derive(Clone, Copy)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+impl Svg {
+    pub(crate) fn new(title: &str, height: f64) -> Self {
+        Self { body: String::new(), height, title: title.to_owned() }
+    }
+
+    pub(crate) fn text(&mut self, x: f64, y: f64, class: &str, anchor: Anchor, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{}" y="{}" class="{class}" text-anchor="{anchor}">{}</text>"#,
+            short(x),
+            short(y),
+            escape(text)
+        );
+    }
+
+    /// A text on a filled area, light or dark by what is behind it.
+    pub(crate) fn text_on(&mut self, x: f64, y: f64, shade: f64, text: &str) {
+        let class = if shade > 0.5 { "on-dark" } else { "on-light" };
+        self.text(x, y, class, Anchor::Middle, text);
+    }
+
+    pub(crate) fn rect(&mut self, [x, y, width, height]: [f64; 4], fill: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{}" y="{}" width="{}" height="{}" fill="{fill}"/>"#,
+            short(x),
+            short(y),
+            short(width.max(0.0)),
+            short(height)
+        );
+    }
+
+    pub(crate) fn class_rect(&mut self, [x, y, width, height]: [f64; 4], class: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{}" y="{}" width="{}" height="{}" class="{class}"/>"#,
+            short(x),
+            short(y),
+            short(width.max(0.0)),
+            short(height)
+        );
+    }
+
+    pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], class: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<line x1="{}" y1="{}" x2="{}" y2="{}" class="{class}"/>"#,
+            short(from[0]),
+            short(from[1]),
+            short(to[0]),
+            short(to[1])
+        );
+    }
+
+    /// A line through several points.
+    pub(crate) fn path(&mut self, points: &[[f64; 2]], class: &str) {
+        let points: Vec<String> =
+            points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        let _ = writeln!(self.body, r#"<path d="M{}" class="{class}"/>"#, points.join("L"));
+    }
+
+    pub(crate) fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{}" cy="{}" r="{}" class="{class}"/>"#,
+            short(x),
+            short(y),
+            short(radius)
+        );
+    }
+
+    pub(crate) fn diamond(&mut self, x: f64, y: f64, radius: f64, class: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<path d="M{} {}l{r} {r}l-{r} {r}l-{r} -{r}z" class="{class}"/>"#,
+            short(x),
+            short(y - radius),
+            r = short(radius)
+        );
+    }
+
+    pub(crate) fn finish(self) -> String {
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" class="mm-figure" aria-label="{title}">
+<style>{STYLE}</style>
+<rect width="{WIDTH}" height="{height}" class="paper"/>
+{body}</svg>
+"#,
+            height = short(self.height),
+            title = escape(&self.title),
+            body = self.body
+        )
+    }
+}
+
+const STYLE: &str = "\
+.mm-figure{font:13px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}\
+.mm-figure text{fill:#1c2126;font-variant-numeric:tabular-nums}\
+.mm-figure .soft{fill:#555e68}\
+.mm-figure .small{font-size:11px;fill:#555e68}\
+.mm-figure .strong{font-weight:600}\
+.mm-figure .on-dark{fill:#fff}.mm-figure .on-light{fill:#10151a}\
+.mm-figure .on-dark,.mm-figure .on-light{font-size:12px}\
+.mm-figure .paper{fill:#fff}\
+.mm-figure .rule{stroke:#c9d0d8;stroke-width:1}\
+.mm-figure .zero{stroke:#555e68;stroke-width:1;stroke-dasharray:3 3}\
+.mm-figure .whisker{stroke:#0a4f86;stroke-width:2}\
+.mm-figure .mark{fill:#0a4f86}\
+.mm-figure .dot{fill:#0a4f86;fill-opacity:.35}\
+.mm-figure .person{fill:none;stroke:#555e68;stroke-width:1;stroke-opacity:.45}\
+.mm-figure .faint{stroke-opacity:.08}\
+.mm-figure .mean{fill:none;stroke:#0a4f86;stroke-width:3}\
+.mm-figure .course{fill:none;stroke:#0a4f86;stroke-width:1.5}\
+.mm-figure .thin{stroke:#0a4f86;stroke-width:1}\
+.mm-figure .box{fill:#cfe1f2;stroke:#0a4f86;stroke-width:1.5}\
+.mm-figure .empty{fill:none;stroke:#c9d0d8;stroke-width:1}\
+@media screen and (prefers-color-scheme:dark){\
+.mm-figure text{fill:#e8ebee}.mm-figure .soft,.mm-figure .small{fill:#a9b2bc}\
+.mm-figure .on-dark{fill:#fff}.mm-figure .on-light{fill:#10151a}\
+.mm-figure .paper{fill:#15191e}.mm-figure .rule{stroke:#3a434d}.mm-figure .empty{stroke:#3a434d}\
+.mm-figure .zero{stroke:#a9b2bc}.mm-figure .whisker{stroke:#8cc4f2}.mm-figure .mark{fill:#8cc4f2}\
+.mm-figure .dot{fill:#8cc4f2}.mm-figure .person{stroke:#a9b2bc}.mm-figure .mean{stroke:#8cc4f2}.mm-figure .course,.mm-figure .thin{stroke:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
+
+/// The colour of a shade from 0 (light) to 1 (dark).
+pub(crate) fn shade(shade: f64) -> String {
+    let shade = shade.clamp(0.0, 1.0);
+    let channel = |i: usize| (LIGHTEST[i] + (DARKEST[i] - LIGHTEST[i]) * shade).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
+}
+
+/// Two decimals at most: figures are the same on every machine, and small.
+pub(crate) fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Cuts a label to so many characters.
+pub(crate) fn clipped(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let mut cut: String = text.chars().take(most.saturating_sub(1)).collect();
+    cut.push('…');
+    cut
+}
+
+/// An axis over a range of values: round ticks, and the place of a value between two edges.
+pub(crate) struct Axis {
+    low: f64,
+    high: f64,
+    left: f64,
+    right: f64,
+    pub ticks: Vec<f64>,
+    /// Decimals of the ticks.
+    pub decimals: usize,
+}
+
+impl Axis {
+    pub(crate) fn new(low: f64, high: f64, left: f64, right: f64) -> Self {
+        let span = if high > low { high - low } else { 1.0 };
+        let raw = span / 5.0;
+        let power = 10f64.powf(raw.log10().floor());
+        let step = [1.0, 2.0, 2.5, 5.0, 10.0]
+            .into_iter()
+            .map(|factor| factor * power)
+            .find(|step| *step >= raw * 0.999)
+            .unwrap_or(10.0 * power);
+        let first = (low / step).floor();
+        let last = ((low + span) / step).ceil();
+        let ticks: Vec<f64> =
+            (0..=(last - first) as usize).map(|i| (first + i as f64) * step).collect();
+        let decimals = (0..6).find(|d| {
+            let scaled = step * 10f64.powi(*d);
+            (scaled - scaled.round()).abs() < 1e-6
+        });
+        Self {
+            low: first * step,
+            high: last * step,
+            left,
+            right,
+            ticks,
+            decimals: decimals.unwrap_or(6) as usize,
+        }
+    }
+
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        self.left + (value - self.low) / (self.high - self.low) * (self.right - self.left)
+    }
+}

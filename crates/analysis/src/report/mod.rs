@@ -1,0 +1,113 @@
+//! The report of a study: every table, figure and sentence from its export and its study file.
+//!
+//! In: the tidy export as a [`Table`], the study, a language. Out: files as text, the same for the same
+//! input. Each test stands in two columns: as in the thesis (trials taken for independent
+//! observations) and as recommended (one value a person).
+
+pub(crate) mod document;
+pub(crate) mod figure;
+mod html;
+mod latex;
+mod markdown;
+mod replay;
+pub(crate) mod results;
+pub(crate) mod section;
+pub(crate) mod tables;
+
+use mimique_stats::{Refusal, Table};
+use mimique_study::Study;
+
+use crate::language::Language;
+use crate::trials::export::Export;
+use document::Block;
+
+/// One file of a report.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReportFile {
+    /// Path below the report's folder, with `/`.
+    pub path: String,
+    /// Contents.
+    pub text: String,
+}
+
+/// A report: its files, and its findings in short.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    /// Every file.
+    pub files: Vec<ReportFile>,
+    /// People used and people in the export.
+    pub people: (usize, usize),
+    /// Trials used.
+    pub trials: usize,
+    /// The reading of each hypothesis: identifier and words.
+    pub readings: Vec<(String, String)>,
+}
+
+/// Computes the report. Refuses an export without the columns of the tidy form or without any trial
+/// that can be used.
+pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, Refusal> {
+    let export = Export::read(table, study)?;
+    if export.trials.is_empty() {
+        return Err(Refusal::column(
+            "trial_type",
+            format!(
+                "no trial is left: {} of {} people and {} of {} trials are left out{}",
+                export.flow.people - export.flow.people_used,
+                export.flow.people,
+                export.flow.trials - export.flow.trials_used,
+                export.flow.trials,
+                export.flow.why()
+            ),
+            "collect answers first, or look at the study's exclusions",
+        ));
+    }
+    let section::Sections { document, results, readings, replay } =
+        section::write(&export, study, language);
+    let mut files = vec![
+        ReportFile { path: "report.html".to_owned(), text: html::html(&document, language) },
+        ReportFile { path: "report.md".to_owned(), text: markdown::markdown(&document) },
+        ReportFile { path: "results.json".to_owned(), text: results },
+    ];
+    let mut in_latex = Vec::new();
+    for block in &document.blocks {
+        match block {
+            Block::Table(data) => {
+                files.push(ReportFile {
+                    path: format!("tables/{}.csv", data.id),
+                    text: data.to_csv(),
+                });
+                files.push(ReportFile {
+                    path: format!("tables/{}.tex", data.id),
+                    text: latex::table(data),
+                });
+                in_latex.push(data.id.as_str());
+            }
+            Block::Figure(figure) => {
+                files.push(ReportFile {
+                    path: format!("figures/{}.svg", figure.id),
+                    text: figure.svg.clone(),
+                });
+                files.push(ReportFile {
+                    path: format!("tables/figure-{}.csv", figure.data.id),
+                    text: figure.data.to_csv(),
+                });
+                files.push(ReportFile {
+                    path: format!("tables/figure-{}.tex", figure.data.id),
+                    text: latex::table(&figure.data),
+                });
+            }
+            _ => {}
+        }
+    }
+    files.extend(replay);
+    files.push(ReportFile {
+        path: "tables/all.tex".to_owned(),
+        text: latex::document(&document.title, &in_latex),
+    });
+    Ok(Report {
+        files,
+        people: (export.flow.people_used, export.flow.people),
+        trials: export.flow.trials_used,
+        readings,
+    })
+}

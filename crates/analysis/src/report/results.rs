@@ -1,0 +1,93 @@
+//! Everything that a report computed, as `results.json` has it.
+
+use std::collections::BTreeMap;
+
+use mimique_stats::{Confusion, Description, Labelled, Outcome};
+use serde::Serialize;
+
+use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::person_level::PersonLevel;
+use crate::hypothesis::trial_level::TrialLevel;
+use crate::report::section::best_worst::BestWorstCounts;
+use crate::report::section::choices::Choices;
+use crate::report::section::course::Course;
+use crate::report::section::layouts::LayoutCell;
+use crate::trials::export::{Flow, Person};
+
+/// Everything that was computed, for `results.json`.
+#[derive(Serialize, Default)]
+pub(crate) struct Results<'a> {
+    pub study: String,
+    pub version: String,
+    pub language: &'static str,
+    pub flow: Option<&'a Flow>,
+    pub people: &'a [Person],
+    pub about_people: BTreeMap<String, AboutPeople>,
+    pub hypotheses: Vec<HypothesisResult>,
+    pub confusion: Vec<NamedConfusion>,
+    pub comparisons: Vec<Comparison>,
+    pub choices: Vec<Choices>,
+    pub best_worst: Vec<BestWorstCounts>,
+    pub two_way: Vec<TwoWay>,
+    pub course: Vec<Course>,
+    pub layouts: Vec<LayoutCell>,
+    pub late_frames: Vec<LateFrames>,
+}
+
+impl Results<'_> {
+    /// What a part of the report has computed, behind what is there.
+    pub(crate) fn append(&mut self, part: Self) {
+        self.about_people.extend(part.about_people);
+        self.hypotheses.extend(part.hypotheses);
+        self.confusion.extend(part.confusion);
+        self.comparisons.extend(part.comparisons);
+        self.choices.extend(part.choices);
+        self.best_worst.extend(part.best_worst);
+        self.two_way.extend(part.two_way);
+        self.course.extend(part.course);
+        self.layouts.extend(part.layouts);
+        self.late_frames.extend(part.late_frames);
+    }
+}
+
+/// Answers about people.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum AboutPeople {
+    /// Of a number.
+    Numbers(Outcome<Description>),
+    /// Of words: people an answer.
+    Counts(Labelled<usize>),
+}
+
+/// A confusion matrix of some of the trials.
+#[derive(Serialize)]
+pub(crate) struct NamedConfusion {
+    pub response: String,
+    /// The factor; none for all trials.
+    pub by: Option<String>,
+    /// `all`, or a factor's level.
+    pub of: String,
+    pub result: Confusion,
+}
+
+/// Two factors and their interaction.
+#[derive(Serialize)]
+pub(crate) struct TwoWay {
+    pub measure: String,
+    pub factors: [String; 2],
+    pub as_in_the_thesis: TrialLevel,
+    pub recommended: PersonLevel,
+}
+
+/// Late frames at a level of the first factor.
+#[derive(Serialize)]
+pub(crate) struct LateFrames {
+    pub level: String,
+    pub trials: usize,
+    pub frames: f64,
+    pub late: f64,
+    pub trials_with_late_frames: usize,
+    pub longest_ms: Option<f64>,
+}

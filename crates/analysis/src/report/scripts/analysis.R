@@ -1,0 +1,183 @@
+# The numbers of this report once more, by R's base functions, and two mixed models.
+#
+#   Rscript analysis.R            computes, compares with data/numbers.csv, fits the models
+#   Rscript analysis.R no-models  without the models
+#   Rscript analysis.R one-model  with the first model alone
+#
+# In: data/trials.csv (the trials in the analysis, after all exclusions) and data/numbers.csv (what
+# Mimique computed). Out: data/numbers-r.csv. Exit status 1 if a number differs by more than 1e-8 of
+# its size.
+
+arguments <- commandArgs(trailingOnly = TRUE)
+script <- sub("^--file=", "", grep("^--file=", commandArgs(), value = TRUE))
+if (length(script) == 1) setwd(dirname(normalizePath(script)))
+invisible(Sys.setlocale("LC_COLLATE", "C"))
+
+trials <- read.csv("data/trials.csv", colClasses = "character", check.names = FALSE,
+                   na.strings = "", encoding = "UTF-8")
+person <- trials$participant_id
+
+# A column as numbers; words become their places in order.
+number <- function(name) {
+  column <- trials[[name]]
+  values <- suppressWarnings(as.numeric(column))
+  if (all(is.na(values[!is.na(column)]))) values <- as.integer(factor(column))
+  values
+}
+
+# Mean of each person (rows) at each level (columns); only people who have all of them.
+person_means <- function(y, g, levels) {
+  v <- number(y)
+  keep <- !is.na(v) & trials[[g]] %in% levels
+  m <- tapply(v[keep], list(person[keep], factor(trials[[g]][keep], levels)), mean)
+  m[complete.cases(m), , drop = FALSE]
+}
+
+# Mean of each person over all trials, and what the first of them says of the person.
+overall_means <- function(y) {
+  v <- number(y)
+  tapply(v[!is.na(v)], person[!is.na(v)], mean)
+}
+about <- function(name, people) trials[[name]][match(people, person)]
+
+# The tests, each of them of plain vectors.
+@TESTS@
+
+# What is taken from the trials for a test.
+groups <- function(values, labels, levels) {
+  keep <- !is.na(values) & labels %in% levels
+  list(values = values[keep], groups = droplevels(factor(labels[keep], levels)))
+}
+by_unit <- function(y, g, levels, unit) {
+  if (unit == "trials") return(groups(number(y), trials[[g]], levels))
+  means <- overall_means(y)
+  groups(as.vector(means), about(g, names(means)), levels)
+}
+
+of_groups <- function(test, y, g, levels, unit) test(by_unit(y, g, levels, unit))
+
+# Each person's difference between two levels, compared between groups of people; Holm's correction is
+# over all pairs of levels.
+of_differences_by_trait <- function(test, y, g, levels, a, b, trait, trait_levels) {
+  m <- person_means(y, g, levels)
+  of_pair <- function(pair) {
+    test(groups(round(m[, pair[1]] - m[, pair[2]], 9), about(trait, rownames(m)), trait_levels))
+  }
+  pairs <- combn(length(levels), 2)
+  p <- p.adjust(apply(pairs, 2, function(pair) of_pair(pair)[["p"]]), "holm")
+  c(of_pair(c(a, b)), p_holm = p[pairs[1, ] == a & pairs[2, ] == b])
+}
+
+of_columns <- function(test, x, y, unit) {
+  if (unit == "trials") return(test(number(x), number(y)))
+  means <- overall_means(y)
+  test(number(x)[match(names(means), person)], as.vector(means))
+}
+of_correlations <- function(test, x, y) {
+  data <- data.frame(x = number(x), y = number(y), person = person)
+  data <- data[complete.cases(data), ]
+  rho <- suppressWarnings(sapply(split(data, data$person), function(own) cor(own$x, own$y, method = "spearman")))
+  result <- test(unname(rho[!is.na(rho)]))
+  c(result[c("statistic", "p")], effect = unname(result["estimate"]), result["n"])
+}
+
+of_matched_trials <- function(test, y, g, levels, matched) {
+  v <- number(y)
+  keep <- !is.na(v) & trials[[g]] %in% levels
+  key <- do.call(paste, c(list(person[keep]), lapply(matched, function(name) trials[[name]][keep]), sep = "\r"))
+  m <- tapply(v[keep], list(key, factor(trials[[g]][keep], levels)), mean)
+  m <- m[complete.cases(m), , drop = FALSE]
+  test(m[, 1] - m[, 2])
+}
+of_people <- function(test, y, g, levels, a, b) {
+  m <- person_means(y, g, levels)
+  test(m[, a] - m[, b])
+}
+of_blocks <- function(test, y, g, levels) test(person_means(y, g, levels))
+
+of_two_factors <- function(test, y, a, a_levels, b, b_levels, effect, unit) {
+  v <- number(y)
+  of_a <- trials[[a]]
+  of_b <- trials[[b]]
+  if (unit != "trials") {
+    v <- overall_means(y)
+    of_a <- about(a, names(v))
+    of_b <- about(b, names(v))
+  }
+  keep <- !is.na(v) & of_a %in% a_levels & of_b %in% b_levels
+  test(as.vector(v)[keep], of_a[keep], of_b[keep], effect)
+}
+
+# The means of each person and combination.
+of_combinations <- function(test, y, a, a_levels, b, b_levels, effect) {
+  v <- number(y)
+  keep <- !is.na(v) & trials[[a]] %in% a_levels & trials[[b]] %in% b_levels
+  cell <- paste(trials[[a]][keep], trials[[b]][keep], sep = "\r")
+  m <- tapply(v[keep], list(person[keep], cell), mean)
+  m <- m[complete.cases(m), , drop = FALSE]
+  grid <- expand.grid(person = rownames(m), cell = colnames(m), stringsAsFactors = FALSE)
+  parts <- strsplit(grid$cell, "\r", fixed = TRUE)
+  test(as.vector(m), vapply(parts, `[`, "", 1), vapply(parts, `[`, "", 2), grid$person, effect)
+}
+
+of_level <- function(test, y, g, level) {
+  v <- number(y)
+  test(v[!is.na(v) & trials[[g]] %in% level])
+}
+of_person_means <- function(test, y, g, levels, place) c(mean = test(person_means(y, g, levels)[, place]))
+
+of_answers <- function(test, question, g, levels) {
+  truth <- trials[[paste0(question, ".truth")]]
+  answer <- trials[[paste0(question, ".answer")]]
+  keep <- !is.na(truth) & !is.na(answer)
+  if (g != "") keep <- keep & trials[[g]] %in% levels
+  test(truth[keep], answer[keep])
+}
+
+keys <- character()
+names_of <- character()
+found <- numeric()
+check <- function(key, values) {
+  keys <<- c(keys, rep(key, length(values)))
+  names_of <<- c(names_of, names(values))
+  found <<- c(found, unname(values))
+}
+# Holm's correction of the p of several checks together.
+holm <- function(of, into) {
+  # A check that is itself the smallest of several counts with its corrected p.
+  own <- function(name) found[match(paste(of, name), paste(keys, names_of))]
+  p <- p.adjust(ifelse(is.na(own("p_holm")), own("p"), own("p_holm")), "holm")
+  for (i in seq_along(of)) check(into[i], c(p_holm = p[i]))
+}
+
+@CALLS@
+
+result <- data.frame(key = keys, name = names_of, value = format(found, digits = 17, trim = TRUE))
+write.csv(result, "data/numbers-r.csv", row.names = FALSE, quote = TRUE)
+expected <- read.csv("data/numbers.csv", colClasses = c("character", "character", "numeric"),
+                     encoding = "UTF-8")
+place <- match(paste(expected$key, expected$name, sep = "\r"), paste(keys, names_of, sep = "\r"))
+own <- found[place]
+size <- pmax(abs(expected$value), abs(own))
+far <- is.na(place) | is.na(own) | abs(own - expected$value) > 1e-8 * size + 1e-12 * (size > 1e-10)
+cat(sprintf("%d numbers computed, %d compared, %d differ\n", length(found), nrow(expected), sum(far)))
+if (any(far)) {
+  print(data.frame(expected[far, ], r = own[far]), row.names = FALSE)
+  quit(status = 1)
+}
+
+# Mixed models keep every trial and let people and clips differ: the way to interactions on ratings of
+# few steps. Their numbers stand in no table of the report.
+fitted_models <- 0
+fit <- function(title, package, model) {
+  cat("\n", title, "\n", sep = "")
+  wanted <- if ("no-models" %in% arguments) 0 else if ("one-model" %in% arguments) 1 else Inf
+  if (fitted_models >= wanted) return(cat("left out\n"))
+  fitted_models <<- fitted_models + 1
+  if (!requireNamespace(package, quietly = TRUE)) {
+    return(cat(sprintf("not fitted: install.packages(\"%s\")\n", package)))
+  }
+  tryCatch(print(summary(model())), error = function(e) cat("not fitted:", conditionMessage(e), "\n"))
+  invisible()
+}
+@MODELS@

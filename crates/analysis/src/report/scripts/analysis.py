@@ -1,0 +1,243 @@
+"""The numbers of this report once more, by NumPy and SciPy.
+
+    python analysis.py    computes and compares with data/numbers.csv
+
+In: data/trials.csv (the trials in the analysis, after all exclusions) and data/numbers.csv (what
+Mimique computed). Out: data/numbers-python.csv. Exit status 1 if a number differs by more than 1e-8
+of its size.
+"""
+
+import csv
+import itertools
+import math
+import os
+import sys
+
+import numpy as np
+from scipy import stats
+
+os.chdir(os.path.dirname(os.path.abspath(__file__)))
+with open("data/trials.csv", encoding="utf-8", newline="") as file:
+    reader = csv.reader(file)
+    names = next(reader)
+    columns = {name: np.array(column, dtype=object) for name, column in zip(names, zip(*reader))}
+person = columns["participant_id"]
+numeric = {}
+
+
+def number(name):
+    """A column as numbers; words become their places in order."""
+    if name not in numeric:
+        column = columns[name]
+
+        def value(cell):
+            try:
+                return float(cell)
+            except ValueError:
+                return math.nan
+
+        values = np.array([value(cell) for cell in column])
+        given = column != ""
+        if np.isnan(values[given]).all():
+            order = {word: place + 1 for place, word in enumerate(sorted(set(column[given])))}
+            values = np.array([order.get(cell, math.nan) for cell in column])
+        numeric[name] = values
+    return numeric[name]
+
+
+def is_in(name, levels):
+    return np.isin(columns[name].astype(str), levels)
+
+
+def means_by(keys, labels, values, levels):
+    """Mean of each key (rows) at each level (columns); only keys that have all of them."""
+    sums = {}
+    for key, label, value in zip(keys, labels, values):
+        cell = sums.setdefault(key, {}).setdefault(label, [0.0, 0])
+        cell[0] += value
+        cell[1] += 1
+    whole = sorted(key for key, cells in sums.items() if all(level in cells for level in levels))
+    rows = [[sums[key][level][0] / sums[key][level][1] for level in levels] for key in whole]
+    return whole, np.array(rows)
+
+
+def person_means(y, g, levels):
+    v = number(y)
+    keep = ~np.isnan(v) & is_in(g, levels)
+    return means_by(person[keep], columns[g][keep], v[keep], levels)
+
+
+def overall_means(y):
+    v = number(y)
+    keep = ~np.isnan(v)
+    people, rows = means_by(person[keep], np.full(keep.sum(), "all"), v[keep], ["all"])
+    return people, rows[:, 0]
+
+
+def about(name, people):
+    first = {}
+    for key, cell in zip(person, columns[name]):
+        first.setdefault(key, cell)
+    return np.array([first[key] for key in people], dtype=object)
+
+
+# The tests, each of them of plain arrays.
+
+
+@TESTS@
+
+
+# What is taken from the trials for a test.
+
+
+def groups(values, labels, levels):
+    split = [values[(labels == level) & ~np.isnan(values)] for level in levels]
+    return [group for group in split if len(group)]
+
+
+def by_unit(y, g, levels, unit):
+    if unit == "trials":
+        return groups(number(y), columns[g], levels)
+    people, means = overall_means(y)
+    return groups(means, about(g, people), levels)
+
+
+def of_groups(test, y, g, levels, unit):
+    return test(by_unit(y, g, levels, unit))
+
+
+def adjusted(p):
+    """Holm's correction."""
+    corrected = np.empty(len(p))
+    running = 0.0
+    for place, i in enumerate(np.argsort(p, kind="stable")):
+        running = max(running, (len(p) - place) * p[i])
+        corrected[i] = min(1.0, running)
+    return corrected
+
+
+def of_differences_by_trait(test, y, g, levels, a, b, trait, trait_levels):
+    """Each person's difference between two levels, compared between groups of people."""
+    people, m = person_means(y, g, levels)
+
+    def of_pair(i, j):
+        return test(groups(np.round(m[:, i] - m[:, j], 9), about(trait, people), trait_levels))
+
+    pairs = list(itertools.combinations(range(len(levels)), 2))
+    p = adjusted([of_pair(*pair)["p"] for pair in pairs])
+    return dict(**of_pair(a - 1, b - 1), p_holm=p[pairs.index((a - 1, b - 1))])
+
+
+def of_columns(test, x, y, unit):
+    if unit == "trials":
+        return test(number(x), number(y))
+    people, means = overall_means(y)
+    first = {}
+    for key, value in zip(person, number(x)):
+        first.setdefault(key, value)
+    return test(np.array([first[key] for key in people]), means)
+
+
+def of_correlations(test, x, y):
+    a, b = number(x), number(y)
+    keep = ~np.isnan(a) & ~np.isnan(b)
+    rho = []
+    for one in sorted(set(person[keep])):
+        own = keep & (person == one)
+        if len(set(a[own])) > 1 and len(set(b[own])) > 1:
+            ranks = stats.rankdata(a[own]), stats.rankdata(b[own])
+            rho.append(np.corrcoef(*ranks)[0, 1])
+    result = test(np.array(rho))
+    return dict(statistic=result["statistic"], p=result["p"], effect=result["estimate"], n=result["n"])
+
+
+def of_matched_trials(test, y, g, levels, matched):
+    v = number(y)
+    keep = ~np.isnan(v) & is_in(g, levels)
+    keys = list(zip(person[keep], *(columns[name][keep] for name in matched)))
+    _, m = means_by(keys, columns[g][keep], v[keep], levels)
+    return test(m[:, 0] - m[:, 1])
+
+
+def of_people(test, y, g, levels, a, b):
+    _, m = person_means(y, g, levels)
+    return test(m[:, a - 1] - m[:, b - 1])
+
+
+def of_blocks(test, y, g, levels):
+    return test(person_means(y, g, levels)[1])
+
+
+def of_two_factors(test, y, a, a_levels, b, b_levels, effect, unit):
+    v, of_a, of_b = number(y), columns[a], columns[b]
+    if unit != "trials":
+        people, v = overall_means(y)
+        of_a, of_b = about(a, people), about(b, people)
+    keep = ~np.isnan(v) & np.isin(of_a, a_levels) & np.isin(of_b, b_levels)
+    return test(v[keep], of_a[keep], of_b[keep], effect)
+
+
+def of_combinations(test, y, a, a_levels, b, b_levels, effect):
+    """The means of each person and combination."""
+    v = number(y)
+    keep = ~np.isnan(v) & is_in(a, a_levels) & is_in(b, b_levels)
+    cells = np.empty(keep.sum(), dtype=object)
+    cells[:] = list(zip(columns[a][keep], columns[b][keep]))
+    pairs = sorted(set(cells))
+    people, m = means_by(person[keep], cells, v[keep], pairs)
+    of_a, of_b = (np.tile([pair[place] for pair in pairs], len(people)) for place in (0, 1))
+    return test(m.ravel(), of_a, of_b, np.repeat(people, len(pairs)), effect)
+
+
+def of_level(test, y, g, level):
+    v = number(y)
+    return test(v[~np.isnan(v) & is_in(g, [level])])
+
+
+mean = np.mean
+
+
+def of_person_means(test, y, g, levels, place):
+    return dict(mean=test(person_means(y, g, levels)[1][:, place - 1]))
+
+
+def of_answers(test, question, g, levels):
+    truth, answer = columns[question + ".truth"], columns[question + ".answer"]
+    keep = (truth != "") & (answer != "")
+    if g:
+        keep &= is_in(g, levels)
+    return test(truth[keep], answer[keep])
+
+
+found = {}
+
+
+def check(key, values):
+    found.update({(key, name): float(value) for name, value in values.items()})
+
+
+def holm(keys, into):
+    """Holm's correction of the p of several checks together."""
+    # A check that is itself the smallest of several counts with its corrected p.
+    own = [found.get((key, "p_holm"), found[key, "p"]) for key in keys]
+    for key, p in zip(into, adjusted(own)):
+        found[key, "p_holm"] = float(p)
+
+
+@CALLS@
+
+with open("data/numbers-python.csv", "w", encoding="utf-8", newline="") as file:
+    writer = csv.writer(file)
+    writer.writerow(["key", "name", "value"])
+    writer.writerows([key, name, repr(value)] for (key, name), value in found.items())
+with open("data/numbers.csv", encoding="utf-8", newline="") as file:
+    expected = [(row["key"], row["name"], float(row["value"])) for row in csv.DictReader(file)]
+far = []
+for key, name, value in expected:
+    own = found.get((key, name), math.nan)
+    size = max(abs(value), abs(own))
+    if not abs(own - value) <= 1e-8 * size + (1e-12 if size > 1e-10 else 0.0):
+        far.append(f"{key} {name}: {value!r}, here {own!r}")
+print(f"{len(found)} numbers computed, {len(expected)} compared, {len(far)} differ")
+if far:
+    sys.exit("\n".join(far))

@@ -1,0 +1,282 @@
+//! The sections of a report in their order: in short, participants, hypotheses, measures, timing, notes.
+
+pub(crate) mod best_worst;
+pub(crate) mod choices;
+pub(crate) mod course;
+pub(crate) mod hypotheses;
+pub(crate) mod layout_tests;
+pub(crate) mod layouts;
+pub(crate) mod measures;
+pub(crate) mod notes;
+pub(crate) mod people;
+pub(crate) mod recognition;
+pub(crate) mod timing;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use mimique_stats::{Proportion, proportion};
+use mimique_study::{KindOfQuestion as _, Study};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+use crate::hypothesis::HypothesisResult;
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::report::ReportFile;
+use crate::report::document::{Block, Document, Figure, escape};
+use crate::report::replay;
+use crate::report::results::Results;
+use crate::report::section::hypotheses::tested;
+use crate::trials::export::{AskedQuestion, Export};
+use crate::trials::measure::Measure;
+
+/// Levels beyond which a column is no factor that people compare.
+pub(crate) const MOST_LEVELS: usize = 12;
+
+/// What is written: the document, `results.json`, and the readings of the hypotheses.
+pub(crate) struct Sections {
+    pub document: Document,
+    pub results: String,
+    pub readings: Vec<(String, String)>,
+    pub replay: Vec<ReportFile>,
+}
+
+/// Writes one part of a report.
+type Part<'p, 'a> = Box<dyn FnOnce(&mut Writer<'a>) + Send + 'p>;
+
+/// Collects blocks and results.
+pub(crate) struct Writer<'a> {
+    pub naming: Naming<'a>,
+    pub export: &'a Export,
+    pub study: &'a Study,
+    pub blocks: Vec<Block>,
+    pub results: Results<'a>,
+    /// Factors with several levels in the trials used, `method` first.
+    pub factors: Vec<String>,
+}
+
+/// Writes all sections.
+pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Sections {
+    let mut writer = Writer {
+        naming: Naming { language, study },
+        export,
+        study,
+        blocks: Vec::new(),
+        results: Results {
+            study: study.id.clone(),
+            version: study.study_metadata.version.clone(),
+            language: language.code(),
+            flow: Some(&export.flow),
+            people: &export.people,
+            ..Results::default()
+        },
+        factors: factors_in_use(export, study),
+    };
+    let asked = export.questions(study);
+    let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
+        .into_iter()
+        .filter_map(|asked| {
+            let measure = Measure::of_question(export, &asked, language)?;
+            Some((asked, measure))
+        })
+        .collect();
+    let hypotheses = tested(&writer);
+    writer.in_short(&hypotheses);
+    writer.participants();
+    writer.hypotheses(&hypotheses);
+    let readings = hypotheses.iter().map(|h| (h.id.clone(), h.reading.clone())).collect();
+    let parts = of_measures(&writer, &measures, &hypotheses);
+    for part in parts {
+        writer.append(part);
+    }
+    writer.results.hypotheses = hypotheses;
+    writer.notes();
+
+    let replay = replay::files(&writer);
+    let mut results =
+        serde_json::to_string_pretty(&writer.results).unwrap_or_else(|error| error.to_string());
+    results.push('\n');
+    let (title, subtitle) = heading(export, study, language);
+    Sections {
+        document: Document { title, subtitle, blocks: writer.blocks },
+        results,
+        readings,
+        replay,
+    }
+}
+
+/// The sections about the measures and about the study's own tables. Each part is written by itself, at
+/// the same time as the others, and takes its place.
+fn of_measures<'a>(
+    writer: &Writer<'a>,
+    measures: &[(AskedQuestion<'a>, Measure)],
+    hypotheses: &[HypothesisResult],
+) -> Vec<Writer<'a>> {
+    let (export, study, language) = (writer.export, writer.study, writer.language());
+    let (recognised, rated): (Vec<_>, Vec<_>) =
+        measures.iter().partition(|(asked, _)| asked.is_recognition());
+    let mut over_time: Vec<&Measure> = measures.iter().map(|(_, measure)| measure).collect();
+    let time =
+        measures.first().and_then(|(asked, _)| Measure::response_time(export, asked, language));
+    over_time.extend(&time);
+    let choices: Vec<AskedQuestion<'_>> = export
+        .questions(study)
+        .into_iter()
+        .filter(|asked| asked.question.is_some_and(|question| question.kind.compares_clips()))
+        .collect();
+    let mut parts: Vec<Part<'_, 'a>> = Vec::new();
+    for (asked, measure) in recognised {
+        parts.push(Box::new(|part| part.recognition(asked, measure)));
+    }
+    for (asked, measure) in rated {
+        parts.push(Box::new(|part| part.rating(asked, measure)));
+    }
+    for asked in &choices {
+        parts.push(Box::new(|part| part.choices(asked)));
+    }
+    for question in study.all_questions().filter(|each| each.kind.is_best_worst()) {
+        parts.push(Box::new(|part| part.best_worst(question)));
+    }
+    if !study.tables.is_empty() {
+        parts.push(Box::new(|part| part.layouts_heading()));
+    }
+    for layout in &study.tables {
+        parts.push(Box::new(|part| part.layout(layout, hypotheses)));
+    }
+    parts.push(Box::new(|part| part.course_of_the_session(&over_time)));
+    parts.push(Box::new(|part| part.timing()));
+    parts
+        .into_par_iter()
+        .map(|write| {
+            let mut part = writer.part();
+            write(&mut part);
+            part
+        })
+        .collect()
+}
+
+/// Title and subtitle of the report.
+fn heading(export: &Export, study: &Study, language: Language) -> (String, String) {
+    let title = study.study_metadata.title.in_language(language.code()).to_owned();
+    let subtitle = language.pick(
+        format!(
+            "Results of the study {}, version {}: {} people, {} trials.",
+            study.id,
+            study.study_metadata.version,
+            export.flow.people_used,
+            export.flow.trials_used
+        ),
+        format!(
+            "Résultats de l’étude {}, version {} : {} personnes, {} essais.",
+            study.id,
+            study.study_metadata.version,
+            export.flow.people_used,
+            export.flow.trials_used
+        ),
+    );
+    (title, subtitle)
+}
+
+/// Factors with two levels or more among the trials, those that the methods set first. Of two factors that part the
+/// trials alike only the first is kept.
+fn factors_in_use(export: &Export, study: &Study) -> Vec<String> {
+    // What the methods set is compared; then what was played, in the order that people name it.
+    let clips = study.clips();
+    let of_methods = |name: &str| {
+        let mut by_method: BTreeMap<&str, Option<String>> = BTreeMap::new();
+        let alike = clips.iter().all(|clip| {
+            let level = clip.factors.get(name).map(ToString::to_string);
+            *by_method.entry(&clip.method).or_insert_with(|| level.clone()) == level
+        });
+        let levels: BTreeSet<&Option<String>> = by_method.values().collect();
+        alike && levels.len() > 1
+    };
+    let rank = |name: &str| match name {
+        "method" => 0,
+        _ if of_methods(name) => 1,
+        "expression" => 2,
+        "intensity" => 3,
+        _ => 4,
+    };
+    let mut places: Vec<usize> = (0..export.factors.len()).collect();
+    places.sort_by_key(|&place| (rank(&export.factors[place]), place));
+    // A trial of each combination tells as much as all of them.
+    let combinations = &export.combinations().first;
+    let trials = || combinations.iter().map(|&trial| &export.trials[trial]);
+    let mut kept: Vec<usize> = Vec::new();
+    for place in places {
+        let levels: BTreeSet<&str> =
+            trials().filter_map(|trial| trial.levels[place].as_deref()).collect();
+        if !(2..=MOST_LEVELS).contains(&levels.len()) {
+            continue;
+        }
+        let alike = kept.iter().any(|&other| {
+            let pairs: BTreeSet<(Option<&str>, Option<&str>)> = trials()
+                .map(|trial| (trial.levels[place].as_deref(), trial.levels[other].as_deref()))
+                .collect();
+            let others: BTreeSet<Option<&str>> =
+                trials().map(|trial| trial.levels[other].as_deref()).collect();
+            pairs.len() == others.len()
+        });
+        if !alike {
+            kept.push(place);
+        }
+    }
+    kept.into_iter().map(|place| export.factors[place].clone()).collect()
+}
+
+impl<'a> Writer<'a> {
+    /// A writer of the same study that has written nothing.
+    fn part(&self) -> Self {
+        Self {
+            naming: self.naming,
+            blocks: Vec::new(),
+            results: Results::default(),
+            factors: self.factors.clone(),
+            ..*self
+        }
+    }
+
+    /// What a part has written, behind what is there.
+    fn append(&mut self, part: Self) {
+        self.blocks.extend(part.blocks);
+        self.results.append(part.results);
+    }
+}
+
+impl Writer<'_> {
+    pub(crate) fn language(&self) -> Language {
+        self.naming.language
+    }
+
+    pub(crate) fn heading(&mut self, level: u8, english: &str, french: &str) {
+        let text = self.language().pick(english, french).to_owned();
+        self.blocks.push(Block::Heading(level, text));
+    }
+
+    pub(crate) fn paragraph(&mut self, english: &str, french: &str) {
+        let text = self.language().pick(english, french).to_owned();
+        self.blocks.push(Block::Paragraph(text));
+    }
+
+    /// Adds a figure whose own label is its description.
+    pub(crate) fn figure(&mut self, mut figure: Figure) {
+        figure.svg = figure.svg.replacen(
+            &format!("aria-label=\"{}\"", escape(&figure.caption)),
+            &format!("aria-label=\"{}\"", escape(&figure.alt)),
+            1,
+        );
+        self.blocks.push(Block::Figure(figure));
+    }
+
+    /// Shares of right answers by the levels of a factor.
+    pub(crate) fn shares_by(&self, measure: &Measure, codes: impl Fn(usize) -> bool) -> Proportion {
+        let (mut right, mut all) = (0, 0);
+        for (i, value) in measure.values.iter().enumerate() {
+            if codes(i) {
+                all += 1;
+                right += u64::from(*value > 0.5);
+            }
+        }
+        proportion(right, all)
+    }
+}

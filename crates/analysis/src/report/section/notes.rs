@@ -1,0 +1,51 @@
+//! How the numbers of a report were computed, and how far they reach.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::report::document::Block;
+use crate::report::section::Writer;
+
+impl Writer<'_> {
+    pub(crate) fn notes(&mut self) {
+        let language = self.language();
+        self.heading(2, "How this was computed", "Comment cela a été calculé");
+        self.paragraph(
+            "Recommended: each person’s answers at a level are averaged, so that a person counts once. Several levels: Friedman’s test with Iman and Davenport’s F and Kendall’s W. Pairs: Wilcoxon’s signed rank test, exact and conditional on the observed ranks, zeros by Pratt, Holm’s correction, rank-biserial correlation, Hodges-Lehmann estimate and 95 % interval from the Walsh averages. Interactions: aligned rank transform on person means; with something about people, whether each person’s difference between two levels depends on it.",
+            "Recommandé : les réponses de chaque personne à un niveau sont moyennées, de sorte qu’une personne compte une fois. Plusieurs niveaux : test de Friedman, F d’Iman et Davenport, W de Kendall. Paires : test des rangs signés de Wilcoxon, exact et conditionnel aux rangs observés, zéros selon Pratt, correction de Holm, corrélation bisériale des rangs, estimation de Hodges-Lehmann et intervalle à 95 % par les moyennes de Walsh. Interactions : transformation des rangs alignés sur les moyennes des personnes ; avec un facteur propre aux personnes, la différence de chacune entre deux niveaux en dépend-elle.",
+        );
+        if !self.study.conditions().is_empty() {
+            self.paragraph(
+                "Between conditions: each person’s answers are averaged to one value; Mann-Whitney of two conditions, Kruskal-Wallis of more.",
+                "Entre conditions : les réponses de chaque personne sont moyennées en une seule valeur ; Mann-Whitney pour deux conditions, Kruskal-Wallis au-delà.",
+            );
+        }
+        self.paragraph(
+            "Effect sizes: r is the matched rank-biserial correlation, W Kendall’s coefficient of concordance, V Cramér’s, ε² is H / (n − 1) of Kruskal-Wallis, η²H the same of Scheirer-Ray-Hare (SRH), ηp² the partial eta squared of the aligned rank transform (ART).",
+            "Tailles d’effet : r est la corrélation bisériale des rangs appariés, W le coefficient de concordance de Kendall, V celui de Cramér, ε² est H / (n − 1) de Kruskal-Wallis, η²H le même de Scheirer-Ray-Hare (SRH), ηp² l’êta carré partiel de la transformation des rangs alignés (ART).",
+        );
+        self.paragraph(
+            "As in the thesis: Kruskal-Wallis, Wilcoxon (R of 2019: zeros dropped, exact only below 50 differences without ties and zeros, else normal with continuity correction), Scheirer-Ray-Hare (type I sums of squares, corrected for ties) and chi-square (Yates’s correction for two by two) on single trials.",
+            "Comme dans la thèse : Kruskal-Wallis, Wilcoxon (R de 2019 : zéros supprimés, exact seulement sous 50 différences sans ex æquo ni zéros, sinon normal avec correction de continuité), Scheirer-Ray-Hare (sommes de carrés de type I, corrigées des ex æquo) et khi-deux (correction de Yates pour deux par deux) sur les essais pris un à un.",
+        );
+        if self.one_clip_a_cell() {
+            self.blocks.push(Block::Caution(
+                language
+                    .pick(
+                        "Every combination of factors was shown with one clip only: what is found here holds for these clips, and does not generalise to other performances of the same emotions.",
+                        "Chaque combinaison de facteurs n’a été montrée qu’avec un seul extrait : ce qui est trouvé ici vaut pour ces extraits et ne se généralise pas à d’autres interprétations des mêmes émotions.",
+                    )
+                    .to_owned(),
+            ));
+        }
+    }
+
+    /// Whether every combination of factors was shown with one clip only.
+    pub(crate) fn one_clip_a_cell(&self) -> bool {
+        let mut clips: BTreeMap<u32, BTreeSet<&str>> = BTreeMap::new();
+        let combinations = &self.export.combinations().of_trial;
+        for (trial, &cell) in self.export.trials.iter().zip(combinations) {
+            clips.entry(cell).or_default().insert(&trial.stimulus);
+        }
+        clips.values().all(|clips| clips.len() == 1)
+    }
+}

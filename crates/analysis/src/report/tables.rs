@@ -1,0 +1,261 @@
+//! Tables of tests: as in the thesis beside recommended.
+
+use mimique_stats::{Labelled, Outcome, Proportion, Term};
+
+use crate::hypothesis::call::Design;
+use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::person_level::{Pair, PersonLevel};
+use crate::hypothesis::reading;
+use crate::hypothesis::test_line::TestLine;
+use crate::hypothesis::trial_level::TrialLevel;
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::report::document::DataTable;
+use crate::trials::measure::MeasureKind;
+
+/// Cells of one test: what was computed, p, effect.
+fn cells(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String; 3] {
+    match outcome {
+        Outcome::Undefined { reason } => [
+            language.pick(format!("undefined: {reason}"), format!("non défini : {reason}")),
+            String::new(),
+            String::new(),
+        ],
+        Outcome::Ok(line) => {
+            let (p, ln_p) = match line.p_holm {
+                Some(p) if holm => (p, p.ln()),
+                _ => (line.row.p_value, line.row.ln_p),
+            };
+            [
+                format!(
+                    "{} {}{} = {}, n = {}",
+                    line.names.short,
+                    line.names.statistic_symbol,
+                    line.degrees_in_brackets(),
+                    language.number(line.row.statistic),
+                    line.row.n
+                )
+                .trim_start()
+                .to_owned(),
+                language.p_cell(p, ln_p),
+                line.row.effect.map_or_else(String::new, |effect| {
+                    format!("{} = {}", line.names.effect_symbol, language.fixed(effect, 2))
+                }),
+            ]
+        }
+    }
+}
+
+fn difference(language: Language, kind: MeasureKind, pair: &Pair) -> String {
+    pair.difference.map_or_else(String::new, |d| {
+        let [estimate, low, high] = [d.estimate, d.ci_low, d.ci_high]
+            .map(|value| reading::difference(language, kind, value));
+        format!("{estimate} [{low}; {high}]")
+    })
+}
+
+fn difference_heading(language: Language, kind: MeasureKind) -> String {
+    let unit = match kind {
+        MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
+        MeasureKind::ResponseTime => " (s)",
+        MeasureKind::Rating => "",
+    };
+    language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"))
+}
+
+/// Over tests of trials.
+pub(crate) fn thesis_heading(language: Language) -> &'static str {
+    language.pick(
+        "As in the thesis (assumes independent observations)",
+        "Comme dans la thèse (suppose des observations indépendantes)",
+    )
+}
+
+/// Over tests of people.
+pub(crate) fn recommended_heading(language: Language) -> &'static str {
+    language.pick("Recommended (one value a person)", "Recommandé (une valeur par personne)")
+}
+
+/// Both kinds of test of one measure and factor, line by line beside each other.
+pub(crate) fn two_columns(
+    naming: &Naming<'_>,
+    id: String,
+    caption: String,
+    factor: &str,
+    kind: MeasureKind,
+    trials: &TrialLevel,
+    people: &PersonLevel,
+) -> DataTable {
+    let language = naming.language;
+    let heading = language.pick(
+        ["", "test", "p", "effect", "test", "p (Holm)", "effect"],
+        ["", "test", "p", "effet", "test", "p (Holm)", "effet"],
+    );
+    let last = difference_heading(language, kind);
+    let mut table =
+        DataTable::new(id, caption, heading.into_iter().map(str::to_owned).chain([last]));
+    table.groups = vec![
+        (String::new(), 1),
+        (thesis_heading(language).to_owned(), 3),
+        (recommended_heading(language).to_owned(), 4),
+    ];
+    // The two kinds of test answer the same question in the same order: overall first, then pairs.
+    let overall = people
+        .overall
+        .iter()
+        .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
+    let beside = if people.pairs.len() > PAIRS_BESIDE { &[] } else { people.pairs.as_slice() };
+    let pairs = beside.iter().map(|pair| {
+        (naming.pair(factor, &pair.a, &pair.b), &pair.wilcoxon, difference(language, kind, pair))
+    });
+    let recommended: Vec<(String, &Outcome<TestLine>, String)> = overall.chain(pairs).collect();
+    // With two levels the paired test of trials stands beside the pair.
+    let mut of_trials: Vec<&Outcome<TestLine>> = trials.tests.iter().collect();
+    if people.overall.is_empty() {
+        of_trials.reverse();
+    }
+    for place in 0..of_trials.len().max(recommended.len()) {
+        let label = match (recommended.get(place), of_trials.get(place)) {
+            (Some((label, ..)), _) => label.clone(),
+            (None, Some(outcome)) => term_of(naming, factor, outcome),
+            (None, None) => String::new(),
+        };
+        let mut row = vec![label];
+        match of_trials.get(place) {
+            Some(outcome) => row.extend(cells(language, outcome, false)),
+            None => row.extend([String::new(), String::new(), String::new()]),
+        }
+        match recommended.get(place) {
+            Some((_, outcome, difference)) => {
+                row.extend(cells(language, outcome, true));
+                row.push(difference.clone());
+            }
+            None => row.extend(["", "", "", ""].map(str::to_owned)),
+        }
+        table.row(row);
+    }
+    // Interactions and many levels have no differences to show.
+    if table.rows.iter().all(|row| row.last().is_some_and(String::is_empty)) {
+        table.columns.pop();
+        table.rows.iter_mut().for_each(|row| drop(row.pop()));
+        table.groups[2].1 -= 1;
+    }
+    table
+}
+
+/// More pairs than this stand in a table of their own, below.
+const PAIRS_BESIDE: usize = 3;
+
+/// The pairs of a factor with many levels, recommended tests only; none where there are few.
+pub(crate) fn many_pairs(
+    naming: &Naming<'_>,
+    id: String,
+    factor: &str,
+    kind: MeasureKind,
+    people: &PersonLevel,
+) -> Option<DataTable> {
+    if people.pairs.len() <= PAIRS_BESIDE {
+        return None;
+    }
+    let language = naming.language;
+    let caption = language.pick(
+        "All pairs (recommended: exact Wilcoxon on person means, Holm’s correction)",
+        "Toutes les paires (recommandé : Wilcoxon exact sur les moyennes des personnes, correction de Holm)",
+    );
+    let heading = language.pick(["p (Holm)", "effect", "test"], ["p (Holm)", "effet", "test"]);
+    let columns = [String::new(), difference_heading(language, kind)];
+    let columns = columns.into_iter().chain(heading.map(str::to_owned));
+    let mut table = DataTable::new(id, caption, columns);
+    for pair in &people.pairs {
+        let [test, p, effect] = cells(language, &pair.wilcoxon, true);
+        let label = naming.pair(factor, &pair.a, &pair.b);
+        table.row([label, difference(language, kind, pair), p, effect, test]);
+    }
+    Some(table)
+}
+
+/// What a line is about: the factor, or the effect of two.
+fn term_of(naming: &Naming<'_>, factor: &str, outcome: &Outcome<TestLine>) -> String {
+    match outcome {
+        Outcome::Ok(line) if line.call.design != Design::Columns => match &line.row.term {
+            Term::Whole => naming.factor(factor),
+            Term::Pair(groups) => groups.join(" − "),
+            Term::Effect(factors) => naming.interaction(factors),
+            term @ (Term::Differences(_) | Term::Relation(_)) => term.to_string(),
+        },
+        _ => naming.factor(factor),
+    }
+}
+
+/// Right answers of each level.
+pub(crate) fn recognition(
+    naming: &Naming<'_>,
+    id: String,
+    caption: String,
+    factor: &str,
+    shares: &[(String, Proportion)],
+    person_means: &Labelled<Option<f64>>,
+) -> DataTable {
+    let language = naming.language;
+    let heading = language.pick(
+        ["", "trials", "right", "share", "95 % interval (Wilson)", "mean share of people"],
+        [
+            "",
+            "essais",
+            "justes",
+            "part",
+            "intervalle à 95 % (Wilson)",
+            "part moyenne des personnes",
+        ],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    for (level, share) in shares {
+        let percent = |value: f64| format!("{} %", language.fixed(value * 100.0, 1));
+        let mean = person_means.get(level).copied().flatten();
+        table.row([
+            naming.level(factor, level),
+            share.n.to_string(),
+            share.successes.to_string(),
+            share.proportion.map_or_else(|| "–".to_owned(), percent),
+            share.wilson.map_or_else(
+                || "–".to_owned(),
+                |[low, high]| format!("{} – {}", percent(low), percent(high)),
+            ),
+            mean.map_or_else(|| "–".to_owned(), percent),
+        ]);
+    }
+    table
+}
+
+/// Description of each level.
+pub(crate) fn descriptions(
+    naming: &Naming<'_>,
+    id: String,
+    caption: String,
+    result: &Comparison,
+) -> DataTable {
+    let language = naming.language;
+    let heading = language.pick(
+        ["", "trials", "mean", "sd", "median", "q1", "q3", "mean of person means"],
+        ["", "essais", "moyenne", "écart type", "médiane", "q1", "q3", "moyenne des personnes"],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    for (level, outcome) in result.descriptions.iter() {
+        let mut cells = vec![naming.level(&result.factor, level)];
+        match outcome {
+            Outcome::Ok(d) => {
+                cells.push(d.n.to_string());
+                cells.push(language.fixed(d.mean, 2));
+                cells.push(d.sd.map_or_else(|| "–".to_owned(), |sd| language.fixed(sd, 2)));
+                cells.extend([d.median, d.q1, d.q3].map(|value| language.number(value)));
+            }
+            Outcome::Undefined { .. } => {
+                cells.extend(["0", "–", "–", "–", "–", "–"].map(str::to_owned));
+            }
+        }
+        let mean = result.person_means.get(level).copied().flatten();
+        cells.push(mean.map_or_else(|| "–".to_owned(), |mean| language.fixed(mean, 2)));
+        table.row(cells);
+    }
+    table
+}

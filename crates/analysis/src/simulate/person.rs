@@ -1,0 +1,364 @@
+//! One simulated person: what is answered, when, and how far the person goes.
+
+use mimique_study::columns::ASSIGNED_CONDITION;
+use mimique_study::{Answers, KindOfQuestion as _};
+use serde_json::Value;
+
+use super::latent::{ClipEffects, told};
+use super::model::{Asked, Model, Rated, Way};
+use super::random::Draws;
+
+/// One simulated person. Answers, times and what happens to the display have streams of their own, so
+/// that whoever needs answers alone draws the same ones.
+pub(crate) struct Person<'m> {
+    mind: Mind<'m>,
+    /// Answers about the participant.
+    pub about: Answers,
+    /// How far the person goes.
+    pub fate: Fate,
+    answers: Draws,
+    pages: Draws,
+    chance: Draws,
+    times: Draws,
+    display: Draws,
+    pace: f64,
+    slow: bool,
+}
+
+/// What a person answers by.
+struct Mind<'m> {
+    model: &'m Model<'m>,
+    /// Whether the person answers without looking.
+    careless: bool,
+    /// By latent value and clip.
+    values: Vec<Vec<f64>>,
+}
+
+/// How far a person goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Fate {
+    /// Does not agree.
+    pub declines: bool,
+    /// Leaves after so many trials.
+    pub leaves_after: Option<usize>,
+    /// Takes the answers back when leaving.
+    pub withdraws: bool,
+}
+
+/// An answer before it is written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Raw {
+    /// A point of a scale, or a typed number.
+    Number(f64),
+    /// Place of an option.
+    Option(usize),
+    /// Anything else, as JSON.
+    Json(Value),
+}
+
+/// How a clip is shown in one trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Showing {
+    /// The page is opened anew before the clip is played.
+    pub reload: bool,
+    /// A first play is cut short.
+    pub cut_short: bool,
+    /// Plays after the first whole one.
+    pub replays: usize,
+    /// The page loses the focus.
+    pub focus_loss: bool,
+    /// The first whole play: a frame each, milliseconds after the onset, and whether it was late.
+    pub frames: Vec<(f64, bool)>,
+}
+
+impl Showing {
+    /// Number of late frames.
+    pub(crate) fn late(&self) -> usize {
+        self.frames.iter().filter(|(_, late)| *late).count()
+    }
+
+    /// The longest time between two frames, milliseconds.
+    pub(crate) fn longest_ms(&self) -> f64 {
+        self.frames.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max)
+    }
+}
+
+/// Pause before a clip is played again, milliseconds.
+pub(crate) const BEFORE_REPLAY_MS: f64 = 500.0;
+
+impl<'m> Person<'m> {
+    /// The person of a number, in a condition where the study has some.
+    pub(crate) fn new(
+        model: &'m Model<'m>,
+        clips: &ClipEffects,
+        seed: u64,
+        number: u64,
+        condition: Option<&str>,
+    ) -> Self {
+        let draws = |purpose| Draws::new(seed, Some(number), purpose);
+        let parameters = model.parameters;
+        let mut person = draws("person");
+        let careless = person.happens(parameters.careless.share);
+        let pace = libm::exp(parameters.times.person_sigma * person.normal());
+        let slow = person.happens(parameters.display.slow_people);
+        let dropout = parameters.dropout;
+        let declines = person.happens(dropout.declined);
+        // The number of trials before the one at which somebody leaves is geometric.
+        let stays = libm::log(1.0 - person.unit());
+        let leaves_after = (dropout.per_trial > 0.0).then(|| {
+            let each = libm::log(1.0 - dropout.per_trial.min(1.0 - 1e-12));
+            (stays / each).floor().min(1e9) as usize
+        });
+        let withdraws = person.happens(dropout.withdrawn);
+        let mut new = Self {
+            mind: Mind { model, careless, values: Vec::new() },
+            about: Answers::new(),
+            fate: Fate { declines, leaves_after, withdraws },
+            answers: draws("answers"),
+            pages: draws("about"),
+            chance: draws("chance"),
+            times: draws("times"),
+            display: draws("display"),
+            pace,
+            slow,
+        };
+        for question in model.study.demographics.iter().flat_map(|page| &page.questions) {
+            if question.is_shown(&new.about, &Answers::new())
+                && let Some(answer) = new.eligible_answer(&question.id)
+            {
+                new.about.insert(question.id.clone(), answer);
+            }
+        }
+        new.pages = draws("pages");
+        let mut known = new.about.clone();
+        if let Some(condition) = condition {
+            known.insert(ASSIGNED_CONDITION.to_owned(), condition.into());
+        }
+        let shift = |(factor, shifts): (&String, &super::ByLevel)| {
+            told(&known, factor).and_then(|level| shifts.get(&level)).copied()
+        };
+        let slower: f64 = parameters.times.effects.iter().filter_map(shift).sum();
+        new.pace *= libm::exp(slower);
+        new.mind.values = model
+            .latents()
+            .iter()
+            .zip(clips)
+            .map(|(latent, clips)| latent.of_person(&mut person, clips, &known))
+            .collect();
+        new
+    }
+
+    /// An answer about the participant that no screening rule turns away, as recruiters look for:
+    /// drawn again while one does. A study that takes nobody gets the last draw.
+    fn eligible_answer(&mut self, question: &str) -> Option<Value> {
+        const DRAWS: usize = 1000;
+        let rules = &self.mind.model.study.screening;
+        let turned_away = |answer: Option<&Value>| {
+            let mut own = rules.iter().filter(|rule| rule.condition.question == question);
+            own.any(|rule| rule.condition.holds(answer))
+        };
+        let mut answer = self.page_answer(question);
+        for _ in 1..DRAWS {
+            if !turned_away(answer.as_ref()) {
+                break;
+            }
+            answer = self.page_answer(question);
+        }
+        answer
+    }
+
+    /// An answer on a page without a clip; none where the question is left out.
+    pub(crate) fn page_answer(&mut self, question: &str) -> Option<Value> {
+        let place = self.mind.model.question(question)?;
+        let raw = self.mind.answer(&mut self.pages, place, None, 0)?;
+        Some(as_json(&self.mind.model.questions[place], raw))
+    }
+
+    /// An answer in the trial of this number (from 0); none where the question is left out.
+    pub(crate) fn trial_answer(
+        &mut self,
+        question: usize,
+        clip: usize,
+        trial: usize,
+    ) -> Option<Raw> {
+        self.mind.answer(&mut self.answers, question, Some(clip), trial)
+    }
+
+    /// Time from one answer to the next, milliseconds.
+    pub(crate) fn answering_ms(&mut self, clip: Option<usize>) -> f64 {
+        let times = &self.mind.model.parameters.times;
+        let shift: f64 = clip.map_or(0.0, |clip| {
+            let clip = &self.mind.model.clips[clip];
+            let of = |(factor, shifts): (&String, &super::ByLevel)| {
+                clip.factor_text(factor).and_then(|level| shifts.get(&level)).copied()
+            };
+            times.effects.iter().filter_map(of).sum()
+        });
+        let share =
+            if self.mind.careless { self.mind.model.parameters.careless.time_share } else { 1.0 };
+        let median = times.median_ms * share * self.pace * libm::exp(shift);
+        self.times.log_normal(median, times.sigma)
+    }
+
+    /// How the clip of the next trial is shown.
+    pub(crate) fn showing(&mut self, most_replays: Option<u32>) -> Showing {
+        let display = &self.mind.model.parameters.display;
+        let draws = &mut self.display;
+        let [reload, cut_short, replay, focus_loss] =
+            [display.reload, display.cut_short, display.replay, display.focus_loss]
+                .map(|probability| draws.happens(probability));
+        let replays = usize::from(replay && most_replays != Some(0));
+        let period = 1000.0 / display.refresh_hz;
+        let late_share = if self.slow { display.slow_late_share } else { display.late_share };
+        let mut frames = Vec::new();
+        let mut shown_ms = 0.0;
+        while shown_ms <= self.mind.model.parameters.times.clip_ms {
+            let late = !frames.is_empty() && draws.happens(late_share);
+            // A late frame misses its place and takes the next one.
+            shown_ms += if late { period } else { 0.0 };
+            frames.push((shown_ms, late));
+            shown_ms += period;
+        }
+        Showing { reload, cut_short, replays, focus_loss, frames }
+    }
+
+    /// A draw for what decides nothing: window, browser, reading times.
+    pub(crate) fn chance(&mut self) -> &mut Draws {
+        &mut self.chance
+    }
+}
+
+impl Mind<'_> {
+    fn answer(
+        &self,
+        draws: &mut Draws,
+        question: usize,
+        clip: Option<usize>,
+        trial: usize,
+    ) -> Option<Raw> {
+        let asked = &self.model.questions[question];
+        let parameters = self.model.parameters;
+        if let Some(check) = &asked.question.attention_check {
+            let pass = match self.careless {
+                true => parameters.careless.attention_pass,
+                false => parameters.attention_pass,
+            };
+            if draws.happens(pass) {
+                return Some(Raw::Json(check.expected.clone()));
+            }
+            return other_than(asked, &check.expected, draws);
+        }
+        // Most people answer what they need not answer.
+        if !asked.question.required && !draws.happens(0.8) {
+            return None;
+        }
+        Some(match &asked.way {
+            Way::Scales(rated) => match rated.as_slice() {
+                [one] => Raw::Number(self.rate(draws, one, clip, trial)),
+                several => {
+                    let values: Vec<f64> =
+                        several.iter().map(|one| self.rate(draws, one, clip, trial)).collect();
+                    let parts = asked.question.kind.parts().unwrap_or_default();
+                    let parts = parts.into_iter().map(str::to_owned);
+                    let values = values.into_iter().map(|value| (value as i64).into());
+                    Raw::Json(Value::Object(parts.zip(values).collect()))
+                }
+            },
+            Way::Recognised(recognised) => {
+                let row = clip.and_then(|clip| Some((clip, recognised.clips[clip].as_ref()?)));
+                match row {
+                    Some((clip, row)) if !self.careless => {
+                        let value = self.values[recognised.latent][clip] + draws.normal();
+                        Raw::Option(if value > row.threshold {
+                            row.right
+                        } else {
+                            draws.weighted(&row.wrong)
+                        })
+                    }
+                    _ => Raw::Option(draws.below(recognised.options)),
+                }
+            }
+            Way::One(weights) => Raw::Option(draws.weighted(weights)),
+            Way::Several { weights, fewest, most } => {
+                let options = asked.question.kind.options();
+                let most_likely = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+                let mut chosen: Vec<usize> = (0..weights.len())
+                    .filter(|&place| draws.happens(0.5 * weights[place] / most_likely))
+                    .collect();
+                while chosen.len() > *most {
+                    let place = draws.below(chosen.len());
+                    chosen.remove(place);
+                }
+                while chosen.len() < *fewest && chosen.len() < options.len() {
+                    let place = draws.below(options.len());
+                    if !chosen.contains(&place) {
+                        chosen.push(place);
+                    }
+                }
+                chosen.sort_unstable();
+                Raw::Json(chosen.into_iter().map(|place| options[place].value.as_str()).collect())
+            }
+            Way::Number { mean, sd, low, high, whole } => {
+                let value = (mean + sd * draws.normal()).clamp(*low, *high);
+                Raw::Number(if *whole {
+                    let value = value.round();
+                    // Rounding must not leave bounds that are no whole numbers.
+                    if value < *low {
+                        low.ceil()
+                    } else if value > *high {
+                        high.floor()
+                    } else {
+                        value
+                    }
+                } else {
+                    (value * 100.0).round() / 100.0
+                })
+            }
+            Way::Drawn { weights } => Raw::Json(asked.question.kind.drawn(weights, draws)),
+        })
+    }
+
+    fn rate(&self, draws: &mut Draws, rated: &Rated, clip: Option<usize>, trial: usize) -> f64 {
+        if self.careless {
+            return rated.scale.value(draws.below(rated.scale.points.max(1)));
+        }
+        let value = clip.map_or(rated.mean, |clip| {
+            self.values[rated.latent][clip] + rated.per_trial * trial as f64
+        });
+        let value = value + rated.noise_sd * draws.normal();
+        rated.scale.value(rated.borders.partition_point(|border| *border <= value))
+    }
+}
+
+/// An answer as the page sends it.
+pub(crate) fn as_json(asked: &Asked<'_>, raw: Raw) -> Value {
+    match raw {
+        Raw::Json(value) => value,
+        Raw::Option(place) => asked.question.kind.options()[place].value.as_str().into(),
+        Raw::Number(value) if value.fract() == 0.0 && value.abs() < 9e15 => (value as i64).into(),
+        Raw::Number(value) => value.into(),
+    }
+}
+
+/// Most answers that are drawn to find one that an attention check does not expect.
+const MOST_DRAWS: usize = 100;
+
+/// An answer that an attention check does not expect.
+fn other_than(asked: &Asked<'_>, expected: &Value, draws: &mut Draws) -> Option<Raw> {
+    match &asked.way {
+        Way::Drawn { weights } => {
+            let mut drawn = (0..MOST_DRAWS).map(|_| asked.question.kind.drawn(weights, draws));
+            drawn.find(|answer| answer != expected).map(Raw::Json)
+        }
+        Way::Scales(rated) => {
+            let scale = rated.first()?.scale;
+            let other = (0..scale.points).map(|point| scale.value(point));
+            other.into_iter().find(|value| expected.as_f64() != Some(*value)).map(Raw::Number)
+        }
+        _ => {
+            let options = asked.question.kind.options();
+            let other = options.iter().position(|option| expected.as_str() != Some(&option.value));
+            other.map(Raw::Option)
+        }
+    }
+}

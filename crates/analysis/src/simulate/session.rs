@@ -1,0 +1,331 @@
+//! A simulated person goes through the study: the page's own state machine makes the events.
+
+use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_session::wire::{Event, SessionStarted};
+use mimique_session::{Client, PlayLog};
+use mimique_study::{Answers, Display, OrderError};
+
+use super::latent::ClipEffects;
+use super::model::Model;
+use super::person::{BEFORE_REPLAY_MS, Person, Showing, as_json};
+
+/// 5 January 2026, 9:00 UTC: when the first simulated session begins.
+const FIRST_SESSION_MS: f64 = 1_767_603_600_000.0;
+/// From one session to the next, on average.
+const BETWEEN_SESSIONS_MS: f64 = 660_000.0;
+
+/// Windows that people have, CSS pixels, and device pixels a CSS pixel.
+const WINDOWS: [([u32; 2], f64); 5] = [
+    ([1920, 969], 1.0),
+    ([1536, 730], 1.25),
+    ([1440, 789], 2.0),
+    ([2560, 1329], 1.0),
+    ([1366, 651], 1.0),
+];
+/// Browsers, their versions and platforms.
+const BROWSERS: [[&str; 3]; 5] = [
+    ["Chrome", "143", "Windows"],
+    ["Firefox", "146", "Windows"],
+    ["Safari", "26", "macOS"],
+    ["Edge", "143", "Windows"],
+    ["Chrome", "143", "macOS"],
+];
+
+/// The events of a session, from its opening to its end. None are left of a session that was taken
+/// back.
+pub(crate) fn events(
+    model: &Model<'_>,
+    clips: &ClipEffects,
+    seed: u64,
+    started: &SessionStarted,
+) -> Result<Vec<Event>, OrderError> {
+    let plan = Plan::new(model.study.clone(), started.clone())?;
+    let person =
+        |seed| Person::new(model, clips, seed, started.participant, started.condition.as_deref());
+    // Practice is not part of the answers' stream.
+    let (person, practice) = (person(seed), person(seed ^ PRACTICE));
+    let state = State::new(&plan, model.study.default_language());
+    let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0 };
+    let mut walk = Walk { model, person, practice, page, trial: 0 };
+    walk.go();
+    Ok(walk.page.events)
+}
+
+/// Tells the seed of practice from that of the answers.
+const PRACTICE: u64 = 0x7072_6163_7469_6365;
+
+/// A page that carries out effects as a browser does, and a server that stores at once.
+struct Page<'p> {
+    plan: &'p Plan,
+    state: State,
+    events: Vec<Event>,
+    now_ms: f64,
+}
+
+impl Page<'_> {
+    fn wait(&mut self, ms: f64) {
+        // Eighths of a millisecond: sums and differences of times are exact.
+        self.now_ms += eighths(ms);
+    }
+
+    fn send(&mut self, input: Input) {
+        let mut inputs = vec![input];
+        while let Some(input) = inputs.pop() {
+            let state = std::mem::take(&mut self.state);
+            let (state, effects) = update(self.plan, state, input, self.now_ms);
+            self.state = state;
+            for effect in effects {
+                match effect {
+                    Effect::Store(event) => self.events.push(event),
+                    Effect::PrepareClips(clips) => {
+                        inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
+                    }
+                    Effect::Flush => {
+                        inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+}
+
+/// A time in eighths of a millisecond, one at least.
+pub(crate) fn eighths(ms: f64) -> f64 {
+    ((ms * 8.0).round() / 8.0).max(0.125)
+}
+
+struct Walk<'w, 'm> {
+    model: &'m Model<'m>,
+    person: Person<'m>,
+    practice: Person<'m>,
+    page: Page<'w>,
+    /// Trials finished.
+    trial: usize,
+}
+
+impl Walk<'_, '_> {
+    fn go(&mut self) {
+        let number = self.page.plan.started.participant.saturating_sub(1) as f64;
+        let chance = self.person.chance();
+        let client = client(chance.below(WINDOWS.len()), chance.below(BROWSERS.len()));
+        self.page.now_ms = FIRST_SESSION_MS;
+        self.page.wait(BETWEEN_SESSIONS_MS * (number + chance.unit()));
+        self.page.send(Input::Opened(client.clone()));
+        while self.page.state.record.standing.is_open() {
+            let here = self.page.state.record.step;
+            let Some(step) = self.page.plan.steps.get(here) else { return };
+            match &step.kind {
+                StepKind::Consent => {
+                    self.read(30_000.0);
+                    let agrees = !self.person.fate.declines;
+                    self.page.send(if agrees { Input::Consent } else { Input::Decline });
+                    continue;
+                }
+                StepKind::Trial(trial) => {
+                    let leaves = self.person.fate.leaves_after.is_some_and(|n| self.trial >= n);
+                    if leaves && !trial.training {
+                        self.leave();
+                        return;
+                    }
+                    self.shown(&step.id);
+                    self.read(800.0);
+                    self.watch(&client, trial.maximum_replays, trial.training);
+                    self.answer_trial(&trial.clip, trial.training);
+                    self.trial += usize::from(!trial.training);
+                }
+                StepKind::Questions { page, demographics } => {
+                    self.shown(&step.id);
+                    self.answer_page(page, *demographics);
+                }
+                StepKind::Break(rest) => {
+                    self.shown(&step.id);
+                    self.page.wait(1000.0 * rest.minimum_seconds);
+                    self.read(4_000.0);
+                }
+                StepKind::Page(_) | StepKind::Debriefing(_) | StepKind::Feedback { .. } => {
+                    self.shown(&step.id);
+                    self.read(15_000.0);
+                }
+                StepKind::Device => {
+                    self.page.send(Input::Measured(display(&client)));
+                    if self.page.state.record.step != here {
+                        continue;
+                    }
+                    self.read(4_000.0);
+                    self.page.send(Input::Next);
+                    self.page.send(Input::Fullscreen(true));
+                    if self.page.state.record.step == here {
+                        self.page.send(Input::GiveUp);
+                    }
+                    continue;
+                }
+                StepKind::Calibration(calibration) => {
+                    self.shown(&step.id);
+                    self.read(20_000.0);
+                    if calibration.card {
+                        let device_pixel_ratio = client.device_pixel_ratio;
+                        self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
+                    }
+                    if calibration.ask_distance {
+                        self.page.send(Input::Distance(Some(60.0)));
+                    }
+                }
+            }
+            self.page.send(Input::Next);
+            if self.page.state.record.step == here {
+                // An answer that its question does not take; the person can go no further.
+                return;
+            }
+        }
+    }
+
+    /// The person closes the page, or takes everything back: then nothing is left.
+    fn leave(&mut self) {
+        if self.person.fate.withdraws {
+            self.page.events.clear();
+        }
+    }
+
+    fn shown(&mut self, step: &str) {
+        self.page.wait(40.0);
+        self.page.send(Input::Shown { step: step.to_owned() });
+    }
+
+    fn read(&mut self, median_ms: f64) {
+        let ms = self.person.chance().log_normal(median_ms, 0.4);
+        self.page.wait(ms);
+    }
+
+    fn watch(&mut self, client: &Client, most_replays: Option<u32>, training: bool) {
+        let person = if training { &mut self.practice } else { &mut self.person };
+        let showing = person.showing(most_replays);
+        let webgl2 = self.model.parameters.display.webgl2;
+        let backend = if self.backend_draw() < webgl2 { "webgl2" } else { "webgpu" };
+        if showing.reload {
+            self.page.send(Input::Resumed(client.clone()));
+            self.page.wait(3_000.0);
+        }
+        if showing.cut_short {
+            self.page.send(Input::Play);
+            let log = self.log(&showing, backend, client, Some("the page was hidden"));
+            self.page.wait(600.0);
+            self.page.send(Input::Played(log));
+            self.page.wait(BEFORE_REPLAY_MS);
+        }
+        for play in 0..=showing.replays {
+            if play > 0 {
+                self.page.wait(BEFORE_REPLAY_MS);
+            }
+            self.page.send(Input::Play);
+            self.page.wait(60.0);
+            let log = self.log(&showing, backend, client, None);
+            self.page.wait(self.model.parameters.times.clip_ms);
+            self.page.send(Input::Played(log));
+        }
+        if showing.focus_loss {
+            self.page.send(Input::FocusLost);
+            self.page.send(Input::FocusGained);
+        }
+    }
+
+    /// One browser has one back end: drawn by the participant's number alone.
+    fn backend_draw(&self) -> f64 {
+        let number = self.page.plan.started.participant;
+        super::random::Draws::new(0, Some(number), "backend").unit()
+    }
+
+    fn log(
+        &self,
+        showing: &Showing,
+        backend: &str,
+        client: &Client,
+        aborted: Option<&str>,
+    ) -> PlayLog {
+        let look = &self.model.study.stimuli.look;
+        let thousandths = |ms: f64| (ms * 1000.0).round() / 1000.0;
+        let shown = if aborted.is_some() { 5 } else { showing.frames.len() };
+        PlayLog {
+            backend: backend.to_owned(),
+            onset_ms: self.page.now_ms,
+            end_ms: self.page.now_ms + self.model.parameters.times.clip_ms,
+            refresh_hz: self.model.parameters.display.refresh_hz,
+            frames: showing.frames[..shown.min(showing.frames.len())]
+                .iter()
+                .map(|&(ms, late)| (thousandths(ms), thousandths(ms), f64::from(u8::from(late))))
+                .collect(),
+            late: showing.late() as u32,
+            longest_ms: thousandths(showing.longest_ms()),
+            width: f64::from(look.width),
+            height: f64::from(look.height),
+            device_pixel_ratio: client.device_pixel_ratio,
+            // Nothing was rendered.
+            weights_hash: String::new(),
+            provenance: String::new(),
+            beside_provenance: String::new(),
+            renderer: String::new(),
+            drift_ms: 0.0,
+            aborted: aborted.map(str::to_owned),
+        }
+    }
+
+    fn answer_trial(&mut self, clip: &str, training: bool) {
+        let here = self.page.state.record.step;
+        let Some(clip) = self.model.clip(clip) else { return };
+        for question in self.page.plan.steps[here].questions() {
+            let record = &self.page.state.record;
+            if !question.is_shown(&record.drafts, &record.answers) {
+                continue;
+            }
+            let Some(place) = self.model.question(&question.id) else { continue };
+            let person = if training { &mut self.practice } else { &mut self.person };
+            let ms = person.answering_ms(Some(clip));
+            let Some(raw) = person.trial_answer(place, clip, self.trial) else { continue };
+            let value = as_json(&self.model.questions[place], raw);
+            self.page.wait(ms);
+            self.page.send(Input::Answer { question: question.id.clone(), value });
+        }
+        self.read(500.0);
+    }
+
+    fn answer_page(&mut self, page: &mimique_study::Questionnaire, demographics: bool) {
+        let told: Answers = self.person.about.clone();
+        for question in &page.questions {
+            let record = &self.page.state.record;
+            if !question.is_shown(&record.drafts, &record.answers) {
+                continue;
+            }
+            let answer = match demographics {
+                true => told.get(&question.id).cloned(),
+                false => self.person.page_answer(&question.id),
+            };
+            self.read(4_000.0);
+            if let Some(value) = answer {
+                self.page.send(Input::Answer { question: question.id.clone(), value });
+            }
+        }
+    }
+}
+
+/// A computer that can show every study.
+fn display(client: &Client) -> Display {
+    Display {
+        viewport: client.viewport,
+        device_pixel_ratio: client.device_pixel_ratio,
+        refresh_hz: Some(60.0),
+        backend: Some("webgpu".to_owned()),
+        desktop: true,
+        fullscreen: true,
+    }
+}
+
+fn client(window: usize, browser: usize) -> Client {
+    let (viewport, device_pixel_ratio) = WINDOWS[window % WINDOWS.len()];
+    let [name, version, platform] = BROWSERS[browser % BROWSERS.len()];
+    let about = [("browser", name), ("version", version), ("platform", platform)];
+    Client {
+        viewport,
+        device_pixel_ratio,
+        about: about.into_iter().map(|(key, word)| (key.to_owned(), word.to_owned())).collect(),
+    }
+}

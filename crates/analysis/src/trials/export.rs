@@ -1,0 +1,434 @@
+//! The tidy export of a study as people, trials and answers, with the study's exclusions applied.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::RangeInclusive;
+use std::sync::{Arc, OnceLock};
+
+use mimique_session::Standing;
+use mimique_stats::{Refusal, Table};
+use mimique_study::columns::ASSIGNED_CONDITION;
+use mimique_study::{Exclusions, KindOfQuestion as _, Question, Study};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::Serialize;
+
+use crate::trials::column::Column;
+use crate::trials::combinations::Combinations;
+use crate::trials::trial_rows::{TrialReader, TrialRows, stretches};
+
+/// One person.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Person {
+    /// `participant_id`.
+    pub id: String,
+    /// How the session stands.
+    pub status: String,
+    /// Trials answered (practice not counted).
+    pub trials: usize,
+    /// Attention checks failed.
+    pub failed_checks: usize,
+    /// Why the person is left out.
+    pub excluded: Option<&'static str>,
+}
+
+/// One answer in a trial that is used. Millions of answers share a few texts.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Answer {
+    /// Place in [`Export::people`].
+    pub person: usize,
+    /// As exported.
+    pub text: Arc<str>,
+    /// As a number, if it is one.
+    pub number: Option<f64>,
+    /// Whether it is right, where there is a right answer.
+    pub correct: Option<bool>,
+    /// The right answer.
+    pub truth: Option<Arc<str>>,
+    /// Response time, milliseconds.
+    pub rt_ms: Option<f64>,
+    /// Place in [`Export::trials`].
+    pub trial: usize,
+}
+
+/// One trial that is used: its clip, factors and frames.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Trial {
+    pub stimulus: Arc<str>,
+    /// What was played in step beside it.
+    pub beside: Option<Beside>,
+    /// Place among the person's trials, from 1.
+    pub order: Option<usize>,
+    /// Value of each of [`Export::factors`].
+    pub levels: Vec<Option<Arc<str>>>,
+    pub frames: Option<f64>,
+    pub late: Option<f64>,
+    pub longest_ms: Option<f64>,
+}
+
+/// A clip that was played beside the trial's own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Beside {
+    pub clip: Arc<str>,
+    /// Whether it stood on the left.
+    pub left: bool,
+}
+
+/// What was left out, and why.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub(crate) struct Flow {
+    /// People with at least one row.
+    pub people: usize,
+    /// People left out, by reason.
+    pub people_left_out: BTreeMap<&'static str, usize>,
+    /// Those of them whom the researcher excluded, by the reason given.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub researcher_reasons: BTreeMap<String, usize>,
+    /// People used.
+    pub people_used: usize,
+    /// Trials of the people used.
+    pub trials: usize,
+    /// Trials left out, by reason.
+    pub trials_left_out: BTreeMap<&'static str, usize>,
+    /// Trials used.
+    pub trials_used: usize,
+    /// Rows of pilot sessions left out because there are live ones.
+    pub pilot_people: usize,
+    /// Rules of the study file, in words.
+    pub rules: Vec<String>,
+}
+
+impl Flow {
+    /// The reasons and their counts, in brackets; empty where there are none.
+    pub fn why(&self) -> String {
+        let reasons = self.people_left_out.iter().chain(&self.trials_left_out);
+        let words: Vec<String> =
+            reasons.map(|(reason, count)| format!("{reason}: {count}")).collect();
+        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+    }
+}
+
+/// A study's answers.
+#[derive(Debug, Clone)]
+pub(crate) struct Export {
+    pub people: Vec<Person>,
+    pub trials: Vec<Trial>,
+    /// Answers to each question that was answered in trials, in the order of the file.
+    pub answers: BTreeMap<String, Vec<Answer>>,
+    /// Names of the factors.
+    pub factors: Vec<String>,
+    /// Answers about each person, and the assigned condition: column, then one cell a person.
+    pub about: Vec<(String, Vec<Option<String>>)>,
+    pub flow: Flow,
+    /// Of the trials; found when first asked for.
+    combinations: OnceLock<Combinations>,
+}
+
+/// Why somebody is left out whom the researcher excluded.
+pub(crate) const BY_RESEARCHER: &str = "excluded by the researcher";
+
+/// In the place of the status of somebody whom the researcher excluded.
+const EXCLUDED: &str = "excluded";
+
+/// Columns that must be there.
+const NEEDED: [&str; 5] = ["participant_id", "trial_id", "trial_type", "response_id", "answer"];
+
+impl Export {
+    /// Without people, trials and answers yet.
+    pub(crate) fn new(factors: Vec<String>, about: Vec<(String, Vec<Option<String>>)>) -> Self {
+        Self {
+            people: Vec::new(),
+            trials: Vec::new(),
+            answers: BTreeMap::new(),
+            factors,
+            about,
+            flow: Flow::default(),
+            combinations: OnceLock::new(),
+        }
+    }
+
+    /// Answers to a question, in the order of the file.
+    pub(crate) fn answers_to(&self, question: &str) -> &[Answer] {
+        self.answers.get(question).map_or(&[], Vec::as_slice)
+    }
+
+    /// The combinations of levels that the trials have. The trials must be complete.
+    pub(crate) fn combinations(&self) -> &Combinations {
+        self.combinations.get_or_init(|| Combinations::of(&self.trials))
+    }
+
+    /// Reads the tidy form and applies the study's exclusions.
+    pub(crate) fn read(table: &Table, study: &Study) -> Result<Self, Refusal> {
+        if let Some(missing) = NEEDED.iter().find(|name| !table.has(name)) {
+            return Err(Refusal::column(
+                *missing,
+                "there is no such column",
+                "give the tidy form that `mimique export --format csv` writes",
+            ));
+        }
+        let column = |name: &str| Column::of(table, name);
+        let [participant, status, stage, attention] =
+            ["participant_id", "status", "stage", "attention_passed"].map(column);
+        let mut people: Vec<Person> = Vec::new();
+        let mut place: HashMap<&str, usize> = HashMap::new();
+        let mut person_of_row = Vec::with_capacity(table.rows());
+        let mut stages: Vec<&str> = Vec::new();
+        // Rows of one person mostly follow each other.
+        let mut last: Option<(&str, usize)> = None;
+        for row in 0..table.rows() {
+            let id = participant.needed(row)?;
+            let same = last.filter(|(known, _)| *known == id).map(|(_, person)| person);
+            let person = same.unwrap_or_else(|| {
+                *place.entry(id).or_insert_with(|| {
+                    people.push(Person {
+                        id: id.to_owned(),
+                        status: status.text(row).unwrap_or("unknown").to_owned(),
+                        trials: 0,
+                        failed_checks: 0,
+                        excluded: None,
+                    });
+                    stages.push(stage.text(row).unwrap_or("live"));
+                    people.len() - 1
+                })
+            });
+            last = Some((id, person));
+            if attention.text(row) == Some("false") {
+                people[person].failed_checks += 1;
+            }
+            person_of_row.push(person);
+        }
+        // The server marks whom the researcher excluded; how the session stood is kept beside it.
+        let mut reasons: Vec<Option<&str>> = vec![None; people.len()];
+        if table.has("excluded") && table.has("exclusion_reason") {
+            let [excluded, reason] = ["excluded", "exclusion_reason"].map(column);
+            for (row, &person) in person_of_row.iter().enumerate() {
+                if excluded.text(row) == Some("true") {
+                    EXCLUDED.clone_into(&mut people[person].status);
+                    reasons[person] = reason.text(row);
+                }
+            }
+        }
+        let mut flow = exclude_people(study, &mut people, &stages);
+        for (person, reason) in people.iter().zip(&reasons) {
+            if let (Some(BY_RESEARCHER), Some(reason)) = (person.excluded, reason) {
+                *flow.researcher_reasons.entry((*reason).to_owned()).or_insert(0) += 1;
+            }
+        }
+        let factors = study.factor_names().into_iter().filter(|name| table.has(name)).collect();
+        let about = about_people(table, study, &person_of_row, people.len());
+        let mut export = Self { people, flow, ..Self::new(factors, about) };
+        export.read_trials(table, study, &person_of_row)?;
+        Ok(export)
+    }
+
+    fn read_trials(
+        &mut self,
+        table: &Table,
+        study: &Study,
+        person_of_row: &[usize],
+    ) -> Result<(), Refusal> {
+        let reader = TrialReader::new(table, study, self, person_of_row);
+        let stretches = stretches(person_of_row).into_par_iter();
+        let parts: Vec<Result<TrialRows, Refusal>> =
+            stretches.map(|rows| reader.read(rows)).collect();
+        for part in parts {
+            let part = part?;
+            for person in part.person_of_trial {
+                self.people[person].trials += 1;
+            }
+            self.flow.trials += part.considered;
+            for (reason, count) in part.left_out {
+                *self.flow.trials_left_out.entry(reason).or_insert(0) += count;
+            }
+            let before = self.trials.len();
+            self.trials.extend(part.trials);
+            for (question, answers) in part.answers {
+                let own = self.answers.entry(question).or_default();
+                own.extend(
+                    answers
+                        .into_iter()
+                        .map(|answer| Answer { trial: before + answer.trial, ..answer }),
+                );
+            }
+        }
+        self.flow.trials_used = self.trials.len();
+        Ok(())
+    }
+
+    /// Level of a factor in an answer's trial.
+    pub(crate) fn level(&self, answer: &Answer, factor: &str) -> Option<&str> {
+        let place = self.factors.iter().position(|name| name == factor)?;
+        self.trials[answer.trial].levels[place].as_deref()
+    }
+
+    /// Questions that were answered in trials, in the study's order, then any other.
+    pub(crate) fn questions<'s>(&self, study: &'s Study) -> Vec<AskedQuestion<'s>> {
+        let asked: BTreeSet<&str> = self.answers.keys().map(String::as_str).collect();
+        let mut found: Vec<AskedQuestion<'s>> = Vec::new();
+        let mut left = asked.clone();
+        for question in &study.questions {
+            let own = asked.iter().filter(|id| {
+                **id == question.id
+                    || id.strip_prefix(&question.id).is_some_and(|rest| rest.starts_with('.'))
+            });
+            for id in own {
+                if left.remove(*id) {
+                    found.push(AskedQuestion { id: (*id).to_owned(), question: Some(question) });
+                }
+            }
+        }
+        found
+            .extend(left.into_iter().map(|id| AskedQuestion { id: id.to_owned(), question: None }));
+        found
+    }
+}
+
+/// A question that was answered in trials.
+#[derive(Debug, Clone)]
+pub(crate) struct AskedQuestion<'s> {
+    /// As in the export (`grid.valence`).
+    pub id: String,
+    /// Its place in the study file; none for one that the file no longer has.
+    pub question: Option<&'s Question>,
+}
+
+impl AskedQuestion<'_> {
+    /// What is asked, with the part of a question that has several.
+    pub(crate) fn label(&self, language: &str) -> String {
+        let Some(question) = self.question else { return self.id.clone() };
+        let part = self.id.strip_prefix(&question.id).unwrap_or_default();
+        let part = part.trim_start_matches('.');
+        let prompt = question.prompt.in_language(language);
+        if part.is_empty() { prompt.to_owned() } else { format!("{prompt} ({part})") }
+    }
+
+    /// Whether the clip holds the right answer.
+    pub(crate) fn is_recognition(&self) -> bool {
+        self.question.is_some_and(|question| question.kind.truth().is_some())
+    }
+
+    /// The factor of the clip that holds the right answer; empty where there is none.
+    pub(crate) fn truth(&self) -> String {
+        let truth = self.question.and_then(|question| question.kind.truth());
+        truth.unwrap_or_default().to_owned()
+    }
+
+    /// First and last point of a scale of few points.
+    pub(crate) fn scale(&self) -> Option<(i64, i64)> {
+        self.question?.kind.points().map(RangeInclusive::into_inner)
+    }
+}
+
+/// Why a trial is left out, if it is: its first reason. `quickest_ms` is its shortest response time.
+pub(crate) fn why_left_out(
+    rules: &Exclusions,
+    trial: &Trial,
+    quickest_ms: Option<f64>,
+) -> Option<&'static str> {
+    let share = match (trial.late, trial.frames) {
+        (Some(late), Some(frames)) if frames > 0.0 => Some(late / frames),
+        _ => None,
+    };
+    let over = |value: Option<f64>, limit: Option<f64>| matches!((value, limit), (Some(value), Some(limit)) if value > limit);
+    let quick =
+        matches!((quickest_ms, rules.shortest_rt_ms), (Some(rt), Some(limit)) if rt < limit);
+    if over(share, rules.late_frame_share) {
+        Some("late frames")
+    } else if over(trial.longest_ms, rules.longest_frame_ms) {
+        Some("long frame")
+    } else if quick {
+        Some("answered too soon")
+    } else {
+        None
+    }
+}
+
+/// Marks the people whom the rules leave out, and counts them.
+pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&str]) -> Flow {
+    let rules = study.exclusions.clone().unwrap_or_default();
+    let live = stages.iter().any(|stage| *stage != "pilot");
+    let mut flow = Flow { people: people.len(), rules: rules_in_words(&rules), ..Flow::default() };
+    for (person, stage) in people.iter_mut().zip(stages) {
+        let standing = Standing::from_export_word(&person.status);
+        person.excluded = if live && *stage == "pilot" {
+            flow.pilot_people += 1;
+            Some("pilot")
+        } else if standing == Some(Standing::Withdrawn) {
+            Some("withdrawn")
+        } else if standing == Some(Standing::Declined) {
+            Some("declined")
+        } else if person.status == EXCLUDED {
+            Some(BY_RESEARCHER)
+        } else if rules.incomplete && standing != Some(Standing::Completed) {
+            Some(match standing {
+                Some(screened_out) if screened_out.is_screened_out() => "screened out",
+                Some(Standing::ChecksFailed) => "attention checks",
+                _ => "incomplete",
+            })
+        } else if rules
+            .failed_attention_checks
+            .is_some_and(|limit| person.failed_checks > limit as usize)
+        {
+            Some("attention checks")
+        } else {
+            None
+        };
+        if let Some(reason) = person.excluded {
+            *flow.people_left_out.entry(reason).or_insert(0) += 1;
+        }
+    }
+    flow.people_used = people.iter().filter(|person| person.excluded.is_none()).count();
+    flow
+}
+
+fn rules_in_words(rules: &Exclusions) -> Vec<String> {
+    let mut words = Vec::new();
+    if rules.incomplete {
+        words.push("incomplete".to_owned());
+    }
+    if let Some(limit) = rules.failed_attention_checks {
+        words.push(format!("failedAttentionChecks > {limit}"));
+    }
+    if let Some(limit) = rules.late_frame_share {
+        words.push(format!("lateFrameShare > {limit}"));
+    }
+    if let Some(limit) = rules.longest_frame_ms {
+        words.push(format!("longestFrameMs > {limit}"));
+    }
+    if let Some(limit) = rules.shortest_rt_ms {
+        words.push(format!("rt < {limit} ms"));
+    }
+    words
+}
+
+/// Columns of answers about the person, and of the assigned condition: the same in each of the person's
+/// rows.
+fn about_people(
+    table: &Table,
+    study: &Study,
+    person_of_row: &[usize],
+    people: usize,
+) -> Vec<(String, Vec<Option<String>>)> {
+    let questions: Vec<&str> = study
+        .demographics
+        .iter()
+        .flat_map(|page| &page.questions)
+        .map(|question| question.id.as_str())
+        .collect();
+    let conditions = !study.conditions().is_empty();
+    let own = |name: &String| {
+        (conditions && name == ASSIGNED_CONDITION)
+            || questions.iter().any(|id| {
+                name == id || name.strip_prefix(id).is_some_and(|rest| rest.starts_with('.'))
+            })
+    };
+    let mut about = Vec::new();
+    for (place, name) in table.names().iter().enumerate().filter(|(_, name)| own(name)) {
+        let mut cells: Vec<Option<String>> = vec![None; people];
+        for (row, &person) in person_of_row.iter().enumerate() {
+            if cells[person].is_none() {
+                cells[person] = table.cell(row, place).map(str::to_owned);
+            }
+        }
+        about.push((name.clone(), cells));
+    }
+    about
+}

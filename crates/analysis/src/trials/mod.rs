@@ -1,0 +1,7 @@
+//! The trials of an export, with the study's exclusions applied, and what was measured in them.
+
+pub(crate) mod column;
+pub(crate) mod combinations;
+pub(crate) mod export;
+pub(crate) mod measure;
+pub(crate) mod trial_rows;

@@ -1,0 +1,236 @@
+//! The rows of the tidy export that are trials: trials with their answers, several stretches of the
+//! file at the same time.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+use std::sync::Arc;
+
+use mimique_stats::{Refusal, Table};
+use mimique_study::{Exclusions, Study};
+
+use crate::trials::column::Column;
+use crate::trials::export::{Answer, Beside, Export, Person, Trial, why_left_out};
+
+/// Stretches that a file is cut into: more than there are cores, so that none waits long.
+const STRETCHES: usize = 16;
+
+/// The columns that say what was shown and answered.
+pub(crate) struct TrialReader<'t> {
+    rules: Exclusions,
+    people: &'t [Person],
+    person_of_row: &'t [usize],
+    kind: Column<'t>,
+    trial_id: Column<'t>,
+    rt: Column<'t>,
+    stimulus: Column<'t>,
+    beside: Column<'t>,
+    beside_side: Column<'t>,
+    order: Column<'t>,
+    frames: Column<'t>,
+    late: Column<'t>,
+    longest: Column<'t>,
+    response: Column<'t>,
+    answer: Column<'t>,
+    correct: Column<'t>,
+    truth: Column<'t>,
+    levels: Vec<Column<'t>>,
+}
+
+/// What a stretch of rows holds.
+#[derive(Default)]
+pub(crate) struct TrialRows {
+    /// The person of each trial, of those left out too.
+    pub person_of_trial: Vec<usize>,
+    /// Trials of people who are used.
+    pub considered: usize,
+    /// Those left out, by reason.
+    pub left_out: BTreeMap<&'static str, usize>,
+    /// Trials used.
+    pub trials: Vec<Trial>,
+    /// Their answers, a trial being its place in `trials`.
+    pub answers: BTreeMap<String, Vec<Answer>>,
+}
+
+/// Rows in stretches that keep each person's together; one stretch where a person's rows do not follow
+/// each other.
+pub(crate) fn stretches(person_of_row: &[usize]) -> Vec<Range<usize>> {
+    let rows = person_of_row.len();
+    if !person_of_row.is_sorted() {
+        return std::iter::once(0..rows).collect();
+    }
+    let mut ends: Vec<usize> = (1..=STRETCHES)
+        .map(|stretch| {
+            let end = stretch * rows / STRETCHES;
+            let next = |last: usize| person_of_row.partition_point(|&person| person <= last);
+            person_of_row[..end].last().map_or(0, |&last| next(last))
+        })
+        .collect();
+    ends.dedup();
+    ends.retain(|&end| end > 0);
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    starts.zip(ends.iter().copied()).map(|(start, end)| start..end).collect()
+}
+
+impl<'t> TrialReader<'t> {
+    /// `export` has its people and factors.
+    pub(crate) fn new(
+        table: &'t Table,
+        study: &Study,
+        export: &'t Export,
+        person_of_row: &'t [usize],
+    ) -> Self {
+        let column = |name: &str| Column::of(table, name);
+        Self {
+            rules: study.exclusions.clone().unwrap_or_default(),
+            people: &export.people,
+            person_of_row,
+            kind: column("trial_type"),
+            trial_id: column("trial_id"),
+            rt: column("rt"),
+            stimulus: column("stimulus"),
+            beside: column("beside"),
+            beside_side: column("beside_side"),
+            order: column("trial_order"),
+            frames: column("frames"),
+            late: column("frames_late"),
+            longest: column("frame_longest_ms"),
+            response: column("response_id"),
+            answer: column("answer"),
+            correct: column("correct"),
+            truth: column("truth"),
+            levels: export.factors.iter().map(|factor| column(factor)).collect(),
+        }
+    }
+
+    /// Reads a stretch that has all rows of its people.
+    pub(crate) fn read(&self, rows: Range<usize>) -> Result<TrialRows, Refusal> {
+        // A trial is left out for its first reason; the quickest answer decides for all of it.
+        let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
+        for row in rows.clone() {
+            if let (Some("trial"), Some(trial), Some(rt)) =
+                (self.kind.text(row), self.trial_id.text(row), self.rt.number(row)?)
+                && self.rules.shortest_rt_ms.is_some()
+            {
+                let least = quickest.entry((self.person_of_row[row], trial)).or_insert(rt);
+                *least = least.min(rt);
+            }
+        }
+        let mut read = TrialRows::default();
+        let mut texts = Texts::default();
+        let mut seen: HashMap<(usize, &str), Option<usize>> = HashMap::new();
+        // Rows of one trial mostly follow each other.
+        let mut last: Option<((usize, &str), Option<usize>)> = None;
+        for row in rows {
+            if self.kind.text(row) != Some("trial") {
+                continue;
+            }
+            let person = self.person_of_row[row];
+            let key = (person, self.trial_id.needed(row)?);
+            let same = last.filter(|(known, _)| *known == key).map(|(_, trial)| trial);
+            let trial = match same.or_else(|| seen.get(&key).copied()) {
+                Some(trial) => trial,
+                None => {
+                    let trial = self.trial(row, &mut texts)?;
+                    let place = read.place(self, person, trial, quickest.get(&key).copied());
+                    seen.insert(key, place);
+                    place
+                }
+            };
+            last = Some((key, trial));
+            if let (Some(trial), Some(text)) = (trial, self.answer.text(row)) {
+                let answer = Answer {
+                    person,
+                    text: texts.shared(text),
+                    number: text.parse().ok().filter(|number: &f64| number.is_finite()),
+                    correct: match self.correct.text(row) {
+                        Some("true") => Some(true),
+                        Some("false") => Some(false),
+                        _ => None,
+                    },
+                    truth: self.truth.text(row).map(|truth| texts.shared(truth)),
+                    rt_ms: self.rt.number(row)?,
+                    trial,
+                };
+                let question = self.response.needed(row)?;
+                match read.answers.get_mut(question) {
+                    Some(answers) => answers.push(answer),
+                    None => {
+                        read.answers.insert(question.to_owned(), vec![answer]);
+                    }
+                }
+            }
+        }
+        Ok(read)
+    }
+
+    fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, Refusal> {
+        let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
+        let left = self.beside_side.text(row) == Some("left");
+        Ok(Trial {
+            levels: self.levels.iter().map(&mut level).collect(),
+            beside: level(&self.beside).map(|clip| Beside { clip, left }),
+            stimulus: texts.shared(self.stimulus.text(row).unwrap_or_default()),
+            order: self.order.number(row)?.map(|order| order as usize),
+            frames: self.frames.number(row)?,
+            late: self.late.number(row)?,
+            longest_ms: self.longest.number(row)?,
+        })
+    }
+}
+
+impl TrialRows {
+    /// Counts a trial; its place if it is used.
+    fn place(
+        &mut self,
+        reader: &TrialReader<'_>,
+        person: usize,
+        trial: Trial,
+        quickest_ms: Option<f64>,
+    ) -> Option<usize> {
+        self.person_of_trial.push(person);
+        if reader.people[person].excluded.is_some() {
+            return None;
+        }
+        self.considered += 1;
+        if let Some(reason) = why_left_out(&reader.rules, &trial, quickest_ms) {
+            *self.left_out.entry(reason).or_insert(0) += 1;
+            return None;
+        }
+        self.trials.push(trial);
+        Some(self.trials.len() - 1)
+    }
+}
+
+/// Texts that were met, each kept once.
+#[derive(Default)]
+struct Texts<'t>(HashMap<&'t str, Arc<str>>);
+
+impl<'t> Texts<'t> {
+    fn shared(&mut self, text: &'t str) -> Arc<str> {
+        Arc::clone(self.0.entry(text).or_insert_with(|| Arc::from(text)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_keep_people_together_and_leave_no_row_out() {
+        let together: Vec<usize> =
+            (0..50).flat_map(|person| vec![person; 1 + person % 7]).collect();
+        let found = stretches(&together);
+        assert!(found.len() > 8);
+        assert_eq!(found[0].start, 0);
+        assert_eq!(found[found.len() - 1].end, together.len());
+        for pair in found.windows(2) {
+            assert_eq!(pair[0].end, pair[1].start);
+            assert_ne!(together[pair[0].end - 1], together[pair[1].start]);
+        }
+        // One stretch: of people whose rows do not follow each other, and of one person.
+        for rows in [&[0, 1, 0, 1][..], &[0, 0, 0]] {
+            let found = stretches(rows);
+            assert_eq!((found.len(), &found[0]), (1, &(0..rows.len())));
+        }
+    }
+}

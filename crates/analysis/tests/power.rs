@@ -1,0 +1,268 @@
+//! Power against what is known: the false positives of tests that take trials for independent, and the
+//! power of a test whose distribution is known.
+
+use mimique_analysis::{Parameters, Power, PowerOptions, Preregistration, power, preregistration};
+use mimique_study::Study;
+use serde_json::Value;
+
+fn study(name: &str) -> (Study, String) {
+    let path = format!("{}/../../study-config/{name}", env!("CARGO_MANIFEST_DIR"));
+    let value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    (Study::from_value(&value).unwrap(), mimique_study::config_hash(&value))
+}
+
+/// The study and the parameters of `study-config/power`.
+fn independence() -> (Study, String, Parameters) {
+    let (study, hash) = study("power/independence.json");
+    let path = format!(
+        "{}/../../study-config/power/independence.parameters.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let parameters = Parameters::read_over(&Parameters::for_study(&study), &text, &study).unwrap();
+    (study, hash, parameters)
+}
+
+fn options(participants: &[usize], runs: usize) -> PowerOptions {
+    PowerOptions {
+        participants: participants.to_vec(),
+        clips: Vec::new(),
+        runs,
+        seed: 20_261_121,
+        alpha: 0.05,
+        false_positives: false,
+    }
+}
+
+/// STATISTICS.md: 27 participants, 54 clips, no effect; the standard deviation of how people take to a
+/// method is 0, 0.3, 0.6. Trial-level Kruskal-Wallis finds 2, 19, 48 %, and about 60 % for a trait of the
+/// person; the tests of one value a person 4 to 6 %.
+#[test]
+fn trials_taken_for_independent_find_what_is_not_there() {
+    let (study, hash, mut parameters) = independence();
+    for (taste, expected) in [(0.0, 0.02), (0.3, 0.19), (0.6, 0.48)] {
+        parameters.ratings.get_mut("rating").unwrap().person_by_sd.insert("method".into(), taste);
+        let result = power(&study, &hash, &parameters, &options(&[27], 2000), &|| {}).unwrap();
+        let point = &result.points[0];
+        assert_eq!((point.participants, point.clips, point.people_used), (27, 54, 27.0));
+        let [method, group] = point.hypotheses.as_slice() else { panic!("two hypotheses") };
+        let share = method.power.as_in_the_thesis.share;
+        assert!((share - expected).abs() < 0.03, "method, sd {taste}: {share}");
+        let share = method.power.recommended.share;
+        assert!((0.04..=0.06).contains(&share), "method, recommended, sd {taste}: {share}");
+        let share = group.power.as_in_the_thesis.share;
+        assert!((share - 0.6).abs() < 0.05, "group, sd {taste}: {share}");
+        let share = group.power.recommended.share;
+        assert!((0.035..=0.06).contains(&share), "group, recommended, sd {taste}: {share}");
+    }
+}
+
+#[test]
+fn is_the_same_on_any_number_of_threads() {
+    let (study, hash, parameters) = independence();
+    let run = |threads: usize| -> Power {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| power(&study, &hash, &parameters, &options(&[8, 12], 20), &|| {})).unwrap()
+    };
+    assert_eq!(run(1), run(3));
+}
+
+/// A difference of 0.5 points with noise 1, no thresholds to speak of and no tastes: the paired test of n
+/// people with m trials a level has about the power of a t test with noncentrality
+/// 0.5 / sqrt(2 / m) * sqrt(n), times the signed rank test's efficiency 3 / pi.
+#[test]
+fn power_is_that_of_the_paired_test() {
+    let (study, hash) = study("demo.json");
+    let mut parameters = Parameters::for_study(&study);
+    parameters.dropout =
+        mimique_analysis::Dropout { declined: 0.0, per_trial: 0.0, withdrawn: 0.0 };
+    parameters.careless.share = 0.0;
+    let rating = parameters.ratings.get_mut("believability").unwrap();
+    rating.mean = 4.0;
+    rating.person_by_sd.clear();
+    (rating.person_sd, rating.segment_sd, rating.clip_sd) = (0.5, 0.0, 0.0);
+    rating.interactions.clear();
+    let shifts = [("lsts", 0.25), ("box", -0.25)].map(|(level, shift)| (level.to_owned(), shift));
+    rating.effects = [("method".to_owned(), shifts.into_iter().collect())].into_iter().collect();
+    let result = power(&study, &hash, &parameters, &options(&[12, 20], 1500), &|| {}).unwrap();
+    for point in &result.points {
+        let h3 = &point.hypotheses[2];
+        assert_eq!(h3.id, "H3");
+        // Noise of a rating: 1 and rounding's 1/12; 6 trials a method.
+        let per_person = (2.0 * (1.0 + 1.0 / 12.0) / 6.0_f64).sqrt();
+        let effective = point.participants as f64 * 3.0 / std::f64::consts::PI;
+        let noncentrality = 0.5 / per_person * effective.sqrt();
+        let degrees = point.participants as f64 - 1.0;
+        let critical = mimique_stats::t_quantile_upper(0.025, degrees);
+        // Normal approximation of the noncentral t (Johnson and Kotz 1970, 31.3).
+        let z = (critical * (1.0 - 1.0 / (4.0 * degrees)) - noncentrality)
+            / (1.0 + critical * critical / (2.0 * degrees)).sqrt();
+        let expected = mimique_stats::normal_upper(z).p;
+        let found = h3.power.recommended.share;
+        assert!(
+            (found - expected).abs() < 0.05,
+            "{} people: {found}, {expected}",
+            point.participants
+        );
+    }
+    assert!(
+        result.points[1].hypotheses[2].power.recommended.share
+            > result.points[0].hypotheses[2].power.recommended.share
+    );
+}
+
+#[test]
+fn without_effects_there_is_none_left() {
+    let (study, hash) = study("demo.json");
+    let mut parameters = Parameters::for_study(&study);
+    for rating in parameters.ratings.values_mut() {
+        (rating.segment_sd, rating.clip_sd) = (0.0, 0.0);
+    }
+    let recognition = parameters.recognition.get_mut("emotion").unwrap();
+    (recognition.segment_sd, recognition.clip_sd) = (0.0, 0.0);
+    let mut options = options(&[30], 800);
+    options.false_positives = true;
+    let result = power(&study, &hash, &parameters, &options, &|| {}).unwrap();
+    for hypothesis in &result.points[0].hypotheses {
+        let rate = hypothesis.false_positives.unwrap().recommended;
+        // 5 % with a standard error of 0.8 %; the exact tests stay below.
+        assert!((0.015..0.08).contains(&rate.share), "{}: {}", hypothesis.id, rate.share);
+        // The aligned rank transform of an interaction, and exact tests, stay near what they say.
+        assert!(rate.interval[0] < rate.share && rate.share < rate.interval[1]);
+    }
+    let believability = &result.points[0].hypotheses[2];
+    assert!(believability.power.recommended.share > 0.3, "{believability:?}");
+}
+
+/// Where the parameters hold no effect (a typed number never has one), the share of positive tests is no
+/// power, and nobody is told how many people have enough of it.
+#[test]
+fn without_an_effect_in_the_parameters_nothing_is_called_power() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    value["questions"].as_array_mut().unwrap().push(serde_json::json!(
+        { "id": "years", "type": "number", "prompt": { "en": "How old?", "fr": "Quel âge\u{a0}?" } }
+    ));
+    value["components"]["faces"]["questions"].as_array_mut().unwrap().push("years".into());
+    let hypotheses = value["hypotheses"].as_array_mut().unwrap();
+    let (mut years, mut time) = (hypotheses[1].clone(), hypotheses[1].clone());
+    (years["id"], years["response"]) = ("HY".into(), "years".into());
+    (time["id"], time["measure"]) = ("HT".into(), "rt".into());
+    hypotheses.extend([years, time]);
+    let study = Study::from_value(&value).unwrap();
+    let hash = mimique_study::config_hash(&value);
+    let mut parameters = Parameters::for_study(&study);
+    let effects = |parameters: &Parameters| -> Vec<bool> {
+        study.hypotheses.iter().map(|each| parameters.has_effect(&study, each)).collect()
+    };
+    assert_eq!(effects(&parameters), [true, true, true, true, false, true]);
+    assert_eq!(effects(&parameters.without_effects(&study)), [false; 6]);
+    let believability = parameters.ratings.get_mut("believability").unwrap();
+    believability.effects.clear();
+    believability.interactions.clear();
+    assert_eq!(effects(&parameters), [true, true, false, false, false, true]);
+
+    let result = power(&study, &hash, &parameters, &options(&[10], 2), &|| {}).unwrap();
+    let note = "hold no effect of its factors on its response";
+    let table = mimique_analysis::power_markdown(&result, mimique_analysis::Language::English);
+    assert_eq!(table.matches(note).count(), 3);
+    assert!(table.contains("**HY**\n\nThe parameters hold no effect"), "{table}");
+    let curve = mimique_analysis::power_curve(&result, mimique_analysis::Language::English);
+    assert_eq!(curve.matches("no effect in the parameters").count(), 3);
+}
+
+#[test]
+fn refuses_what_cannot_be() {
+    let (study, hash) = study("demo.json");
+    let parameters = Parameters::for_study(&study);
+    let refused = |options: &PowerOptions| {
+        power(&study, &hash, &parameters, options, &|| {}).unwrap_err().to_string()
+    };
+    assert!(refused(&options(&[1], 10)).starts_with("participants: 1 is not possible; give 2 to"));
+    assert!(refused(&options(&[10], 0)).starts_with("runs: 0 is not possible"));
+    let mut none = study.clone();
+    none.hypotheses.clear();
+    let error = power(&none, &hash, &parameters, &options(&[10], 1), &|| {}).unwrap_err();
+    assert!(error.to_string().starts_with("/hypotheses: the study has none"));
+}
+
+#[test]
+fn preregistration_says_what_the_file_says() {
+    for (language, words) in [
+        (
+            "en",
+            [
+                "## Sampling plan",
+                "H4",
+                "Holm’s correction over the 4 hypotheses",
+                "people who do not finish",
+                "aligned rank transform",
+            ],
+        ),
+        (
+            "fr",
+            [
+                "## Échantillon",
+                "H4",
+                "correction de Holm sur les 4 hypothèses",
+                "les personnes qui ne terminent pas",
+                "rangs alignés",
+            ],
+        ),
+    ] {
+        let (study, hash) = study("demo.json");
+        let parameters = Parameters::for_study(&study);
+        let power = power(&study, &hash, &parameters, &options(&[10], 4), &|| {}).unwrap();
+        let text = preregistration(&Preregistration {
+            study: &study,
+            config_hash: &hash,
+            power: &power,
+            parameters: &parameters,
+            language: mimique_analysis::Language::from_code(language).unwrap(),
+            curve: Some("curve.svg"),
+        });
+        for part in words.into_iter().chain([hash.as_str(), "](curve.svg)"]) {
+            assert!(text.contains(part), "{language}: {part}\n{text}");
+        }
+        for hypothesis in &study.hypotheses {
+            assert!(text.contains(hypothesis.statement.in_language(language)));
+        }
+        assert!(!text.contains("?condition="), "{text}");
+        // The parameters can be read again.
+        let json = text.split("```json").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let read: Value = serde_json::from_str(json).unwrap();
+        assert_eq!(read, serde_json::to_value(&parameters).unwrap());
+    }
+}
+
+#[test]
+fn a_preregistration_says_the_conditions_between_participants() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    value["sequence"] = serde_json::json!({ "order": "fixed", "components": [
+        { "id": "shown", "conditional": true, "order": "random", "components": ["faces"] },
+        { "id": "control", "conditional": true, "order": "fixed", "components": [] },
+    ] });
+    let study = Study::from_value(&value).unwrap();
+    let hash = mimique_study::config_hash(&value);
+    let parameters = Parameters::for_study(&study);
+    let power = power(&study, &hash, &parameters, &options(&[10], 4), &|| {}).unwrap();
+    let text = preregistration(&Preregistration {
+        study: &study,
+        config_hash: &hash,
+        power: &power,
+        parameters: &parameters,
+        language: mimique_analysis::Language::from_code("en").unwrap(),
+        curve: None,
+    });
+    for part in [
+        "Between participants: the condition `shown`, of 12 trials.",
+        "Between participants: the condition `control`, of 0 trials.",
+        "Each participant sees those of one condition.",
+        "- `shown` (only in this condition): `faces` in an order drawn for each participant",
+        "- `control` (only in this condition): nothing",
+        "(`?condition=`)",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}

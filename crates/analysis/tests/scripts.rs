@@ -1,0 +1,128 @@
+//! `analysis.R` and `analysis.py` as a reader runs them: every number of the report once more, by other
+//! programs.
+
+mod support;
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mimique_analysis::{Language, Report, analyze};
+use mimique_stats::Table;
+use support::{Raters, demo_study, export, parameter_study, study_in_conditions};
+
+/// Relative difference that two programs may have.
+const TOLERANCE: f64 = 1e-8;
+
+fn reports() -> Vec<(&'static str, Report)> {
+    [
+        ("demo", demo_study(), Raters { people: 9, effect: 0.5, seed: 4 }),
+        ("parameter", parameter_study(), Raters { people: 14, effect: 0.3, seed: 8 }),
+        ("conditions", study_in_conditions(), Raters { people: 17, effect: 0.3, seed: 15 }),
+    ]
+    .into_iter()
+    .map(|(name, study, raters)| {
+        let table = Table::parse(export(&study, &raters).as_bytes()).unwrap();
+        (name, analyze(&table, &study, Language::French).unwrap())
+    })
+    .collect()
+}
+
+fn write(report: &Report, name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    for file in &report.files {
+        let path = folder.join(&file.path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, &file.text).unwrap();
+    }
+    folder
+}
+
+/// Key and name of a number, with the number.
+fn numbers(text: &str) -> HashMap<(String, String), f64> {
+    let table = Table::parse(text.as_bytes()).unwrap();
+    let cell = |row, column| table.cell(row, column).unwrap_or_default().to_owned();
+    (0..table.rows())
+        .map(|row| ((cell(row, 0), cell(row, 1)), cell(row, 2).parse().unwrap()))
+        .collect()
+}
+
+fn compare(report: &Report, folder: &Path, file: &str) {
+    let own = report.files.iter().find(|file| file.path == "data/numbers.csv").unwrap();
+    let own = numbers(&own.text);
+    let other = numbers(&std::fs::read_to_string(folder.join("data").join(file)).unwrap());
+    assert!(own.len() > 400, "{}", own.len());
+    for (key, value) in &own {
+        let again = *other.get(key).unwrap_or_else(|| panic!("{file} has no {key:?}"));
+        let size = value.abs().max(again.abs());
+        assert!((value - again).abs() <= TOLERANCE * size + 1e-12, "{key:?}: {value} and {again}");
+    }
+}
+
+fn run(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}\n{errors}");
+    assert!(text.contains(" 0 differ"), "{text}");
+    text
+}
+
+#[test]
+fn r_finds_every_number_again() {
+    let Some(rscript) = mimique_test_support::rscript("r_finds_every_number_again") else { return };
+    for (name, report) in reports() {
+        let folder = write(&report, &format!("r-{name}"));
+        // The first model of the small study is fitted too, where its package is installed.
+        let models = if name == "demo" { "one-model" } else { "no-models" };
+        let text = run(Command::new(&rscript).arg(folder.join("analysis.R")).arg(models));
+        for model in ["Cumulative link mixed model of believability", "Binomial mixed model of"] {
+            assert!(text.contains(model), "{text}");
+        }
+        let failed =
+            |line: &&str| line.contains("not fitted") && !line.contains("install.packages");
+        assert_eq!(text.lines().find(failed), None, "{text}");
+        compare(&report, &folder, "numbers-r.csv");
+    }
+}
+
+#[test]
+fn python_finds_every_number_again() {
+    let Some(python) = mimique_test_support::python("python_finds_every_number_again") else {
+        return;
+    };
+    for (name, report) in reports() {
+        let folder = write(&report, &format!("python-{name}"));
+        run(Command::new(&python).arg(folder.join("analysis.py")));
+        compare(&report, &folder, "numbers-python.csv");
+    }
+}
+
+/// Every p of results.json is among the numbers that the scripts compute.
+#[test]
+fn no_p_of_the_results_is_left_out() {
+    for (_, report) in reports() {
+        let file = |path: &str| &report.files.iter().find(|file| file.path == path).unwrap().text;
+        let known: Vec<u64> =
+            numbers(file("data/numbers.csv")).values().map(|value| value.to_bits()).collect();
+        let results: serde_json::Value = serde_json::from_str(file("results.json")).unwrap();
+        let mut found = 0;
+        let mut left = vec![&results];
+        while let Some(value) = left.pop() {
+            match value {
+                serde_json::Value::Object(map) => {
+                    for key in ["p_value", "statistic", "p_holm", "p_holm_over_hypotheses"] {
+                        if let Some(number) = map.get(key).and_then(|value| value.as_f64()) {
+                            assert!(known.contains(&number.to_bits()), "{key} {number}");
+                            found += 1;
+                        }
+                    }
+                    left.extend(map.values());
+                }
+                serde_json::Value::Array(items) => left.extend(items),
+                _ => {}
+            }
+        }
+        assert!(found > 100, "{found}");
+    }
+}

@@ -1,0 +1,126 @@
+//! What is said of the frames of a solve together.
+
+use mimique_solver::{FrameReport, FrameWarning};
+use serde::Serialize;
+
+/// Residual, iterations and convergence over the frames of a take.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FrameStatistics {
+    /// Frames.
+    pub frames: usize,
+    /// Root mean square of the frames' residuals, millimetres.
+    pub residual_rms_mm: f64,
+    /// Largest residual of a frame, millimetres.
+    pub residual_worst_mm: f64,
+    /// Mean number of iterations.
+    pub iterations_mean: f64,
+    /// Largest number of iterations.
+    pub iterations_most: u32,
+    /// Largest KKT error, in units of weight.
+    pub kkt_worst: f64,
+    /// Markers not seen, over all frames.
+    pub missing_markers: u64,
+    /// Frames that did not reach the tolerance; the first of them.
+    pub not_converged: Option<(usize, usize)>,
+    /// Frames in which no marker is seen; the first of them.
+    pub without_markers: Option<(usize, usize)>,
+    /// Frames whose norm had to be smoothed.
+    pub smoothed: usize,
+    /// Frames far from what a regression has learnt from; the first of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far_from_training: Option<(usize, usize)>,
+    /// Largest predictive standard deviation of a regression.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation_worst: Option<f64>,
+}
+
+impl FrameStatistics {
+    /// Sums up the reports of consecutive frames.
+    pub fn of(reports: &[FrameReport]) -> Self {
+        let count = reports.len().max(1) as f64;
+        let with = |warning: FrameWarning| {
+            let mut frames =
+                (0..reports.len()).filter(|&i| reports[i].warning == Some(warning)).peekable();
+            let first = *frames.peek()?;
+            Some((frames.count(), first))
+        };
+        let most = |of: fn(&FrameReport) -> f64| reports.iter().map(of).fold(0.0, f64::max);
+        Self {
+            frames: reports.len(),
+            residual_rms_mm: 1e3
+                * (reports.iter().map(|r| r.residual * r.residual).sum::<f64>() / count).sqrt(),
+            residual_worst_mm: 1e3 * most(|r| r.residual),
+            iterations_mean: reports.iter().map(|r| f64::from(r.iterations)).sum::<f64>() / count,
+            iterations_most: reports.iter().map(|r| r.iterations).max().unwrap_or(0),
+            kkt_worst: most(|r| r.kkt_error),
+            missing_markers: reports.iter().map(|r| u64::from(r.missing_markers)).sum(),
+            not_converged: with(FrameWarning::NotConverged),
+            without_markers: with(FrameWarning::NoMarkers),
+            smoothed: with(FrameWarning::Smoothed).map_or(0, |(count, _)| count),
+            far_from_training: with(FrameWarning::FarFromTraining),
+            deviation_worst: reports.iter().filter_map(|r| r.deviation).reduce(f64::max),
+        }
+    }
+
+    /// What should be said of the frames, counted from `first_frame`.
+    pub fn warnings(&self, first_frame: u64) -> Vec<String> {
+        let mut out = Vec::new();
+        let frames =
+            |count: usize| if count == 1 { "1 frame".into() } else { format!("{count} frames") };
+        if let Some((count, first)) = self.not_converged {
+            out.push(format!(
+                "{} did not reach the tolerance (the first is {}; KKT error up to {:.1e})",
+                frames(count),
+                first as u64 + first_frame,
+                self.kkt_worst
+            ));
+        }
+        if let Some((count, first)) = self.without_markers {
+            out.push(format!(
+                "{} without any marker (the first is {}): their weights come from the priors alone",
+                frames(count),
+                first as u64 + first_frame
+            ));
+        }
+        if let Some((count, first)) = self.far_from_training {
+            out.push(format!(
+                "{} far from the training data (the first is {}): their weights tend to the \
+                 neutral face; record such expressions in the range of motion",
+                frames(count),
+                first as u64 + first_frame
+            ));
+        }
+        if self.smoothed > 0 {
+            out.push(format!(
+                "{} met the markers exactly: the norm was smoothed with eps = 1e-4 l",
+                frames(self.smoothed)
+            ));
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_that_fail_are_counted_and_named() {
+        let mut reports = vec![FrameReport::default(); 12];
+        assert_eq!(FrameStatistics::of(&reports).warnings(700), Vec::<String>::new());
+        for frame in [4, 9] {
+            reports[frame].warning = Some(FrameWarning::NotConverged);
+            reports[frame].kkt_error = 0.25;
+        }
+        reports[2].warning = Some(FrameWarning::NoMarkers);
+        let statistics = FrameStatistics::of(&reports);
+        assert_eq!(statistics.not_converged, Some((2, 4)));
+        let said = statistics.warnings(700);
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert_eq!(
+            said[0],
+            "2 frames did not reach the tolerance (the first is 704; KKT error up to 2.5e-1)"
+        );
+        assert!(said[1].starts_with("1 frame without any marker (the first is 702)"), "{said:?}");
+    }
+}

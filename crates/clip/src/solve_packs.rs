@@ -1,0 +1,129 @@
+//! The solve of one clip from its two packs: the same function natively and in the browser, so
+//! that the server knows the weights that every browser will compute.
+
+use mimique_avatar::pack::PackError;
+use mimique_solver::{FitError, MethodSpec, Operators};
+
+use crate::frame_statistics::FrameStatistics;
+use crate::hashes::weights_hash;
+use crate::packs::{
+    TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
+};
+use crate::pipeline::{MarkerTake, PipelineError, solve_markers};
+
+/// The weights of a clip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolvedTake {
+    /// The N shapes, in the avatar's order.
+    pub shape_names: Vec<String>,
+    /// Frames per second.
+    pub rate_hz: f64,
+    /// Frame-major: frames x N.
+    pub weights: Vec<f64>,
+    /// SHA-256 of the weights (f64, little-endian, frame-major), hexadecimal.
+    pub weights_hash: String,
+    /// Cut-off of the head's low-pass, Hz; `None` where the head was not filtered.
+    pub head_lowpass_hz: Option<f64>,
+    /// The shapes that turn the eyes and rest, since no gaze is given.
+    pub gaze_at_rest: Vec<String>,
+    /// Residual, iterations and convergence over all frames; `None` for recorded weights.
+    pub statistics: Option<FrameStatistics>,
+    /// What should be said, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Why a clip cannot be solved.
+#[derive(Debug, thiserror::Error)]
+pub enum SolvePacksError {
+    /// A pack is damaged or of another kind.
+    #[error(transparent)]
+    Pack(#[from] PackError),
+    /// The packs do not belong together, or the method does not solve with them.
+    #[error(transparent)]
+    Pipeline(#[from] PipelineError),
+}
+
+impl SolvedTake {
+    /// Number of frames.
+    pub fn frames(&self) -> usize {
+        self.weights.len() / self.shape_names.len().max(1)
+    }
+}
+
+/// Solves a take pack with an operators pack by a method. A take of recorded weights is unpacked as
+/// it is; its operators are not looked at.
+///
+/// # Errors
+/// [`SolvePacksError`]: a damaged pack, packs that do not belong together, a method that does not
+/// solve with these operators.
+pub fn solve_packs(
+    operators: &[u8],
+    take: &[u8],
+    spec: &MethodSpec,
+) -> Result<SolvedTake, SolvePacksError> {
+    solve_with(|| decode_operators(operators), take, spec)
+}
+
+/// The same with an operators pack whose body is inflated already, as browsers do it.
+///
+/// # Errors
+/// As [`solve_packs`].
+pub fn solve_inflated(
+    operators: &[u8],
+    take: &[u8],
+    spec: &MethodSpec,
+) -> Result<SolvedTake, SolvePacksError> {
+    solve_with(|| decode_inflated_operators(operators), take, spec)
+}
+
+fn solve_with(
+    operators: impl FnOnce() -> Result<Operators, PackError>,
+    take: &[u8],
+    spec: &MethodSpec,
+) -> Result<SolvedTake, SolvePacksError> {
+    let take = decode_take(take)?;
+    match &take.content {
+        TakeContent::Markers(_) => Ok(solve_segment(&operators()?, &take, spec)?),
+        TakeContent::Weights { shape_names, weights } => {
+            let n = shape_names.len();
+            let weights = weights[take.played.start * n..take.played.end * n].to_vec();
+            Ok(SolvedTake {
+                shape_names: shape_names.clone(),
+                rate_hz: take.rate_hz,
+                weights_hash: weights_hash(&weights),
+                weights,
+                head_lowpass_hz: None,
+                gaze_at_rest: vec![],
+                statistics: None,
+                warnings: vec![],
+            })
+        }
+    }
+}
+
+/// Solves the markers of a take that is open already.
+///
+/// # Errors
+/// [`PipelineError`]; a take of recorded weights has nothing to solve.
+pub fn solve_segment(
+    operators: &Operators,
+    take: &TakePack,
+    spec: &MethodSpec,
+) -> Result<SolvedTake, PipelineError> {
+    let TakeContent::Markers(markers) = &take.content else {
+        return Err(FitError::Recorded.into());
+    };
+    let marker_take = MarkerTake { markers, rate_hz: take.rate_hz, played: take.played.clone() };
+    let solution = solve_markers(operators, &marker_take, spec, &mut || 0.0)?;
+    let statistics = FrameStatistics::of(&solution.reports);
+    Ok(SolvedTake {
+        shape_names: operators.parts().shape_names.clone(),
+        rate_hz: take.rate_hz,
+        weights_hash: weights_hash(&solution.weights),
+        weights: solution.weights,
+        head_lowpass_hz: solution.motion.head_lowpass_hz,
+        gaze_at_rest: solution.gaze_at_rest,
+        warnings: statistics.warnings(take.first_frame),
+        statistics: Some(statistics),
+    })
+}

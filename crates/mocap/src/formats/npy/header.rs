@@ -1,0 +1,147 @@
+//! The header of a NumPy array, read and written.
+//!
+//! It is a Python literal with three keys, read here in fifty lines. `npyz` and `ndarray-npy` read it by a
+//! grammar of all literals of Python, whose parser and big numbers the studio's module would carry.
+
+use crate::ReadError;
+use crate::formats::source::{self, Source};
+
+/// What every array begins with.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+const REMEDY: &str = "save it with numpy.save(file, weights), float32 or float64, frames x shapes";
+/// Longest header: names and sizes of three keys take a hundred bytes.
+const LONGEST_HEADER: u64 = 1 << 16;
+
+/// The header of an array.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Header {
+    /// Bytes of a number: 4 or 8.
+    pub(super) width: usize,
+    pub(super) big_endian: bool,
+    pub(super) fortran_order: bool,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    /// Where the numbers begin, bytes from the start of the file.
+    pub(super) data: u64,
+}
+
+/// Read and check the header.
+pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadError> {
+    let wrong = |at: u64, what: String| ReadError::at_byte(at, "header", what, REMEDY);
+    let start = source::beginning(file, 12)?;
+    let [_, _, _, _, _, _, major, minor, a, b, c, d] = start[..] else {
+        return Err(wrong(length, format!("the file ends after {length} bytes")));
+    };
+    let (size, text_at) = match (major, minor) {
+        (1, 0) => (u64::from(u16::from_le_bytes([a, b])), 10),
+        (2 | 3, 0) => (u64::from(u32::from_le_bytes([a, b, c, d])), 12),
+        _ => return Err(wrong(6, format!("format {major}.{minor}, not 1.0, 2.0 or 3.0"))),
+    };
+    let data = text_at + size;
+    if size > LONGEST_HEADER || data > length {
+        let what = format!("a header of {size} bytes in a file of {length}");
+        return Err(wrong(8, what));
+    }
+    let bytes = source::beginning(file, data)?;
+    let text = String::from_utf8_lossy(bytes.get(text_at as usize..).unwrap_or_default());
+    let keys = literal(&text).ok_or_else(|| {
+        wrong(text_at, format!("{:?} is not the dictionary of an array", text.trim()))
+    })?;
+    let (width, big_endian) = match keys.descr {
+        "<f4" => (4, false),
+        ">f4" => (4, true),
+        "<f8" => (8, false),
+        ">f8" => (8, true),
+        other => return Err(wrong(text_at, format!("numbers of type {other:?}"))),
+    };
+    let [rows, columns] = keys.shape[..] else {
+        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
+    };
+    if columns == 0 {
+        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
+    }
+    let wanted = rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).map(|n| n as u64);
+    if wanted != Some(length - data) {
+        let what = format!(
+            "{} bytes of numbers, {rows} x {columns} of them at {width} bytes are {}",
+            length - data,
+            wanted.map_or("beyond memory".to_owned(), |n| n.to_string())
+        );
+        return Err(ReadError::at_byte(
+            data,
+            "data",
+            what,
+            "copy the file again, or save one array per file",
+        ));
+    }
+    Ok(Header { width, big_endian, fortran_order: keys.fortran_order, rows, columns, data })
+}
+
+/// The values of the header's three keys.
+struct Keys<'t> {
+    descr: &'t str,
+    fortran_order: bool,
+    shape: Vec<usize>,
+}
+
+/// A dictionary as NumPy writes it; `None` for anything else.
+fn literal(text: &str) -> Option<Keys<'_>> {
+    let mut rest = text.trim().strip_prefix('{')?.strip_suffix('}')?.trim();
+    let (mut descr, mut fortran_order, mut shape) = (None, None, None);
+    while !rest.is_empty() {
+        let (key, after) = quoted(rest)?;
+        rest = after.trim_start().strip_prefix(':')?.trim_start();
+        rest = match key {
+            "descr" => {
+                let (value, after) = quoted(rest)?;
+                descr = Some(value);
+                after
+            }
+            "fortran_order" => {
+                let (value, after) = rest
+                    .strip_prefix("True")
+                    .map(|after| (true, after))
+                    .or_else(|| rest.strip_prefix("False").map(|after| (false, after)))?;
+                fortran_order = Some(value);
+                after
+            }
+            "shape" => {
+                let (inside, after) = rest.strip_prefix('(')?.split_once(')')?;
+                // One number has a comma after it, and several may.
+                let inside = inside.trim();
+                let numbers = inside.strip_suffix(',').unwrap_or(inside).split(',').map(str::trim);
+                shape = Some(match inside {
+                    "" => Vec::new(),
+                    _ => numbers.map(|n| n.parse().ok()).collect::<Option<Vec<usize>>>()?,
+                });
+                after
+            }
+            _ => return None,
+        };
+        rest = rest.trim_start();
+        rest = rest.strip_prefix(',').or(rest.is_empty().then_some(rest))?.trim_start();
+    }
+    Some(Keys { descr: descr?, fortran_order: fortran_order?, shape: shape? })
+}
+
+/// A quoted string without escapes at the start of a text, and what follows it.
+fn quoted(text: &str) -> Option<(&str, &str)> {
+    let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
+    text[1..].split_once(quote)
+}
+
+/// The header of an array in C order, format 1.0, with the numbers' type, e.g. `<f8`.
+///
+/// Magic, version, length and text fill whole lines of 64 bytes.
+pub fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
+    let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    let comma = if shape.len() == 1 { "," } else { "" };
+    let text = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}{comma}), }}",
+        shape.join(", ")
+    );
+    let padded = (10 + text.len() + 1).next_multiple_of(64) - 11;
+    let mut header = [MAGIC, &[1, 0], &((padded + 1) as u16).to_le_bytes()].concat();
+    header.extend(format!("{text:padded$}\n").into_bytes());
+    header
+}

@@ -1,0 +1,171 @@
+//! Weights as a NumPy array: `.npy` of format 1.0, 2.0 or 3.0, frames x shapes.
+//!
+//! The array is of 4- or 8-byte floats, little- or big-endian, in C or Fortran order. It holds
+//! neither names nor a rate: both stand in `NAME.shapes.json` beside `NAME.npy`, which is written
+//! with it. Without that file the columns are the shapes of the avatar, where their number fits,
+//! and the caller says the rate.
+
+mod header;
+#[cfg(test)]
+mod tests;
+
+pub use header::npy_header;
+
+use std::io::SeekFrom;
+use std::path::{Path, PathBuf};
+
+use self::header::{Header, MAGIC, header};
+use super::format::{Format, Read, Recognise, Write};
+use super::source::{self, Source};
+use crate::{ReadError, WeightOptions, WeightsTable};
+
+const BESIDE: &str = "write NAME.shapes.json beside NAME.npy: \
+                      {\"shape_names\": [\"jawOpen\", ...], \"rate_hz\": 60}";
+pub(super) static FORMAT: Format = Format {
+    id: "npy",
+    name: "NumPy array (weights)",
+    extensions: &["npy"],
+    recognised_by: "`\\x93NUMPY`",
+    reads: "format 1.0 to 3.0; `f4` and `f8`, both byte orders, C and Fortran order; names and rate from `NAME.shapes.json` beside it, else the avatar's shapes and the rate that is asked for",
+    recognise: Recognise::Beginning(|bytes| bytes.starts_with(MAGIC)),
+    read: Read::BinaryWeights(read),
+    write: Some(Write::Weights(write)),
+};
+
+/// What stands beside an array.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Beside {
+    /// Names of the columns.
+    shape_names: Vec<String>,
+    /// Frames per second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rate_hz: Option<f64>,
+    /// Number of the first frame.
+    #[serde(default)]
+    first_frame: u64,
+}
+
+impl Beside {
+    fn path(array: &Path) -> PathBuf {
+        array.with_extension("shapes.json")
+    }
+
+    /// What stands beside that array; `None` where there is no such file.
+    fn read(array: &Path) -> Result<Option<Self>, ReadError> {
+        let path = Self::path(array);
+        let wrong = |what: String| ReadError::Beside {
+            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            what,
+            remedy: BESIDE,
+        };
+        match std::fs::read(&path) {
+            Ok(bytes) => {
+                let beside: Self =
+                    serde_json::from_slice(&bytes).map_err(|e| wrong(e.to_string()))?;
+                match beside.rate_hz {
+                    Some(rate) if !(rate > 0.0 && rate.is_finite()) => {
+                        Err(wrong(format!("rate_hz: {rate} frames per second")))
+                    }
+                    _ => Ok(Some(beside)),
+                }
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(wrong(e.to_string())),
+        }
+    }
+}
+
+/// Read the document.
+fn read(
+    file: &mut dyn Source,
+    path: Option<&Path>,
+    options: &WeightOptions<'_>,
+) -> Result<WeightsTable, ReadError> {
+    let length = source::length(file)?;
+    let header = header(file, length)?;
+    let beside = path.map(Beside::read).transpose()?.flatten();
+    let columns = header.columns;
+    let names = match &beside {
+        Some(beside) => &beside.shape_names,
+        None => options.shape_names,
+    };
+    if names.len() != columns {
+        let what = match (&beside, names.len()) {
+            (Some(_), n) => format!("{columns} columns, NAME.shapes.json has {n} names"),
+            (None, 0) => format!("{columns} columns, whose names are not known"),
+            (None, n) => format!("{columns} columns, the avatar has {n} shapes"),
+        };
+        return Err(ReadError::at_byte(0, "header", what, BESIDE));
+    }
+    if let Some(k) = (0..columns).find(|&k| names[k].is_empty() || names[..k].contains(&names[k])) {
+        let what = format!("shape {:?} empty or twice", names[k]);
+        return Err(ReadError::at_byte(0, "names", what, "give every column a name of its own"));
+    }
+    let rate_hz = options.rate_hz.or(beside.as_ref().and_then(|beside| beside.rate_hz));
+    let Some(rate_hz) = rate_hz.filter(|rate| rate.is_finite() && *rate > 0.0) else {
+        let what = "no rate: an array has none";
+        return Err(ReadError::at_byte(
+            0,
+            "header",
+            what,
+            "give it, or write NAME.shapes.json beside NAME.npy: {\"shape_names\": [...], \"rate_hz\": 60}",
+        ));
+    };
+    let weights = numbers(file, &header, names)?;
+    let first_frame = beside.as_ref().map_or(0, |beside| beside.first_frame);
+    Ok(WeightsTable::at_rate(names.to_vec(), weights, first_frame, rate_hz))
+}
+
+/// The numbers, frame by frame.
+fn numbers(
+    file: &mut dyn Source,
+    header: &Header,
+    names: &[String],
+) -> Result<Vec<f64>, ReadError> {
+    let Header { width, big_endian, rows, columns, data, .. } = *header;
+    file.seek(SeekFrom::Start(data)).map_err(ReadError::Read)?;
+    // The header was held against the length of the file: no more is asked for than there is.
+    let mut bytes = vec![0; rows * columns * width];
+    let filled = source::fill(file, &mut bytes)?;
+    bytes.truncate(filled);
+    let value = |place: usize| {
+        let here = bytes.get(place * width..(place + 1) * width)?;
+        Some(match (width, big_endian) {
+            (4, false) => f64::from(f32::from_le_bytes(here.try_into().ok()?)),
+            (4, true) => f64::from(f32::from_be_bytes(here.try_into().ok()?)),
+            (_, false) => f64::from_le_bytes(here.try_into().ok()?),
+            (_, true) => f64::from_be_bytes(here.try_into().ok()?),
+        })
+    };
+    let mut weights = Vec::with_capacity(rows * columns);
+    for row in 0..rows {
+        for (column, name) in names.iter().enumerate().take(columns) {
+            let place =
+                if header.fortran_order { column * rows + row } else { row * columns + column };
+            let found = value(place);
+            weights.push(found.filter(|w| w.is_finite()).ok_or_else(|| {
+                let what = format!(
+                    "row {row}, column {column} ({name}): {}",
+                    found.map_or("missing".to_owned(), |w| w.to_string())
+                );
+                let at = data + (place * width) as u64;
+                ReadError::at_byte(at, "data", what, "write a finite number for every weight")
+            })?);
+        }
+    }
+    Ok(weights)
+}
+
+/// The array, and beside it its names, rate and first frame.
+fn write(table: &WeightsTable, path: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut array = npy_header("<f8", &[table.frames.len(), table.shape_names.len()]);
+    array.extend(table.weights.iter().flat_map(|w| w.to_le_bytes()));
+    let beside = Beside {
+        shape_names: table.shape_names.clone(),
+        rate_hz: table.rate_hz(),
+        first_frame: table.frames.first().copied().unwrap_or(0),
+    };
+    let beside = serde_json::to_vec_pretty(&beside).unwrap_or_default();
+    vec![(Beside::path(path), beside), (path.to_owned(), array)]
+}

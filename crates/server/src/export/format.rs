@@ -1,0 +1,37 @@
+//! The forms of an export.
+
+/// Form of an export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Tidy CSV.
+    Csv,
+    /// Wide CSV.
+    Wide,
+    /// Tidy rows as JSON lines.
+    Json,
+    /// Stored events as JSON lines.
+    Events,
+    /// A Psych-DS data set.
+    PsychDs,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 5] = [Self::Csv, Self::Wide, Self::Json, Self::Events, Self::PsychDs];
+
+    /// Its name on the command line and in addresses.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Wide => "wide",
+            Self::Json => "json",
+            Self::Events => "events",
+            Self::PsychDs => "psych-ds",
+        }
+    }
+
+    /// The format of this name.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.word() == word)
+    }
+}

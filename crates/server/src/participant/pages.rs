@@ -1,0 +1,136 @@
+//! Pages: participant's, preview, the list of studies; readiness.
+
+use std::sync::atomic::Ordering;
+
+use axum::extract::{Path, RawQuery, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{Html, IntoResponse, Response};
+use maud::{DOCTYPE, html};
+use mimique_storage::StorageError;
+
+use crate::accounts::identity::Researcher;
+use crate::error::Error;
+use crate::state::App;
+use crate::studio::page::{StudioFiles, studio_page};
+
+/// The list of studies, for those who may know it.
+pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
+    let assets = app.assets.prefix();
+    // Which studies there are is for those who were told.
+    let is_open = may_look(&app, &headers).await.is_ok();
+    let studies = if is_open { app.catalogue.studies() } else { Vec::new() };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="robots" content="noindex";
+                title { "Studies" }
+                link rel="icon" href={ (assets) "/style/icon.svg" } type="image/svg+xml";
+                link rel="stylesheet" href={ (assets) "/style/style.css" };
+            }
+            body {
+                main.page {
+                    h1 { "Studies" }
+                    @if !is_open {
+                        p { "Open the address that you were given." }
+                        p lang="fr" { "Ouvrez l’adresse qui vous a été donnée." }
+                    }
+                    @for study in studies {
+                        @let language = study.study().default_language();
+                        section.card lang=(language) {
+                            h2 { (study.title(language)) }
+                            p { (study.study().study_metadata.description.in_language(language)) }
+                            div.actions {
+                                a.button.primary href={ "/s/" (study.id()) "/" } lang="en" {
+                                    "Take part"
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    Html(page.into_string())
+}
+
+/// The page's addresses are relative to the slash; what recruitment appended goes along.
+pub(crate) async fn participant_without_slash(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    RawQuery(query): RawQuery,
+) -> Result<Response, Error> {
+    let study = app.study(&study)?;
+    let query = query.map(|query| format!("?{query}")).unwrap_or_default();
+    let address = format!("/s/{}/{query}", study.id());
+    Ok((StatusCode::PERMANENT_REDIRECT, [(header::LOCATION, address)]).into_response())
+}
+
+pub(crate) async fn participant(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    from_template(&app, "participant/index.html", &study, &headers)
+}
+
+pub(crate) async fn preview(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    may_look(&app, &headers).await?;
+    from_template(&app, "researcher/preview.html", &study, &headers)
+}
+
+/// The studio: everything in it happens in the browser.
+pub(crate) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result<Response, Error> {
+    may_look(&app, &headers).await?;
+    studio_page(&app.assets, &StudioFiles::new())
+}
+
+/// Lets researchers see what participants should not, or everybody where the server is told so.
+pub(crate) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error> {
+    if app.access.open_preview {
+        return Ok(());
+    }
+    Researcher::of(app, headers).await.map(|_| ())
+}
+
+/// Whether answers can be stored: the database answers, its schema is ours, we are not stopping.
+pub(crate) async fn ready(State(app): State<App>) -> Result<&'static str, Error> {
+    if app.stopping.load(Ordering::Relaxed) {
+        return Err(StorageError::Stopping.into());
+    }
+    if !app.storage.is_current().await? {
+        return Err(Error::internal("the database's schema is not this binary's"));
+    }
+    Ok("ready\n")
+}
+
+fn from_template(
+    app: &App,
+    name: &str,
+    study: &str,
+    headers: &HeaderMap,
+) -> Result<Response, Error> {
+    let study = app.study(study)?;
+    let wanted = headers
+        .get(header::ACCEPT_LANGUAGE)
+        .and_then(|value| value.to_str().ok())
+        .and_then(|value| value.split([',', ';']).next())
+        .unwrap_or_default();
+    let language = study.study().language_for(wanted.trim());
+    let values = [
+        ("assets", app.assets.prefix()),
+        ("lang", language.to_owned()),
+        ("title", study.title(language).to_owned()),
+        ("study", study.id().to_owned()),
+        ("packs", app.settings.packs_address.clone().unwrap_or_else(|| "/packs".into())),
+    ];
+    let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
+    let page = app.assets.page(name, &values).ok_or(Error::NotFound)?;
+    Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
+}

@@ -1,0 +1,323 @@
+//! `/api/sessions`: a participant's session from start to receipt or withdrawal.
+//!
+//! The token of a session is derived from the nonce that the page made, by a key that never leaves
+//! the server, so that a repeated start finds the same session although only the token's hash is
+//! kept. The withdrawal code is derived from the token in the same way.
+
+use axum::Json;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
+use mimique_session::wire::{
+    Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
+    Withdraw, Withdrawn,
+};
+use mimique_session::{Record, Standing};
+use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
+use mimique_study::{RepeatPrevention, Study};
+
+use crate::clock::now_ms;
+use crate::error::Error;
+use crate::http::cookies;
+use crate::http::extract::Body;
+use crate::secret;
+use crate::state::App;
+use crate::state::hosted_study::{HostedStudy, Stage};
+
+/// Events in one session at most; a long study has some thousands.
+const MOST_EVENTS: u64 = 100_000;
+/// One event's body in bytes at most: the frame log of several minutes at 240 Hz.
+const LARGEST_EVENT: usize = 1024 * 1024;
+/// What is kept of a browser: its name, its major version, the kind of system it runs on.
+const CLIENT_KEYS: [&str; 3] = ["browser", "version", "platform"];
+/// Hexadecimal digits of 128 bits.
+const TOKEN_DIGITS: usize = 32;
+
+pub(crate) async fn start(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+    Body(request): Body<StartSession>,
+) -> Result<Response, Error> {
+    let study = app.study(&study)?;
+    let study = study.as_ref();
+    if !secret::is_hex(&request.nonce, TOKEN_DIGITS) {
+        return Err(Error::BadNonce);
+    }
+    let token = token(&app, study.id(), &request.nonce);
+    let code = withdrawal_code(&app, &token);
+    let client: std::collections::BTreeMap<_, _> = request
+        .client
+        .iter()
+        .filter(|(name, _)| CLIENT_KEYS.contains(&name.as_str()))
+        .map(|(name, value)| (name.as_str(), one_word(value)))
+        .collect();
+    let language = study.study().language_for(&request.language).to_owned();
+    let recruitment = study.kept_parameters(request.recruitment);
+    let browser_mark = browser_mark(&app, study, &token);
+    let marks = marks(&app, study, &recruitment, browser_mark.as_deref(), &headers)
+        .ok_or_else(|| cannot_begin(study.study(), "no-identifier", &language))?;
+    refuse_outside_hours(&app, study, &token, &language).await?;
+    let conditions = conditions(&app, study, request.condition, &token, &language).await?;
+    let session = NewSession {
+        token_hash: secret::hash(&token),
+        withdrawal_hash: withdrawal_hash(&code),
+        study_id: study.id().to_owned(),
+        config_hash: study.config_hash().to_owned(),
+        seed: study.study().seed,
+        stage: study.stage().word().to_owned(),
+        language: language.clone(),
+        client: serde_json::to_string(&client).unwrap_or_default(),
+        recruitment,
+        marks,
+        conditions,
+        places: study.study().recruitment.participants,
+        reservation_ms: study.study().recruitment.reservation_ms(),
+        now_ms: now_ms(),
+    };
+    let record = app.storage.start(session).await.map_err(|error| match error {
+        StorageError::AlreadyTookPart => {
+            cannot_begin(study.study(), "already-took-part", &language)
+        }
+        StorageError::StudyFull => cannot_begin(study.study(), "study-full", &language),
+        error => error.into(),
+    })?;
+    if record.is_deleted() {
+        return Err(StorageError::Withdrawn.into());
+    }
+    let mut response = Json(started(&app, token, &record)).into_response();
+    if let Some(mark) = browser_mark {
+        let path = format!("/api/studies/{}/", study.id());
+        let cookie = cookies::set_below(&path, &cookie_name(study), &mark, app.is_encrypted())?;
+        response.headers_mut().insert(header::SET_COOKIE, cookie);
+    }
+    Ok(response)
+}
+
+/// Before the study opens and after it closes nobody begins; who has begun goes on.
+async fn refuse_outside_hours(
+    app: &App,
+    study: &HostedStudy,
+    token: &str,
+    language: &str,
+) -> Result<(), Error> {
+    let recruitment = &study.study().recruitment;
+    let now = now_ms();
+    let code = if recruitment.opens_ms().is_some_and(|opens| now < opens) {
+        "study-not-open"
+    } else if recruitment.closes_ms().is_some_and(|closes| now >= closes) {
+        "study-closed"
+    } else {
+        return Ok(());
+    };
+    match has_begun(app, token).await? {
+        true => Ok(()),
+        false => Err(cannot_begin(study.study(), code, language)),
+    }
+}
+
+async fn has_begun(app: &App, token: &str) -> Result<bool, Error> {
+    match app.storage.session(&secret::hash(token)).await {
+        Ok(_) => Ok(true),
+        Err(StorageError::UnknownSession) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The conditions between which the participant is put: the one that the address names, or all. A
+/// session that has begun keeps its own, whatever the address says now.
+async fn conditions(
+    app: &App,
+    study: &HostedStudy,
+    asked: Option<String>,
+    token: &str,
+    language: &str,
+) -> Result<Vec<String>, Error> {
+    match study.study().conditions_for(asked.as_deref()) {
+        Ok(names) => Ok(names.into_iter().map(str::to_owned).collect()),
+        Err(_) if has_begun(app, token).await? => Ok(Vec::new()),
+        Err(unknown) => {
+            let (message, remedy) = study.study().words(language).unknown_condition(&unknown);
+            Err(Error::CannotBegin { code: "unknown-condition", message, remedy })
+        }
+    }
+}
+
+fn cannot_begin(study: &Study, code: &'static str, language: &str) -> Error {
+    let words = study.words(language);
+    let (message, remedy) = words.refusal(code).unwrap_or(("", ""));
+    Error::CannotBegin { code, message: message.to_owned(), remedy: remedy.to_owned() }
+}
+
+/// What the browser keeps where the study takes each browser once. A pilot may be repeated.
+fn browser_mark(app: &App, study: &HostedStudy, token: &str) -> Option<String> {
+    let wanted = study.study().recruitment.repeat_prevention == RepeatPrevention::Browser
+        && study.stage() == Stage::Live;
+    wanted.then(|| hex::encode(&secret::derive(&app.token_key, &["browser", token])[..16]))
+}
+
+fn cookie_name(study: &HostedStudy) -> String {
+    format!("mimique-{}", study.id())
+}
+
+/// The keyed hashes that must not be there yet; `None` when the identifier is missing by which the
+/// study recognises people.
+fn marks(
+    app: &App,
+    study: &HostedStudy,
+    recruitment: &std::collections::BTreeMap<String, String>,
+    browser_mark: Option<&str>,
+    headers: &HeaderMap,
+) -> Option<Vec<String>> {
+    let keyed = |kind: &str, value: &str| {
+        hex::encode(secret::derive(&app.token_key, &["mark", kind, study.id(), value]))
+    };
+    let rules = &study.study().recruitment;
+    if rules.repeat_prevention == RepeatPrevention::RecruitmentIdentifier
+        && study.stage() == Stage::Live
+    {
+        let name = rules.url_parameters.first()?;
+        let value = recruitment.get(name).map(|value| value.trim()).filter(|v| !v.is_empty())?;
+        return Some(vec![keyed("identifier", value)]);
+    }
+    let Some(own) = browser_mark else { return Some(Vec::new()) };
+    let mut marks = vec![keyed("browser", own)];
+    let held = cookies::find(headers, &cookie_name(study));
+    if let Some(value) = held.filter(|value| secret::is_hex(value, TOKEN_DIGITS) && *value != own) {
+        marks.push(keyed("browser", value));
+    }
+    Some(marks)
+}
+
+pub(crate) async fn resume(
+    State(app): State<App>,
+    Path(token): Path<String>,
+) -> Result<Json<Resume>, Error> {
+    let record = app.storage.session(&token_hash(&token)?).await?;
+    if record.is_deleted() {
+        return Err(StorageError::Withdrawn.into());
+    }
+    let events = app.storage.events(record.key).await?;
+    Ok(Json(Resume { started: started(&app, token, &record), events }))
+}
+
+/// The events that can be stored are stored, whatever becomes of the others; an event that differs
+/// from the one stored under its sequence is kept apart and named in a 409.
+pub(crate) async fn append(
+    State(app): State<App>,
+    Path(token): Path<String>,
+    Body(request): Body<AppendEvents>,
+) -> Result<Json<Acknowledged>, Error> {
+    let token_hash = token_hash(&token)?;
+    let events: Vec<WrittenEvent> =
+        request.events.into_iter().map(checked_event).collect::<Result<_, _>>()?;
+    let sent = events.len() as u64;
+    let appended = app.storage.append_written(&token_hash, events, now_ms()).await?;
+    let kept = sent - appended.conflicts.len() as u64;
+    app.metrics.events.inc_by(kept);
+    if appended.conflicts.is_empty() {
+        Ok(Json(appended.acknowledged))
+    } else {
+        Err(Error::EventConflict { count: appended.conflicts.len(), sequences: appended.conflicts })
+    }
+}
+
+pub(crate) async fn complete(
+    State(app): State<App>,
+    Path(token): Path<String>,
+    Body(request): Body<Complete>,
+) -> Result<Json<Receipt>, Error> {
+    let token_hash = token_hash(&token)?;
+    if request.events == 0 || request.events > MOST_EVENTS {
+        return Err(Error::BadEventCount { events: request.events });
+    }
+    let completed =
+        app.storage.complete(&token_hash, request.events, &app.receipt_key, now_ms()).await?;
+    let mut receipt = Receipt {
+        receipt: completed.receipt,
+        stored: completed.stored,
+        completion_code: None,
+        redirect: None,
+    };
+    // A session may outlive its study's place on this server; its receipt stays good.
+    if let Ok(study) = app.study(&completed.study_id) {
+        let events = app.storage.events(completed.key).await?;
+        let standing = Record::of(None, &events).standing;
+        let code = standing.completion_code(&study.study().recruitment);
+        if code.is_some() || standing == Standing::Completed {
+            let parameters = app.storage.session_recruitment(completed.key).await?;
+            receipt.redirect = study.redirect(&parameters, code);
+            receipt.completion_code = code.map(str::to_owned);
+        }
+    }
+    Ok(Json(receipt))
+}
+
+pub(crate) async fn withdraw(
+    State(app): State<App>,
+    Path(token): Path<String>,
+    Body(request): Body<Withdraw>,
+) -> Result<Json<Withdrawn>, Error> {
+    let token_hash = token_hash(&token)?;
+    let code_hash = withdrawal_hash(&request.withdrawal_code);
+    let deleted = app.storage.withdraw(&token_hash, &code_hash, now_ms()).await?;
+    Ok(Json(Withdrawn { deleted }))
+}
+
+fn checked_event(event: Event) -> Result<WrittenEvent, Error> {
+    let sequence = event.sequence;
+    if sequence >= MOST_EVENTS {
+        return Err(Error::EventBeyondEnd { sequence, most: MOST_EVENTS });
+    }
+    if !event.body.is_object() {
+        return Err(Error::EventNotAnObject { sequence });
+    }
+    let event = WrittenEvent::from(event);
+    if event.body.len() > LARGEST_EVENT {
+        return Err(Error::EventTooLarge { sequence, most_bytes: LARGEST_EVENT });
+    }
+    Ok(event)
+}
+
+fn token(app: &App, study: &str, nonce: &str) -> String {
+    hex::encode(&secret::derive(&app.token_key, &["session", study, nonce])[..16])
+}
+
+/// What is no token is no session's either.
+fn token_hash(token: &str) -> Result<String, Error> {
+    if secret::is_hex(token, TOKEN_DIGITS) {
+        Ok(secret::hash(token))
+    } else {
+        Err(StorageError::UnknownSession.into())
+    }
+}
+
+fn withdrawal_code(app: &App, token: &str) -> String {
+    let derived = secret::derive(&app.token_key, &["withdrawal", token]);
+    let mut bytes = [0; 10];
+    bytes.copy_from_slice(&derived[..10]);
+    secret::spoken(&bytes)
+}
+
+fn withdrawal_hash(code: &str) -> String {
+    secret::hash(&secret::heard(code))
+}
+
+fn started(app: &App, token: String, record: &SessionRecord) -> SessionStarted {
+    SessionStarted {
+        withdrawal_code: withdrawal_code(app, &token),
+        session: token,
+        participant_id: crate::participant_id::participant_id(record.participant),
+        participant: record.participant,
+        slot: record.slot,
+        condition: record.condition.clone(),
+        seed: record.seed,
+        stage: record.stage.clone(),
+        config_hash: record.config_hash.clone(),
+    }
+}
+
+/// What a browser says of itself: one short word or number, so that no user agent string fits.
+fn one_word(text: &str) -> String {
+    text.chars().take_while(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).take(24).collect()
+}

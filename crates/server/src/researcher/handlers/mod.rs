@@ -1,0 +1,5 @@
+//! The researchers' addresses: a file a group.
+
+pub(crate) mod accounts;
+mod inline_styles;
+pub(crate) mod studies;

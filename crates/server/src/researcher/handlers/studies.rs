@@ -1,0 +1,295 @@
+//! `/researcher` and `/researcher/studies/…`: what happens, who takes part, exclusion, export, report.
+
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::{Path, State};
+use axum::http::{HeaderName, HeaderValue, header};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use mimique_analysis::Language;
+use mimique_session::Standing;
+use mimique_storage::{Exclusion, Role, SessionRecord};
+use serde::Deserialize;
+use tokio::sync::mpsc;
+use tokio_stream::wrappers::ReceiverStream;
+
+use super::inline_styles::report_policy;
+use crate::accounts::audit::audit;
+use crate::accounts::csrf::Guarded;
+use crate::accounts::identity::Researcher;
+use crate::clock::now_ms;
+use crate::error::Error;
+use crate::export::{self, Cells, Format, Options};
+use crate::http::extract::Asked;
+use crate::http::responses::{attachment, see};
+use crate::researcher::dashboard::overview::Overview;
+use crate::researcher::pages::frame::Frame;
+use crate::researcher::pages::home::{Listed, home_page};
+use crate::researcher::pages::participant::{Shown, participant_page};
+use crate::researcher::pages::study::study_page;
+use crate::state::App;
+use crate::state::hosted_study::HostedStudy;
+use crate::uploads;
+
+/// A stream's right to go on is looked at this often.
+const RECHECK: Duration = Duration::from_secs(15);
+
+pub(crate) async fn home(State(app): State<App>, who: Researcher) -> Result<Response, Error> {
+    let uploads: BTreeMap<_, _> = app
+        .storage
+        .uploads()
+        .await?
+        .into_iter()
+        .map(|upload| (upload.study_id, upload.changed_ms))
+        .collect();
+    let mut listed = Vec::new();
+    for study in app.catalogue.studies() {
+        let sessions = app.storage.sessions(study.id()).await?;
+        let completed = sessions.iter().filter(|s| s.standing == Standing::Completed).count();
+        let uploaded_ms = uploads.get(study.id()).copied();
+        listed.push(Listed { study, sessions: sessions.len(), completed, uploaded_ms });
+    }
+    Ok(home_page(&Frame::new(&app, &who), &listed))
+}
+
+pub(crate) async fn study(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    who: Researcher,
+) -> Result<Response, Error> {
+    let study = app.study(&id)?;
+    let overview = overview(&app, &study, &who).await?;
+    let is_uploaded = uploads::is_uploaded(&app, study.id()).await?;
+    Ok(study_page(&Frame::new(&app, &who), &study, &overview, is_uploaded))
+}
+
+/// A line whenever something of the study has changed; the page then fetches what it shows.
+pub(crate) async fn live(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    headers: axum::http::HeaderMap,
+    who: Researcher,
+) -> Result<Response, Error> {
+    let study = app.study(&id)?.id().to_owned();
+    let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
+    let mut beats = app.pulse.listen();
+    let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
+    tokio::spawn(async move {
+        let _place = place;
+        let mut last = None;
+        loop {
+            let now = beats.borrow_and_update().get(&study).cloned().unwrap_or_default();
+            if last.as_ref() != Some(&now) {
+                let event = Event::default().event("changed").data(&now);
+                if sender.send(Ok(event)).await.is_err() {
+                    break;
+                }
+                last = Some(now);
+            }
+            tokio::select! {
+                changed = beats.changed() => if changed.is_err() { break },
+                // Whoever has logged out meanwhile, or lost the account, sees no more.
+                () = tokio::time::sleep(RECHECK) => {
+                    if Researcher::of(&app, &headers).await.is_err() {
+                        break;
+                    }
+                }
+                () = app.pulse.stopped() => break,
+                () = sender.closed() => break,
+            }
+        }
+    });
+    let stream = Sse::new(ReceiverStream::new(receiver));
+    let mut response = stream.keep_alive(KeepAlive::default()).into_response();
+    // Proxies must not gather what is to be seen at once.
+    let name = HeaderName::from_static("x-accel-buffering");
+    response.headers_mut().insert(name, HeaderValue::from_static("no"));
+    Ok(response)
+}
+
+pub(crate) async fn participant(
+    State(app): State<App>,
+    Path((id, number)): Path<(String, u64)>,
+    who: Researcher,
+) -> Result<Response, Error> {
+    let study = app.study(&id)?;
+    let overview = overview(&app, &study, &who).await?;
+    let found = overview.sessions.iter().find(|(session, _)| session.participant == number);
+    let (session, view) = found.ok_or(Error::NotFound)?;
+    let events = app.storage.events(session.key).await?;
+    let mut exclusions = app.storage.exclusions(study.id()).await?;
+    exclusions.retain(|change| change.session_key == session.key);
+    if who.role >= Role::Analyst {
+        let subject = crate::participant_id::participant_id(number);
+        audit(&app, &who, "read a participant’s answers", study.id(), &subject).await?;
+    }
+    let shown = Shown {
+        study: &study,
+        overview: &overview,
+        session,
+        view,
+        events: &events,
+        exclusions: &exclusions,
+    };
+    Ok(participant_page(&Frame::new(&app, &who), &shown))
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Reason {
+    reason: String,
+}
+
+pub(crate) async fn exclude(
+    State(app): State<App>,
+    Path((id, number)): Path<(String, u64)>,
+    Guarded { who, form }: Guarded<Reason>,
+) -> Result<Response, Error> {
+    const LONGEST: usize = 200;
+    who.needs(Role::Analyst)?;
+    let reason = form.reason.split_whitespace().collect::<Vec<_>>().join(" ");
+    let reason: String = reason.chars().filter(|c| !c.is_control()).take(LONGEST).collect();
+    if reason.is_empty() {
+        return Err(Error::NoReason);
+    }
+    change_exclusion(&app, &who, &id, number, Some(reason)).await
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Nothing {}
+
+pub(crate) async fn include(
+    State(app): State<App>,
+    Path((id, number)): Path<(String, u64)>,
+    Guarded { who, .. }: Guarded<Nothing>,
+) -> Result<Response, Error> {
+    who.needs(Role::Analyst)?;
+    change_exclusion(&app, &who, &id, number, None).await
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Confirmation {
+    confirmation: String,
+}
+
+/// Deletes as the participant's withdrawal and `mimique erase` do.
+pub(crate) async fn erase(
+    State(app): State<App>,
+    Path((id, number)): Path<(String, u64)>,
+    Guarded { who, form }: Guarded<Confirmation>,
+) -> Result<Response, Error> {
+    who.needs(Role::Owner)?;
+    let study = app.study(&id)?;
+    let name =
+        crate::participant_id::participant_id(session(&app, study.id(), number).await?.participant);
+    if !form.confirmation.trim().eq_ignore_ascii_case(&name) {
+        return Err(Error::NotConfirmed { participant: name });
+    }
+    app.storage.erase_participant(study.id(), number, now_ms()).await?;
+    audit(&app, &who, "delete a participant’s answers", study.id(), &name).await?;
+    Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
+}
+
+async fn change_exclusion(
+    app: &App,
+    who: &Researcher,
+    id: &str,
+    number: u64,
+    reason: Option<String>,
+) -> Result<Response, Error> {
+    let study = app.study(id)?;
+    let session = session(app, study.id(), number).await?;
+    let action = if reason.is_some() { "exclude" } else { "take an exclusion back" };
+    let at_ms = now_ms();
+    let by = who.account.email.clone();
+    let exclusion = Exclusion { session_key: session.key, reason, who: by, at_ms };
+    app.storage.add_exclusion(&exclusion).await?;
+    audit(app, who, action, study.id(), &crate::participant_id::participant_id(number)).await?;
+    Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
+}
+
+async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
+    let sessions = app.storage.sessions(study).await?;
+    sessions.into_iter().find(|session| session.participant == number).ok_or(Error::NotFound)
+}
+
+/// What may be asked of an export.
+#[derive(Deserialize)]
+pub(crate) struct ExportQuery {
+    #[serde(default)]
+    with_identifiers: bool,
+    #[serde(default)]
+    neutralised: bool,
+}
+
+pub(crate) async fn export(
+    State(app): State<App>,
+    Path((id, word)): Path<(String, String)>,
+    Asked(query): Asked<ExportQuery>,
+    who: Researcher,
+) -> Result<Response, Error> {
+    who.needs(Role::Analyst)?;
+    let study = app.study(&id)?.id().to_owned();
+    let subject =
+        if query.with_identifiers { format!("{word}, identifiers") } else { word.clone() };
+    let (name, bytes) = match (Format::from_word(&word), word.as_str()) {
+        (Some(format), _) => {
+            let cells = if query.neutralised { Cells::Neutralised } else { Cells::AsTheyAre };
+            let options = Options { with_identifiers: query.with_identifiers, cells };
+            let exported = export::export(&app.storage, Some(&study), format, options).await?;
+            if format == Format::PsychDs {
+                (format!("{study}_psych-ds.zip"), exported.into_zip()?)
+            } else {
+                exported.files.into_iter().next().ok_or(Error::NotFound)?
+            }
+        }
+        (None, "dictionary") => {
+            let bytes = export::dictionary(&app.storage, &study).await?;
+            (format!("{study}_dictionary.csv"), bytes)
+        }
+        (None, "study") => {
+            (format!("{study}.json"), export::study_file(&app.storage, &study).await?)
+        }
+        _ => return Err(Error::NotFound),
+    };
+    audit(&app, &who, "export", &study, &subject).await?;
+    attachment(&name, bytes)
+}
+
+/// A file of the report, or all of them as `report.zip`.
+pub(crate) async fn report(
+    State(app): State<App>,
+    Path((id, code, name)): Path<(String, String, String)>,
+    who: Researcher,
+) -> Result<Response, Error> {
+    who.needs(Role::Analyst)?;
+    let study = app.study(&id)?;
+    let language = Language::from_code(&code).ok_or(Error::NotFound)?;
+    let report = app.reports.get(&app.storage, &study, language).await?;
+    if name == "report.zip" {
+        let files: Vec<_> = report
+            .files
+            .iter()
+            .map(|file| (file.path.clone(), file.text.clone().into_bytes()))
+            .collect();
+        audit(&app, &who, "export", study.id(), "report").await?;
+        let folder = format!("{}_report", study.id());
+        return attachment(&format!("{folder}.zip"), export::zip(&folder, &files)?);
+    }
+    let file = report.files.iter().find(|file| file.path == name).ok_or(Error::NotFound)?;
+    if name == "report.html" {
+        audit(&app, &who, "read the report", study.id(), "").await?;
+        let policy = HeaderValue::from_str(&report_policy(&file.text)).map_err(Error::internal)?;
+        let kind = HeaderValue::from_static("text/html; charset=utf-8");
+        let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, policy)];
+        return Ok((headers, file.text.clone()).into_response());
+    }
+    let name = name.rsplit('/').next().unwrap_or_default().to_owned();
+    attachment(&name, file.text.clone().into_bytes())
+}
+
+async fn overview(app: &App, study: &HostedStudy, who: &Researcher) -> Result<Overview, Error> {
+    let language = study.study().language_for(who.language.code());
+    Overview::load(&app.storage, study, &app.session_views, language).await
+}

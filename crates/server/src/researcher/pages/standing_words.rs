@@ -1,0 +1,22 @@
+//! The dashboard's words for how a session stands.
+
+use mimique_session::Standing;
+
+use mimique_analysis::Language;
+
+/// A standing in the researcher's language.
+pub(super) fn standing_word(standing: Standing, language: Language) -> &'static str {
+    match standing {
+        Standing::InProgress => language.pick("under way", "en cours"),
+        Standing::Abandoned => language.pick("abandoned", "abandonné"),
+        Standing::Declined => language.pick("declined", "refusé"),
+        Standing::DeviceRefused => language.pick("device refused", "appareil refusé"),
+        Standing::ScreenedOut => language.pick("screened out", "non retenu"),
+        Standing::PracticeFailed => language.pick("practice failed", "entraînement échoué"),
+        Standing::ChecksFailed => {
+            language.pick("attention checks failed", "contrôles d’attention échoués")
+        }
+        Standing::Withdrawn => language.pick("withdrawn", "retiré"),
+        Standing::Completed => language.pick("completed", "terminé"),
+    }
+}

@@ -1,0 +1,191 @@
+//! A study as this server hosts it: its file, its hash, where its clips' packs are.
+
+use std::collections::BTreeMap;
+
+use mimique_session::wire::{Bundle, StudySummary};
+use mimique_storage::{StorageError, StudyVersion};
+use mimique_study::ClipSource;
+use mimique_study::{SortedMap, Study, StudyFileError, config_hash};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use serde_json::Value;
+
+use crate::export::table::Version;
+
+/// Whether answers count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stage {
+    /// Trying out: the answers are marked so.
+    Pilot,
+    /// The real thing.
+    #[default]
+    Live,
+}
+
+impl Stage {
+    /// The word in sessions and exports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pilot => "pilot",
+            Self::Live => "live",
+        }
+    }
+}
+
+/// A study as this server hosts it.
+#[derive(Debug, Clone)]
+pub struct HostedStudy {
+    study: Study,
+    stage: Stage,
+    file: Value,
+    bundle: Bundle,
+}
+
+impl HostedStudy {
+    /// A study file that `study::check` has found free of errors, and its clips.
+    pub fn new(
+        file: Value,
+        clips: BTreeMap<String, ClipSource>,
+        stage: Stage,
+    ) -> Result<Self, StudyFileError> {
+        let study = Study::from_value(&file)?;
+        Ok(Self::from_parts(file, study, clips, stage))
+    }
+
+    /// A version as it was stored.
+    pub(crate) fn from_version(version: &StudyVersion, stage: Stage) -> Result<Self, StorageError> {
+        let Version { file, study, clips, .. } = Version::read(version)?;
+        Ok(Self::from_parts(file, study, clips, stage))
+    }
+
+    fn from_parts(
+        file: Value,
+        study: Study,
+        clips: BTreeMap<String, ClipSource>,
+        stage: Stage,
+    ) -> Self {
+        let bundle = Bundle {
+            study_id: study.id.clone(),
+            config_hash: config_hash(&file),
+            study: without_secrets(file.clone()),
+            clips: clips.into_iter().collect(),
+        };
+        Self { study, stage, file, bundle }
+    }
+
+    /// Identifier used in addresses.
+    pub fn id(&self) -> &str {
+        &self.study.id
+    }
+
+    /// The study, read.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// Whether answers count.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub fn config_hash(&self) -> &str {
+        &self.bundle.config_hash
+    }
+
+    /// The study file, whole.
+    pub fn file(&self) -> &Value {
+        &self.file
+    }
+
+    /// What the page needs: the study without what participants must not know.
+    pub fn bundle(&self) -> &Bundle {
+        &self.bundle
+    }
+
+    /// The version as the database keeps it.
+    pub(crate) fn version(&self) -> StudyVersion {
+        StudyVersion {
+            study_id: self.study.id.clone(),
+            config_hash: self.bundle.config_hash.clone(),
+            file: self.file.to_string(),
+            clips: serde_json::to_string(&self.bundle.clips).unwrap_or_default(),
+        }
+    }
+
+    pub(crate) fn summary(&self) -> StudySummary {
+        StudySummary {
+            id: self.study.id.clone(),
+            title: self.file["studyMetadata"]["title"].clone(),
+            config_hash: self.bundle.config_hash.clone(),
+        }
+    }
+
+    pub(crate) fn title(&self, language: &str) -> &str {
+        self.study.study_metadata.title.in_language(language)
+    }
+
+    /// The recruitment parameters that the study says it keeps; control characters and what is
+    /// longer than any platform's identifier are cut off.
+    pub(crate) fn kept_parameters(
+        &self,
+        given: SortedMap<String, String>,
+    ) -> BTreeMap<String, String> {
+        const LONGEST: usize = 200;
+        given
+            .into_iter()
+            .filter(|(name, _)| self.study.recruitment.url_parameters.contains(name))
+            .map(|(name, value)| {
+                (name, value.chars().filter(|c| !c.is_control()).take(LONGEST).collect())
+            })
+            .collect()
+    }
+
+    /// Where a participant whose session has ended goes back to, with this code.
+    pub(crate) fn redirect(
+        &self,
+        parameters: &BTreeMap<String, String>,
+        code: Option<&str>,
+    ) -> Option<String> {
+        let recruitment = &self.study.recruitment;
+        let address = recruitment.redirect.as_ref()?;
+        let mut filled = address.replace("{code}", &percent_encoded(code.unwrap_or_default()));
+        for name in &recruitment.url_parameters {
+            let value = parameters.get(name).map_or("", String::as_str);
+            filled = filled.replace(&format!("{{{name}}}"), &percent_encoded(value));
+        }
+        Some(filled)
+    }
+}
+
+/// The study without its codes (given only with the receipt) and without what would tell
+/// participants what is expected of them.
+fn without_secrets(mut file: Value) -> Value {
+    if let Some(study) = file.as_object_mut() {
+        study.remove("hypotheses");
+        study.remove("exclusions");
+        if let Some(recruitment) = study.get_mut("recruitment").and_then(Value::as_object_mut) {
+            for name in ["completionCode", "screenedOutCode", "failedChecksCode", "redirect"] {
+                recruitment.remove(name);
+            }
+        }
+    }
+    file
+}
+
+/// All but the unreserved characters of RFC 3986.
+const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+
+/// Every byte but the unreserved ones of RFC 3986 as `%XX`.
+pub(crate) fn percent_encoded(text: &str) -> String {
+    utf8_percent_encode(text, RESERVED).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_goes_into_an_address_is_encoded() {
+        assert_eq!(percent_encoded("a b&c=é~"), "a%20b%26c%3D%C3%A9~");
+    }
+}

@@ -1,0 +1,58 @@
+//! The studio's page, and the files that it opens by itself.
+
+use std::collections::BTreeMap;
+
+use axum::body::Bytes;
+use axum::http::header;
+use axum::response::{Html, IntoResponse, Response};
+
+use crate::error::Error;
+use crate::files::assets::Assets;
+
+/// What a file is to the studio.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StudioRole {
+    /// The avatar.
+    Avatar,
+    /// The JSON beside it.
+    Settings,
+    /// The capture, or recorded weights.
+    Take,
+    /// The marker map.
+    Map,
+}
+
+impl StudioRole {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Avatar => "avatar",
+            Self::Settings => "settings",
+            Self::Take => "take",
+            Self::Map => "map",
+        }
+    }
+}
+
+/// A file that the studio opens when its page is loaded.
+#[derive(Debug, Clone)]
+pub struct StudioFile {
+    /// Its name, for the page.
+    pub name: String,
+    /// What it holds.
+    pub bytes: Bytes,
+}
+
+/// The files by what they are.
+pub type StudioFiles = BTreeMap<StudioRole, StudioFile>;
+
+/// The studio's page; `files` are what it opens by itself.
+pub(crate) fn studio_page(assets: &Assets, files: &StudioFiles) -> Result<Response, Error> {
+    let names: BTreeMap<&str, &str> =
+        files.iter().map(|(role, file)| (role.word(), file.name.as_str())).collect();
+    let names = serde_json::to_string(&names).unwrap_or_default();
+    let prefix = assets.prefix();
+    let page = assets
+        .page("studio/studio.html", &[("assets", prefix.as_str()), ("files", names.as_str())])
+        .ok_or(Error::NotFound)?;
+    Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
+}

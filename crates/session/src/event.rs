@@ -1,0 +1,272 @@
+//! What happens in a session, as it is stored: the body of [`crate::wire::Event`].
+//!
+//! All times are the page's clock: milliseconds since 1970, from `performance.timeOrigin +
+//! performance.now()`, so that within one load of the page they never run backwards.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use mimique_study::from_json::{self, FromJson};
+use mimique_study::tagged_by_type;
+use mimique_study::{Answers, Display, SortedMap};
+
+/// What happened, tagged by `type`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
+#[serde(remote = "Self", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum EventKind {
+    /// The page is open for the first time. Always sequence 0.
+    Opened {
+        /// The display and the page.
+        client: Client,
+        /// Language of the pages.
+        language: String,
+    },
+    /// The language of the pages was changed.
+    LanguageChosen {
+        /// Language of the pages.
+        language: String,
+    },
+    /// The participant agrees.
+    Consented {
+        /// Version of the text.
+        version: String,
+        /// Language it was read in.
+        language: String,
+    },
+    /// The participant does not agree. The session ends.
+    Declined,
+    /// A page stands on the screen.
+    PageShown {
+        /// Identifier of the step.
+        step: String,
+    },
+    /// An answer was given or changed.
+    Answered {
+        /// Identifier of the step.
+        step: String,
+        /// Identifier of the question.
+        question: String,
+        /// The answer; null where it was taken back.
+        value: Value,
+    },
+    /// What the browser and its display can do.
+    DeviceMeasured {
+        /// What was found.
+        display: Display,
+    },
+    /// The size of a CSS pixel and the distance of the eyes.
+    Calibrated(Calibrated),
+    /// The participant asked for more time.
+    TimeExtended {
+        /// Identifier of the step.
+        step: String,
+    },
+    /// The study does not take this participant. The session ends.
+    ScreenedOut {
+        /// Identifier of the step that stood on the screen.
+        step: String,
+        /// `device`, `screening` or `training`.
+        reason: String,
+        /// What was missing: the rules' keys, or the question.
+        details: Vec<String>,
+    },
+    /// More attention checks were failed than the study allows. The session ends.
+    ChecksFailed {
+        /// How many were failed.
+        failed: u32,
+    },
+    /// A page was left by its button, or its time was over.
+    PageFinished {
+        /// Identifier of the step.
+        step: String,
+        /// Its answers, if it asked something.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        answers: Answers,
+        /// Whether its time was over.
+        #[serde(default, skip_serializing_if = "is_false")]
+        timed_out: bool,
+    },
+    /// The first play of a trial was asked for.
+    TrialStarted {
+        /// Identifier of the step.
+        step: String,
+        /// Which clip.
+        clip: String,
+        /// What is played beside it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        beside: Option<ShownBeside>,
+    },
+    /// The clip was played, wholly or not.
+    TrialPlayed {
+        /// Identifier of the step.
+        step: String,
+        /// What the stage measured.
+        log: PlayLog,
+    },
+    /// The questions of a trial were sent.
+    TrialFinished {
+        /// Identifier of the step.
+        step: String,
+        /// Which clip.
+        clip: String,
+        /// The answers.
+        answers: Answers,
+        /// From the first frame of the first whole play to now, milliseconds.
+        rt_ms: f64,
+        /// Whole plays after the first.
+        replays: u32,
+        /// Whether their time was over.
+        #[serde(default, skip_serializing_if = "is_false")]
+        timed_out: bool,
+    },
+    /// A clip could not be loaded, solved or shown.
+    ClipFailed {
+        /// Which clip.
+        clip: String,
+        /// What the stage says.
+        message: String,
+    },
+    /// The page lost the focus or was hidden.
+    FocusLost,
+    /// The page has the focus again.
+    FocusGained,
+    /// The page fills the screen, or no longer does.
+    Fullscreen {
+        /// Whether it does.
+        on: bool,
+    },
+    /// The page was opened again; a trial that had begun starts anew.
+    Resumed {
+        /// The display and the page.
+        client: Client,
+    },
+    /// Every step is done.
+    Finished,
+    /// The participant takes everything back.
+    Withdrawn,
+    /// Something came that does not fit the state; it changed nothing.
+    Unexpected {
+        /// What came.
+        input: String,
+        /// The step that stood on the screen.
+        step: String,
+    },
+}
+
+tagged_by_type!(EventKind);
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// Types of the events that can end a session.
+const ENDS: [&str; 5] = ["checks_failed", "declined", "finished", "screened_out", "withdrawn"];
+
+impl EventKind {
+    /// Whether a body is of a type that can end a session.
+    pub fn may_end(body: &Value) -> bool {
+        body.get("type").and_then(Value::as_str).is_some_and(|kind| ENDS.contains(&kind))
+    }
+
+    /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
+    pub fn from_body(body: &Value) -> Option<Self> {
+        from_json::read(body).ok()
+    }
+
+    /// The body of a [`crate::wire::Event`].
+    pub fn to_body(&self) -> Value {
+        serde_json::to_value(self).unwrap_or(Value::Null)
+    }
+}
+
+/// What is played in step beside a clip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
+pub struct ShownBeside {
+    /// Which clip.
+    pub clip: String,
+    /// Whether it stands left of the trial's own clip.
+    pub left: bool,
+}
+
+/// The display and the page, no finer than the analysis needs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+pub struct Client {
+    /// Width and height of the window, CSS pixels.
+    #[serde(default)]
+    pub viewport: [u32; 2],
+    /// Device pixels per CSS pixel.
+    #[serde(default)]
+    pub device_pixel_ratio: f64,
+    /// Browser name, its major version, platform class.
+    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    pub about: SortedMap<String, String>,
+}
+
+/// The size of a CSS pixel and the distance of the eyes, as the participant set them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[serde(default)]
+pub struct Calibrated {
+    /// CSS pixels per millimetre; none if it was left out.
+    pub px_per_mm: Option<f64>,
+    /// Device pixels per CSS pixel at that moment: zooming the page changes both.
+    pub device_pixel_ratio: f64,
+    /// Distance from eyes to screen, centimetres, as the participant says.
+    pub distance_cm: Option<f64>,
+}
+
+impl Calibrated {
+    /// CSS pixels per millimetre in a window of that many device pixels per CSS pixel.
+    pub fn px_per_mm_at(&self, device_pixel_ratio: f64) -> Option<f64> {
+        let ratio = self.device_pixel_ratio / device_pixel_ratio;
+        self.px_per_mm.map(|px| if ratio.is_finite() && ratio > 0.0 { px * ratio } else { px })
+    }
+}
+
+/// What the stage measured while a clip was played once (`static/stage/host.js`, `stage.play`).
+/// Fields that this version does not know are left out, those that are missing are zero.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[serde(default)]
+pub struct PlayLog {
+    /// `webgpu` or `webgl2`.
+    pub backend: String,
+    /// When the first frame was presented, page clock.
+    pub onset_ms: f64,
+    /// When the last frame was presented, page clock.
+    pub end_ms: f64,
+    /// The display's rate as measured, Hz.
+    pub refresh_hz: f64,
+    /// A frame each: when it was presented (ms after the onset), clip time (ms), 1 if late.
+    pub frames: Vec<(f64, f64, f64)>,
+    /// Number of late frames.
+    pub late: u32,
+    /// The longest time between two frames, milliseconds.
+    pub longest_ms: f64,
+    /// Width of the canvas, CSS pixels.
+    pub width: f64,
+    /// Height of the canvas, CSS pixels.
+    pub height: f64,
+    /// Device pixels per CSS pixel.
+    pub device_pixel_ratio: f64,
+    /// SHA-256 of the weights as the browser solved them, hexadecimal.
+    pub weights_hash: String,
+    /// Provenance of the clip that was shown, as the page had it; empty in logs of earlier versions.
+    pub provenance: String,
+    /// Side by side: that of the other clip.
+    pub beside_provenance: String,
+    /// What drew it: the hash in the address of the page's modules and shaders.
+    pub renderer: String,
+    /// Side by side: the largest time between what the two clips showed in one frame, milliseconds.
+    pub drift_ms: f64,
+    /// Why the play ended early; null for a whole play.
+    pub aborted: Option<String>,
+}
+
+impl PlayLog {
+    /// Whether the clip was shown to its end.
+    pub fn is_whole(&self) -> bool {
+        self.aborted.is_none()
+    }
+}

@@ -1,0 +1,45 @@
+//! What the page has to do.
+
+use crate::wire;
+
+/// What the page has to do; each is carried out once, in the order given.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Effect {
+    /// Put this event into the outbox (it is numbered already), to be sent and sent again until the
+    /// server acknowledges it.
+    Store(wire::Event),
+    /// Load and solve these clips, the first one first; what begins with [`mimique_study::MEDIA_PREFIX`] is a
+    /// picture or a signed video, which is loaded. Report by `ClipProgress`, `ClipPrepared`,
+    /// `ClipFailed`. What is prepared already may be named again.
+    PrepareClips(Vec<String>),
+    /// Play this clip once from its start, the one beside it in step; report by `Played`.
+    PlayClip {
+        /// The trial's own clip.
+        clip: String,
+        /// The one beside it.
+        beside: Option<String>,
+    },
+    /// Measure what browser and display can do; report by `Measured`, and by `Measured` again
+    /// whenever the window changes its size while the device gate stands there.
+    MeasureDevice,
+    /// Let the page fill the screen (the effect of a press, so that the browser allows it); report
+    /// by `Fullscreen`.
+    RequestFullscreen,
+    /// Give the screen back, if the page fills it.
+    LeaveFullscreen,
+    /// Abort the play in progress, if there is one.
+    StopClip,
+    /// Send the outbox now.
+    Flush,
+    /// Everything is acknowledged: `POST complete` with this number of events; report by
+    /// `ReceiptArrived`.
+    Complete {
+        /// How many events the session has.
+        events: u64,
+    },
+    /// Send the outbox, then `POST withdraw`; report by `WithdrawalConfirmed`.
+    Withdraw,
+    /// A new page stands there: move the focus to its heading.
+    FocusHeading,
+}

@@ -1,0 +1,46 @@
+//! The flow of a session as a state machine: `update(plan, state, input, now) -> (state, effects)`.
+//!
+//! The page holds a [`Plan`] and a [`State`], renders what [`view`] says, hands every act of the
+//! participant and every report of its own machinery to [`update`] as an [`Input`], and carries out
+//! the [`Effect`]s that come back. What must not be forgotten becomes an event
+//! ([`crate::EventKind`]); what a state remembers is
+//! the [`crate::Record`] of its events, so [`State::replay`] of the stored
+//! events is how a session goes on after a reload.
+//!
+//! ```text
+//! first load:  POST sessions -> Plan::new -> State::new -> update(Opened)
+//! reload:      GET session   -> Plan::new -> State::replay(events) -> update(Resumed)
+//! then:        render view(plan, state); wait; update(input); carry out effects; again
+//! ```
+
+mod allowed;
+mod clock;
+mod effect;
+mod gate;
+mod input;
+mod needs;
+mod render;
+mod render_gate;
+mod render_question;
+mod state;
+mod update;
+mod view;
+mod view_gate;
+mod view_question;
+
+pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
+pub use effect::Effect;
+pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM};
+pub use input::Input;
+pub use mimique_study::{ChoiceView, QuestionKindView};
+pub use render::view;
+pub use state::{Live, Play, State};
+pub use update::update;
+pub use view::{
+    BesideView, ButtonView, ClockView, ContactView, EndView, FailedView, Phase, ProgressView,
+    SectionView, StageSize, TrialView, View,
+};
+pub use view_gate::{
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
+};
+pub use view_question::QuestionView;

@@ -1,0 +1,278 @@
+//! From state to screen: decisions made, texts in the participant's language.
+
+use super::allowed::{break_seconds_left, can_play, can_submit, is_saving};
+use super::gate;
+use super::needs::{Needs, needs_of};
+use super::state::{Play, State};
+use super::view::{
+    BesideView, ButtonView, ContactView, EndView, FailedView, Phase, ProgressView, SectionView,
+    TrialView, View,
+};
+use crate::plan::{Plan, Step, StepKind, TrialStep};
+use crate::standing::Standing;
+use mimique_study::text::{Words, typeset};
+use mimique_study::{LocalText, MEDIA_PREFIX, Section};
+
+/// What stands on the screen.
+pub fn view(plan: &Plan, state: &State) -> View {
+    let screen = Screen { plan, state, words: plan.words(&state.record.language) };
+    let words = screen.words;
+    if state.record.standing == Standing::Withdrawn || state.live.withdrawing {
+        let confirmed = state.live.withdrawal_confirmed;
+        let (heading, text) = if confirmed {
+            (words.withdrawn(), words.withdrawn_text())
+        } else {
+            (words.withdrawing(), "")
+        };
+        return View::Withdrawn { heading: heading.into(), text: text.into(), confirmed };
+    }
+    if state.record.standing == Standing::Declined {
+        let (heading, text) = (words.declined().into(), words.declined_text().into());
+        return View::Declined { heading, text };
+    }
+    match plan.step(state.record.step) {
+        Some(step) if state.record.standing.is_open() => screen.step(step),
+        _ => screen.end(),
+    }
+}
+
+pub(super) struct Screen<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) state: &'a State,
+    pub(super) words: &'a Words,
+}
+
+impl Screen<'_> {
+    pub(super) fn text(&self, text: &LocalText) -> String {
+        let language = &self.state.record.language;
+        typeset(language, text.in_language(language)).into_owned()
+    }
+
+    /// The path of a file, as the study file writes it.
+    pub(super) fn path(&self, path: &LocalText) -> String {
+        path.in_language(&self.state.record.language).to_owned()
+    }
+
+    pub(super) fn paragraphs(&self, text: &LocalText) -> Vec<String> {
+        let text = self.text(text);
+        let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
+        paragraphs.map(str::to_owned).collect()
+    }
+
+    fn section(&self, section: &Section) -> SectionView {
+        SectionView { heading: self.text(&section.heading), text: self.paragraphs(&section.text) }
+    }
+
+    pub(super) fn progress(&self) -> ProgressView {
+        ProgressView { done: self.state.record.step, total: self.plan.steps.len() }
+    }
+
+    pub(super) fn button(&self, label: &str) -> ButtonView {
+        ButtonView {
+            label: label.to_owned(),
+            can_submit: can_submit(self.plan, self.state),
+            hint: None,
+        }
+    }
+
+    fn step(&self, step: &Step) -> View {
+        match &step.kind {
+            StepKind::Consent => self.consent(step),
+            StepKind::Questions { page, .. } => View::Questions {
+                step: step.id.clone(),
+                title: page
+                    .title
+                    .as_ref()
+                    .map_or_else(|| self.words.about_you().to_owned(), |title| self.text(title)),
+                text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
+                questions: self.questions(step),
+                failed: match needs_of(step, self.state) {
+                    Needs::Failed(_, reason) => Some(FailedView {
+                        message: self.words.media_failed().to_owned(),
+                        reason,
+                        retry: self.words.retry().to_owned(),
+                    }),
+                    _ => None,
+                },
+                button: self.button(self.words.next()),
+                clock: self.clock(step),
+                progress: self.progress(),
+            },
+            StepKind::Device => View::Device(Box::new(self.device(step))),
+            StepKind::Calibration(calibration) => {
+                View::Calibration(Box::new(self.calibration(step, calibration)))
+            }
+            StepKind::Feedback { of } => View::Feedback(Box::new(self.feedback(step, *of))),
+            StepKind::Page(section) => {
+                let next = self.plan.step(self.state.record.step + 1);
+                let before_trial = next.is_some_and(|step| step.trial().is_some());
+                let label = if before_trial { self.words.begin() } else { self.words.next() };
+                self.page(step, section, self.button(label))
+            }
+            StepKind::Debriefing(section) => {
+                self.page(step, section, self.button(self.words.next()))
+            }
+            StepKind::Break(rest) => {
+                let section = Section { heading: rest.heading.clone(), text: rest.text.clone() };
+                let left = break_seconds_left(self.plan, self.state);
+                let mut button = self.button(self.words.next());
+                button.hint = (left > 0).then(|| self.words.wait_seconds(left));
+                self.page(step, &section, button)
+            }
+            StepKind::Trial(trial) => View::Trial(Box::new(self.trial(step, trial))),
+        }
+    }
+
+    fn page(&self, step: &Step, section: &Section, button: ButtonView) -> View {
+        let SectionView { heading, text } = self.section(section);
+        let (step, clock) = (step.id.clone(), self.clock(step));
+        View::Page { step, heading, text, button, clock, progress: self.progress() }
+    }
+
+    fn consent(&self, step: &Step) -> View {
+        let study = &self.plan.study;
+        let words = self.words;
+        let mut sections = Vec::new();
+        if let Some(consent) = &study.consent {
+            sections.extend(consent.sections.iter().map(|section| self.section(section)));
+            if let Some(retention) = &consent.retention {
+                let text = self.paragraphs(retention);
+                sections.push(SectionView { heading: words.retention().into(), text });
+            }
+            if let Some(years) = consent.minimum_age {
+                let text = vec![words.minimum_age(years)];
+                sections.push(SectionView { heading: words.age().into(), text });
+            }
+        }
+        let contact = study.contact.as_ref();
+        let people = [
+            (words.investigator(), contact.map(|contact| &contact.investigator)),
+            (words.ethics_board(), contact.and_then(|contact| contact.ethics_board.as_ref())),
+        ];
+        let contacts = people.into_iter().filter_map(|(role, person)| {
+            person.map(|person| ContactView {
+                role: role.to_owned(),
+                name: self.text(&person.name),
+                email: person.email.clone(),
+                reference: person.reference.clone(),
+            })
+        });
+        let languages = if study.languages.len() > 1 {
+            let name = |code: &String| (code.clone(), self.plan.words(code).language_name().into());
+            study.languages.iter().map(name).collect()
+        } else {
+            Vec::new()
+        };
+        View::Consent {
+            step: step.id.clone(),
+            title: self.text(&study.study_metadata.title),
+            description: self.text(&study.study_metadata.description),
+            sections,
+            contacts: contacts.collect(),
+            languages,
+            agree: words.agree().to_owned(),
+            decline: words.decline().to_owned(),
+        }
+    }
+
+    fn trial(&self, step: &Step, trial: &TrialStep) -> TrialView {
+        let (state, words) = (self.state, self.words);
+        let progress = &state.record.attempt;
+        let playing = state.live.play == Play::Running;
+        let saving = is_saving(state);
+        let needs = needs_of(step, state);
+        let prepared = matches!(needs, Needs::Ready);
+        let mut failed = words.clip_failed();
+        let phase = match needs {
+            _ if playing => Phase::Playing,
+            Needs::Failed(need, reason) => {
+                if need.starts_with(MEDIA_PREFIX) {
+                    failed = words.media_failed();
+                }
+                Phase::Failed { reason, retry: words.retry().to_owned() }
+            }
+            _ if progress.plays > 0 => Phase::Answering,
+            Needs::Loading(fraction) => Phase::Loading { fraction },
+            Needs::Ready if saving => Phase::Loading { fraction: 1.0 },
+            Needs::Ready => Phase::Ready,
+        };
+        let fullscreen_first = gate::needs_fullscreen(self.plan, state);
+        let message = match &phase {
+            Phase::Ready if fullscreen_first => words.fullscreen_first(),
+            Phase::Playing => words.playing(),
+            Phase::Failed { .. } => failed,
+            Phase::Answering => words.answer_now(),
+            Phase::Loading { .. } if saving && prepared => words.saving(),
+            Phase::Loading { .. } => words.loading(),
+            Phase::Ready if progress.cut_short => words.play_interrupted(),
+            Phase::Ready => words.watch_first(),
+        };
+        let of = self.plan.trial_count(trial.training);
+        let heading = if trial.training {
+            words.training_of(trial.number, of)
+        } else {
+            words.trial_of(trial.number, of)
+        };
+        let can_play = can_play(self.plan, state);
+        let can_answer = progress.plays > 0 && !playing;
+        let mut button = self.button(words.submit());
+        button.hint = (!can_answer).then(|| words.watch_first().to_owned());
+        let play_label = match progress.plays {
+            _ if fullscreen_first => words.back_to_fullscreen(),
+            0 => words.play(),
+            _ => words.play_again(),
+        };
+        TrialView {
+            step: step.id.clone(),
+            clip: trial.clip.clone(),
+            beside: trial.beside.as_ref().map(|beside| BesideView {
+                clip: beside.clip.clone(),
+                left: beside.left,
+                caption: beside.caption.as_ref().map(|text| self.text(text)),
+                clip_caption: beside.clip_caption.as_ref().map(|text| self.text(text)),
+            }),
+            heading,
+            instruction: trial.instruction.as_ref().map(|text| self.text(text)),
+            size: self.stage_size(),
+            clock: self.clock(step),
+            phase,
+            message: message.to_owned(),
+            can_play,
+            play_label: play_label.to_owned(),
+            can_replay: can_play && progress.plays > 0,
+            questions: self.questions(step),
+            can_answer,
+            button,
+            progress: self.progress(),
+        }
+    }
+
+    fn end(&self) -> View {
+        let (live, words) = (&self.state.live, self.words);
+        let Some(receipt) = &live.receipt else {
+            return View::ReceiptPending {
+                heading: words.sending().to_owned(),
+                text: words.sending_text().to_owned(),
+                stored: live.stored.min(self.state.record.events),
+                total: self.state.record.events,
+            };
+        };
+        let labelled = |label: &str, value: &Option<String>| {
+            value.as_ref().map(|value| (label.to_owned(), value.clone()))
+        };
+        let (outcome, heading, text) = self.outcome();
+        View::End(Box::new(EndView {
+            outcome,
+            heading,
+            text,
+            completion_code: labelled(words.completion_code(), &receipt.completion_code),
+            redirect: labelled(words.go_back(), &receipt.redirect),
+            receipt: (words.receipt().to_owned(), receipt.receipt.clone()),
+            withdrawal_code: (
+                words.withdrawal_code().to_owned(),
+                self.plan.started.withdrawal_code.clone(),
+                words.withdrawal_code_text().to_owned(),
+            ),
+        }))
+    }
+}

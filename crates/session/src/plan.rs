@@ -1,0 +1,326 @@
+//! What one participant goes through, step by step: fixed at the start of the session.
+
+use crate::wire::SessionStarted;
+use mimique_study::text::{Words, words};
+use mimique_study::{
+    Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw, KindOfQuestion as _,
+    LocalText, OptionOrder, OrderError, OrderedItem, Question, Questionnaire, Section, Sides,
+    SortedMap, Study, TimeLimit, Training, option_order, order, right_answers,
+};
+
+/// What one participant goes through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The study.
+    pub study: Study,
+    /// The session: participant, seed, hash, withdrawal code.
+    pub started: SessionStarted,
+    /// The steps, from the first page to the debriefing.
+    pub steps: Vec<Step>,
+    /// Shown order of options, by question, where it is drawn.
+    pub option_orders: SortedMap<String, Vec<usize>>,
+    /// Index of the step after each round of practice.
+    pub rounds: Vec<usize>,
+    translated: Vec<Words>,
+}
+
+/// One page or trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// `consent`, `demographics`, `instructions/1`, `faces/joy2.lsts30`...
+    pub id: String,
+    /// What it is.
+    pub kind: StepKind,
+    /// How long it may take.
+    pub time_limit: Option<TimeLimit>,
+}
+
+/// What a step is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StepKind {
+    /// The agreement.
+    Consent,
+    /// What browser and display can do.
+    Device,
+    /// How large a CSS pixel is.
+    Calibration(Calibration),
+    /// Which answers to the practice clip before were right.
+    Feedback {
+        /// Index of the trial's step.
+        of: usize,
+    },
+    /// A page of questions; `demographics` is true for those about the participant.
+    Questions {
+        /// The page.
+        page: Questionnaire,
+        /// Whether it asks about the participant.
+        demographics: bool,
+    },
+    /// A page to read.
+    Page(Section),
+    /// A rest.
+    Break(BreakComponent),
+    /// A trial.
+    Trial(TrialStep),
+    /// A page after the last answer.
+    Debriefing(Section),
+}
+
+/// A clip and its questions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialStep {
+    /// Identifier of the clip.
+    pub clip: String,
+    /// The questions, in the order they are asked.
+    pub questions: Vec<Question>,
+    /// A line above the clip.
+    pub instruction: Option<LocalText>,
+    /// Most replays after the first whole play.
+    pub maximum_replays: Option<u32>,
+    /// Whether it is for practice.
+    pub training: bool,
+    /// 1-based place among the trials, or among the practice trials.
+    pub number: usize,
+    /// Nearest sequence with an identifier, else the component.
+    pub condition: String,
+    /// What is played in step beside the clip.
+    pub beside: Option<Companion>,
+    /// Right answers by question, of a practice trial.
+    pub right: Answers,
+}
+
+/// A clip that is played in step beside another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Companion {
+    /// Identifier of the clip.
+    pub clip: String,
+    /// Whether it stands left of the trial's own clip.
+    pub left: bool,
+    /// A line below it.
+    pub caption: Option<LocalText>,
+    /// A line below the trial's own clip.
+    pub clip_caption: Option<LocalText>,
+}
+
+impl Plan {
+    /// The plan of the participant whose session has started.
+    pub fn new(study: Study, started: SessionStarted) -> Result<Self, OrderError> {
+        let draw = Draw {
+            seed: started.seed,
+            config_hash: &started.config_hash,
+            participant: started.slot(),
+            condition: started.condition.as_deref(),
+        };
+        let items = order(&study, draw)?;
+        let mut steps = Vec::new();
+        let clips = study.clips();
+        let mut push = |id: String, kind: StepKind| steps.push(Step::new(id, kind));
+        if study.consent.is_some() {
+            push("consent".to_owned(), StepKind::Consent);
+        }
+        if study.device.is_some() {
+            push("device".to_owned(), StepKind::Device);
+        }
+        if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {
+            push("demographics".to_owned(), StepKind::Questions { page, demographics: true });
+        }
+        for (index, section) in study.instructions.iter().enumerate() {
+            push(format!("instructions/{}", index + 1), StepKind::Page(section.clone()));
+        }
+        if let Some(calibration) = study.calibration.clone() {
+            push("calibration".to_owned(), StepKind::Calibration(calibration));
+        }
+        let rounds = study
+            .training
+            .as_ref()
+            .map_or_else(Vec::new, |training| practice(&study, training, &clips, &mut steps));
+        let mut push = |id: String, kind: StepKind, time_limit: Option<TimeLimit>| {
+            steps.push(Step { time_limit, ..Step::new(id, kind) });
+        };
+        let mut sides = Sides::new(&study, draw, &items);
+        let mut trials = 0;
+        let mut shown: Vec<&str> = Vec::new();
+        for item in &items {
+            match item {
+                OrderedItem::Trial { trial, component, clip, condition } => {
+                    let Some(Component::Trials(block)) = study.components.get(component) else {
+                        continue;
+                    };
+                    trials += 1;
+                    let step = TrialStep {
+                        clip: clip.clone(),
+                        questions: questions(&study, &block.questions),
+                        instruction: block.instruction.clone(),
+                        maximum_replays: block.maximum_replays,
+                        training: false,
+                        number: trials,
+                        condition: condition.clone(),
+                        beside: block.beside.as_ref().and_then(|beside| {
+                            companion(beside, clip, &clips, sides.is_left(component, beside))
+                        }),
+                        right: Answers::new(),
+                    };
+                    push(trial.clone(), StepKind::Trial(step), block.time_limit.clone());
+                }
+                OrderedItem::Component { component } => {
+                    shown.push(component);
+                    let times = shown.iter().filter(|each| *each == component).count();
+                    let id = match times {
+                        1 => component.clone(),
+                        again => format!("{component}#{again}"),
+                    };
+                    let (kind, limit) = match study.components.get(component) {
+                        Some(Component::Questionnaire(page)) => (
+                            StepKind::Questions { page: page.clone(), demographics: false },
+                            page.time_limit.clone(),
+                        ),
+                        Some(Component::Page(page)) => (
+                            StepKind::Page(Section {
+                                heading: page.heading.clone(),
+                                text: page.text.clone(),
+                            }),
+                            page.time_limit.clone(),
+                        ),
+                        Some(Component::Break(rest)) => (StepKind::Break(rest.clone()), None),
+                        Some(Component::Trials(_)) | None => continue,
+                    };
+                    push(id, kind, limit);
+                }
+            }
+        }
+        for (index, section) in study.debriefing.iter().enumerate() {
+            push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()), None);
+        }
+        let option_orders = option_orders(&study, draw);
+        let translated = study.translations.keys().map(|each| study.words(each)).collect();
+        Ok(Self { study, started, steps, option_orders, rounds, translated })
+    }
+
+    /// The questions of a step, by its identifier.
+    pub fn questions_of(&self, step: &str) -> Vec<&Question> {
+        let here = self.steps.iter().find(|each| each.id == step);
+        here.into_iter().flat_map(Step::questions).collect()
+    }
+
+    /// The step at this place; `None` past the last one.
+    pub fn step(&self, index: usize) -> Option<&Step> {
+        self.steps.get(index)
+    }
+
+    /// How many trials there are, or practice trials in a round.
+    pub fn trial_count(&self, training: bool) -> usize {
+        if let (true, Some(training)) = (training, &self.study.training) {
+            return training.clips.len();
+        }
+        let counts = |step: &&Step| matches!(&step.kind, StepKind::Trial(trial) if trial.training == training);
+        self.steps.iter().filter(counts).count()
+    }
+
+    /// The fixed texts in a language: the study's own, or those built in.
+    pub fn words(&self, language: &str) -> &Words {
+        let own = self.translated.iter().find(|own| own.language() == language);
+        own.unwrap_or_else(|| words(language))
+    }
+}
+
+impl TrialStep {
+    /// Its clip, and the one beside it.
+    pub fn clips(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(self.clip.as_str()).chain(self.beside.iter().map(|each| each.clip.as_str()))
+    }
+}
+
+fn companion(beside: &Beside, clip: &str, clips: &[Clip], left: bool) -> Option<Companion> {
+    let clip = clips.iter().find(|each| each.id == clip)?;
+    Some(Companion {
+        clip: beside.of(clip, clips)?.id.clone(),
+        left,
+        caption: beside.caption.clone(),
+        clip_caption: beside.clip_caption.clone(),
+    })
+}
+
+impl Step {
+    fn new(id: String, kind: StepKind) -> Self {
+        let time_limit = match &kind {
+            StepKind::Questions { page, .. } => page.time_limit.clone(),
+            _ => None,
+        };
+        Self { id, kind, time_limit }
+    }
+
+    /// The questions it asks.
+    pub fn questions(&self) -> &[Question] {
+        match &self.kind {
+            StepKind::Questions { page, .. } => &page.questions,
+            StepKind::Trial(trial) => &trial.questions,
+            _ => &[],
+        }
+    }
+
+    /// The trial, if it is one.
+    pub fn trial(&self) -> Option<&TrialStep> {
+        match &self.kind {
+            StepKind::Trial(trial) => Some(trial),
+            _ => None,
+        }
+    }
+}
+
+/// Adds the practice trials of every round, with the pages that say what was right; returns where
+/// each round ends.
+fn practice(
+    study: &Study,
+    training: &Training,
+    clips: &[Clip],
+    steps: &mut Vec<Step>,
+) -> Vec<usize> {
+    let rounds = training.criterion.as_ref().map_or(1, |rule| rule.maximum_rounds.max(1));
+    let mut ends = Vec::new();
+    for round in 1..=rounds {
+        let again = if round > 1 { format!("#{round}") } else { String::new() };
+        for (index, clip) in training.clips.iter().enumerate() {
+            let questions = questions(study, &training.questions);
+            let right = right_answers(training, clip, clips, &questions);
+            let asked = !right.is_empty();
+            let trial = TrialStep {
+                clip: clip.clone(),
+                questions,
+                instruction: training.instruction.clone(),
+                maximum_replays: None,
+                training: true,
+                number: index + 1,
+                condition: "training".to_owned(),
+                beside: None,
+                right,
+            };
+            let id = format!("training/{}/{clip}{again}", index + 1);
+            let time_limit = training.time_limit.clone();
+            steps.push(Step { id, kind: StepKind::Trial(trial), time_limit });
+            if training.feedback && asked {
+                let of = steps.len() - 1;
+                let id = format!("feedback/{}/{clip}{again}", index + 1);
+                steps.push(Step::new(id, StepKind::Feedback { of }));
+            }
+        }
+        ends.push(steps.len());
+    }
+    ends
+}
+
+fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
+    ids.iter()
+        .filter_map(|id| study.questions.iter().find(|question| question.id == *id).cloned())
+        .collect()
+}
+
+fn option_orders(study: &Study, draw: Draw<'_>) -> SortedMap<String, Vec<usize>> {
+    let mut orders = SortedMap::new();
+    for question in study.all_questions() {
+        if question.kind.option_order() == OptionOrder::Random {
+            let count = question.kind.options().len();
+            orders.insert(question.id.clone(), option_order(draw, &question.id, count));
+        }
+    }
+    orders
+}

@@ -1,0 +1,32 @@
+//! Rows: the events of sessions -> tables that scripts and statistics read.
+//!
+//! * [`tidy`]: one row a participant x trial x response; every factor is a column, and so is every
+//!   answer about the participant, because analyses group by them.
+//! * [`wide`]: one row a participant; one column a trial x response.
+//!
+//! A table is columns with their descriptions and rows of plain JSON values; who writes CSV, JSON or
+//! Psych-DS does so from there ([`psych_ds_description`] is the data dictionary).
+
+mod cells;
+mod column;
+mod psych_ds;
+mod study_columns;
+mod tidy;
+mod wide;
+
+pub use cells::iso_time;
+pub use column::{Column, Table};
+pub use psych_ds::psych_ds_description;
+pub use tidy::tidy;
+pub use wide::wide;
+
+use crate::wire::{Event, SessionStarted};
+
+/// One session as it is stored.
+#[derive(Debug, Clone, Copy)]
+pub struct SessionRecord<'a> {
+    /// As at its start.
+    pub started: &'a SessionStarted,
+    /// Its events, in ascending order of sequence.
+    pub events: &'a [Event],
+}

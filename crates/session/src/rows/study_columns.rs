@@ -1,0 +1,54 @@
+//! The columns that a study brings: its factors, the answers about the participant, the condition.
+
+use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
+use mimique_study::{Choice, KindOfQuestion as _, Question, Study};
+use serde_json::Value;
+
+use super::column::Column;
+
+/// The column of a factor of the clips, with its levels.
+pub(super) fn factor_column(study: &Study, factor: &str) -> Column {
+    let mut levels: Vec<Value> = study
+        .clips()
+        .iter()
+        .filter_map(|clip| clip.factors.get(factor))
+        .map(|v| v.to_value())
+        .collect();
+    levels.sort_by(|left, right| match (left.as_f64(), right.as_f64()) {
+        (Some(left), Some(right)) => left.total_cmp(&right),
+        _ => left.to_string().cmp(&right.to_string()),
+    });
+    levels.dedup();
+    let numbers = levels.iter().all(Value::is_number);
+    let kind = if numbers { ColumnKind::Number } else { ColumnKind::Text };
+    let mut column = Column::new(factor, kind, "Factor of the clip");
+    column.levels = levels.into_iter().map(|level| (level, String::new())).collect();
+    column
+}
+
+/// The columns of an answer about the participant.
+pub(super) fn question_columns(question: &Question, language: &str) -> Vec<Column> {
+    let prompt = question.prompt.in_language(language);
+    let level =
+        |each: &Choice| (each.value.as_str().into(), each.label.in_language(language).to_owned());
+    let levels: Vec<(Value, String)> = question.kind.levels().iter().map(level).collect();
+    question
+        .response_ids()
+        .into_iter()
+        .map(|id| {
+            let mut column = Column::new(&id, question.kind.column_kind(), prompt);
+            column.levels = levels.clone();
+            column
+        })
+        .collect()
+}
+
+/// The column of the participant's condition, where the study has conditions.
+pub(super) fn assigned_column(study: &Study) -> Option<Column> {
+    let conditions = study.conditions();
+    let description =
+        "Condition of the participant: the one that the address named, or that was given";
+    let mut column = Column::new(ASSIGNED_CONDITION, ColumnKind::Text, description);
+    column.levels = conditions.iter().map(|name| ((*name).into(), String::new())).collect();
+    (!conditions.is_empty()).then_some(column)
+}

@@ -1,0 +1,183 @@
+//! A session as one file of JSON lines, for studies that are hosted without the server: the page
+//! writes it, `mimique import` reads it.
+//!
+//! ```text
+//! {"mimique_session": 1, "study": "demo", "started": {...}}     the head
+//! {"sequence": 0, "at_ms": ..., "body": {...}}                  an event a line
+//! {"events": 61, "sha256": "..."}                               the end: nothing is cut off
+//! ```
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest as _, Sha256};
+
+use crate::wire::{Event, SessionStarted};
+use mimique_study::json_text;
+
+/// The version of the format that this reads and writes.
+const VERSION: u64 = 1;
+
+/// One session of a study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SessionFile {
+    /// Identifier of the study.
+    pub study: String,
+    /// The session.
+    pub started: SessionStarted,
+    /// Its events, in ascending order of sequence.
+    pub events: Vec<Event>,
+}
+
+/// A file that is not a whole session.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SessionFileError {
+    /// A line is not what it should be.
+    #[error("line {line}: {message}; take the file as the page wrote it")]
+    Line {
+        /// From 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// The end is missing: the file was cut off.
+    #[error("line {line}: the end is missing; download or copy the file again, whole")]
+    CutOff {
+        /// The last line there is, from 1.
+        line: usize,
+    },
+    /// The text was changed after it was written.
+    #[error(
+        "the text was changed (SHA-256 {found}, written was {written}); take the file as the page wrote it"
+    )]
+    Changed {
+        /// Of the text as it is.
+        found: String,
+        /// As the file says.
+        written: String,
+    },
+}
+
+impl SessionFile {
+    /// The file, and the SHA-256 of all its lines but the last, which serves as the receipt.
+    pub fn write(&self) -> (String, String) {
+        let head = json_text::object([
+            ("mimique_session", VERSION.into()),
+            ("study", self.study.as_str().into()),
+            ("started", serde_json::to_value(&self.started).unwrap_or_default()),
+        ]);
+        let mut text = json_text::write(&head);
+        text.push('\n');
+        for event in &self.events {
+            text.push_str(&json_text::write(&event.to_value()));
+            text.push('\n');
+        }
+        let hash = sha256(&text);
+        let end = json_text::object([
+            ("events", self.events.len().into()),
+            ("sha256", hash.as_str().into()),
+        ]);
+        text.push_str(&json_text::write(&end));
+        text.push('\n');
+        (text, hash)
+    }
+
+    /// Reads a file.
+    pub fn read(text: &str) -> Result<Self, SessionFileError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let wrong = |line: usize, message: &str| SessionFileError::Line {
+            line,
+            message: message.to_owned(),
+        };
+        let value = |line: usize, text: &str| -> Result<Value, SessionFileError> {
+            serde_json::from_str(text).map_err(|error| wrong(line, &error.to_string()))
+        };
+        let mut lines = (1..).zip(text.split_inclusive('\n'));
+        let (_, first) = lines.next().ok_or(SessionFileError::CutOff { line: 1 })?;
+        let mut head = value(1, first)?;
+        if head["mimique_session"] != VERSION {
+            return Err(wrong(1, &format!("no session of version {VERSION}")));
+        }
+        let study = head["study"].as_str().ok_or_else(|| wrong(1, "no study"))?.to_owned();
+        let started = mimique_study::json_reader::read_value(head["started"].take())
+            .map_err(|error| wrong(1, &error.to_string()))?;
+        let mut file = Self { study, started, events: Vec::new() };
+        let mut length = first.len();
+        for (line, part) in lines {
+            let value = value(line, part)?;
+            if value.get("sha256").is_some() {
+                let written = value["sha256"].as_str().unwrap_or_default().to_owned();
+                let found = sha256(&text[..length]);
+                if found != written {
+                    return Err(SessionFileError::Changed { found, written });
+                }
+                return Ok(file);
+            }
+            let event: Event = mimique_study::json_reader::read_value(value)
+                .map_err(|error| wrong(line, &error.to_string()))?;
+            if event.sequence != file.events.len() as u64 {
+                let message =
+                    format!("event {} where {} is due", event.sequence, file.events.len());
+                return Err(wrong(line, &message));
+            }
+            file.events.push(event);
+            length += part.len();
+        }
+        Err(SessionFileError::CutOff { line: 1 + file.events.len() })
+    }
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn file() -> SessionFile {
+        let started = json!({
+            "session": "s", "participant_id": "s1", "participant": 9, "seed": 5, "stage": "live",
+            "config_hash": "h", "withdrawal_code": "w",
+        });
+        let event = |sequence| Event {
+            sequence,
+            at_ms: 0.5 + sequence as f64,
+            body: json!({ "type": "answered", "value": "line\nbreak \u{2028} é" }),
+        };
+        SessionFile {
+            study: "demo".into(),
+            started: serde_json::from_value(started).unwrap(),
+            events: (0..5).map(event).collect(),
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let (text, receipt) = file().write();
+        assert_eq!(SessionFile::read(&text).unwrap(), file());
+        assert_eq!(text.lines().count(), 7);
+        assert!(text.ends_with(&format!("\"sha256\":\"{receipt}\"}}\n")));
+    }
+
+    #[test]
+    fn what_is_cut_off_changed_or_foreign_is_refused_with_its_line() {
+        let (text, _) = file().write();
+        for end in 0..text.len() {
+            if text.is_char_boundary(end) && end + 1 < text.len() {
+                assert!(SessionFile::read(&text[..end]).is_err(), "{end} bytes");
+            }
+        }
+        let changed = text.replacen("break", "broke", 1);
+        assert!(matches!(SessionFile::read(&changed), Err(SessionFileError::Changed { .. })));
+        let lines: Vec<&str> = text.split_inclusive('\n').collect();
+        let missing = [&lines[..2], &lines[3..]].concat().concat();
+        let error = SessionFile::read(&missing).unwrap_err().to_string();
+        assert!(error.starts_with("line 3: event 2 where 1 is due"), "{error}");
+        let foreign = SessionFile::read("{\"a\": 1}\n").unwrap_err().to_string();
+        assert!(foreign.starts_with("line 1: no session of version 1"), "{foreign}");
+        let cut = SessionFile::read(&lines[..3].concat()).unwrap_err();
+        assert_eq!(cut, SessionFileError::CutOff { line: 3 });
+    }
+}

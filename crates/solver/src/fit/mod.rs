@@ -1,0 +1,110 @@
+//! One interface to every method: set up once, then displacements in, weights and a report out.
+
+pub(crate) mod frame;
+pub(crate) mod problem;
+pub(crate) mod report;
+pub(crate) mod seen;
+pub(crate) mod setup;
+
+use crate::energy::operators::Operators;
+use crate::fit::frame::FrameSolver;
+use crate::fit::problem::{FitError, Problem};
+use crate::fit::report::{FrameReport, FrameSolution, TakeSolution};
+use crate::fit::seen::Seen;
+use crate::parameters::table::MethodSpec;
+
+/// Frames that are solved one after the other, each from the last one's answer; the next chunk
+/// starts cold. A constant, so that results do not depend on how many threads share a take.
+pub const CHUNK_FRAMES: usize = 128;
+
+/// A method set up for an avatar: solves frames.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    pub(crate) problem: Problem,
+    /// What depends on which markers are seen, for all of them.
+    pub(crate) all_seen: Seen,
+}
+
+impl Fit {
+    /// Set up a method.
+    ///
+    /// # Errors
+    /// [`FitError`] for a parameter out of range, a name that the avatar or the marker map does not
+    /// have, operators built with other options, or a method that does not solve.
+    pub fn new(operators: &Operators, spec: &MethodSpec) -> Result<Fit, FitError> {
+        let problem = Problem::new(operators, spec)?;
+        let all_seen = Seen::new(&problem, vec![false; problem.marker_count]);
+        Ok(Fit { problem, all_seen })
+    }
+
+    /// N, the weights of a frame.
+    pub fn shape_count(&self) -> usize {
+        self.problem.shape_count
+    }
+
+    /// P: a frame of displacements has 3P numbers.
+    pub fn marker_count(&self) -> usize {
+        self.problem.marker_count
+    }
+
+    /// A solver of consecutive frames.
+    pub fn frames(&self) -> FrameSolver<'_> {
+        FrameSolver::new(self)
+    }
+
+    /// Solve one frame from a cold start. `d`: 3P marker displacements in metres, NaN for a marker
+    /// that is not seen.
+    ///
+    /// # Errors
+    /// [`FitError::Displacements`] unless `d` has 3P numbers.
+    pub fn solve_frame(&self, d: &[f64]) -> Result<FrameSolution, FitError> {
+        let mut weights = vec![0.0; self.shape_count()];
+        let report = self.frames().solve(d, &mut weights)?;
+        Ok(FrameSolution { weights, report })
+    }
+
+    /// Solve a take: `d` is frames x 3P, metres, NaN for markers that are not seen.
+    ///
+    /// The frames of each chunk of [`CHUNK_FRAMES`] start from one another, the first one cold: the
+    /// answer has the same bits however the chunks are shared out. With the feature `parallel` they
+    /// are solved on all cores.
+    ///
+    /// # Errors
+    /// [`FitError::Displacements`] unless `d` is whole frames.
+    pub fn solve_take(&self, d: &[f64]) -> Result<TakeSolution, FitError> {
+        let width = 3 * self.marker_count();
+        if width == 0 || !d.len().is_multiple_of(width) {
+            return Err(self.wrong_size(d.len()));
+        }
+        let frames = d.len() / width;
+        let n = self.shape_count();
+        let mut weights = vec![0.0; frames * n];
+        let mut reports = vec![FrameReport::default(); frames];
+        let one = |((d, weights), reports): ((&[f64], &mut [f64]), &mut [FrameReport])| {
+            let mut solver = self.frames();
+            for ((d, weights), report) in
+                d.chunks_exact(width).zip(weights.chunks_exact_mut(n)).zip(reports)
+            {
+                *report = solver.solve_checked(d, weights);
+            }
+        };
+        #[cfg(feature = "parallel")]
+        {
+            use rayon::prelude::*;
+            d.par_chunks(CHUNK_FRAMES * width)
+                .zip(weights.par_chunks_mut(CHUNK_FRAMES * n))
+                .zip(reports.par_chunks_mut(CHUNK_FRAMES))
+                .for_each(one);
+        }
+        #[cfg(not(feature = "parallel"))]
+        d.chunks(CHUNK_FRAMES * width)
+            .zip(weights.chunks_mut(CHUNK_FRAMES * n))
+            .zip(reports.chunks_mut(CHUNK_FRAMES))
+            .for_each(one);
+        Ok(TakeSolution { weights, reports })
+    }
+
+    pub(crate) fn wrong_size(&self, found: usize) -> FitError {
+        FitError::Displacements { found, markers: self.marker_count() }
+    }
+}

@@ -1,0 +1,5 @@
+//! Dense matrices in an order of operations that is the same on every processor.
+
+pub(crate) mod cholesky;
+pub(crate) mod dense;
+pub(crate) mod exp;

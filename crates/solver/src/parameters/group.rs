@@ -1,0 +1,54 @@
+//! Parameters that belong together: a method uses all of a group or none.
+
+/// Parameters that a method uses together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// The thin shell's share against the bounds.
+    Balance,
+    /// The weight of the priors against the data.
+    PriorWeight,
+    /// The weight of the soft bounds where nothing else stands beside the data.
+    BoundsWeight,
+    /// The smoothing of norms.
+    Norms,
+    /// The unit in which an equation is taken literally.
+    LiteralUnit,
+    /// The thin shell itself.
+    ThinShell,
+    /// Where soft bounds begin, and how softly.
+    SoftBounds,
+    /// Bounds of single shapes.
+    Bounds,
+    /// The points of the face that a marker moves.
+    Association,
+    /// A surface that moves without shapes.
+    Surface,
+    /// A Gaussian process.
+    GaussianProcess,
+    /// The shapes.
+    Shapes,
+    /// The markers.
+    Markers,
+    /// The head that the face sits on.
+    Head,
+}
+
+impl Group {
+    /// The heading under which its parameters are listed.
+    pub fn heading(self) -> &'static str {
+        match self {
+            Group::Balance
+            | Group::PriorWeight
+            | Group::BoundsWeight
+            | Group::Norms
+            | Group::LiteralUnit => "Energies",
+            Group::ThinShell => "Thin shell",
+            Group::SoftBounds | Group::Bounds => "Bounds",
+            Group::Association => "Association of markers (kouadio)",
+            Group::Surface => "Surface (thin-shell-surface)",
+            Group::GaussianProcess => "Gaussian process (regression)",
+            Group::Shapes | Group::Markers => "Shapes and markers",
+            Group::Head => "Head",
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Quadratic programmes over a box, and the least squares without one.
+
+pub(crate) mod box_qp;

@@ -1,0 +1,114 @@
+//! What `mimique test` runs: each test and each description as one value that says all of itself.
+//!
+//! A [`Procedure`] stands in the file of its computation, with its name, its options, its words and the
+//! R and Python functions that compute the same. Adding one is that file and a line in [`PROCEDURES`];
+//! the command line, the golden cases, the agreement with R and SciPy and the scripts of a report follow.
+
+pub(crate) mod arguments;
+pub(crate) mod lines;
+pub(crate) mod row;
+
+use serde::Serialize;
+
+use crate::outcome::{Outcome, Refusal};
+use crate::table::Table;
+use crate::test::{
+    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
+    sign, spearman, wilcoxon,
+};
+use crate::{adjust, summary};
+use arguments::{Arguments, ProcedureOption};
+use row::{TestNames, TestResult, TestRow};
+
+/// A statistical test or description: everything that the command line and the scripts know of it.
+pub struct Procedure {
+    /// Name on the command line, such as `kruskal-wallis`.
+    pub name: &'static str,
+    /// The question that it answers, for the help text.
+    pub question: &'static str,
+    /// What it takes, in the order of the help text; groups that procedures share stand by themselves.
+    pub options: &'static [&'static [ProcedureOption]],
+    /// Runs it on columns of a table. Refuses columns that cannot be tested, naming them.
+    pub run: fn(&Table, &Arguments) -> Result<Answer, Refusal>,
+    /// What its functions of R and Python take.
+    pub sample: Sample,
+    /// Functions of R that compute the same of vectors; empty where no report calls them.
+    pub r: &'static str,
+    /// Functions of Python (NumPy, SciPy) that compute the same of arrays.
+    pub python: &'static str,
+    /// What the file of golden values calls its cases; empty where that file has none.
+    pub golden_cases: &'static str,
+}
+
+/// What the R and Python functions of a procedure take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sample {
+    /// Values in independent groups.
+    Groups,
+    /// Answers, which are counted, in independent groups.
+    Counts,
+    /// Two columns of numbers.
+    Columns,
+    /// Differences of pairs.
+    Differences,
+    /// A matrix: one row per block, one column per group.
+    Blocks,
+    /// Values, two factors, and the number of the effect from 1.
+    TwoFactors,
+    /// Values, two factors, their blocks, and the number of the effect from 1.
+    TwoFactorsInBlocks,
+    /// Something else: no test.
+    Other,
+}
+
+/// Every procedure, in the order of the help text.
+pub static PROCEDURES: [&Procedure; 12] = [
+    &kruskal_wallis::PROCEDURE,
+    &wilcoxon::PROCEDURE,
+    &sign::PROCEDURE,
+    &mann_whitney::PROCEDURE,
+    &scheirer_ray_hare::PROCEDURE,
+    &chi_square::PROCEDURE,
+    &spearman::PROCEDURE,
+    &friedman::PROCEDURE,
+    &aligned_rank_transform::PROCEDURE,
+    &summary::describe::PROCEDURE,
+    &summary::confusion::PROCEDURE,
+    &adjust::PROCEDURE,
+];
+
+/// The result of a procedure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// The result's own fields, with `status` `ok` or `undefined`, as indented JSON.
+    pub json: String,
+    /// Lines for people, in English.
+    pub text: String,
+    /// Of a test: its names and its rows in a table of tests.
+    pub test: Option<(TestNames, Vec<Outcome<TestRow>>)>,
+}
+
+impl Answer {
+    /// From what was computed and the words for it; what is undefined says so with its reason.
+    pub(crate) fn of<T: Serialize>(outcome: &Outcome<T>, words: impl FnOnce(&T) -> String) -> Self {
+        let text = match outcome {
+            Outcome::Ok(result) => words(result),
+            Outcome::Undefined { reason } => format!("undefined: {reason}\n"),
+        };
+        // Results are structs of numbers and texts, which JSON always has a form for.
+        let json = serde_json::to_string_pretty(outcome).unwrap_or_else(|error| error.to_string());
+        Self { json, text, test: None }
+    }
+
+    /// The same of a test, which has rows in a table of tests.
+    pub(crate) fn of_test<T: Serialize + TestResult>(
+        outcome: &Outcome<T>,
+        words: impl FnOnce(&T) -> String,
+    ) -> Self {
+        let rows = match outcome {
+            Outcome::Ok(result) => result.rows(),
+            Outcome::Undefined { reason } => vec![Outcome::undefined(reason)],
+        };
+        Self { test: Some((T::NAMES, rows)), ..Self::of(outcome, words) }
+    }
+}

@@ -1,0 +1,11 @@
+//! An avatar as the solver takes it, and what the solver gives back to an avatar.
+
+mod skin;
+mod split_shapes;
+mod surface_avatar;
+mod vertex_frames;
+
+pub use skin::{AvatarSkin, lock_shapes};
+pub use split_shapes::{SplitError, split_shapes};
+pub use surface_avatar::surface_avatar;
+pub use vertex_frames::VertexFrames;

@@ -1,0 +1,12 @@
+//! What looks wrong: labels, head markers, shapes of a bank.
+
+mod bank;
+mod head;
+mod labels;
+mod take;
+
+pub use bank::{BankDiagnosis, DependentShape, MarkerDiagnosis};
+pub(crate) use head::moving_skin;
+pub use head::{HeadMarker, STILL_MM};
+pub use labels::{LabelFault, LabelProblem};
+pub(crate) use take::is_fitted;

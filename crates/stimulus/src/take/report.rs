@@ -1,0 +1,161 @@
+//! The report of a solve: per frame, over all frames, in words.
+
+use mimique_clip::FrameStatistics;
+use mimique_solver::{FrameReport, Kernel, Method, MethodSpec, Operators, Regression};
+use serde::Serialize;
+
+use crate::checks::{HeadMarker, LabelProblem};
+
+/// The seconds of each stage of a solve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct StageSeconds {
+    /// Reading the files (filled in by the caller).
+    pub read: f64,
+    /// Welding, Laplacian, D and H, factorisations.
+    pub set_up: f64,
+    /// Head, alignment, adaptation.
+    pub front_end: f64,
+    /// The weights.
+    pub solve: f64,
+    /// Looking for swapped labels and head markers that move.
+    pub check: f64,
+    /// Writing the files (filled in by the caller).
+    pub write: f64,
+}
+
+/// One frame of a report.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrameRow {
+    /// The frame's number, as in the capture.
+    pub frame: u64,
+    /// Root mean square distance of the markers, millimetres.
+    pub residual_mm: f64,
+    /// Iterations.
+    pub iterations: u32,
+    /// KKT error, in units of weight.
+    pub kkt_error: f64,
+    /// Thin-shell energy of a surface, square millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_mm2: Option<f64>,
+    /// Predictive standard deviation of a regression's weights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f64>,
+    /// Markers not seen.
+    pub missing_markers: u32,
+    /// What is to be said of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
+}
+
+impl FrameRow {
+    /// The rows of consecutive frames, counted from `first_frame`.
+    pub(crate) fn of(reports: &[FrameReport], first_frame: u64) -> Vec<Self> {
+        let row = |(r, frame): (&FrameReport, u64)| Self {
+            frame,
+            residual_mm: 1e3 * r.residual,
+            iterations: r.iterations,
+            kkt_error: r.kkt_error,
+            energy_mm2: r.energy.map(|energy| 1e6 * energy),
+            deviation: r.deviation,
+            missing_markers: r.missing_markers,
+            warning: r.warning.map(|w| w.to_string()),
+        };
+        reports.iter().zip(first_frame..).map(row).collect()
+    }
+}
+
+/// What a regression has learnt.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegressionSummary {
+    /// Frames learnt from.
+    pub training_frames: usize,
+    /// Basis vectors kept.
+    pub basis_vectors: usize,
+    /// Length scale, signal and noise.
+    pub kernel: Kernel,
+    /// Logarithm of the marginal likelihood of the frames that these were found on.
+    pub log_likelihood: f64,
+}
+
+impl RegressionSummary {
+    pub(crate) fn of(model: &Regression) -> Self {
+        Self {
+            training_frames: model.training_frames,
+            basis_vectors: model.basis_count(),
+            kernel: model.kernel,
+            log_likelihood: model.log_likelihood,
+        }
+    }
+}
+
+/// The report of a solve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolveReport {
+    /// The avatar.
+    pub avatar: String,
+    /// Vertices of its welded skin.
+    pub vertices: usize,
+    /// Its shapes.
+    pub shapes: usize,
+    /// The face markers.
+    pub markers: Vec<String>,
+    /// The markers that stabilise the head.
+    pub head: Vec<String>,
+    /// Frames of the neutral, counted from 0, the end not included.
+    pub neutral: [usize; 2],
+    /// Frames per second.
+    pub rate_hz: f64,
+    /// Cut-off of the head's low-pass, Hz; null where the head was not filtered.
+    pub head_lowpass_hz: Option<f64>,
+    /// The shapes that turn the eyes and rest, since no gaze is given.
+    pub gaze_at_rest: Vec<String>,
+    /// The method with every parameter that it used.
+    pub method: MethodSpec,
+    /// l = sqrt(tr(D^T D) / N), millimetres.
+    pub data_scale_mm: f64,
+    /// tau = tr(H) / N, square metres.
+    pub shell_scale_m2: f64,
+    /// What a regression has learnt from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regression: Option<RegressionSummary>,
+    /// Over all frames.
+    pub summary: FrameStatistics,
+    /// The seconds of each stage.
+    pub seconds: StageSeconds,
+    /// What should be said, a sentence each.
+    pub warnings: Vec<String>,
+    /// How still the head markers are on the head.
+    pub head_markers: Vec<HeadMarker>,
+    /// Labels that are swapped or stand at one place.
+    pub label_problems: Vec<LabelProblem>,
+    /// SHA-256 of the weights.
+    pub weights_hash: String,
+    /// SHA-256 of all that the weights come from, and of the weights.
+    pub provenance: String,
+    /// A row per frame.
+    pub frames: Vec<FrameRow>,
+}
+
+/// Shapes that move no marker by a millimetre at weight 1, and are not locked.
+pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
+    // A surface has no shapes; what a regression knows of a shape it knows from its training.
+    if matches!(spec.method, Method::ThinShellSurface | Method::Regression) {
+        return None;
+    }
+    let names: Vec<&str> = operators
+        .parts()
+        .shape_names
+        .iter()
+        .zip(operators.marker_reach())
+        .filter(|(name, reach)| *reach < 1e-3 && !spec.locked.contains(name))
+        .map(|(name, _)| name.as_str())
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} shapes move no marker by 1 mm, so the markers hardly tell their weights: {}; \
+             lock them to 0 or place markers where they move",
+            names.len(),
+            names.join(", ")
+        )
+    })
+}

@@ -1,0 +1,135 @@
+//! One-time links.
+
+use super::records::{Account, AccountLink, LinkPurpose};
+use super::row::{account, account_link};
+use crate::database::{Row, Transaction, query};
+use crate::error::StorageError;
+use crate::handle::Storage;
+
+impl Storage {
+    /// Remembers a one-time link by its secret's hash; replaces an earlier one to the same person.
+    pub async fn add_link(
+        &self,
+        secret_hash: &str,
+        link: &AccountLink,
+        now_ms: i64,
+    ) -> Result<(), StorageError> {
+        let mut transaction = self.writers.begin_write().await?;
+        query("DELETE FROM account_links WHERE expires_ms < $1")
+            .bind(now_ms)
+            .execute(&mut transaction)
+            .await?;
+        // A new link to the same person replaces the one before it.
+        query("DELETE FROM account_links WHERE email = $1 AND email <> ''")
+            .bind(&link.email)
+            .execute(&mut transaction)
+            .await?;
+        query(
+            "INSERT INTO account_links (secret_hash, purpose, email, role, expires_ms) \
+             VALUES ($1, $2, $3, $4, $5)",
+        )
+        .bind(secret_hash)
+        .bind(link.purpose.word())
+        .bind(&link.email)
+        .bind(link.role.word())
+        .bind(link.expires_ms)
+        .execute(&mut transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// The link with this hash, unless it was used or has expired.
+    pub async fn link(
+        &self,
+        secret_hash: &str,
+        now_ms: i64,
+    ) -> Result<Option<AccountLink>, StorageError> {
+        let row = query(
+            "SELECT purpose, email, role, expires_ms FROM account_links \
+             WHERE secret_hash = $1 AND used_ms IS NULL AND expires_ms >= $2",
+        )
+        .bind(secret_hash)
+        .bind(now_ms)
+        .fetch_optional(&self.readers)
+        .await?;
+        row.as_ref().map(account_link).transpose()
+    }
+
+    /// Uses a link once: makes the account or sets its password. `email` is taken where the link
+    /// names nobody. None where the link does not work any more or the account exists.
+    pub async fn use_link(
+        &self,
+        secret_hash: &str,
+        email: &str,
+        password_hash: &str,
+        now_ms: i64,
+    ) -> Result<Option<Account>, StorageError> {
+        let mut transaction = self.writers.begin_write().await?;
+        let row = query(
+            "UPDATE account_links SET used_ms = $2 \
+             WHERE secret_hash = $1 AND used_ms IS NULL AND expires_ms >= $2 \
+             RETURNING purpose, email, role, expires_ms",
+        )
+        .bind(secret_hash)
+        .bind(now_ms)
+        .fetch_optional(&mut transaction)
+        .await?;
+        let Some(link) = row.as_ref().map(account_link).transpose()? else { return Ok(None) };
+        let email = if link.email.is_empty() { email } else { &link.email };
+        let found = match link.purpose {
+            LinkPurpose::Reset => reset(&mut transaction, email, password_hash).await?,
+            LinkPurpose::FirstOwner if !is_first_owner(&mut transaction).await? => None,
+            _ => {
+                query(
+                    "INSERT INTO accounts (email, role, password_hash, created_ms) \
+                     VALUES ($1, $2, $3, $4) ON CONFLICT (email) DO NOTHING \
+                     RETURNING account_key, email, role, password_hash, created_ms, disabled_ms",
+                )
+                .bind(email)
+                .bind(link.role.word())
+                .bind(password_hash)
+                .bind(now_ms)
+                .fetch_optional(&mut transaction)
+                .await?
+            }
+        };
+        let Some(found) = found.as_ref().map(account).transpose()? else { return Ok(None) };
+        transaction.commit().await?;
+        Ok(Some(found))
+    }
+}
+
+/// Sets a password; whoever was logged in by the old one is so no more.
+async fn reset(
+    transaction: &mut Transaction,
+    email: &str,
+    password_hash: &str,
+) -> Result<Option<Row>, StorageError> {
+    query(
+        "DELETE FROM account_sessions WHERE account_key IN \
+         (SELECT account_key FROM accounts WHERE email = $1)",
+    )
+    .bind(email)
+    .execute(&mut *transaction)
+    .await?;
+    query(
+        "UPDATE accounts SET password_hash = $2, disabled_ms = NULL WHERE email = $1 \
+         RETURNING account_key, email, role, password_hash, created_ms, disabled_ms",
+    )
+    .bind(email)
+    .bind(password_hash)
+    .fetch_optional(transaction)
+    .await
+}
+
+/// Whether nobody has become the first owner; of two first links used at once one makes the owner.
+async fn is_first_owner(transaction: &mut Transaction) -> Result<bool, StorageError> {
+    let made = query(
+        "INSERT INTO server_keys (name, secret) VALUES ('first owner', 'made') \
+         ON CONFLICT DO NOTHING",
+    )
+    .execute(transaction)
+    .await?;
+    Ok(made > 0)
+}

@@ -1,0 +1,36 @@
+//! PostgreSQL: any number of servers on one database.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
+
+use super::{Pool, dialect};
+use crate::address::without_password;
+use crate::error::StorageError;
+
+/// Connects: a connection for each lane that writes and four that read.
+pub(crate) async fn open(url: &str) -> Result<[Pool; 2], StorageError> {
+    let options = options(url)?;
+    let pool = |size| {
+        PgPoolOptions::new()
+            .max_connections(size)
+            .acquire_timeout(Duration::from_secs(10))
+            .connect_with(options.clone())
+    };
+    let lanes = dialect::POSTGRES.lanes as u32;
+    Ok([Pool::Postgres(pool(lanes).await?), Pool::Postgres(pool(4).await?)])
+}
+
+/// Connects once, for a restoration.
+pub(crate) async fn open_once(url: &str) -> Result<Pool, StorageError> {
+    let pool = PgPoolOptions::new().max_connections(1).connect_with(options(url)?);
+    Ok(Pool::Postgres(pool.await?))
+}
+
+fn options(url: &str) -> Result<PgConnectOptions, StorageError> {
+    PgConnectOptions::from_str(url).map_err(|problem| StorageError::Address {
+        url: without_password(url),
+        problem: problem.to_string(),
+    })
+}

@@ -1,0 +1,156 @@
+//! Files that are whole or absent, and on disk when a call returns: written under a second name in the
+//! same folder and brought to disk; then renamed, and the folder brought to disk too.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+/// Writes the bytes to disk under `path`, replacing what was there.
+///
+/// # Errors
+/// The folder is absent or cannot be written; then what was there is still there.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// The same with what `fill` writes.
+///
+/// # Errors
+/// Those of [`write()`] and of `fill`.
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let file = named(path, |builder, folder| {
+        // Readable for others as far as the process lets new files be.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        builder.tempfile_in(folder)
+    })?;
+    let mut buffer = BufWriter::new(file);
+    fill(&mut buffer)?;
+    finish(buffer.into_inner()?, path)
+}
+
+/// Makes a folder with what `fill` puts into it, in the place of what was there. Its files are not brought
+/// to disk.
+///
+/// # Errors
+/// The folder cannot be made, or `fill` fails; then what was there is still there.
+pub fn write_folder<T, E: From<io::Error>>(
+    path: &Path,
+    fill: impl FnOnce(&Path) -> Result<T, E>,
+) -> Result<T, E> {
+    let beside = || {
+        named(path, |builder, folder| {
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+            builder.tempdir_in(folder)
+        })
+    };
+    let (fresh, old) = (beside()?, beside()?);
+    let done = fill(fresh.path())?;
+    let before = old.path().join("before");
+    if path.exists() {
+        std::fs::rename(path, &before)?;
+    }
+    if let Err(error) = std::fs::rename(fresh.path(), path) {
+        if before.exists() {
+            std::fs::rename(&before, path)?;
+        }
+        return Err(error.into());
+    }
+    Ok(done)
+}
+
+/// Begins a file that is to stand at `path`, readable for its owner alone. Without [`finish`] it is
+/// removed again.
+pub(crate) fn begin(path: &Path) -> io::Result<NamedTempFile> {
+    named(path, |builder, folder| builder.tempfile_in(folder))
+}
+
+/// A folder beside `path`, removed with what it holds when it is dropped. Its owner alone can read it.
+///
+/// # Errors
+/// The folder around it is absent or cannot be written.
+pub fn folder_beside(path: &Path) -> io::Result<TempDir> {
+    named(path, |builder, folder| builder.tempdir_in(folder))
+}
+
+/// Brings a file to disk under its own name.
+pub(crate) fn finish(file: NamedTempFile, path: &Path) -> io::Result<()> {
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    sync_folder(path)
+}
+
+/// Brings a file of the same file system to disk under its own name.
+pub(crate) fn rename(from: &Path, path: &Path) -> io::Result<()> {
+    File::open(from)?.sync_all()?;
+    std::fs::rename(from, path)?;
+    sync_folder(path)
+}
+
+fn named<T>(
+    path: &Path,
+    make: impl FnOnce(&mut Builder<'_, '_>, &Path) -> io::Result<T>,
+) -> io::Result<T> {
+    let name = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?.to_string_lossy();
+    make(Builder::new().prefix(&format!(".{name}.")).suffix(".part"), folder_of(path))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Brings a folder's names to disk. Windows has no such call: there the rename itself is durable.
+fn sync_folder(path: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder_of(path))?.sync_all() } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_is_left_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        write(&path, b"one").unwrap();
+        write(&path, b"two").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"two");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(write(&folder.path().join("absent/b.csv"), b"x").is_err());
+    }
+
+    #[test]
+    fn a_folder_is_replaced_whole_or_stays_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report");
+        let fill = |name: &'static str| {
+            move |folder: &Path| std::fs::write(folder.join(name), name).map(|()| name)
+        };
+        assert_eq!(write_folder(&path, fill("one")).unwrap(), "one");
+        assert_eq!(write_folder(&path, fill("two")).unwrap(), "two");
+        let fails = |folder: &Path| -> io::Result<()> {
+            std::fs::write(folder.join("three"), "half")?;
+            Err(io::ErrorKind::StorageFull.into())
+        };
+        assert!(write_folder(&path, fails).is_err());
+        let names = |folder: &Path| -> Vec<_> {
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+        };
+        assert_eq!(names(&path), ["two"]);
+        assert_eq!(names(folder.path()), ["report"]);
+    }
+
+    #[test]
+    fn what_is_not_finished_is_not_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gz");
+        begin(&path).unwrap().write_all(b"half").unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

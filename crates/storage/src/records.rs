@@ -1,0 +1,201 @@
+//! The rows that storage takes and gives.
+
+use std::collections::BTreeMap;
+
+use mimique_session::wire::{Acknowledged, Event};
+use mimique_session::{EventKind, Standing};
+
+/// A version of a study as served.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyVersion {
+    /// Identifier used in addresses.
+    pub study_id: String,
+    /// SHA-256 of the canonical study file, hexadecimal.
+    pub config_hash: String,
+    /// The study file, JSON text.
+    pub file: String,
+    /// Its clips and their packs (`wire::Bundle::clips`), JSON text.
+    pub clips: String,
+}
+
+/// A session to start.
+#[derive(Debug, Clone)]
+pub struct NewSession {
+    /// SHA-256 of the token, hexadecimal.
+    pub token_hash: String,
+    /// SHA-256 of the withdrawal code, hexadecimal.
+    pub withdrawal_hash: String,
+    /// The study.
+    pub study_id: String,
+    /// Its version.
+    pub config_hash: String,
+    /// Seed of its random streams.
+    pub seed: u64,
+    /// `pilot` or `live`.
+    pub stage: String,
+    /// Language of the pages.
+    pub language: String,
+    /// Browser, its major version, platform class; JSON text.
+    pub client: String,
+    /// Recruitment identifiers, kept apart.
+    pub recruitment: BTreeMap<String, String>,
+    /// Keyed hashes of what tells a second participation of one person; none where the study does
+    /// not ask.
+    pub marks: Vec<String>,
+    /// The conditions between which the participant is put; none in a study without.
+    pub conditions: Vec<String>,
+    /// How many participants the study takes.
+    pub places: Option<u64>,
+    /// How long the place in the balance is kept after the last sign of life, milliseconds.
+    pub reservation_ms: i64,
+    /// The server's clock.
+    pub now_ms: i64,
+}
+
+/// A stored session.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SessionRecord {
+    /// Key inside the database.
+    pub key: i64,
+    /// The study.
+    pub study_id: String,
+    /// Participant number within the study.
+    pub participant: u64,
+    /// Place in the balance of conditions, from 1 in each version, stage and condition between
+    /// participants.
+    pub slot: u64,
+    /// The participant's condition, for good; none in a study without.
+    pub condition: Option<String>,
+    /// Until when the place is kept unless a sign of life comes; none when it is kept for good or
+    /// somebody else has it.
+    pub slot_expires_ms: Option<i64>,
+    /// How long it is kept after each sign of life.
+    pub slot_lasts_ms: i64,
+    /// Version of the study.
+    pub config_hash: String,
+    /// Seed of the study's random streams.
+    pub seed: u64,
+    /// `pilot` or `live`.
+    pub stage: String,
+    /// Language of the pages.
+    pub language: String,
+    /// Browser, its major version, platform class; JSON text.
+    pub client: String,
+    /// SHA-256 of the withdrawal code, hexadecimal.
+    pub withdrawal_hash: String,
+    /// How it stands by its events, whatever the time is.
+    pub standing: Standing,
+    /// When it started, milliseconds since 1970 by the server's clock.
+    pub started_ms: i64,
+    /// When its last new event came.
+    pub last_event_ms: Option<i64>,
+    /// When it got its receipt, or its answers were deleted.
+    pub ended_ms: Option<i64>,
+    /// When its answers were deleted: at the participant's wish if it stands withdrawn, else since their
+    /// time was over.
+    pub deleted_ms: Option<i64>,
+    /// How many events are stored.
+    pub event_count: u64,
+    /// One more than the highest stored sequence.
+    pub next_sequence: u64,
+    /// Its receipt and how many events that covers, when completed.
+    pub receipt: Option<(String, u64)>,
+}
+
+impl SessionRecord {
+    /// Whether the answers are gone and nothing more is taken.
+    pub fn is_deleted(&self) -> bool {
+        self.deleted_ms.is_some()
+    }
+
+    /// When the next sign of life is due at the latest, milliseconds since 1970: after that the session
+    /// is abandoned.
+    pub fn sign_of_life_due_ms(&self) -> i64 {
+        self.last_event_ms.unwrap_or(self.started_ms).saturating_add(self.slot_lasts_ms)
+    }
+}
+
+/// An event as it is stored.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrittenEvent {
+    /// Its place in the session, from 0.
+    pub sequence: u64,
+    /// When it happened, milliseconds of the page's clock.
+    pub at_ms: f64,
+    /// JSON, keys in alphabetical order: the receipt is over this text.
+    pub body: String,
+    /// Whether it can end the session.
+    pub may_end: bool,
+}
+
+impl From<Event> for WrittenEvent {
+    fn from(event: Event) -> Self {
+        Self {
+            sequence: event.sequence,
+            at_ms: event.at_ms,
+            body: event.body.to_string(),
+            may_end: EventKind::may_end(&event.body),
+        }
+    }
+}
+
+/// What an append did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Appended {
+    /// What is stored now.
+    pub acknowledged: Acknowledged,
+    /// Sequences for which another body was already stored; the new one is kept apart.
+    pub conflicts: Vec<u64>,
+}
+
+/// What completing did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Completed {
+    /// Key of the session inside the database.
+    pub key: i64,
+    /// The study, for its completion code.
+    pub study_id: String,
+    /// Keyed hash over the stored events, hexadecimal.
+    pub receipt: String,
+    /// How many events it covers.
+    pub stored: u64,
+}
+
+/// How a study's version came to be served.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Registered {
+    /// Number of the version within the study, from 1 in order of first service.
+    pub version: u64,
+    /// Hash of the version that this one replaces.
+    pub replaces: Option<String>,
+    /// Live sessions that began under other versions and have not ended.
+    pub running_elsewhere: u64,
+    /// The file is as it was, but the stimuli that it names are not.
+    pub stimuli_changed: bool,
+}
+
+/// A session whose answers or identifiers were deleted: what a backup must not bring back.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Deletion {
+    /// SHA-256 of the session's token, hexadecimal.
+    pub token_hash: String,
+    /// `withdrawn`, `erased` or `identifiers`.
+    pub what: String,
+    /// When, milliseconds since 1970.
+    pub at_ms: i64,
+}
+
+/// One recruitment identifier.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecruitmentEntry {
+    /// Participant number.
+    pub participant: u64,
+    /// Name of the parameter, e.g. `PROLIFIC_PID`.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+}
+
+/// Tables with rows of a session (`session_key`) that are deleted with its answers.
+pub(crate) const PERSONAL_TABLES: [&str; 4] =
+    ["events", "event_conflicts", "recruitment", "repeat_marks"];

@@ -1,0 +1,56 @@
+//! The end of a session: every event is there, and the receipt says so.
+
+use super::append::missing_below;
+use super::find::open_session;
+use super::receipt::ReceiptHasher;
+use crate::database::{Transaction, query, signed};
+use crate::error::StorageError;
+use crate::records::Completed;
+
+/// Completes a session, or finds the receipt that it has already.
+pub(super) async fn complete(
+    transaction: &mut Transaction,
+    token_hash: &str,
+    events: u64,
+    receipt_key: &[u8],
+    now_ms: i64,
+) -> Result<Completed, StorageError> {
+    let session = open_session(transaction, token_hash).await?;
+    if let Some((receipt, stored)) = session.receipt {
+        return Ok(Completed { key: session.key, study_id: session.study_id, receipt, stored });
+    }
+    // An unbroken prefix needs no search; otherwise the gaps and the unseen end are missing.
+    let unbroken = session.event_count == session.next_sequence && events <= session.event_count;
+    if !unbroken {
+        let missing = missing_below(transaction, session.key, events).await?;
+        if !missing.is_empty() {
+            return Err(StorageError::MissingEvents { missing });
+        }
+    }
+    let mut hasher = ReceiptHasher::new(receipt_key, &session.study_id, session.participant);
+    let rows = query(
+        "SELECT sequence, at_ms, body FROM events WHERE session_key = $1 AND sequence < $2 \
+         ORDER BY sequence",
+    )
+    .bind(session.key)
+    .bind(signed(events))
+    .fetch_all(&mut *transaction)
+    .await?;
+    for row in &rows {
+        let body: String = row.get("body")?;
+        let sequence = row.unsigned("events", "sequence")?;
+        hasher.add(sequence, row.get("at_ms")?, &body);
+    }
+    let receipt = hasher.finish();
+    query(
+        "UPDATE sessions SET ended_ms = $1, receipt = $2, receipt_events = $3 \
+         WHERE session_key = $4",
+    )
+    .bind(now_ms)
+    .bind(&receipt)
+    .bind(signed(events))
+    .bind(session.key)
+    .execute(transaction)
+    .await?;
+    Ok(Completed { key: session.key, study_id: session.study_id, receipt, stored: events })
+}

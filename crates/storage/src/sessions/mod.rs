@@ -1,0 +1,14 @@
+//! Participants' sessions: what is read of them, and the changes that the writer commits together.
+
+mod append;
+mod change;
+mod complete;
+mod deletion;
+pub(crate) mod erase;
+mod find;
+mod read;
+mod receipt;
+mod row;
+mod start;
+mod write;
+pub(crate) mod writer;

@@ -1,0 +1,65 @@
+//! A session's row.
+
+use mimique_session::Standing;
+use mimique_session::wire::Event;
+
+use crate::database::{Row, unsigned};
+use crate::error::StorageError;
+use crate::records::SessionRecord;
+
+/// Columns of a session, in the order in which [`session_record`] names them.
+pub(super) const SESSION_COLUMNS: &str = "session_key, study_id, participant, config_hash, seed, stage, \
+     language, client, withdrawal_hash, status, started_ms, last_event_ms, ended_ms, \
+     event_count, next_sequence, receipt, receipt_events, slot, slot_expires_ms, slot_lasts_ms, \
+     deleted_ms, assigned_condition";
+
+/// A session as its row says.
+pub(super) fn session_record(row: &Row) -> Result<SessionRecord, StorageError> {
+    const TABLE: &str = "sessions";
+    let status: String = row.get("status")?;
+    let receipt: Option<String> = row.get("receipt")?;
+    let receipt_events: Option<i64> = row.get("receipt_events")?;
+    Ok(SessionRecord {
+        key: row.get("session_key")?,
+        study_id: row.get("study_id")?,
+        participant: row.unsigned(TABLE, "participant")?,
+        slot: row.unsigned(TABLE, "slot")?,
+        condition: Some(row.get("assigned_condition")?).filter(|name: &String| !name.is_empty()),
+        slot_expires_ms: row.get("slot_expires_ms")?,
+        slot_lasts_ms: row.get("slot_lasts_ms")?,
+        config_hash: row.get("config_hash")?,
+        // The 64 bits of the seed, kept in a signed column.
+        seed: row.get::<i64>("seed")?.cast_unsigned(),
+        stage: row.get("stage")?,
+        language: row.get("language")?,
+        client: row.get("client")?,
+        withdrawal_hash: row.get("withdrawal_hash")?,
+        standing: Standing::from_stored_word(&status).ok_or_else(|| StorageError::Damaged {
+            table: TABLE,
+            problem: format!("status {status}"),
+        })?,
+        started_ms: row.get("started_ms")?,
+        last_event_ms: row.get("last_event_ms")?,
+        ended_ms: row.get("ended_ms")?,
+        deleted_ms: row.get("deleted_ms")?,
+        event_count: row.unsigned(TABLE, "event_count")?,
+        next_sequence: row.unsigned(TABLE, "next_sequence")?,
+        receipt: match (receipt, receipt_events) {
+            (Some(receipt), Some(events)) => Some((receipt, unsigned(TABLE, events)?)),
+            _ => None,
+        },
+    })
+}
+
+/// An event of a session as its row says.
+pub(super) fn event(session_key: i64, row: &Row) -> Result<Event, StorageError> {
+    let body: String = row.get("body")?;
+    Ok(Event {
+        sequence: row.unsigned("events", "sequence")?,
+        at_ms: row.get("at_ms")?,
+        body: serde_json::from_str(&body).map_err(|problem| StorageError::Damaged {
+            table: "events",
+            problem: format!("session key {session_key}: {problem}"),
+        })?,
+    })
+}

@@ -1,0 +1,144 @@
+//! The columns that every export has, by the names that people's scripts expect.
+
+use serde::Serialize;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ColumnKind {
+    /// Words.
+    Text,
+    /// Whole numbers.
+    Integer,
+    /// Numbers.
+    Number,
+    /// `true`, `false`.
+    Boolean,
+    /// `YYYY-MM-DDThh:mm:ss.sssZ`.
+    Time,
+    /// A word or a number, by the row's response.
+    Any,
+}
+
+/// What the researcher decides on, at the end of every row: whether the participant is excluded, why.
+pub const EXCLUSION_COLUMNS: [&str; 2] = ["excluded", "exclusion_reason"];
+
+/// Which condition the participant is in; in exports of studies with conditions, after `condition`.
+pub const ASSIGNED_CONDITION: &str = "assigned_condition";
+
+/// Whether a column of exports is called so: nothing of a study may be.
+pub fn is_reserved_column(name: &str) -> bool {
+    name == ASSIGNED_CONDITION
+        || EXCLUSION_COLUMNS.contains(&name)
+        || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
+}
+
+/// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
+/// the participant at the end.
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 52] = {
+    use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
+    [
+        ("participant_id", Text, "", "Public identifier of the participant"),
+        ("participant", Integer, "", "Participant number, given once"),
+        (
+            "slot",
+            Integer,
+            "",
+            "Place in the balance of conditions; with seed and config_hash it decides the order",
+        ),
+        ("trial_id", Text, "", "Identifier of the trial or page"),
+        ("trial_index", Integer, "", "Place among all pages and trials of the session, from 0"),
+        (
+            "trial_order",
+            Integer,
+            "",
+            "Place among the trials (or among the practice trials), from 1",
+        ),
+        (
+            "trial_type",
+            Text,
+            "",
+            "trial, training, demographics, questionnaire, or screening: why a session ended early",
+        ),
+        ("condition", Text, "", "Sequence or block that the trial belongs to"),
+        ("stage", Text, "", "pilot or live"),
+        (
+            "status",
+            Text,
+            "",
+            "How the session stands: completed, active, withdrawn, declined, screened_out, failed_checks",
+        ),
+        ("stimulus", Text, "", "Identifier of the clip"),
+        ("beside", Text, "", "Clip shown in step beside it"),
+        ("beside_side", Text, "", "Side of that clip: left or right"),
+        ("response_id", Text, "", "Identifier of the question"),
+        ("answer", Any, "", "The answer; scales are coded as shown, several choices joined by |"),
+        ("response", Any, "", "The same as answer"),
+        ("truth", Any, "", "The right answer, where the clip has one"),
+        ("correct", Boolean, "", "Whether the answer is the right one"),
+        ("chosen", Text, "", "Of a comparison: the clip that was chosen"),
+        ("attention_passed", Boolean, "", "Whether an attention check was passed"),
+        (
+            "rt",
+            Number,
+            "ms",
+            "From the first frame of the first whole play (of a page: from its showing) to the last change of this answer",
+        ),
+        ("duration", Number, "ms", "From the start of the trial or page to its end"),
+        (
+            "time_elapsed",
+            Number,
+            "ms",
+            "From the opening of the session to the end of the trial or page",
+        ),
+        ("replays", Integer, "", "Whole plays after the first"),
+        ("interruptions", Integer, "", "Reloads and plays cut short within the trial or page"),
+        ("focus_losses", Integer, "", "Times the page lost the focus or was hidden"),
+        ("timed_out", Boolean, "", "Whether the time limit ended it"),
+        ("fullscreen", Boolean, "", "Whether the page filled the screen"),
+        (
+            "onset_ms",
+            Number,
+            "ms",
+            "First frame of the first whole play, after the opening of the session",
+        ),
+        ("frames", Integer, "", "Frames shown in that play"),
+        ("frames_late", Integer, "", "Frames of it that came late"),
+        ("frame_longest_ms", Number, "ms", "Longest time between two of its frames"),
+        ("refresh_hz", Number, "Hz", "Rate of the display as measured"),
+        ("backend", Text, "", "What drew the clip: webgpu or webgl2"),
+        (
+            "beside_drift_ms",
+            Number,
+            "ms",
+            "Side by side: largest time between what the two clips showed in one frame",
+        ),
+        ("clip_width", Number, "px", "Width of the clip as shown, CSS pixels"),
+        ("clip_height", Number, "px", "Height of the clip as shown, CSS pixels"),
+        ("viewport", Text, "px", "Width x height of the window, CSS pixels"),
+        ("px_per_mm", Number, "px/mm", "CSS pixels per millimetre, by the card held to the screen"),
+        (
+            "viewing_distance_cm",
+            Number,
+            "cm",
+            "Distance from eyes to screen, as the participant says",
+        ),
+        ("device_pixel_ratio", Number, "", "Device pixels per CSS pixel"),
+        ("weights_hash", Text, "", "SHA-256 of the weights as the browser solved them"),
+        (
+            "provenance",
+            Text,
+            "",
+            "SHA-256 over avatar, capture, marker map, method, parameters and solver",
+        ),
+        ("beside_provenance", Text, "", "The same of the clip beside it"),
+        ("renderer", Text, "", "Hash of the modules and shaders that drew the clip"),
+        ("start_time", Time, "", "Start of the trial or page, UTC, the participant's clock"),
+        ("end_time", Time, "", "Its end"),
+        ("language", Text, "", "Language of the pages"),
+        ("consent_version", Text, "", "Version of the agreement"),
+        ("seed", Integer, "", "Seed of the study's random streams"),
+        ("config_hash", Text, "", "SHA-256 of the canonical study file"),
+        ("browser", Text, "", "Browser name, major version and platform class"),
+    ]
+};

@@ -1,0 +1,99 @@
+//! Answers about two clips that are shown together: which factors of the clips they can be told of.
+
+use crate::question::{KindOfQuestion as _, Question};
+use crate::study_file::{Clip, Component, Measure, Study};
+
+/// Why the answers to a question cannot be told of the levels of a factor: they are about two clips.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum AnswerOfPair {
+    /// The answer says which of two clips, not how one of them is.
+    Choice {
+        /// Identifier of the question.
+        question: String,
+        /// The factor.
+        factor: String,
+    },
+    /// The answer is given to a clip and its companion together, and either may be why.
+    Rating {
+        /// Identifier of the question.
+        question: String,
+        /// The factor in which the two clips differ.
+        factor: String,
+        /// A clip that is shown so.
+        clip: String,
+        /// The clip beside it.
+        beside: String,
+    },
+}
+
+/// A clip of a trial, and what is played in step beside it.
+type Shown<'c> = (&'c Clip, Option<&'c Clip>);
+
+impl Study {
+    /// Why answers to `question` cannot be told of the levels of `factor`; `None` where they can be, as in
+    /// trials of one clip. `levels` are those that are compared, all of them if there are none.
+    ///
+    /// Two clips that agree in the factor (the emotion of their segment) have its level together. Where they
+    /// differ, an answer is about the clip alone only if every clip stands beside the same level of the
+    /// factor, a reference that is not compared itself, such as the recorded performance.
+    pub fn answer_of_pair(
+        &self,
+        question: &Question,
+        measure: Measure,
+        factor: &str,
+        levels: &[String],
+    ) -> Option<AnswerOfPair> {
+        let blocks = || {
+            self.components.values().filter_map(|component| match component {
+                Component::Trials(block) if block.questions.contains(&question.id) => Some(block),
+                _ => None,
+            })
+        };
+        if blocks().all(|block| block.beside.is_none()) {
+            return None;
+        }
+        let clips = self.clips();
+        let level = |clip: &Clip| clip.factor_text(factor);
+        let is_compared = |clip: &&Clip| {
+            let own = level(clip);
+            own.is_some_and(|own| levels.is_empty() || levels.contains(&own))
+        };
+        let shown: Vec<Shown<'_>> = blocks()
+            .flat_map(|block| {
+                let companion =
+                    |clip| block.beside.as_ref().and_then(|beside| beside.of(clip, &clips));
+                let taken = clips.iter().filter(|clip| block.clips.takes(clip));
+                taken.filter(is_compared).map(move |clip| (clip, companion(clip)))
+            })
+            .collect();
+        if shown.is_empty() {
+            // The factor is about people.
+            return None;
+        }
+        if question.kind.compares_clips() && measure == Measure::Answer {
+            let (question, factor) = (question.id.clone(), factor.to_owned());
+            return Some(AnswerOfPair::Choice { question, factor });
+        }
+        let (clip, beside) = ambiguous(&shown, level)?;
+        Some(AnswerOfPair::Rating {
+            question: question.id.clone(),
+            factor: factor.to_owned(),
+            clip: clip.id.clone(),
+            beside: beside.id.clone(),
+        })
+    }
+}
+
+/// A clip and its companion either of which an answer may be about, as far as their levels say.
+fn ambiguous<'c>(
+    shown: &[Shown<'c>],
+    level: impl Fn(&Clip) -> Option<String>,
+) -> Option<(&'c Clip, &'c Clip)> {
+    let both = |&(clip, beside): &Shown<'c>| beside.map(|beside| (clip, beside));
+    let differs = |(clip, beside): &(&Clip, &Clip)| level(clip) != level(beside);
+    let first = shown.iter().filter_map(both).find(differs)?;
+    let reference = level(first.1);
+    let is_compared = shown.iter().any(|(clip, _)| level(clip) == reference);
+    let is_reference = |pair: &Shown<'_>| pair.1.is_some_and(|it| level(it) == reference);
+    (is_compared || !shown.iter().all(is_reference)).then_some(first)
+}

@@ -1,0 +1,157 @@
+// The border between the participant's pages (app.js, wasm) and the stage. The stage and the solver
+// are loaded when the first clip is asked for, so that the first page comes without them.
+
+let host;
+const stageHost = () => (host ??= import("../stage/host.js"));
+
+const held = new Set();
+const media = {};
+
+/** Takes a lock for as long as this page lives. False if another tab of this browser has it. */
+export async function holdSession(name) {
+  // Plain HTTP on another machine has no locks.
+  if (!navigator.locks || held.has(name)) return true;
+  return new Promise((answer) => {
+    navigator.locks.request(`mimique/${name}`, { ifAvailable: true }, (lock) => {
+      if (lock !== null) held.add(name);
+      answer(lock !== null);
+      return lock === null ? undefined : new Promise(() => {});
+    });
+  });
+}
+
+/** Browser, its major version and platform class: nothing finer. */
+export function about() {
+  const agent = navigator.userAgent;
+  const families = [["Edge", /Edg\/(\d+)/], ["Opera", /OPR\/(\d+)/], ["Firefox", /Firefox\/(\d+)/], ["Chrome", /Chrome\/(\d+)/], ["Safari", /Version\/(\d+).*Safari/]];
+  const [browser, pattern] = families.find(([, each]) => each.test(agent)) ?? ["other", /(?!)/];
+  const version = pattern.exec(agent)?.[1] ?? "";
+  const platforms = [["Android", /Android/], ["iOS", /iPhone|iPad/], ["Windows", /Windows/], ["macOS", /Mac OS/], ["ChromeOS", /CrOS/], ["Linux", /Linux/]];
+  const platform = platforms.find(([, each]) => each.test(agent))?.[0] ?? "other";
+  return JSON.stringify({ browser, version, platform });
+}
+
+/** What browser and display can do, as the JSON of `study::Display`. */
+export async function measure() {
+  const { backend, refreshPeriod } = await stageHost();
+  const period = document.hidden ? null : await refreshPeriod(true);
+  return JSON.stringify({
+    viewport: [innerWidth, innerHeight],
+    device_pixel_ratio: devicePixelRatio,
+    refresh_hz: period === null ? null : thousandth(1000 / period),
+    backend: await backend().catch(() => null),
+    desktop: matchMedia("(any-pointer: fine)").matches && matchMedia("(any-hover: hover)").matches,
+    fullscreen: document.fullscreenEnabled ?? false,
+  });
+}
+
+/** The address of a picture or a sign-language video of the study, fetched by its hash. */
+export async function mediaAddress(hash, type) {
+  const { fetchPack } = await stageHost();
+  const bytes = await fetchPack(hash);
+  media[hash] ??= URL.createObjectURL(new Blob([bytes], { type }));
+  return media[hash];
+}
+
+/** Gives the participant a text as a file. */
+export function download(name, text) {
+  const address = URL.createObjectURL(new Blob([text], { type: "application/x-ndjson" }));
+  const link = document.createElement("a");
+  link.href = address;
+  link.download = name;
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+}
+
+/** Lets the page fill the screen; the browser allows it after a press alone. */
+export function requestFullscreen() {
+  document.documentElement.requestFullscreen?.({ navigationUI: "hide" }).catch(() => {});
+}
+
+/** Gives the screen back. */
+export function leaveFullscreen() {
+  if (isFullscreen()) document.exitFullscreen().catch(() => {});
+}
+
+/** Whether the page fills the screen. */
+export function isFullscreen() {
+  return document.fullscreenElement != null;
+}
+
+/** Fetches packs and solves. Resolves with the solved clip's facts as JSON. */
+export async function prepareClip(clip, source, progress) {
+  const { prepareClip } = await stageHost();
+  return JSON.stringify(await prepareClip(clip, JSON.parse(source), progress));
+}
+
+// The two places where clips are shown: "clip", and "beside" it.
+const places = new Map();
+
+/** Puts a stage on the canvas of a place; it opens while the clip is loaded. Should it fail, it is opened
+    again, and says why, when a clip is shown. */
+export function attachStage(place, canvas, look) {
+  detachStage(place);
+  places.set(place, { canvas, look: JSON.parse(look), opening: null });
+  stage(place).catch(() => {});
+}
+
+/** Takes the stage off a place's canvas. */
+export function detachStage(place) {
+  const old = places.get(place)?.opening;
+  places.delete(place);
+  old?.then((stage) => stage.close(), () => {});
+}
+
+async function stage(place) {
+  const here = places.get(place);
+  if (!here) throw new Error("there is no canvas on this page");
+  if (!here.opening) {
+    const mine = stageHost().then(({ openStage }) => openStage(here.canvas, here.look));
+    here.opening = mine;
+    // A stage that could not open is tried anew at the next call.
+    mine.catch(() => {
+      if (here.opening === mine) here.opening = null;
+    });
+  }
+  return here.opening;
+}
+
+/** Shows the first frame of a clip, and of the one beside it, before they are played. */
+export async function showClip(clip, beside) {
+  await (await stage("clip")).show(clip, 0);
+  if (beside) await (await stage("beside")).show(beside, 0);
+}
+
+/** Plays a clip once, the one beside it in step. Resolves with the log as JSON, its times as
+    `study::PlayLog` has them. */
+export async function playClip(clip, beside) {
+  const here = await stage("clip");
+  const there = beside ? { stage: await stage("beside"), clipId: beside } : null;
+  return JSON.stringify(onPageClock(await here.play(clip, there)));
+}
+
+// The stage's times are requestAnimationFrame's: ms since the page was opened. Onset and end become
+// ms since 1970, as every event has them; frames become ms after the onset.
+function onPageClock({ onset_ms: onset, end_ms: end, frames, ...log }) {
+  const since1970 = (ms) => (ms === null ? 0 : thousandth(performance.timeOrigin + ms));
+  return {
+    ...log,
+    onset_ms: since1970(onset),
+    end_ms: since1970(end),
+    longest_ms: thousandth(log.longest_ms),
+    drift_ms: thousandth(log.drift_ms),
+    frames: frames.map(([shown, clip, late]) => [thousandth(shown - onset), thousandth(clip), late]),
+  };
+}
+
+// Microseconds: browsers tell no finer.
+function thousandth(ms) {
+  return Math.round(ms * 1000) / 1000;
+}
+
+/** Aborts the play in progress. */
+export function stopClip() {
+  places.get("clip")?.opening?.then((stage) => stage.stop(), () => {});
+}

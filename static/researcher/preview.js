@@ -1,0 +1,179 @@
+// The preview of a study's stimuli: two clips side by side, played in step, scrubbed, slowed down.
+import { backend, openStage, prepareClip, preparedClip, refreshPeriod } from "../stage/host.js";
+import { Player, made } from "../stage/player.js";
+
+const $ = (id) => document.getElementById(id);
+const study = document.body.dataset.study;
+
+const player = new Player();
+
+class Panel {
+  #element;
+  #canvas;
+  #select;
+  #facts;
+  #veil;
+  #notices;
+  #clips;
+  #look;
+  #stage = null;
+  #clipId = null;
+  #wanted = null;
+  #recovering = false;
+  // Frames drawn, ever.
+  drawn = 0;
+
+  constructor(element, clips, look, optional) {
+    const letter = element.dataset.panel.toUpperCase();
+    this.#element = element;
+    this.#clips = clips;
+    this.#look = look;
+    this.#select = made("select", { id: `clip-${letter.toLowerCase()}`, ariaLabel: `Clip ${letter}` });
+    if (optional) this.#select.append(new Option("Nothing beside it", ""));
+    for (const id of Object.keys(clips).filter((id) => !id.startsWith("media:"))) this.#select.append(new Option(id, id));
+    this.#canvas = made("canvas", { role: "img" });
+    this.#veil = made("div", { className: "veil", hidden: true });
+    const frame = made("div", { className: "stage" }, this.#canvas, this.#veil);
+    this.#facts = made("dl", { className: "preview-clip" });
+    this.#notices = made("div", { role: "status" });
+    element.replaceChildren(this.#select, frame, this.#facts, this.#notices);
+    this.#select.addEventListener("change", () => this.choose(this.#select.value));
+  }
+
+  focus() {
+    this.#select.focus();
+  }
+
+  clip() {
+    return this.#clipId === null ? null : preparedClip(this.#clipId);
+  }
+
+  async choose(id) {
+    this.#wanted = id;
+    this.#select.value = id;
+    this.#element.classList.toggle("empty", id === "");
+    this.#clipId = null;
+    this.#facts.replaceChildren();
+    this.#notices.replaceChildren();
+    if (id === "") return player.draw();
+    const bar = made("progress", { max: 1, value: 0 });
+    const words = made("span", {}, "Loading and solving");
+    this.#veil.replaceChildren(words, bar);
+    this.#veil.hidden = false;
+    try {
+      const summary = await prepareClip(id, this.#clips[id], (part) => (bar.value = part));
+      if (this.#wanted !== id) return;
+      this.#stage ??= await openStage(this.#canvas, this.#look);
+      if (this.#wanted !== id) return;
+      this.#clipId = id;
+      this.#canvas.setAttribute("aria-label", `Animated face, clip ${id}`);
+      this.#describe(summary);
+      this.#veil.hidden = true;
+      this.turn();
+      player.seek(player.timeMs);
+    } catch (error) {
+      if (this.#wanted === id) this.#veil.replaceChildren(String(error.message ?? error));
+    }
+  }
+
+  turn() {
+    const [yaw, pitch] = $("view").value.split(",").map(Number);
+    this.#stage?.setView({ yaw, pitch });
+  }
+
+  draw(timeMs) {
+    if (this.#clipId === null || this.#recovering) return true;
+    try {
+      const drawn = this.#stage.drawNow(this.#clipId, timeMs);
+      this.drawn += drawn;
+      return drawn;
+    } catch {
+      this.#recover();
+      return true;
+    }
+  }
+
+  #recover() {
+    this.#recovering = true;
+    this.#veil.replaceChildren("The graphics device was lost; opening it again");
+    this.#veil.hidden = false;
+    this.#stage.reopen().then(
+      () => {
+        this.#recovering = false;
+        this.#veil.hidden = true;
+      },
+      (error) => this.#veil.replaceChildren(String(error.message ?? error)),
+    );
+  }
+
+  #describe(summary) {
+    const clip = this.clip();
+    const { statistics, gazeAtRest } = clip.report ?? {};
+    const { method } = this.#clips[this.#clipId];
+    const rows = [
+      ["Method", methodWords(method)],
+      ["Length", `${(summary.duration_ms / 1000).toFixed(2)} s, ${summary.frames} frames at ${round(summary.rate_hz)} Hz`],
+      ["Solved in", `${summary.solve_ms.toFixed(0)} ms`],
+      ["Weights", summary.weights_hash.slice(0, 16)],
+    ];
+    if (method?.headLowpassHz !== undefined) {
+      rows.push(["Head low-pass", method.headLowpassHz > 0 ? `${method.headLowpassHz} Hz` : "none"]);
+    }
+    if (gazeAtRest?.length > 0) rows.push(["Gaze", `at rest: none is given (${gazeAtRest.length} shapes at 0)`]);
+    if (statistics) {
+      const { residual_rms_mm: rms, residual_worst_mm: worst, iterations_mean: steps } = statistics;
+      rows.push(["Residual", `${rms.toFixed(2)} mm rms, ${worst.toFixed(2)} mm worst`]);
+      rows.push(["Iterations", `${steps.toFixed(1)} per frame, KKT error ${statistics.kkt_worst.toExponential(1)}`]);
+    }
+    this.#facts.replaceChildren(
+      ...rows.map(([name, value]) => made("div", {}, made("dt", {}, name), made("dd", { className: "number" }, value))),
+    );
+    this.#notices.replaceChildren(
+      ...summary.warnings.map((warning) => made("p", { className: "notice warn" }, warning)),
+    );
+  }
+}
+
+function methodWords(method) {
+  if (typeof method === "string") return method;
+  const { kind, name, method: word, headLowpassHz, ...options } = method ?? {};
+  const rest = Object.entries(options)
+    .filter(([, value]) => typeof value === "number" || typeof value === "string")
+    .map(([key, value]) => `${key} ${value}`);
+  return [word ?? name ?? kind ?? "recorded", ...rest.slice(0, 3)].join(", ");
+}
+
+function round(value) {
+  return Number(value.toFixed(2));
+}
+
+function problem(error) {
+  $("problem").textContent = String(error.message ?? error);
+  $("problem").hidden = false;
+}
+
+async function start() {
+  const answer = await fetch(`/api/studies/${encodeURIComponent(study)}`);
+  if (!answer.ok) {
+    const refusal = await answer.json().catch(() => ({}));
+    throw new Error(refusal.message ?? `The server answered ${answer.status}; reload the page.`);
+  }
+  const { clips, study: file } = await answer.json();
+  const ids = Object.keys(clips);
+  if (ids.length === 0) throw new Error("This study has no clips.");
+  // As the study file's reader: grey, 480 x 480, unless it says otherwise.
+  const look = { background: "#808080", width: 480, height: 480, ...file?.stimuli?.look };
+  $("backend").textContent = await backend();
+  player.panels = [...document.querySelectorAll(".preview-panel")].map(
+    (element, i) => new Panel(element, clips, look, i > 0),
+  );
+  player.onRate = (rate, longest) =>
+    ($("rate").textContent = `${rate.toFixed(1)} frames/s, longest ${longest.toFixed(1)} ms`);
+  player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
+  refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
+  // B: the same take solved by another method, where the study has one.
+  const other = ids.find((id) => clips[id].take === clips[ids[0]].take && id !== ids[0]) ?? "";
+  await Promise.all([player.panels[0].choose(ids[0]), player.panels[1].choose(other)]);
+}
+
+start().catch(problem);

@@ -1,0 +1,143 @@
+// One play of a clip, or of two in step, in the display's clock, and its log.
+//
+// Each animation frame is told the time at which the display's frame began; the picture drawn in it
+// is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
+// refresh periods after the one before. The first is one that the display began after the play: on a page
+// that was busy, the frame that it is told of may have begun long before. Where one of the two is a film,
+// the film sets the time; of a film alone the log has its own frames.
+import { refreshPeriod } from "./clock.js";
+
+const LATE = 1.5;
+// So long an adapter that is busy at the end may take for the last frame.
+const LAST_FRAME_MS = 500;
+
+export class Playback {
+  #parts;
+  #clock;
+  #drift = 0;
+  #drawn = new Map();
+  #frames = [];
+  #refreshMs = 1000 / 60;
+  #endMs = null;
+  #aborted = null;
+  #failure = null;
+  #finish = null;
+
+  /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
+  /// film's}.
+  constructor(parts) {
+    this.#parts = parts;
+    this.#clock = parts.find((part) => part.clock)?.clock ?? null;
+  }
+
+  /// Plays from 0 to `durationMs`; resolves with the log.
+  async run(durationMs) {
+    this.#refreshMs = await refreshPeriod();
+    if (this.#aborted !== null) return this.log(this.#aborted);
+    const onHidden = () => {
+      if (document.hidden) this.abort("page hidden");
+    };
+    document.addEventListener("visibilitychange", onHidden);
+    try {
+      onHidden();
+      if (this.#aborted === null) await this.#clock?.start();
+      if (this.#aborted === null) await new Promise((resolve) => this.#loop(durationMs, resolve));
+    } finally {
+      this.#clock?.stop();
+      document.removeEventListener("visibilitychange", onHidden);
+    }
+    return this.log(this.#aborted);
+  }
+
+  /// Ends the play; the log keeps the first reason.
+  abort(reason) {
+    this.#aborted ??= reason;
+    this.#finish?.();
+  }
+
+  /// What was shown so far.
+  log(aborted) {
+    const frames = this.#judged();
+    const onset = frames.length > 0 ? frames[0][0] : null;
+    let longest = 0;
+    for (let i = 1; i < frames.length; i++) longest = Math.max(longest, frames[i][0] - frames[i - 1][0]);
+    return {
+      onset_ms: onset,
+      end_ms: this.#endMs ?? (frames.length > 0 ? frames[frames.length - 1][0] : null),
+      refresh_hz: 1000 / this.#refreshMs,
+      frames,
+      late: frames.reduce((sum, frame) => sum + frame[2], 0),
+      longest_ms: longest,
+      drift_ms: this.#drift,
+      aborted,
+      failure: this.#failure,
+    };
+  }
+
+  // A film's frames come at the film's own rate: they are late by that.
+  #judged() {
+    const frames = this.#frames;
+    if (!this.#clock || this.#parts.length > 1 || frames.length < 3) return frames;
+    const steps = frames.slice(1).map((frame, k) => frame[1] - frames[k][1]).sort((a, b) => a - b);
+    const period = Math.max(this.#refreshMs, steps[steps.length >> 1]);
+    return frames.map(([now, ms], k) => [now, ms, k > 0 && now - frames[k - 1][0] > LATE * period ? 1 : 0]);
+  }
+
+  // Shows every part at `ms`; the clip time of the frame that this completes, or null. A part whose
+  // adapter is busy is drawn in a later frame of the display, before the other one is drawn again.
+  #show(ms) {
+    const film = this.#clock?.takeFrame() ?? null;
+    if (this.#parts.length === 1 && this.#clock) return film;
+    for (const part of this.#parts) {
+      if (!part.clock && !this.#drawn.has(part) && part.draw(ms)) this.#drawn.set(part, ms);
+    }
+    const times = [...this.#drawn.values()];
+    if (times.length < this.#parts.filter((part) => !part.clock).length) return null;
+    // Between two frames of a film the drawn clip goes on.
+    if (film !== null) times.push(film);
+    this.#drift = Math.max(this.#drift, Math.max(...times) - Math.min(...times));
+    this.#drawn.clear();
+    return ms;
+  }
+
+  #loop(durationMs, resolve) {
+    const began = performance.now();
+    let request = 0;
+    this.#finish = () => {
+      cancelAnimationFrame(request);
+      resolve();
+    };
+    const tick = (now) => {
+      if (this.#aborted !== null) return;
+      const frames = this.#frames;
+      const sinceOnset = () => (frames.length > 0 ? now - frames[0][0] : now < began ? null : 0);
+      const time = this.#clock ? this.#clock.at(now) : sinceOnset();
+      if (time === null) {
+        request = requestAnimationFrame(tick);
+        return;
+      }
+      const clipMs = Math.min(time, durationMs);
+      let shown;
+      try {
+        shown = this.#show(clipMs);
+        if (shown !== null) {
+          const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
+          frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
+        }
+      } catch (error) {
+        this.#failure = String(error?.message ?? error);
+        this.abort(`renderer lost: ${this.#failure}`);
+        return;
+      }
+      // A film has no frame for the end.
+      const ended = shown !== null || this.#clock || time >= durationMs + LAST_FRAME_MS;
+      if (clipMs >= durationMs && frames.length > 0 && ended) {
+        this.#endMs = now;
+        resolve();
+        return;
+      }
+      request = requestAnimationFrame(tick);
+    };
+    request = requestAnimationFrame(tick);
+  }
+}

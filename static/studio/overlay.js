@@ -1,0 +1,74 @@
+// Markers drawn over a picture of the head, with the picture's own camera.
+
+/// Where a point (metres) lies on a canvas: [x, y, depth 0..1].
+export function project(camera, [x, y, z], width, height) {
+  const row = (r) => camera[r] * x + camera[4 + r] * y + camera[8 + r] * z + camera[12 + r];
+  const w = row(3);
+  return [(row(0) / w / 2 + 0.5) * width, (0.5 - row(1) / w / 2) * height, row(2) / w];
+}
+
+/// Fits a canvas's pixels to its size on the page; answers its context and size in CSS pixels.
+export function fitted(canvas) {
+  const { width, height } = canvas.getBoundingClientRect();
+  const ratio = devicePixelRatio || 1;
+  const [w, h] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
+  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
+}
+
+/// What the markers ask (open circles), where the skin is (dots), and the way between: `points` holds
+/// six numbers per marker.
+export function drawMatch(canvas, camera, points) {
+  const { context, width, height } = fitted(canvas);
+  for (let i = 0; i + 5 < points.length; i += 6) {
+    const is = project(camera, points.subarray(i + 3, i + 6), width, height);
+    dot(context, is, 2.2, "#ffd34d");
+    if (!Number.isFinite(points[i])) continue;
+    const asked = project(camera, points.subarray(i, i + 3), width, height);
+    context.strokeStyle = "#ffffff";
+    context.lineWidth = 1.4;
+    context.beginPath();
+    context.moveTo(asked[0], asked[1]);
+    context.lineTo(is[0], is[1]);
+    context.stroke();
+    ring(context, asked, 4, "#ffffff");
+  }
+}
+
+/// The markers of a map on the neutral head; the chosen one stands out.
+export function drawMap(canvas, camera, markers, chosen) {
+  const { context, width, height } = fitted(canvas);
+  for (const { label, position, head } of markers) {
+    if (!position) continue;
+    const at = project(camera, position, width, height);
+    const own = label === chosen;
+    dot(context, at, own ? 6 : 3.5, own ? "#ff5a5f" : head ? "#6fd3ff" : "#ffd34d");
+    ring(context, at, own ? 9 : 4.5, "rgb(0 0 0 / 55%)");
+    if (own) {
+      context.font = "600 14px system-ui, sans-serif";
+      context.lineWidth = 3;
+      context.strokeStyle = "rgb(0 0 0 / 75%)";
+      context.strokeText(label, at[0] + 12, at[1] + 5);
+      context.fillStyle = "#ffffff";
+      context.fillText(label, at[0] + 12, at[1] + 5);
+    }
+  }
+}
+
+function dot(context, [x, y], radius, colour) {
+  context.fillStyle = colour;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}
+
+function ring(context, [x, y], radius, colour) {
+  context.strokeStyle = colour;
+  context.lineWidth = 1.4;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.stroke();
+}

@@ -1,0 +1,167 @@
+// The expressions of a take: suggested, dragged, typed, saved.
+import { made } from "../stage/player.js";
+import { draw } from "./curves.js";
+import { callWorker } from "./worker-calls.js";
+
+const $ = (id) => document.getElementById(id);
+const EDGE_PX = 8;
+
+export class Timeline {
+  #page;
+  #segments = [];
+  #curve = null;
+  #rate = 1;
+  #frames = 1;
+  #playhead = made("div", { className: "playhead" });
+
+  /// `page`: {slot(), seek(ms), timeMs(), changed(segments), save(name, text), report(error)}
+  constructor(page) {
+    this.#page = page;
+    const guarded = (act) => () => act().catch(page.report);
+    $("expressions-suggest").addEventListener("click", guarded(() => this.#suggest()));
+    $("expression-add").addEventListener("click", guarded(() => this.#add()));
+    $("expressions-file").addEventListener("change", (event) => this.#open(event.target).catch(page.report));
+    $("save-csv").addEventListener("click", guarded(async () => page.save("expressions.csv", await callWorker("expressionsCsv"))));
+    $("save-eaf").addEventListener("click", guarded(() => this.#saveEaf(undefined, "expressions.eaf")));
+    $("into-eaf").addEventListener("change", (event) => this.#into(event.target).catch(page.report));
+    $("expressions").addEventListener("toggle", () => this.#draw());
+    addEventListener("resize", () => this.#draw());
+  }
+
+  /// A new take: nothing is known of it.
+  reset(frames, rate) {
+    [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
+    this.#curve = null;
+    this.#put([]);
+  }
+
+  at(timeMs) {
+    this.#playhead.style.insetInlineStart = `${(100 * timeMs * this.#rate) / 1000 / this.#frames}%`;
+  }
+
+  async #suggest() {
+    const found = await callWorker("suggestExpressions", this.#page.slot(), $("labels").value);
+    this.#curve = { level: found.level, threshold: found.threshold };
+    this.#put(found.segments);
+  }
+
+  async #open(input) {
+    const file = input.files[0];
+    input.value = "";
+    if (file) this.#put((await callWorker("expressionsFile", file.name, await file.text())).segments);
+  }
+
+  async #add() {
+    const start = Math.round((this.#page.timeMs() * this.#rate) / 1000);
+    const end = Math.min(start + Math.round(this.#rate), this.#frames);
+    const own = { label: `expression ${this.#segments.length + 1}`, expression: [Math.min(start, end - 1), end] };
+    await this.#set([...this.#segments, own]);
+  }
+
+  async #set(segments) {
+    const edited = segments.map(({ label, expression }) => ({ label, expression }));
+    this.#put((await callWorker("setExpressions", JSON.stringify(edited))).segments);
+  }
+
+  async #saveEaf(document, name) {
+    this.#page.save(name, await callWorker("expressionsEaf", document, new Date().toISOString().replace(/\.\d+Z/, "+00:00")));
+  }
+
+  async #into(input) {
+    const file = input.files[0];
+    input.value = "";
+    if (file) await this.#saveEaf(await file.text(), file.name);
+  }
+
+  #put(segments) {
+    this.#segments = segments;
+    $("segments").replaceChildren(...segments.map((segment, i) => this.#row(segment, i)));
+    for (const id of ["save-csv", "save-eaf"]) $(id).disabled = segments.length === 0;
+    this.#draw();
+    this.#page.changed(segments);
+  }
+
+  #edit(index, change) {
+    const segments = this.#segments.map((segment, i) => (i === index ? { ...segment, ...change } : segment));
+    this.#set(segments).catch((error) => {
+      this.#page.report(error);
+      this.#put(this.#segments);
+    });
+  }
+
+  #row(segment, index) {
+    const { label, expression, expression_s, clip_s } = segment;
+    const name = made("input", { type: "text", value: label, ariaLabel: "Name" });
+    name.addEventListener("change", () => this.#edit(index, { label: name.value }));
+    const field = (end) => {
+      const input = made("input", {
+        type: "number", min: 0, step: 0.01, value: expression_s[end].toFixed(3), ariaLabel: `${end ? "End" : "Start"} of ${label}, seconds`,
+      });
+      input.addEventListener("change", () => {
+        const frames = [...expression];
+        frames[end] = Math.min(Math.max(Math.round(Number(input.value) * this.#rate), 0), this.#frames);
+        this.#edit(index, { expression: frames });
+      });
+      return made("td", {}, input);
+    };
+    const remove = made("button", { type: "button", ariaLabel: `Remove ${label}` }, "✕");
+    remove.addEventListener("click", () => this.#set(this.#segments.filter((_, i) => i !== index)).catch(this.#page.report));
+    const clip = `${clip_s[0].toFixed(2)} – ${clip_s[1].toFixed(2)}`;
+    return made("tr", {}, made("td", {}, name), field(0), field(1), made("td", {}, clip), made("td", {}, remove));
+  }
+
+  #draw() {
+    const line = $("timeline");
+    if (!$("expressions").open) return;
+    const canvas = made("canvas", { role: "img" });
+    const boxes = this.#segments.map((segment, i) => this.#box(segment, i));
+    line.replaceChildren(canvas, ...boxes, this.#playhead);
+    if (this.#curve) draw(canvas, { lines: [{ name: "Distance from the neutral face", values: this.#curve.level }], unit: "" }, 0);
+  }
+
+  #box({ label, expression, clip_s }, index) {
+    const percent = (frame) => (100 * frame) / this.#frames;
+    const box = made("button", { type: "button", className: "segment", title: label }, label);
+    const lay = ([from, to]) => {
+      box.style.insetInlineStart = `${percent(from)}%`;
+      box.style.width = `${percent(to - from)}%`;
+    };
+    lay(expression);
+    box.addEventListener("click", () => this.#page.seek(1000 * clip_s[0]));
+    let drag = null;
+    box.addEventListener("pointerdown", (event) => {
+      const { left, right } = box.getBoundingClientRect();
+      const part = event.clientX - left < EDGE_PX ? "start" : right - event.clientX < EDGE_PX ? "end" : "whole";
+      drag = { part, from: event.clientX, frames: expression, now: expression };
+      box.setPointerCapture(event.pointerId);
+    });
+    box.addEventListener("pointermove", (event) => {
+      if (!drag) return;
+      const width = $("timeline").clientWidth;
+      const by = Math.round(((event.clientX - drag.from) / width) * this.#frames);
+      let [from, to] = drag.frames;
+      if (drag.part !== "end") from += by;
+      if (drag.part !== "start") to += by;
+      if (from < 0 || to > this.#frames || to - from < 2) return;
+      drag.now = [from, to];
+      lay(drag.now);
+    });
+    const drop = () => {
+      const moved = drag && drag.now.some((frame, i) => frame !== drag.frames[i]);
+      if (moved) this.#edit(index, { expression: drag.now });
+      drag = null;
+    };
+    box.addEventListener("pointerup", drop);
+    box.addEventListener("pointercancel", () => ((drag = null), lay(expression)));
+    box.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (!by) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const step = by * Math.max(1, Math.round(this.#rate / 20));
+      const [from, to] = expression;
+      this.#edit(index, { expression: event.shiftKey ? [from, to + step] : event.altKey ? [from + step, to] : [from + step, to + step] });
+    });
+    return box;
+  }
+}

@@ -1,0 +1,44 @@
+// Calls of the studio's worker as promises. JSON answers come parsed.
+
+import { sendPanic } from "../panics.js";
+
+const JSON_CALLS = new Set([
+  "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
+  "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
+  "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
+]);
+
+let worker = null;
+let next = 1;
+const jobs = new Map();
+
+/// Calls a method of the worker's `Studio`.
+export function callWorker(call, ...args) {
+  worker ??= start();
+  const id = next++;
+  return new Promise((resolve, reject) => {
+    jobs.set(id, { call, resolve, reject });
+    worker.postMessage({ id, call, args });
+  });
+}
+
+function start() {
+  const started = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  started.onmessage = ({ data }) => {
+    if (data.panic) return sendPanic(data.panic);
+    const job = jobs.get(data.id);
+    jobs.delete(data.id);
+    if (data.error === undefined) {
+      job.resolve(JSON_CALLS.has(job.call) ? JSON.parse(data.result) : data.result);
+    } else {
+      const remedy = data.panicked ? "; the studio's worker broke: reload the page" : "";
+      job.reject(new Error(data.error + remedy));
+    }
+  };
+  started.onerror = (event) => {
+    const reason = new Error(`${event.message || "the studio's worker could not be loaded"}; reload the page`);
+    for (const { reject } of jobs.values()) reject(reason);
+    jobs.clear();
+  };
+  return started;
+}

@@ -1,0 +1,232 @@
+//! The page itself: what state it is in, and what stands on the screen. After every change the pages are
+//! described anew ([`crate::pages`]) and the document is made to follow ([`crate::dom`]), once for all
+//! changes of one turn of the browser's loop.
+
+use std::cell::{Cell, RefCell};
+use std::rc::{Rc, Weak};
+
+use mimique_session::flow::{Input, Phase, View, view};
+use mimique_study::text::{Words, words};
+use mimique_web_panics::report_panics;
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen_futures::spawn_local;
+
+use crate::act::Act;
+use crate::browser::window::{WindowEvent, watch};
+use crate::browser::{clock, document, focus, host};
+use crate::dom::{Element, Mount};
+use crate::engine::Engine;
+use crate::event_store::Identity;
+use crate::pages::{self, WatchedClip, failure};
+use crate::start::{self, Trouble};
+
+/// Where the page is.
+enum Status {
+    /// The study is being fetched.
+    Opening,
+    /// It cannot begin.
+    Failed(Trouble, Words),
+    /// A session runs.
+    Running(Rc<Engine>),
+}
+
+/// What was last shown, to see what has changed.
+#[derive(Default)]
+struct Shown {
+    /// What was built anew when it changed.
+    shape: String,
+    step: Option<String>,
+    language: String,
+    /// Phase of the trial, its clip and the one beside it.
+    phase: Option<(&'static str, String, Option<String>)>,
+}
+
+/// The page. It lives as long as the document.
+struct App {
+    here: Weak<Self>,
+    status: RefCell<Status>,
+    mount: RefCell<Mount>,
+    shown: RefCell<Shown>,
+    watched: RefCell<WatchedClip>,
+    /// Whether it is drawn at the end of this turn.
+    due: Cell<bool>,
+}
+
+/// The module's entry.
+#[wasm_bindgen(start)]
+pub fn start() {
+    report_panics("app", "");
+    let app = Rc::new_cyclic(|here: &Weak<App>| {
+        let dispatch = here.clone();
+        let dispatch = Rc::new(move |act| {
+            if let Some(app) = dispatch.upgrade() {
+                app.act(act);
+            }
+        });
+        App {
+            here: here.clone(),
+            status: RefCell::new(Status::Opening),
+            mount: RefCell::new(Mount::new(document::root(), dispatch)),
+            shown: RefCell::default(),
+            watched: RefCell::default(),
+            due: Cell::new(false),
+        }
+    });
+    app.begin();
+    // What holds the page from now on.
+    watch(move |event| app.window(event));
+}
+
+impl App {
+    /// Fetches the study and goes on where the session is.
+    fn begin(&self) {
+        self.is_now(Status::Opening);
+        let Some(app) = self.here.upgrade() else { return };
+        spawn_local(async move {
+            let mut fixed = words(&document::language()).clone();
+            let here = Rc::clone(&app);
+            let status = match start::begin(&mut fixed, Rc::new(move || here.changed())).await {
+                Ok(engine) => Status::Running(engine),
+                Err(trouble) => Status::Failed(trouble, fixed),
+            };
+            app.is_now(status);
+        });
+    }
+
+    fn is_now(&self, status: Status) {
+        *self.status.borrow_mut() = status;
+        self.changed();
+    }
+
+    /// The session that runs.
+    fn engine(&self) -> Option<Rc<Engine>> {
+        match &*self.status.borrow() {
+            Status::Running(engine) => Some(Rc::clone(engine)),
+            _ => None,
+        }
+    }
+
+    /// Hands an input to the session that runs.
+    fn send(&self, input: Input) {
+        if let Some(engine) = self.engine() {
+            engine.dispatch(input);
+        }
+    }
+
+    /// Does what a page asks for.
+    fn act(&self, act: Act) {
+        match (act, self.engine()) {
+            (Act::BeginAgain, _) => self.begin(),
+            (Act::Input(input), Some(engine)) => engine.dispatch(input),
+            (Act::Change { question, change }, Some(engine)) => {
+                let value = change(engine.state().record.draft(&question));
+                engine.dispatch(Input::Answer { question, value });
+            }
+            (Act::AnotherPerson, Some(engine)) => {
+                Identity::forget(&engine.plan.study.id);
+                document::reload();
+            }
+            (Act::Download, Some(engine)) => {
+                let file = engine.service.site().and_then(|site| site.session_file());
+                if let Some((name, text, _)) = file {
+                    host::download(&name, &text);
+                }
+            }
+            // Nothing else is asked for where no session runs.
+            (_, None) => {}
+        }
+    }
+
+    /// What the window reports: focus, visibility, connection, time.
+    fn window(&self, event: WindowEvent) {
+        let Some(engine) = self.engine() else { return };
+        match event {
+            WindowEvent::Blurred => engine.dispatch(Input::FocusLost),
+            WindowEvent::Focused => engine.dispatch(Input::FocusGained),
+            WindowEvent::Resized => engine.resized(),
+            WindowEvent::FullscreenChanged => {
+                engine.dispatch(Input::Fullscreen(host::is_fullscreen()));
+            }
+            WindowEvent::SendNow => engine.flush(),
+            WindowEvent::Second => engine.dispatch(Input::Tick),
+        }
+    }
+
+    /// Something changed that the screen shows: it is drawn again at the end of this turn.
+    fn changed(&self) {
+        if !self.due.replace(true)
+            && let Some(app) = self.here.upgrade()
+        {
+            spawn_local(async move { app.draw() });
+        }
+    }
+
+    fn draw(&self) {
+        self.due.set(false);
+        let Some(engine) = self.engine() else {
+            let element = match &*self.status.borrow() {
+                Status::Failed(trouble, words) => failure::trouble(trouble, words),
+                _ => pages::opening(),
+            };
+            return self.show(vec![element]);
+        };
+        let view = view(&engine.plan, &engine.state());
+        let language = engine.language();
+        let shape = pages::shape(&view, &language);
+        self.watched.borrow_mut().look(&view);
+        self.show(pages::pages(&engine, &view, &shape, &self.watched.borrow()));
+        self.after(&engine, view, shape, language);
+    }
+
+    fn show(&self, elements: Vec<Element>) {
+        self.mount.borrow_mut().show(elements);
+    }
+
+    /// What a change of the screen brings with it.
+    fn after(&self, engine: &Rc<Engine>, view: View, shape: String, language: String) {
+        let mut shown = self.shown.borrow_mut();
+        if shown.language != language {
+            let title = engine.plan.study.study_metadata.title.in_language(&language);
+            document::describe(&language, title);
+            shown.language = language;
+        }
+        let step = pages::step_of(&view).map(str::to_owned);
+        if shown.step != step {
+            shown.step.clone_from(&step);
+            if let (Some(step), Some(app)) = (step, self.here.upgrade()) {
+                spawn_local(async move {
+                    clock::painted().await;
+                    let is_there = app.shown.borrow().step.as_ref() == Some(&step);
+                    if is_there {
+                        app.send(Input::Shown { step });
+                    }
+                });
+            }
+        }
+        if shown.shape != shape {
+            if !shown.shape.is_empty() {
+                focus::focus_if_lost(&["main h1"]);
+            }
+            shown.shape = shape;
+            shown.phase = None;
+        }
+        let View::Trial(trial) = view else { return };
+        let companion = trial.beside.map(|beside| beside.clip);
+        let word = pages::phase_word(&trial.phase);
+        let phase = Some((word, trial.clip.clone(), companion.clone()));
+        if shown.phase == phase {
+            return;
+        }
+        let before = std::mem::replace(&mut shown.phase, phase);
+        if before.is_some_and(|before| before.0 != word) {
+            focus::focus_if_lost(&[
+                "main [data-action=play], main [data-action=retry]",
+                "main fieldset[data-question] input",
+                "main h1",
+            ]);
+        }
+        if matches!(trial.phase, Phase::Ready) {
+            engine.show(trial.clip, companion);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The border to the scripts of the stage (`static/participant/bridge.js`): canvas, solver, locks.
+
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+use web_sys::Node;
+
+#[wasm_bindgen(raw_module = "./participant/bridge.js")]
+extern "C" {
+    /// Takes the lock of a session for as long as the page lives; false if another tab has it.
+    #[wasm_bindgen(js_name = holdSession, catch)]
+    pub async fn hold_session(name: &str) -> Result<JsValue, JsValue>;
+
+    /// Browser name, its major version and platform class, as JSON: nothing finer.
+    #[wasm_bindgen(js_name = about)]
+    pub fn about() -> String;
+
+    /// Fetches and solves a clip; calls back with 0..1.
+    #[wasm_bindgen(js_name = prepareClip, catch)]
+    pub async fn prepare_clip(
+        clip: &str,
+        source: &str,
+        progress: &js_sys::Function,
+    ) -> Result<JsValue, JsValue>;
+
+    /// Puts a stage on the canvas of a place: `clip`, or `beside` it.
+    #[wasm_bindgen(js_name = attachStage)]
+    pub fn attach_stage(place: &str, canvas: &Node, look: &str);
+
+    /// Takes the stage off the canvas of a place.
+    #[wasm_bindgen(js_name = detachStage)]
+    pub fn detach_stage(place: &str);
+
+    /// Shows the first frame of a clip and of the one beside it.
+    #[wasm_bindgen(js_name = showClip, catch)]
+    pub async fn show_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
+
+    /// Plays a clip once, the one beside it in step; resolves with the log as JSON, its times on
+    /// the page's clock.
+    #[wasm_bindgen(js_name = playClip, catch)]
+    pub async fn play_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
+
+    /// What browser and display can do, as the JSON of `mimique_study::Display`.
+    #[wasm_bindgen(js_name = measure, catch)]
+    pub async fn measure() -> Result<JsValue, JsValue>;
+
+    /// Lets the page fill the screen; called from a press.
+    #[wasm_bindgen(js_name = requestFullscreen)]
+    pub fn request_fullscreen();
+
+    /// Gives the screen back.
+    #[wasm_bindgen(js_name = leaveFullscreen)]
+    pub fn leave_fullscreen();
+
+    /// Whether the page fills the screen.
+    #[wasm_bindgen(js_name = isFullscreen)]
+    pub fn is_fullscreen() -> bool;
+
+    /// The address of a picture or a sign-language video of the study, fetched by its hash.
+    #[wasm_bindgen(js_name = mediaAddress, catch)]
+    pub async fn media_address(hash: &str, media_type: &str) -> Result<JsValue, JsValue>;
+
+    /// Gives the participant a text as a file.
+    #[wasm_bindgen(js_name = download)]
+    pub fn download(name: &str, text: &str);
+
+    /// Aborts the play in progress.
+    #[wasm_bindgen(js_name = stopClip)]
+    pub fn stop_clip();
+}
