@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, skip } from "./lib/browser.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, leave, phase, place, storedEvents } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -28,10 +28,9 @@ test("attention: hidden pages, the window's focus and the full screen are in the
   const browser = await open("webgl2", { viewport: { width: 900, height: 800 } });
   const { page } = browser;
   const log = async () => {
-    const session = await page.evaluate(() => JSON.parse(localStorage.getItem("mimique/attention")).started.session);
-    const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
+    const events = await storedEvents(page, server, "attention");
     const said = { focus_lost: "lost", focus_gained: "gained", fullscreen: "full" };
-    return events.filter(({ body }) => body.type in said).map(({ body }) => said[body.type] + (body.on === false ? " no more" : ""));
+    return events.filter(({ type }) => type in said).map(({ type, on }) => said[type] + (on === false ? " no more" : ""));
   };
   const logged = async (wanted) => {
     for (const deadline = Date.now() + 15_000; (await log()).length < wanted.length && Date.now() < deadline; ) await page.waitForTimeout(200);

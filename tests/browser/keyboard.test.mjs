@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { study, written } from "./lib/every_question.mjs";
-import { go, leave, phase, place, tabTo } from "./lib/participant.mjs";
+import { go, leave, phase, place, storedEvents, tabTo, until } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -18,11 +18,7 @@ test("keyboard: every type of question, videos and a comparison", { skip: unable
     for (const key of keys) await page.keyboard.press(key);
   };
   const to = (question, field) => tabTo(page, `fieldset[data-question=${question}] ${field}`);
-  const finished = async () => {
-    const session = await page.evaluate(() => JSON.parse(localStorage.getItem("mimique/access")).started.session);
-    const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
-    return events.map(({ body }) => body).filter(({ type }) => /^(page|trial)_finished$/.test(type));
-  };
+  const finished = async () => (await storedEvents(page, server, "access")).filter(({ type }) => /^(page|trial)_finished$/.test(type));
   try {
     await page.goto(`${server.url}/s/access/?backend=webgl2`);
     await page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });
@@ -86,6 +82,7 @@ test("keyboard: every type of question, videos and a comparison", { skip: unable
     here = await leave(page, here, 60_000);
     assert.equal(here.view, "page");
 
+    await until("the trial's answers are stored", async () => (await finished()).length >= 3);
     const [about, , trial] = await finished();
     assert.deepEqual(about.answers, {
       single: "b",

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { study, written } from "./lib/every_question.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, leave, phase, place, storedEvents, until } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -78,13 +78,9 @@ for (const reducedMotion of ["reduce", "no-preference"]) {
       assert.deepEqual(Object.keys(seen), ["consent", "questions", "ready", "playing", "answering"]);
 
       // The clip has moved: frame upon frame to its end.
-      const session = await page.evaluate(() => JSON.parse(localStorage.getItem("mimique/access")).started.session);
-      let played;
-      for (const deadline = Date.now() + 15_000; !played && Date.now() < deadline; await page.waitForTimeout(200)) {
-        const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
-        played = events.find(({ body }) => body.type === "trial_played");
-      }
-      const { log } = played.body;
+      const played = async () => (await storedEvents(page, server, "access")).find(({ type }) => type === "trial_played");
+      await until("the log of the clip is stored", played, 15_000);
+      const { log } = await played();
       assert.ok(!log.aborted, log.aborted);
       const times = log.frames.map(([, clip]) => clip);
       assert.ok(new Set(times).size > 2 && times.at(-1) > 1000, `${times}`);

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { badProxy } from "./lib/bad_proxy.mjs";
 import { executable, open, skip } from "./lib/browser.mjs";
-import { go, leave, place } from "./lib/participant.mjs";
+import { go, leave, place, until } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -29,13 +29,6 @@ async function network() {
     return { status: answer.status, events: (await answer.json()).events };
   };
   return { server, proxy, page, close, session, stored };
-}
-
-/** Waits until it holds. */
-async function until(what, holds, ms = 90_000) {
-  for (const deadline = Date.now() + ms; !(await holds()); await new Promise((done) => setTimeout(done, 250))) {
-    assert.ok(Date.now() < deadline, `${what}: not within ${ms / 1000} s`);
-  }
 }
 
 const answered = (events) => events.filter(({ body }) => body.type === "answered").map(({ body }) => body.value);

@@ -102,3 +102,20 @@ export async function phase(page, wanted, timeout = 90_000) {
     { timeout },
   );
 }
+
+/** Waits until it holds. */
+export async function until(what, holds, ms = 90_000) {
+  for (const deadline = Date.now() + ms; !(await holds()); await new Promise((done) => setTimeout(done, 250))) {
+    assert.ok(Date.now() < deadline, `${what}: not within ${ms / 1000} s`);
+  }
+}
+
+/**
+ * The events that the server has of this page's session in a study. Pages go on while what was
+ * answered is on its way, so that who looks for an event waits for it (`until`).
+ */
+export async function storedEvents(page, server, study) {
+  const session = await page.evaluate((key) => JSON.parse(localStorage.getItem(key)).started.session, `mimique/${study}`);
+  const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
+  return events.map(({ body }) => body);
+}
