@@ -8,13 +8,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use mimique_study::from_json::{self, FromJson};
-use mimique_study::tagged_by_type;
-use mimique_study::{Answers, Display, SortedMap};
+use mimique_study::{Answers, Display};
 
 /// What happened, tagged by `type`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
-#[serde(remote = "Self", rename_all = "snake_case")]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum EventKind {
     /// The page is open for the first time. Always sequence 0.
@@ -156,8 +154,6 @@ pub enum EventKind {
     },
 }
 
-tagged_by_type!(EventKind);
-
 fn is_false(value: &bool) -> bool {
     !value
 }
@@ -173,7 +169,7 @@ impl EventKind {
 
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
-        from_json::read(body).ok()
+        Self::deserialize(body).ok()
     }
 
     /// The body of a [`crate::wire::Event`].
@@ -183,7 +179,7 @@ impl EventKind {
 }
 
 /// What is played in step beside a clip.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShownBeside {
     /// Which clip.
     pub clip: String,
@@ -192,7 +188,7 @@ pub struct ShownBeside {
 }
 
 /// The display and the page, no finer than the analysis needs.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Client {
     /// Width and height of the window, CSS pixels.
     #[serde(default)]
@@ -201,12 +197,12 @@ pub struct Client {
     #[serde(default)]
     pub device_pixel_ratio: f64,
     /// Browser name, its major version, platform class.
-    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
-    pub about: SortedMap<String, String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub about: BTreeMap<String, String>,
 }
 
 /// The size of a CSS pixel and the distance of the eyes, as the participant set them.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Calibrated {
     /// CSS pixels per millimetre; none if it was left out.
@@ -227,7 +223,7 @@ impl Calibrated {
 
 /// What the stage measured while a clip was played once (`static/stage/host.js`, `stage.play`).
 /// Fields that this version does not know are left out, those that are missing are zero.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlayLog {
     /// `webgpu` or `webgl2`.

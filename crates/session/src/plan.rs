@@ -1,11 +1,13 @@
 //! What one participant goes through, step by step: fixed at the start of the session.
 
+use std::collections::BTreeMap;
+
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
     Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw, KindOfQuestion as _,
     LocalText, OptionOrder, OrderError, OrderedItem, Question, Questionnaire, Section, Sides,
-    SortedMap, Study, TimeLimit, Training, option_order, order, right_answers,
+    Study, TimeLimit, Training, option_order, order, right_answers,
 };
 
 /// What one participant goes through.
@@ -18,7 +20,7 @@ pub struct Plan {
     /// The steps, from the first page to the debriefing.
     pub steps: Vec<Step>,
     /// Shown order of options, by question, where it is drawn.
-    pub option_orders: SortedMap<String, Vec<usize>>,
+    pub option_orders: BTreeMap<String, Vec<usize>>,
     /// Index of the step after each round of practice.
     pub rounds: Vec<usize>,
     translated: Vec<Words>,
@@ -314,8 +316,8 @@ fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
         .collect()
 }
 
-fn option_orders(study: &Study, draw: Draw<'_>) -> SortedMap<String, Vec<usize>> {
-    let mut orders = SortedMap::new();
+fn option_orders(study: &Study, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
+    let mut orders = BTreeMap::new();
     for question in study.all_questions() {
         if question.kind.option_order() == OptionOrder::Random {
             let count = question.kind.options().len();

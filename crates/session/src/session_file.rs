@@ -8,11 +8,10 @@
 //! ```
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
 use crate::wire::{Event, SessionStarted};
-use mimique_study::json_text;
 
 /// The version of the format that this reads and writes.
 const VERSION: u64 = 1;
@@ -60,24 +59,15 @@ pub enum SessionFileError {
 impl SessionFile {
     /// The file, and the SHA-256 of all its lines but the last, which serves as the receipt.
     pub fn write(&self) -> (String, String) {
-        let head = json_text::object([
-            ("mimique_session", VERSION.into()),
-            ("study", self.study.as_str().into()),
-            ("started", serde_json::to_value(&self.started).unwrap_or_default()),
-        ]);
-        let mut text = json_text::write(&head);
-        text.push('\n');
+        let head =
+            json!({ "mimique_session": VERSION, "study": self.study, "started": self.started });
+        let mut text = format!("{head}\n");
         for event in &self.events {
-            text.push_str(&json_text::write(&event.to_value()));
-            text.push('\n');
+            text.push_str(&format!("{}\n", json!(event)));
         }
         let hash = sha256(&text);
-        let end = json_text::object([
-            ("events", self.events.len().into()),
-            ("sha256", hash.as_str().into()),
-        ]);
-        text.push_str(&json_text::write(&end));
-        text.push('\n');
+        let end = json!({ "events": self.events.len(), "sha256": hash });
+        text.push_str(&format!("{end}\n"));
         (text, hash)
     }
 
@@ -93,12 +83,12 @@ impl SessionFile {
         };
         let mut lines = (1..).zip(text.split_inclusive('\n'));
         let (_, first) = lines.next().ok_or(SessionFileError::CutOff { line: 1 })?;
-        let mut head = value(1, first)?;
+        let head = value(1, first)?;
         if head["mimique_session"] != VERSION {
             return Err(wrong(1, &format!("no session of version {VERSION}")));
         }
         let study = head["study"].as_str().ok_or_else(|| wrong(1, "no study"))?.to_owned();
-        let started = mimique_study::json_reader::read_value(head["started"].take())
+        let started = SessionStarted::deserialize(&head["started"])
             .map_err(|error| wrong(1, &error.to_string()))?;
         let mut file = Self { study, started, events: Vec::new() };
         let mut length = first.len();
@@ -112,8 +102,8 @@ impl SessionFile {
                 }
                 return Ok(file);
             }
-            let event: Event = mimique_study::json_reader::read_value(value)
-                .map_err(|error| wrong(line, &error.to_string()))?;
+            let event =
+                Event::deserialize(value).map_err(|error| wrong(line, &error.to_string()))?;
             if event.sequence != file.events.len() as u64 {
                 let message =
                     format!("event {} where {} is due", event.sequence, file.events.len());

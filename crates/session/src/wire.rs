@@ -17,8 +17,9 @@
 //! stored (two windows with one session) is kept apart, the rest of its request is stored, and the
 //! answer is 409 `event-conflict` with [`Refusal::sequences`]: resume, then go on.
 
-use mimique_study::from_json::FromJson;
-use mimique_study::{ClipSource, SortedMap, json_text};
+use std::collections::BTreeMap;
+
+use mimique_study::ClipSource;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -44,7 +45,7 @@ pub struct Bundle {
     /// The study file (the page parses it with [`mimique_study::Study`]'s reader).
     pub study: Value,
     /// Every clip, by its identifier in the study.
-    pub clips: SortedMap<String, ClipSource>,
+    pub clips: BTreeMap<String, ClipSource>,
 }
 
 /// A participant arrives.
@@ -54,7 +55,7 @@ pub struct StartSession {
     pub nonce: String,
     /// Recruitment parameters of the address (`PROLIFIC_PID`...), stored apart.
     #[serde(default)]
-    pub recruitment: SortedMap<String, String>,
+    pub recruitment: BTreeMap<String, String>,
     /// Condition that the address names (`?condition=`); the server gives one if it names none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<String>,
@@ -62,11 +63,11 @@ pub struct StartSession {
     pub language: String,
     /// Browser name, its major version, platform class: nothing finer.
     #[serde(default)]
-    pub client: SortedMap<String, String>,
+    pub client: BTreeMap<String, String>,
 }
 
 /// The server's answer to [`StartSession`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SessionStarted {
     /// Secret token of the session, 128 bits, hexadecimal.
     pub session: String,
@@ -100,7 +101,7 @@ impl SessionStarted {
 }
 
 /// One thing that happened, numbered from 0 without gaps by the page.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Event {
     /// 0, 1, 2... within the session.
     pub sequence: u64,
@@ -108,17 +109,6 @@ pub struct Event {
     pub at_ms: f64,
     /// What happened ([`crate::EventKind`], tagged by `type`).
     pub body: Value,
-}
-
-impl Event {
-    /// As JSON.
-    pub fn to_value(&self) -> Value {
-        json_text::object([
-            ("sequence", self.sequence.into()),
-            ("at_ms", self.at_ms.into()),
-            ("body", self.body.clone()),
-        ])
-    }
 }
 
 /// Events to append.
@@ -129,7 +119,7 @@ pub struct AppendEvents {
 }
 
 /// Sent only after the events are committed to disk.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Acknowledged {
     /// Number of events stored without a gap: every sequence below it is on disk.
     pub stored: u64,
@@ -138,7 +128,7 @@ pub struct Acknowledged {
 }
 
 /// What a page needs to go on after a reload.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resume {
     /// As at the start.
     pub started: SessionStarted,
@@ -154,7 +144,7 @@ pub struct Complete {
 }
 
 /// The server has everything: only now is the completion code shown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Receipt {
     /// Keyed hash over the stored events, hexadecimal.
     pub receipt: String,
@@ -174,7 +164,7 @@ pub struct Withdraw {
 }
 
 /// The answers are deleted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Withdrawn {
     /// How many events were deleted.
     pub deleted: u64,
@@ -196,7 +186,7 @@ pub struct PanicReport {
 }
 
 /// A refused request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Refusal {
     /// Stable word, e.g. `unknown-session`, `study-closed`, `already-took-part`, `bad-request`.
     pub code: String,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use litemap::LiteMap;
+use std::collections::BTreeMap;
 
 use mimique_geometry::Point;
 use mimique_solver::{
@@ -309,7 +309,7 @@ fn lost_markers_drop_their_rows() {
         if matches!(method, Method::Box | Method::Nnls | Method::PseudoInverse | Method::Kouadio) {
             let mut unimportant = spec.clone();
             unimportant.importance =
-                LiteMap::from_iter([("M04".to_owned(), 0.0), ("M09".to_owned(), 0.0)]);
+                BTreeMap::from_iter([("M04".to_owned(), 0.0), ("M09".to_owned(), 0.0)]);
             let without = fit(&unimportant).solve_frame(&d).unwrap();
             assert!(common::worst(&without.weights, &with_holes.weights) < 1e-9, "{method}");
         }
@@ -336,7 +336,7 @@ fn locked_shapes_stay_at_zero_and_bounds_hold() {
     }
     for method in [Method::Lsts, Method::Box, Method::Kouadio] {
         let mut spec = MethodSpec::new(method);
-        spec.bounds = LiteMap::from_iter([
+        spec.bounds = BTreeMap::from_iter([
             ("bump3".to_owned(), [0.1, 0.25]),
             ("bump5".to_owned(), [0.3, 0.3]),
             ("bump6".to_owned(), [-1.0, 1.5]),
@@ -448,7 +448,7 @@ fn refusals_name_field_value_and_remedy() {
          bump6, bump7, bump8"
     );
     assert!(
-        say(&|s| s.importance = LiteMap::from_iter([("X".into(), 1.0)]), Method::Box)
+        say(&|s| s.importance = BTreeMap::from_iter([("X".into(), 1.0)]), Method::Box)
             .starts_with("importance: no marker 'X'; use names of M00, M01")
     );
     assert_eq!(

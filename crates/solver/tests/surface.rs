@@ -3,7 +3,7 @@
 
 mod common;
 
-use litemap::LiteMap;
+use std::collections::BTreeMap;
 
 use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
@@ -236,7 +236,7 @@ fn a_lost_marker_is_a_marker_less() {
         assert!(worst < 1e-12, "{kind:?} {stiffness}: {worst:e}");
         // A marker without importance is one that is never seen.
         let mut unimportant = spec(&options, stiffness);
-        unimportant.importance = LiteMap::from_iter([("M2".into(), 0.0), ("M6".into(), 0.0)]);
+        unimportant.importance = BTreeMap::from_iter([("M2".into(), 0.0), ("M6".into(), 0.0)]);
         let fit = Fit::new(&all, &unimportant).unwrap();
         let ignored = fit.solve_frame(&displacements(MARKERS.len())).unwrap();
         assert!(common::worst(&ignored.weights, &found.weights) < 1e-12);
@@ -255,9 +255,9 @@ fn soft_markers_balance_the_energy_and_harden_without_stiffness() {
     let operators = operators(&mesh, &MARKERS, &options);
     let response = response(&mesh, &MARKERS, &options);
     let d = displacements(MARKERS.len());
-    let importance: LiteMap<String, f64> =
+    let importance: BTreeMap<String, f64> =
         (0..MARKERS.len()).map(|m| (format!("M{m}"), 0.5 + 0.4 * m as f64)).collect();
-    let solve = |stiffness: f64, importance: &LiteMap<String, f64>| {
+    let solve = |stiffness: f64, importance: &BTreeMap<String, f64>| {
         let spec = MethodSpec { importance: importance.clone(), ..spec(&options, stiffness) };
         Fit::new(&operators, &spec).unwrap().solve_frame(&d).unwrap()
     };
@@ -287,7 +287,7 @@ fn soft_markers_balance_the_energy_and_harden_without_stiffness() {
     }
     assert!(found.report.residual > 1e-4);
     // Stiffness smooths: the energy falls, the distance grows; without it both are the hard ones.
-    let none = LiteMap::new();
+    let none = BTreeMap::new();
     let mut last = solve(0.0, &none);
     for stiffness in [1e-9, 1e-3, 0.1, 1.0, 10.0] {
         let here = solve(stiffness, &none);

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::from_json::FromJson;
 use crate::study_file::{BackendRule, DeviceKind, DeviceRules, FullscreenRule};
 
 /// What the browser and its display can do.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Display {
     /// Width and height of the window, CSS pixels.

@@ -1,25 +1,17 @@
 #![doc = include_str!("../README.md")]
 
-// The derived readers name this crate.
-extern crate self as mimique_study;
-
 mod answer;
 mod canonical;
 mod check;
 mod clip_source;
 pub mod columns;
 mod device;
-pub mod from_json;
 mod instant;
-pub mod json_reader;
-pub mod json_text;
 mod order;
 mod pairs;
 mod practice;
 mod question;
-mod sorted_map;
 mod study_file;
-pub mod tagged;
 pub mod text;
 
 pub use answer::{AnswerProblem, Answers, alike};
@@ -42,10 +34,4 @@ pub use question::{
     Question, QuestionKind, QuestionKindView, Ranking, SHORT_TEXT, Scale, ShortText, Showing,
     Simulated, SingleChoice, Slider, Summary, Told,
 };
-pub use sorted_map::SortedMap;
 pub use study_file::*;
-
-/// A number as text: the fewest digits that are read as the same number, without an exponent.
-pub fn number_text(number: f64) -> String {
-    number.to_string()
-}

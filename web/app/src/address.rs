@@ -2,8 +2,7 @@
 //! participant.
 //!
 //! `/s/demo/?lang=fr&condition=…&PROLIFIC_PID=…&STUDY_ID=…&SESSION_ID=…`
-
-use mimique_study::SortedMap;
+use std::collections::BTreeMap;
 
 /// What the address says.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -15,7 +14,7 @@ pub struct Address {
     /// Condition of the participant (`?condition=`); named twice it is both, with a comma.
     pub condition: Option<String>,
     /// Every other parameter, as recruiting sites add them.
-    pub recruitment: SortedMap<String, String>,
+    pub recruitment: BTreeMap<String, String>,
 }
 
 /// Most parameters kept, and most characters of one: an address is not a place for data.

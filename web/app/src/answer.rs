@@ -34,14 +34,11 @@ pub fn is_gone(refusal: &Refusal) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use mimique_study::{from_json, json_text};
-
     use super::*;
 
     /// As `network` reads it.
     fn judged(status: u16, body: &str) -> Failure {
-        let value = json_text::read_with(body, |text| text.parse().ok());
-        failure(status, value.ok().and_then(|value| from_json::read(&value).ok()))
+        failure(status, serde_json::from_str(body).ok())
     }
 
     #[test]

@@ -1,14 +1,14 @@
 //! What events record of browser and display.
 
+use std::collections::BTreeMap;
+
 use mimique_session::Client;
-use mimique_study::SortedMap;
 
 use crate::browser::{document, host};
-use crate::json;
 
 /// Browser name, its major version and platform class: nothing finer.
-pub fn about() -> SortedMap<String, String> {
-    json::read(&host::about()).unwrap_or_default()
+pub fn about() -> BTreeMap<String, String> {
+    serde_json::from_str(&host::about()).unwrap_or_default()
 }
 
 /// The display and the browser, as events record them.

@@ -11,9 +11,8 @@ use std::time::Duration;
 use mimique_session::PlayLog;
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, Refusal};
-use mimique_study::json_text;
 use mimique_study::text::Words;
-use mimique_study::{Display, MEDIA_PREFIX, SortedMap};
+use mimique_study::{Display, MEDIA_PREFIX};
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -47,7 +46,7 @@ pub struct Engine {
     connection: RefCell<Connection>,
     clips: BTreeMap<String, Value>,
     /// Path of a picture or a sign-language video -> address of what has been fetched.
-    media: RefCell<SortedMap<String, String>>,
+    media: RefCell<BTreeMap<String, String>>,
     /// Who answers.
     pub service: Service,
     store: EventStore,
@@ -60,7 +59,7 @@ pub struct Engine {
     to_prepare: RefCell<VecDeque<String>>,
     /// What is being prepared right now.
     preparing: RefCell<Option<String>>,
-    prepared: RefCell<SortedMap<String, ()>>,
+    prepared: RefCell<BTreeMap<String, ()>>,
     /// False until the first page stands: a page that was just loaded is read from its top.
     open: Cell<bool>,
     /// Called when something changed that the screen shows.
@@ -193,7 +192,7 @@ impl Engine {
         let engine = Rc::clone(self);
         spawn_local(async move {
             let measured = host::measure().await.ok().and_then(|text| text.as_string());
-            let display = measured.and_then(|text| crate::json::read(&text).ok());
+            let display = measured.and_then(|text| serde_json::from_str(&text).ok());
             engine.dispatch(Input::Measured(display.unwrap_or_default()));
         });
     }
@@ -386,7 +385,7 @@ impl Engine {
             let (engine, clip) = (Rc::clone(self), clip.to_owned());
             move |fraction| engine.dispatch(Input::ClipProgress { clip: clip.clone(), fraction })
         });
-        let source = json_text::write(source);
+        let source = source.to_string();
         host::prepare_clip(clip, &source, progress.as_ref().unchecked_ref()).await?;
         Ok(())
     }
@@ -473,5 +472,5 @@ impl Engine {
 
 fn play_log(log: &JsValue) -> Result<PlayLog, String> {
     let text = log.as_string().ok_or("the stage gave no log")?;
-    crate::json::read(&text).map_err(|error| format!("the stage's log: {error}"))
+    serde_json::from_str(&text).map_err(|error| format!("the stage's log: {error}"))
 }

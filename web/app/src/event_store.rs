@@ -5,15 +5,14 @@ use idb::{
     TransactionMode,
 };
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_study::from_json::FromJson;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use wasm_bindgen::JsValue;
 
 use crate::browser::storage;
-use crate::json;
 
 /// Who we are in a study.
-#[derive(Debug, Clone, PartialEq, Serialize, FromJson)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// Made here; a repeated start with it gives the same session.
     pub nonce: String,
@@ -28,12 +27,12 @@ impl Identity {
 
     /// The identity kept for a study.
     pub fn load(study: &str) -> Option<Self> {
-        json::read(&storage::load(&Self::key(study))?).ok()
+        serde_json::from_str(&storage::load(&Self::key(study))?).ok()
     }
 
     /// Keeps it; false where the browser keeps nothing.
     pub fn save(&self, study: &str) -> bool {
-        storage::save(&Self::key(study), &json::write(self))
+        storage::save(&Self::key(study), &json!(self).to_string())
     }
 
     /// Forgets it.
@@ -128,7 +127,7 @@ impl EventStore {
 
     /// Puts an event.
     pub async fn put(&self, event: &Event) -> Result<(), Error> {
-        let (key, text) = (self.key(event.sequence), JsValue::from_str(&json::write(event)));
+        let (key, text) = (self.key(event.sequence), JsValue::from_str(&json!(event).to_string()));
         self.write(|store| store.put(&text, Some(&key)).map(drop)).await
     }
 
@@ -146,7 +145,10 @@ impl EventStore {
         let name = self.store.name();
         let transaction = database.transaction(&[name], TransactionMode::ReadOnly)?;
         let values = transaction.object_store(name)?.get_all(Some(self.range()?), None)?.await?;
-        Ok(values.iter().filter_map(|value| json::read(&value.as_string()?).ok()).collect())
+        Ok(values
+            .iter()
+            .filter_map(|value| serde_json::from_str(&value.as_string()?).ok())
+            .collect())
     }
 
     /// Forgets everything of the session.

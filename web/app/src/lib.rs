@@ -35,7 +35,6 @@ mod engine;
 #[cfg(target_arch = "wasm32")]
 mod event_store;
 #[cfg(target_arch = "wasm32")]
-mod json;
 #[cfg(target_arch = "wasm32")]
 mod pages;
 #[cfg(target_arch = "wasm32")]

@@ -3,13 +3,13 @@
 use std::cell::Cell;
 
 use mimique_session::wire::Refusal;
-use mimique_study::from_json::FromJson;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::json;
 
 use crate::answer::{Failure, failure};
 use crate::browser::http::{self, Body};
 use crate::browser::{clock, reason};
-use crate::json;
 use crate::outbox::patience;
 
 /// The requests of a page.
@@ -35,17 +35,17 @@ impl Answer {
 
 impl Requests {
     /// `GET`
-    pub async fn get<T: FromJson>(&self, address: &str) -> Result<T, Failure> {
+    pub async fn get<T: DeserializeOwned>(&self, address: &str) -> Result<T, Failure> {
         read(&self.send("GET", address, None).await?)
     }
 
     /// `POST`
-    pub async fn post<T: FromJson>(
+    pub async fn post<T: DeserializeOwned>(
         &self,
         address: &str,
         body: &impl Serialize,
     ) -> Result<T, Failure> {
-        let body = Body { media_type: "application/json", text: json::write(body) };
+        let body = Body { media_type: "application/json", text: json!(body).to_string() };
         read(&self.send("POST", address, Some(body)).await?)
     }
 
@@ -73,11 +73,11 @@ impl Requests {
     }
 }
 
-fn read<T: FromJson>(answer: &Answer) -> Result<T, Failure> {
+fn read<T: DeserializeOwned>(answer: &Answer) -> Result<T, Failure> {
     if answer.ok() {
         // A page where JSON should be: something on the way answered.
         let foreign = |error| Failure::Unreachable(format!("HTTP {}: {error}", answer.status));
-        return json::read(&answer.text).map_err(foreign);
+        return serde_json::from_str(&answer.text).map_err(foreign);
     }
-    Err(failure(answer.status, json::read::<Refusal>(&answer.text).ok()))
+    Err(failure(answer.status, serde_json::from_str::<Refusal>(&answer.text).ok()))
 }

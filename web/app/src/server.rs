@@ -6,14 +6,13 @@ use mimique_session::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
     Withdraw, Withdrawn,
 };
-use mimique_study::from_json::FromJson;
 use serde_json::Value;
 
 use crate::answer::Failure;
 use crate::requests::Requests;
 
 /// What the pages need of `wire::Bundle`: the clips go through to the stage as they came.
-#[derive(Debug, Clone, FromJson)]
+#[derive(Debug, Clone)]
 pub struct Bundle {
     /// SHA-256 of the canonical study file, hexadecimal.
     pub config_hash: String,

@@ -3,6 +3,8 @@
 //! Answers stay in this browser's IndexedDB; at the end they are posted to the study's address, where
 //! it names one, and offered as a file. Everything else of the page goes on as if a server answered.
 
+use std::collections::BTreeMap;
+
 use std::cell::RefCell;
 
 use mimique_session::wire::{
@@ -10,7 +12,7 @@ use mimique_session::wire::{
 };
 use mimique_session::{Record, SessionFile, Standing};
 use mimique_study::from_json::{self, FromJson};
-use mimique_study::{Draw, SortedMap, StaticHosting, Study, drawn_condition, json_text};
+use mimique_study::{Draw, StaticHosting, Study, drawn_condition, json_text};
 
 use crate::answer::Failure;
 use crate::browser::document;
@@ -21,13 +23,13 @@ use crate::requests::Requests;
 use crate::server::Bundle;
 
 /// What `mimique export-site` writes beside the pages.
-#[derive(Debug, Clone, FromJson)]
+#[derive(Debug, Clone)]
 struct SiteFile {
     bundle: Bundle,
     stage: String,
     seed: u64,
     /// Status of the export -> code.
-    codes: SortedMap<String, String>,
+    codes: BTreeMap<String, String>,
     redirect: Option<String>,
     hosting: StaticHosting,
     email: String,
@@ -120,7 +122,7 @@ impl Site {
             ])
         });
         let started = started.unwrap_or_default();
-        from_json::read(&started).map_err(|error| Failure::Unreachable(error.to_string()))
+        from_serde_json::from_str(&started).map_err(|error| Failure::Unreachable(error.to_string()))
     }
 
     /// The session that this browser is in the middle of.

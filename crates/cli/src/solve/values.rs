@@ -1,6 +1,7 @@
 //! Values of options: spans, lengths, factors, and what is given by name.
 
-use litemap::LiteMap;
+use std::collections::BTreeMap;
+
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -26,8 +27,8 @@ pub(super) struct Named<T>(pub(super) String, pub(super) T);
 pub(super) fn unique<T: Clone>(
     option: &str,
     list: &[Named<T>],
-) -> anyhow::Result<LiteMap<String, T>> {
-    let mut map = LiteMap::new();
+) -> anyhow::Result<BTreeMap<String, T>> {
+    let mut map = BTreeMap::new();
     for Named(name, value) in list {
         if map.insert(name.clone(), value.clone()).is_some() {
             bail!("{option}: {name} is given twice; give it once");

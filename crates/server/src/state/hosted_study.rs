@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mimique_session::wire::{Bundle, StudySummary};
 use mimique_storage::{StorageError, StudyVersion};
 use mimique_study::ClipSource;
-use mimique_study::{SortedMap, Study, StudyFileError, config_hash};
+use mimique_study::{Study, StudyFileError, config_hash};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::Value;
 
@@ -128,7 +128,7 @@ impl HostedStudy {
     /// longer than any platform's identifier are cut off.
     pub(crate) fn kept_parameters(
         &self,
-        given: SortedMap<String, String>,
+        given: BTreeMap<String, String>,
     ) -> BTreeMap<String, String> {
         const LONGEST: usize = 200;
         given

@@ -160,7 +160,7 @@ impl Screen<'_> {
                 let words = picks.values().filter_map(Value::as_str).map(label);
                 words.collect::<Vec<_>>().join(", ")
             }
-            other => mimique_study::json_text::write(other),
+            other => other.to_string(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The state of a session: what its events make of it, and what only this page knows.
 
-use mimique_study::SortedMap;
+use std::collections::BTreeMap;
 
 use crate::event::Calibrated;
 use crate::plan::Plan;
@@ -30,11 +30,11 @@ pub enum Play {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Live {
     /// Clips that can be played: their names alone.
-    pub prepared: SortedMap<String, ()>,
+    pub prepared: BTreeMap<String, ()>,
     /// Clips on their way, 0..1.
-    pub progress: SortedMap<String, f64>,
+    pub progress: BTreeMap<String, f64>,
     /// Clips that failed, and why.
-    pub failed: SortedMap<String, String>,
+    pub failed: BTreeMap<String, String>,
     /// Whether a clip is being played.
     pub play: Play,
     /// Whether missing answers are pointed out.

@@ -4,12 +4,14 @@
 #[path = "../../../study/tests/support/small.rs"]
 pub mod small;
 
+use std::collections::BTreeMap;
+
 use mimique_session::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_session::wire::{Event, Receipt, SessionStarted};
 use mimique_session::{Client, PlayLog, Record};
-use mimique_study::{Display, SortedMap, Study, config_hash};
+use mimique_study::{Display, Study, config_hash};
 pub use mimique_test_support::{study_folder, study_text};
 use serde_json::{Value, json};
 
@@ -207,7 +209,7 @@ pub fn first_answer(_: &str, kind: &QuestionKindView) -> Value {
 }
 
 pub fn client() -> Client {
-    Client { viewport: [1280, 720], device_pixel_ratio: 2.0, about: SortedMap::new() }
+    Client { viewport: [1280, 720], device_pixel_ratio: 2.0, about: BTreeMap::new() }
 }
 
 pub fn display() -> Display {

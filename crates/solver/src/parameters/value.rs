@@ -1,6 +1,7 @@
 //! Values of parameters: how each type is read from JSON, written, and held against its range.
 
-use litemap::LiteMap;
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use crate::parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
@@ -8,7 +9,7 @@ use crate::parameters::kind::{Kind, Range};
 use crate::parameters::problem::SpecFault;
 
 /// Values by the name of a shape or a marker, in the order of the names.
-pub type ByName<T> = LiteMap<String, T>;
+pub type ByName<T> = BTreeMap<String, T>;
 
 /// Takes up a fault of a value, or of the entry of it that is named.
 pub(crate) type Note<'a> = &'a mut dyn FnMut(Option<&str>, SpecFault);
@@ -204,10 +205,10 @@ impl Field for Vec<String> {
 
 impl<T: Scalar> Stored for ByName<T> {
     const KIND: Kind = T::BY_NAME;
-    const ABSENT: Self = LiteMap::new_vec();
+    const ABSENT: Self = BTreeMap::new();
 
     fn read(value: &Value, note: Note<'_>) -> Self {
-        let mut values = LiteMap::new_vec();
+        let mut values = BTreeMap::new();
         let Some(entries) = value.as_object() else {
             note(None, wrong(value, Self::KIND));
             return values;

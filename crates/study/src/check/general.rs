@@ -1,5 +1,7 @@
 //! Languages and texts, contact, recruitment, consent, exclusions.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::Subject;
@@ -8,7 +10,6 @@ use super::problem::Problem;
 use super::values::{Names, Nearest};
 use crate::columns::is_reserved_column;
 use crate::instant::instant_ms;
-use crate::sorted_map::SortedMap;
 use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
 use crate::text;
 
@@ -70,7 +71,7 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
 /// The study's own buttons and messages in a language.
 fn translation(
     language: &str,
-    own: &SortedMap<String, String>,
+    own: &BTreeMap<String, String>,
     languages: &[String],
     issues: &mut Issues,
 ) {

@@ -3,7 +3,7 @@
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
 //! raw types -> [`general`], [`questions`], [`conduct`], [`stimuli`], [`sequence`], [`hypotheses`],
 //! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
-//! later stages run on what can be read of the file.
+//! later stages run on what can be read of the file ([`mend`]).
 
 mod assigned;
 mod attention;
@@ -16,6 +16,7 @@ mod general;
 mod hypotheses;
 mod issue;
 mod media;
+mod mend;
 mod nearest;
 mod problem;
 mod questions;
@@ -30,11 +31,11 @@ mod values;
 use serde_json::Value;
 
 use crate::canonical::config_hash;
-use crate::from_json::{Faults, FromJson as _};
 use crate::study_file::{Clip, Study, parse};
 pub(crate) use issue::below;
 pub use issue::{Issue, Issues, Severity};
 pub use problem::Problem;
+use schema::Schemas;
 pub use schema::{SCHEMA_ADDRESS, json_schema};
 pub use values::{Count, JsonType, Known, Names, Nearest, Shown, Wanted};
 
@@ -104,10 +105,12 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
             return None;
         }
     };
-    let (texts, damage) = structure::examine(&value, issues);
+    let schema = json_schema();
+    let (texts, damage) = structure::examine(&schema, &value, issues);
     let config_hash = config_hash(&value);
     if !damage.is_none() || issues.has_errors() {
-        let study = Study::from_json(&damage.mended(&value), &mut Faults::default());
+        let readable = mend::readable(&Schemas { root: &schema }, &damage.mended(&value));
+        let study = Study::from_value(&readable).ok()?;
         let mut found = Issues::default();
         examine_study(&study, &value, &config_hash, &texts, lookup, &mut found);
         for issue in found.into_sorted().into_iter().filter(|issue| damage.leaves(issue)) {

@@ -6,19 +6,19 @@ use super::damage::Damage;
 use super::issue::{Issues, below};
 use super::nearest::nearest;
 use super::problem::Problem;
-use super::schema::json_schema;
+use super::schema::{Schemas, has_one, types_of, words};
 use super::values::{JsonType, Names, Nearest, Shown, Wanted};
 
 /// Examines a file; returns the pointers of all its localised texts, and what cannot be read.
-pub(super) fn examine(value: &Value, issues: &mut Issues) -> (Vec<String>, Damage) {
-    let schema = json_schema();
-    let mut walk = Walk { root: &schema, issues, texts: Vec::new(), damage: Damage::default() };
-    walk.value(&schema, value, "");
+pub(super) fn examine(schema: &Value, value: &Value, issues: &mut Issues) -> (Vec<String>, Damage) {
+    let schemas = Schemas { root: schema };
+    let mut walk = Walk { schemas, issues, texts: Vec::new(), damage: Damage::default() };
+    walk.value(schema, value, "");
     (walk.texts, walk.damage)
 }
 
 struct Walk<'a> {
-    root: &'a Value,
+    schemas: Schemas<'a>,
     issues: &'a mut Issues,
     texts: Vec<String>,
     damage: Damage,
@@ -35,7 +35,7 @@ struct ObjectRules<'a> {
 
 impl<'a> Walk<'a> {
     fn value(&mut self, schema: &'a Value, value: &Value, pointer: &str) {
-        let parts = self.parts(schema);
+        let parts = self.schemas.parts(schema);
         if refers_to(schema, "LocalText") {
             self.texts.push(pointer.to_owned());
         }
@@ -66,35 +66,14 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A schema and what it refers to.
-    fn parts(&self, schema: &'a Value) -> Vec<&'a Value> {
-        let mut parts = vec![schema];
-        let mut at = schema;
-        while let Some(target) = at.get("$ref").and_then(Value::as_str) {
-            let Some(found) = target.strip_prefix('#').and_then(|path| self.root.pointer(path))
-            else {
-                break;
-            };
-            parts.push(found);
-            at = found;
-        }
-        parts
-    }
-
     fn any_of(&mut self, alternatives: &'a [Value], value: &Value, pointer: &str) {
-        let fitting = alternatives.iter().find(|alternative| {
-            self.parts(alternative).iter().any(|part| {
-                part.get("type").is_some_and(|types| has_one(types, value))
-                    || part.get("anyOf").is_some()
-                    || part.get("oneOf").is_some()
-            }) && !(value.is_null() && alternative.get("type") != Some(&Value::from("null")))
-        });
+        let fitting = self.schemas.fitting(alternatives, value);
         match fitting {
             Some(alternative) => self.value(alternative, value, pointer),
             None => {
                 let mut types: Vec<JsonType> = Vec::new();
                 for alternative in alternatives {
-                    for part in self.parts(alternative) {
+                    for part in self.schemas.parts(alternative) {
                         types.extend(part.get("type").into_iter().flat_map(types_of));
                     }
                 }
@@ -244,40 +223,11 @@ impl<'a> Walk<'a> {
             self.wrong_word(&words, given, &below(pointer, "type"));
             return false;
         };
-        self.parts(chosen).into_iter().all(|each| self.gather(each, map, pointer, rules))
+        self.schemas.parts(chosen).into_iter().all(|each| self.gather(each, map, pointer, rules))
     }
 }
 
 fn refers_to(schema: &Value, name: &str) -> bool {
     let target = schema.get("$ref").and_then(Value::as_str);
     target.is_some_and(|target| target.rsplit('/').next() == Some(name))
-}
-
-/// The words that a part allows: `enum`, or `oneOf` constants.
-fn words(part: &Value) -> Option<Vec<&str>> {
-    if let Some(words) = part.get("enum").and_then(Value::as_array) {
-        return Some(words.iter().filter_map(Value::as_str).collect());
-    }
-    if let Some(word) = part.get("const").and_then(Value::as_str) {
-        return Some(vec![word]);
-    }
-    let alternatives = part.get("oneOf").and_then(Value::as_array)?;
-    let words: Vec<&str> =
-        alternatives.iter().filter_map(|each| each.get("const")?.as_str()).collect();
-    (words.len() == alternatives.len()).then_some(words)
-}
-
-/// The types that a `type` of a schema allows; `null` is none of them.
-fn types_of(types: &Value) -> impl Iterator<Item = JsonType> {
-    let list = types.as_array().map_or(std::slice::from_ref(types), Vec::as_slice);
-    list.iter().filter_map(Value::as_str).filter_map(JsonType::of_schema)
-}
-
-/// Whether a value is of one of the types that a `type` of a schema allows.
-fn has_one(types: &Value, value: &Value) -> bool {
-    let may_be_null = match types {
-        Value::Array(types) => types.iter().any(|each| each == "null"),
-        one => one == "null",
-    };
-    (may_be_null && value.is_null()) || types_of(types).any(|each| each.has(value))
 }

@@ -1,7 +1,8 @@
 //! Random orders under constraints: no more than k alike in a row, a minimum distance of repeats.
 
+use std::collections::BTreeMap;
+
 use super::Stream;
-use crate::sorted_map::SortedMap;
 
 /// One constraint over the parts.
 pub(super) struct Rule {
@@ -84,7 +85,7 @@ impl Rule {
     fn holds(&self, order: &[usize]) -> bool {
         let mut run = 0;
         let mut previous = None;
-        let mut last_place: SortedMap<u32, usize> = SortedMap::new();
+        let mut last_place: BTreeMap<u32, usize> = BTreeMap::new();
         for (place, &part) in order.iter().enumerate() {
             let value = self.values[part];
             run = if value.is_some() && value == previous { run + 1 } else { 1 };
@@ -124,7 +125,7 @@ struct Partial {
 
 impl<'a> Builder<'a> {
     fn new(count: usize, rules: &'a [Rule]) -> Self {
-        let mut classes: SortedMap<Vec<Option<u32>>, Vec<usize>> = SortedMap::new();
+        let mut classes: BTreeMap<Vec<Option<u32>>, Vec<usize>> = BTreeMap::new();
         for part in 0..count {
             let values = rules.iter().map(|rule| rule.values[part]).collect();
             classes.entry(values).or_default().push(part);

@@ -22,7 +22,8 @@ mod stream;
 mod subset;
 mod turns;
 
-use crate::sorted_map::SortedMap;
+use std::collections::BTreeMap;
+
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
 use constrained::{Search, arrange};
 pub(crate) use proof::{CYCLES, Flaw, prove};
@@ -139,9 +140,9 @@ pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderErr
     context.sequence(&study.sequence, "/sequence", None)
 }
 
-fn by_id(clips: &[Clip]) -> SortedMap<&str, &Clip> {
+fn by_id(clips: &[Clip]) -> BTreeMap<&str, &Clip> {
     // One by one: to collect would bring a sort of its own into the page.
-    let mut known = SortedMap::new();
+    let mut known = BTreeMap::new();
     for clip in clips {
         known.insert(clip.id.as_str(), clip);
     }
@@ -164,7 +165,7 @@ pub fn drawn_condition<'c>(draw: Draw<'_>, conditions: &[&'c str]) -> Option<&'c
 struct Context<'a> {
     study: &'a Study,
     clips: &'a [Clip],
-    by_id: SortedMap<&'a str, &'a Clip>,
+    by_id: BTreeMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
     turns: Turns,
     /// The product of the periods of all squares.
@@ -278,7 +279,7 @@ impl Context<'_> {
         constraint: &crate::study_file::Constraint,
         parts: impl Iterator<Item = &'p Vec<OrderedItem>>,
     ) -> constrained::Rule {
-        let mut numbers: SortedMap<String, u32> = SortedMap::new();
+        let mut numbers: BTreeMap<String, u32> = BTreeMap::new();
         let values = parts
             .map(|part| {
                 let [OrderedItem::Trial { clip, .. }] = part.as_slice() else { return None };

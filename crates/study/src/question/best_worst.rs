@@ -10,7 +10,6 @@ use super::view::{QuestionKindView, Showing};
 use super::{Choice, OptionOrder, Question, accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
 use crate::text::Words;
 
@@ -18,7 +17,7 @@ use crate::text::Words;
 const PICKS: [&str; 2] = ["best", "worst"];
 
 /// The best and the worst of several, two different ones. The answer is `{"best": "eyes", "worst": "skin"}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct BestWorst {
     /// The options, three at least.

@@ -10,12 +10,11 @@ use super::simulation::{Chance, Simulated};
 use super::view::{ChoiceView, QuestionKindView, Showing};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
-use crate::from_json::FromJson;
 use crate::text::Words;
 
 /// Which of the two clips that are shown side by side: `"left"`, `"right"` or `"same"`. The export names
 /// the clip that was chosen in its column `chosen`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Comparison {
     /// Whether "no difference" can be answered.

@@ -29,16 +29,13 @@ use super::{Choice, OptionOrder, Question};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
-use crate::tagged_by_type;
 use crate::text::Words;
 
 /// What kind of answer is asked for.
 #[enum_dispatch(KindOfQuestion)]
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
-#[serde(remote = "Self", rename_all = "camelCase")]
-#[schemars(tag = "type")]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "type", rename_all = "camelCase")]
 #[non_exhaustive]
 pub enum QuestionKind {
     /// One of several: radio buttons. With `truth`, a forced choice.
@@ -66,8 +63,6 @@ pub enum QuestionKind {
     /// The best and the worst of several: best-worst scaling.
     BestWorst(BestWorst),
 }
-
-tagged_by_type!(QuestionKind);
 
 /// What can be shown of many answers together.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -14,12 +14,11 @@ use super::view::{QuestionKindView, Showing};
 use crate::answer::AnswerProblem;
 use crate::check::{Issues, Problem, below};
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
 use crate::text::Words;
 
 /// A rating scale: `numItems` points from `start`. The answer is the point's number.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Likert {
     /// Number of points.

@@ -4,13 +4,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::free_text::FreeText;
-use crate::from_json::FromJson;
 
 /// Most characters, if the study does not say.
 pub const LONG_TEXT: usize = 5_000;
 
 /// Several lines of text. The answer is the text.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct LongText {
     /// Most characters; 5,000 if not given.

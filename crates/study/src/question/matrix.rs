@@ -10,11 +10,10 @@ use super::view::{QuestionKindView, Showing};
 use super::{Choice, Question, accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
-use crate::from_json::FromJson;
 use crate::text::Words;
 
 /// One choice in each of several rows. The answer is an object from row to option.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Matrix {
     /// The rows.

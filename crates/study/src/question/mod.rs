@@ -23,12 +23,10 @@ mod valence_arousal;
 mod view;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::from_json::{Faults, FromJson};
 use crate::study_file::LocalText;
-use crate::tagged;
 
 pub use best_worst::BestWorst;
 pub use comparison::Comparison;
@@ -47,7 +45,7 @@ pub use valence_arousal::Grid;
 pub use view::{ChoiceView, QuestionKindView, Showing};
 
 /// One question.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct Question {
@@ -84,51 +82,8 @@ fn yes() -> bool {
     true
 }
 
-/// What questions of every type have.
-#[derive(Deserialize, FromJson)]
-#[serde(rename_all = "camelCase")]
-struct Common {
-    id: String,
-    prompt: LocalText,
-    #[serde(default)]
-    help: Option<LocalText>,
-    #[serde(default)]
-    video: Option<LocalText>,
-    #[serde(default)]
-    signs: Vec<Choice>,
-    #[serde(default = "yes")]
-    required: bool,
-    #[serde(default)]
-    show_if: Option<Condition>,
-    #[serde(default)]
-    attention_check: Option<AttentionCheck>,
-}
-
-impl Common {
-    fn with(self, kind: QuestionKind) -> Question {
-        let Self { id, prompt, help, video, signs, required, show_if, attention_check } = self;
-        Question { id, prompt, help, video, signs, required, show_if, attention_check, kind }
-    }
-}
-
-impl FromJson for Question {
-    fn from_json(value: &Value, faults: &mut Faults) -> Self {
-        Common::from_json(value, faults).with(QuestionKind::from_json(value, faults))
-    }
-}
-
-impl<'de> Deserialize<'de> for Question {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged::read(deserializer, |value| {
-            let kind = tagged::from(value.clone())?;
-            let common: Common = tagged::from(value)?;
-            Ok(common.with(kind))
-        })
-    }
-}
-
 /// An earlier answer that opens a question. Every condition given must hold.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Condition {
     /// Which question: of this page, or of an earlier one.
@@ -148,7 +103,7 @@ pub struct Condition {
 }
 
 /// A question that checks attention.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct AttentionCheck {
     /// The answer that passes.
@@ -166,7 +121,7 @@ impl Question {
 }
 
 /// One option.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Choice {
     /// What the export says.
@@ -182,9 +137,7 @@ pub struct Choice {
 }
 
 /// In which order options are shown.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum OptionOrder {
     /// As in the file.

@@ -10,10 +10,9 @@ use super::view::{QuestionKindView, Showing};
 use super::{Choice, OptionOrder, accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::{Issues, Problem};
-use crate::from_json::FromJson;
 
 /// Any of several. The answer is an array of values in the order of the file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct MultipleChoice {
     /// The options.

@@ -11,11 +11,10 @@ use super::{accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
 
 /// A number typed. The answer is the number.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct NumberField {
     /// Lowest value.

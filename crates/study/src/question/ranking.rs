@@ -11,11 +11,10 @@ use super::{Choice, OptionOrder, accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 
 /// Options put in order. The answer is an array of values from first to last; the export has the place of
 /// each option.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Ranking {
     /// What is ranked.

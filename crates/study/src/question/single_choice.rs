@@ -10,10 +10,9 @@ use super::view::{QuestionKindView, Showing};
 use super::{Choice, OptionOrder, accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
-use crate::from_json::FromJson;
 
 /// One of several. The answer is the option's value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct SingleChoice {
     /// The options, two at least.

@@ -11,11 +11,10 @@ use super::{accepting, defining};
 use crate::answer::AnswerProblem;
 use crate::check::{Issues, Problem, below};
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
 
 /// A number on a line. The answer is the number as shown.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Slider {
     /// Lowest value.

@@ -13,7 +13,6 @@ use super::view::{QuestionKindView, Showing};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
 use crate::columns::ColumnKind;
-use crate::from_json::FromJson;
 use crate::study_file::LocalText;
 
 /// The axes of the grid: the parts of an answer.
@@ -21,7 +20,7 @@ const AXES: [&str; 2] = ["valence", "arousal"];
 
 /// A point on a grid of valence (across) and arousal (up). The answer is
 /// `{"valence": v, "arousal": a}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub struct Grid {
     /// Cells across and up; an odd number has a middle. Coded 1 to `numItems` from left and below.

@@ -1,21 +1,18 @@
 //! The clips that the rules make, each with its factors.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{ClipEntry, Study};
-use crate::from_json::{Faults, FromJson};
-use crate::sorted_map::SortedMap;
-use crate::tagged;
 
 /// Free key -> value pairs that the analysis groups by.
-pub type Factors = SortedMap<String, FactorValue>;
+pub type Factors = BTreeMap<String, FactorValue>;
 
 /// The value of a factor.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum FactorValue {
     /// `true`, `false`.
@@ -24,34 +21,6 @@ pub enum FactorValue {
     Number(f64),
     /// A word.
     Text(String),
-}
-
-impl<'de> Deserialize<'de> for FactorValue {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged::read(deserializer, |value| match value {
-            Value::Bool(truth) => Ok(Self::Truth(truth)),
-            Value::String(text) => Ok(Self::Text(text)),
-            Value::Number(number) => number
-                .as_f64()
-                .map(Self::Number)
-                .ok_or_else(|| tagged::mistake("a factor is out of range")),
-            _ => Err(tagged::mistake("a factor is a word, a number, true or false")),
-        })
-    }
-}
-
-impl FromJson for FactorValue {
-    fn from_json(value: &Value, faults: &mut Faults) -> Self {
-        match (value, value.as_f64()) {
-            (Value::Bool(truth), _) => Self::Truth(*truth),
-            (Value::String(text), _) => Self::Text(text.clone()),
-            (_, Some(number)) => Self::Number(number),
-            _ => {
-                faults.note(value, &["a factor is a word, a number, true or false"]);
-                Self::Truth(false)
-            }
-        }
-    }
 }
 
 impl FactorValue {
@@ -80,7 +49,7 @@ impl std::fmt::Display for FactorValue {
 
 /// The emotions of the built-in performances.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, FromJson, JsonSchema,
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
 #[serde(rename_all = "camelCase")]
 pub enum BuiltinExpression {
@@ -177,7 +146,7 @@ impl Study {
         entries.extend(rules.list.iter().cloned());
         let several_avatars =
             entries.first().is_some_and(|one| entries.iter().any(|each| each.avatar != one.avatar));
-        let mut seen = SortedMap::new();
+        let mut seen = BTreeMap::new();
         entries
             .iter()
             .filter_map(|entry| self.clip(entry, several_avatars))

@@ -8,13 +8,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::LocalText;
-use crate::from_json::FromJson;
 use crate::question::Condition;
-use crate::sorted_map::SortedMap;
 
 /// What a device must have. It is looked at right after consent; whoever cannot mend what is missing
 /// is screened out with the reason.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct DeviceRules {
     /// Least width of the window, CSS pixels.
@@ -38,9 +36,7 @@ pub struct DeviceRules {
 }
 
 /// Which kind of device.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum DeviceKind {
     /// Any.
@@ -51,9 +47,7 @@ pub enum DeviceKind {
 }
 
 /// What the browser must draw with.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum BackendRule {
     /// WebGPU or WebGL 2.
@@ -64,9 +58,7 @@ pub enum BackendRule {
 }
 
 /// Whether the pages fill the screen.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum FullscreenRule {
     /// Nobody asks.
@@ -79,7 +71,7 @@ pub enum FullscreenRule {
 }
 
 /// How large a CSS pixel is, and how far away the eyes are: a page after the instructions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Calibration {
     /// Whether a bank card is held against the screen and its picture made as large.
@@ -105,7 +97,7 @@ fn yes() -> bool {
 
 /// How long a page, or the answers of a trial, may take. The clock of a trial begins when its clip
 /// was seen once. When it ends, the answers so far are sent and marked `timed_out`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct TimeLimit {
     /// Seconds.
@@ -124,7 +116,7 @@ fn ten() -> u32 {
 }
 
 /// How many practice clips must be answered right before the study goes on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Criterion {
     /// Least number of clips of one round with every known answer right.
@@ -137,9 +129,7 @@ pub struct Criterion {
 }
 
 /// What happens after the last round of practice without success.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum AfterTraining {
     /// The study goes on.
@@ -150,10 +140,10 @@ pub enum AfterTraining {
 }
 
 /// Right answers that no factor of the clip gives: clip -> question -> answer.
-pub type StatedAnswers = SortedMap<String, BTreeMap<String, Value>>;
+pub type StatedAnswers = BTreeMap<String, BTreeMap<String, Value>>;
 
 /// What becomes of failed attention checks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct AttentionRule {
     /// How many may be failed.
@@ -164,9 +154,7 @@ pub struct AttentionRule {
 }
 
 /// When a session with too many failed attention checks ends.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum AttentionEnd {
     /// After the last page, like any other.
@@ -177,7 +165,7 @@ pub enum AttentionEnd {
 }
 
 /// Whom the study does not take, by an answer of a page of questions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ScreeningRule {
     /// The answer that ends the session, once its page is sent.
@@ -189,7 +177,7 @@ pub struct ScreeningRule {
 
 /// Where answers go when the pages are hosted as files, without the server
 /// (`mimique export-site`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct StaticHosting {
     /// Address that takes a session's JSON lines by POST; `{session}` stands for the session's

@@ -4,37 +4,32 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::LocalText;
-use crate::from_json::FromJson;
 use crate::instant::instant_ms;
 
 /// Title, version, authors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Metadata {
     /// Title as participants see it.
     pub title: LocalText,
     /// Version of the study file, for people: `1.0.0`.
-    #[from_json(off_page)]
     pub version: String,
     /// Who made it.
     #[serde(default)]
-    #[from_json(off_page)]
     pub authors: Vec<String>,
     /// `YYYY-MM-DD`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub date: Option<String>,
     /// One or two sentences.
     #[serde(default)]
     pub description: LocalText,
     /// Where it is made.
     #[serde(default)]
-    #[from_json(off_page)]
     pub organizations: Vec<String>,
 }
 
 /// Whom a participant can write to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Contact {
     /// Who leads the study.
@@ -45,7 +40,7 @@ pub struct Contact {
 }
 
 /// A person or a board with an address.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ContactPerson {
     /// Name.
@@ -58,25 +53,21 @@ pub struct ContactPerson {
 }
 
 /// Where participants come from and go back to.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Recruitment {
     /// Shown at the end, once every answer is stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub completion_code: Option<String>,
     /// For those whom the study cannot take.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub screened_out_code: Option<String>,
     /// For those who failed the attention checks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub failed_checks_code: Option<String>,
     /// Address to go back to; `{code}` stands for the completion code and `{NAME}` for a URL
     /// parameter of the arrival.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub redirect: Option<String>,
     /// Parameters of the address that are kept, apart from the answers: `PROLIFIC_PID`...
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -87,28 +78,22 @@ pub struct Recruitment {
     /// How many participants the study wants; it takes no more once so many have finished or are
     /// on their way. None: any number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub participants: Option<u64>,
     /// Nobody can begin before: `2026-03-01T08:00:00+01:00`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub opens: Option<String>,
     /// Nobody can begin from then on; who has begun can finish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub closes: Option<String>,
     /// How long a participant's place is kept after the last sign of life, in minutes (60 if not
     /// given). Then the next participant takes it, so that conditions stay balanced over those who
     /// finish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub reservation_minutes: Option<u32>,
 }
 
 /// How a second participation of one person is recognised.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum RepeatPrevention {
     /// Anybody may take part again.
@@ -121,7 +106,7 @@ pub enum RepeatPrevention {
 }
 
 /// What a participant agrees to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Consent {
     /// Version of the text; in every row of the export.
@@ -135,7 +120,6 @@ pub struct Consent {
     /// Days after the end of a session at which the server deletes its answers; for ever if not
     /// given. It should say the same as `retention`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub retention_days: Option<u32>,
     /// The text.
     pub sections: Vec<Section>,
@@ -159,7 +143,7 @@ impl Recruitment {
 }
 
 /// A heading and its paragraphs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Section {
     /// Heading.

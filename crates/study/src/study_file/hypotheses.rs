@@ -4,10 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::LocalText;
-use crate::from_json::FromJson;
 
 /// One hypothesis and its test.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Hypothesis {
     /// Short name: `H1`.
@@ -31,7 +30,7 @@ pub struct Hypothesis {
 }
 
 /// A test, by its name in `mimique test`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestName {
     /// k independent groups.
@@ -53,9 +52,7 @@ pub enum TestName {
 }
 
 /// What of a response is tested.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum Measure {
     /// The answer itself.
@@ -68,7 +65,7 @@ pub enum Measure {
 }
 
 /// Rules, fixed beforehand, that leave trials or people out.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Exclusions {
     /// Leave out a trial with more than this share of late frames (0..1).

@@ -1,39 +1,18 @@
 //! Text in one language or in several.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use std::collections::BTreeMap;
 
-use crate::from_json::{Faults, FromJson};
-use crate::sorted_map::SortedMap;
-use crate::tagged;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A string for every language, or one string a language.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum LocalText {
     /// The same in every language (a name, a number, a study in one language).
     Plain(String),
     /// By language code: `{"en": "joy", "fr": "joie"}`.
-    Languages(SortedMap<String, String>),
-}
-
-impl<'de> Deserialize<'de> for LocalText {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged::read(deserializer, |value| match value {
-            Value::String(text) => Ok(Self::Plain(text)),
-            other => tagged::from(other).map(Self::Languages),
-        })
-    }
-}
-
-impl FromJson for LocalText {
-    fn from_json(value: &Value, faults: &mut Faults) -> Self {
-        match value {
-            Value::String(text) => Self::Plain(text.clone()),
-            other => Self::Languages(SortedMap::from_json(other, faults)),
-        }
-    }
+    Languages(BTreeMap<String, String>),
 }
 
 impl LocalText {

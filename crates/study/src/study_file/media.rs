@@ -1,8 +1,9 @@
 //! The pictures and sign-language videos that questions and their options show.
 
+use std::collections::BTreeMap;
+
 use super::{LocalText, Study};
 use crate::question::{Choice, KindOfQuestion as _, Question};
-use crate::sorted_map::SortedMap;
 
 /// What the key of such a file in a study's clips as the page gets them begins with: it is served like a film.
 pub const MEDIA_PREFIX: &str = "media:";
@@ -31,7 +32,7 @@ impl Study {
                 LocalText::Languages(paths) => paths.values().map(String::as_str).collect(),
             }
         }
-        let mut paths: SortedMap<&str, ()> = SortedMap::new();
+        let mut paths: BTreeMap<&str, ()> = BTreeMap::new();
         let mut found = |path| {
             paths.insert(path, ());
         };

@@ -18,9 +18,9 @@ mod sequence;
 mod stimuli;
 mod tables;
 
-use crate::from_json::{self, FromJson};
+use std::collections::BTreeMap;
+
 use crate::question::Question;
-use crate::sorted_map::SortedMap;
 use crate::text::{Words, primary_language, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -51,13 +51,12 @@ pub use stimuli::{
 pub use tables::{Layout, TableLayout};
 
 /// A whole study file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 #[schemars(title = "Mimique study")]
 pub struct Study {
     /// Where the JSON Schema is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub schema: Option<String>,
     /// Identifier used in addresses and file names: lower-case letters, digits, `-`.
     pub id: String,
@@ -67,8 +66,8 @@ pub struct Study {
     pub languages: Vec<String>,
     /// Buttons and messages in other languages than English and French, by language and by name:
     /// `mimique check --words de` prints a beginning. In English and French it changes single texts.
-    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
-    pub translations: SortedMap<String, SortedMap<String, String>>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub translations: BTreeMap<String, BTreeMap<String, String>>,
     /// Seed of every random stream (below 2^53).
     #[serde(default)]
     pub seed: u64,
@@ -106,7 +105,7 @@ pub struct Study {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub questions: Vec<Question>,
     /// What the sequence is made of, by name.
-    pub components: SortedMap<String, Component>,
+    pub components: BTreeMap<String, Component>,
     /// The order of components and trials.
     pub sequence: Sequence,
     /// Shown after the last answer.
@@ -116,19 +115,15 @@ pub struct Study {
     pub stimuli: Stimuli,
     /// Where answers go when the pages are hosted without the server.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub static_hosting: Option<StaticHosting>,
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[from_json(off_page)]
     pub hypotheses: Vec<Hypothesis>,
     /// Tables of the report in the study's own layout; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[from_json(off_page)]
     pub tables: Vec<TableLayout>,
     /// Rules, fixed beforehand, that leave trials or people out of the analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub exclusions: Option<Exclusions>,
 }
 
@@ -161,7 +156,8 @@ impl SyntaxError {
 impl Study {
     /// Reads a study from a JSON value, stopping at the first mistake.
     pub fn from_value(value: &serde_json::Value) -> Result<Self, StudyFileError> {
-        from_json::read(value).map_err(|error| StudyFileError::Shape(error.to_string()))
+        serde_path_to_error::deserialize(value)
+            .map_err(|error| StudyFileError::Shape(error.to_string()))
     }
 
     /// Reads a study from text: JSON, comments allowed. Stops at the first mistake.

@@ -1,18 +1,15 @@
 //! What is shown in which order: components, blocks of trials, sequences.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 
 use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimit};
-use crate::from_json::{Faults, FromJson};
-use crate::sorted_map::SortedMap;
-use crate::{tagged, tagged_by_type};
 
 /// A part of the study that a sequence names.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
-#[serde(remote = "Self", rename_all = "camelCase")]
-#[schemars(tag = "type")]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "type", rename_all = "camelCase")]
 pub enum Component {
     /// A block: one trial a clip.
     Trials(TrialsComponent),
@@ -24,11 +21,9 @@ pub enum Component {
     Break(BreakComponent),
 }
 
-tagged_by_type!(Component);
-
 /// A block of trials, one a clip. In a sequence it stands for its trials: they take their places
 /// by that sequence's order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct TrialsComponent {
     /// Which clips; all of them if not given.
@@ -55,7 +50,7 @@ pub struct TrialsComponent {
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
 /// method, or of another avatar.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Beside {
     /// Key of `stimuli.methods`.
@@ -75,9 +70,7 @@ pub struct Beside {
 }
 
 /// On which side of the clip its companion stands. On a narrow screen left is above.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum Side {
     /// Always left.
@@ -94,19 +87,19 @@ fn once() -> u32 {
 }
 
 /// Which clips a block shows. With both parts, a clip must be in the list and have the factors.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipSelection {
     /// Clip identifiers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ids: Vec<String>,
     /// Factor -> the values that are taken.
-    #[serde(default, rename = "where", skip_serializing_if = "SortedMap::is_empty")]
-    pub factors: SortedMap<String, Vec<FactorValue>>,
+    #[serde(default, rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
+    pub factors: BTreeMap<String, Vec<FactorValue>>,
 }
 
 /// A page of questions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Questionnaire {
     /// Heading.
@@ -123,7 +116,7 @@ pub struct Questionnaire {
 }
 
 /// A page to read.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct PageComponent {
     /// Heading.
@@ -136,7 +129,7 @@ pub struct PageComponent {
 }
 
 /// A rest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BreakComponent {
     /// Heading.
@@ -149,7 +142,7 @@ pub struct BreakComponent {
 }
 
 /// Trials for practice, shown in this order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Training {
     /// Clip identifiers.
@@ -164,7 +157,7 @@ pub struct Training {
     #[serde(default)]
     pub feedback: bool,
     /// Right answers that no factor of the clip gives: clip -> question -> answer.
-    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub answers: StatedAnswers,
     /// How many clips must be answered right before the study goes on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -175,7 +168,7 @@ pub struct Training {
 }
 
 /// Components, or further sequences, in an order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Sequence {
     /// Name of a nested sequence, for the export's column `condition`.
@@ -203,7 +196,7 @@ pub struct Sequence {
 }
 
 /// A part of a sequence.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SequenceItem {
     /// Name of a component.
@@ -212,26 +205,8 @@ pub enum SequenceItem {
     Sequence(Box<Sequence>),
 }
 
-impl FromJson for SequenceItem {
-    fn from_json(value: &Value, faults: &mut Faults) -> Self {
-        match value {
-            Value::String(name) => Self::Component(name.clone()),
-            other => Self::Sequence(Box::from_json(other, faults)),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for SequenceItem {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        tagged::read(deserializer, |value| match value {
-            Value::String(name) => Ok(Self::Component(name)),
-            other => tagged::from(other).map(|sequence| Self::Sequence(Box::new(sequence))),
-        })
-    }
-}
-
 /// How the parts of a sequence are ordered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum OrderRule {
     /// As in the file.
@@ -244,7 +219,7 @@ pub enum OrderRule {
 }
 
 /// A component put in after every so many trials.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Interruption {
     /// Name of a component: a break, a page or a questionnaire.
@@ -257,7 +232,7 @@ pub struct Interruption {
 }
 
 /// What a random order must keep to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Constraint {
     /// A factor; `segment`, `avatar` and `clip` can be named too.

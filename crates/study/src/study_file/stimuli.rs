@@ -1,11 +1,11 @@
 //! Avatars, captures, segments, methods, and the rule that makes clips of them.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
-use crate::from_json::FromJson;
-use crate::sorted_map::SortedMap;
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -13,18 +13,17 @@ use crate::sorted_map::SortedMap;
 pub const DATA_PREFIX: &str = "${MIMIQUE_DATA}/";
 
 /// What is shown, and what it is made of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Stimuli {
     /// Heads, by identifier.
-    pub avatars: SortedMap<String, Avatar>,
+    pub avatars: BTreeMap<String, Avatar>,
     /// Recorded or built-in performances, by identifier.
-    #[from_json(off_page)]
-    pub captures: SortedMap<String, Capture>,
+    pub captures: BTreeMap<String, Capture>,
     /// Cuts of the captures.
     pub segments: Vec<Segment>,
     /// Methods with parameters, by identifier.
-    pub methods: SortedMap<String, MethodEntry>,
+    pub methods: BTreeMap<String, MethodEntry>,
     /// Which avatar performs which segment by which method; every combination if not given.
     #[serde(default)]
     pub clips: ClipRules,
@@ -34,41 +33,35 @@ pub struct Stimuli {
 }
 
 /// Who is seen: exactly one of `builtin`, `file` and `videos`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Avatar {
     /// A person of the built-in head.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub builtin: Option<BuiltinAvatar>,
     /// A GLB file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub file: Option<String>,
     /// Films of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
     /// with the method `recorded`.
-    #[serde(default, skip_serializing_if = "SortedMap::is_empty")]
-    #[from_json(off_page)]
-    pub videos: SortedMap<String, String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub videos: BTreeMap<String, String>,
     /// How a head is drawn.
     #[serde(default, skip_serializing_if = "AvatarLook::is_stimulus")]
-    #[from_json(off_page)]
     pub look: AvatarLook,
     /// Symmetric shapes to cut into `NAME_L` and `NAME_R` along the face's middle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[from_json(off_page)]
     pub split: Vec<String>,
     /// Factors of the clips shown with it.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
     /// Name for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub label: Option<LocalText>,
 }
 
 /// A person of the built-in head.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BuiltinAvatar {
     /// Which person: the same seed is the same face.
@@ -86,9 +79,7 @@ pub struct BuiltinAvatar {
 }
 
 /// How a head is drawn: camera and light are the same.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum AvatarLook {
     /// Skin, eyes and hair.
@@ -120,7 +111,7 @@ pub enum AvatarSource<'a> {
     /// A GLB file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
     /// Films: segment -> a file, its path as above.
-    Videos(&'a SortedMap<String, String>),
+    Videos(&'a BTreeMap<String, String>),
 }
 
 impl Avatar {
@@ -146,7 +137,7 @@ pub fn film_type(path: &str) -> Option<&'static str> {
 }
 
 /// A performance as markers: exactly one of `builtin` and `file`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Capture {
     /// A built-in actor's performances.
@@ -179,7 +170,7 @@ pub struct Capture {
 }
 
 /// A built-in actor.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct BuiltinCapture {
     /// Which actor: seed of the identity and of the performance's small differences.
@@ -211,21 +202,18 @@ impl Capture {
 }
 
 /// A cut of a capture: `first` and `end` of a file, or `performance` of a built-in actor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Segment {
     /// Identifier: `joy2`.
     pub id: String,
     /// Which capture.
-    #[from_json(off_page)]
     pub capture: String,
     /// First frame, counted from 0 at the capture's own rate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub first: Option<usize>,
     /// Frame after the last one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[from_json(off_page)]
     pub end: Option<usize>,
     /// What a built-in actor performs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -236,7 +224,7 @@ pub struct Segment {
 }
 
 /// What a built-in actor performs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Performance {
     /// Which emotion.
@@ -271,7 +259,7 @@ impl Segment {
 }
 
 /// Which clips there are.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipRules {
     /// Every combination of these; all avatars, segments and methods where a part is not given.
@@ -283,7 +271,7 @@ pub struct ClipRules {
 }
 
 /// Every combination.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipCross {
     /// Avatars; all if not given.
@@ -298,7 +286,7 @@ pub struct ClipCross {
 }
 
 /// One clip of a list.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct ClipEntry {
     /// Which avatar.
@@ -310,7 +298,7 @@ pub struct ClipEntry {
 }
 
 /// The same look for every clip.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, FromJson, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Look {
     /// Background, `#rrggbb`.

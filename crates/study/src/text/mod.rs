@@ -6,7 +6,8 @@ mod table;
 mod translation;
 mod typography;
 
-use crate::sorted_map::SortedMap;
+use std::collections::BTreeMap;
+
 use std::borrow::Cow;
 
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
@@ -18,7 +19,7 @@ pub use typography::typeset;
 pub struct Words {
     language: Cow<'static, str>,
     /// What a study file has brought, by name; the rest is built in.
-    own: SortedMap<String, String>,
+    own: BTreeMap<String, String>,
     built_in: &'static [&'static str; COUNT],
 }
 
@@ -28,9 +29,9 @@ pub const LANGUAGES: [&str; 2] = ["en", "fr"];
 /// The built-in texts of a language; English where there are none.
 pub fn words(language: &str) -> &'static Words {
     static ENGLISH_WORDS: Words =
-        Words { language: Cow::Borrowed("en"), own: SortedMap::new(), built_in: &ENGLISH };
+        Words { language: Cow::Borrowed("en"), own: BTreeMap::new(), built_in: &ENGLISH };
     static FRENCH_WORDS: Words =
-        Words { language: Cow::Borrowed("fr"), own: SortedMap::new(), built_in: &FRENCH };
+        Words { language: Cow::Borrowed("fr"), own: BTreeMap::new(), built_in: &FRENCH };
     if primary_language(language) == "fr" { &FRENCH_WORDS } else { &ENGLISH_WORDS }
 }
 
@@ -42,7 +43,7 @@ pub fn primary_language(code: &str) -> &str {
 impl Words {
     /// The texts that a study file brings for a language, by name; what it leaves out is in English
     /// (or French, where it mends those).
-    pub fn translated(language: &str, own: &SortedMap<String, String>) -> Words {
+    pub fn translated(language: &str, own: &BTreeMap<String, String>) -> Words {
         let built_in = words(language).built_in;
         Words { language: Cow::Owned(language.to_owned()), own: own.clone(), built_in }
     }

@@ -1,8 +1,9 @@
 //! Translations of the fixed texts: what a study file brings for a language.
 
+use std::collections::BTreeMap;
+
 use super::table::{ENGLISH, NAMES};
 use super::{primary_language, words};
-use crate::sorted_map::SortedMap;
 
 /// What is wrong with a translation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,7 +26,7 @@ pub enum Fault {
 
 /// Everything that is wrong with a translation, texts by name. English and French may be changed in
 /// part: nothing is missing there.
-pub fn faults(language: &str, texts: &SortedMap<String, String>) -> Vec<Fault> {
+pub fn faults(language: &str, texts: &BTreeMap<String, String>) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (name, text) in texts {
         match NAMES.iter().position(|known| known == name) {
@@ -84,10 +85,10 @@ mod tests {
 
     #[test]
     fn faults_name_what_is_unknown_what_is_missing_and_braces_that_differ() {
-        let texts = |pairs: &[(&str, &str)]| -> SortedMap<String, String> {
+        let texts = |pairs: &[(&str, &str)]| -> BTreeMap<String, String> {
             pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
-        let whole: SortedMap<String, String> = template("de")
+        let whole: BTreeMap<String, String> = template("de")
             .into_iter()
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect();

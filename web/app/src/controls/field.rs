@@ -1,6 +1,5 @@
 //! A number or a text that is typed. The answer is given when the field is left, not at every key.
 
-use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, plain};
@@ -15,7 +14,7 @@ pub fn number(
     unit: Option<&str>,
 ) -> Vec<Element> {
     let shown = match answering.value() {
-        Some(number @ Value::Number(_)) => json_text::write(number),
+        Some(number @ Value::Number(_)) => number.to_string(),
         Some(Value::String(text)) => text.clone(),
         _ => String::new(),
     };
@@ -27,8 +26,8 @@ pub fn number(
     };
     let field = typed(answering, el("input", "").set("type", "number"), "number")
         .set("inputmode", if integer { "numeric" } else { "decimal" })
-        .maybe("min", minimum.map(number_text).as_deref())
-        .maybe("max", maximum.map(number_text).as_deref())
+        .maybe("min", minimum.map(|number| number.to_string()).as_deref())
+        .maybe("max", maximum.map(|number| number.to_string()).as_deref())
         .set("step", if integer { "1" } else { "any" })
         .set("autocomplete", "off")
         .value(&shown)

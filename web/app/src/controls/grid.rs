@@ -1,6 +1,6 @@
 //! A point on a grid of valence and arousal: radio buttons in rows, the four edges named.
 
-use mimique_study::json_text;
+use serde_json::json;
 
 use super::{Answering, ends};
 use crate::dom::{Element, el, words};
@@ -12,8 +12,7 @@ pub fn grid(answering: &Answering, num_items: u32, edges: [&String; 4]) -> Vec<E
     let mut cells = el("div", "likert grid").style("--points", &num_items.to_string());
     for arousal in (1..=num_items).rev() {
         for valence in 1..=num_items {
-            let answer =
-                json_text::object([("valence", valence.into()), ("arousal", arousal.into())]);
+            let answer = json!({ "valence": valence, "arousal": arousal });
             let spoken = format!("{left}–{right}: {valence}, {bottom}–{top}: {arousal}");
             let chosen = answering.value() == Some(&answer);
             let field = answering

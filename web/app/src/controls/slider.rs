@@ -1,7 +1,6 @@
 //! A number on a line. Until it is touched it has no value, and neither shows nor says one.
 
 use mimique_session::flow::Input;
-use mimique_study::{json_text, number_text};
 use serde_json::Value;
 
 use super::{Answering, ends, plain};
@@ -24,15 +23,15 @@ pub fn slider(
     let field = el("input", if value.is_none() { "untouched" } else { "" })
         .key("line")
         .set("type", "range")
-        .set("min", &number_text(minimum))
-        .set("max", &number_text(maximum))
-        .set("step", &number_text(step))
+        .set("min", &minimum.to_string())
+        .set("max", &maximum.to_string())
+        .set("step", &step.to_string())
         // Where the knob stands is no answer, for those who hear it either.
         .maybe("aria-valuetext", value.is_none().then(|| answering.engine.words().not_answered()))
-        .value(&number_text(value.and_then(Value::as_f64).unwrap_or(middle)))
+        .value(&value.and_then(Value::as_f64).unwrap_or(middle).to_string())
         .handles("change", touch.clone())
         .handles("click", touch);
-    let shown = value.map_or_else(|| "\u{2013}".to_owned(), json_text::write);
+    let shown = value.map_or_else(|| "\u{2013}".to_owned(), ToString::to_string);
     vec![
         ends(left, right),
         answering.spoken(field),

@@ -1,7 +1,6 @@
 //! The size of the screen: a card drawn to be made as large as a real one, and the distance.
 
 use mimique_session::flow::{CalibrationView, CardView, DistanceView, Input};
-use mimique_study::number_text;
 
 use super::{button, form, heading, main, problem, progress_line, px, submit};
 use crate::browser::document;
@@ -35,7 +34,7 @@ fn distance(shown: &DistanceView) -> Element {
         .set("min", "15")
         .set("max", "300")
         .set("step", "1")
-        .maybe("value", shown.value.map(number_text).as_deref())
+        .maybe("value", shown.value.map(|number| number.to_string()).as_deref())
         .flag("aria-invalid", wrong.is_some())
         .maybe("aria-describedby", wrong.map(|_| "distance-problem"))
         .on("change", |field| Input::Distance(field.number()));
@@ -66,15 +65,15 @@ fn card(shown: &CardView) -> Element {
     let slider = el("input", "")
         .set("type", "range")
         .set("aria-label", &shown.label)
-        .set("min", &number_text(WIDTHS.0))
-        .set("max", &number_text(WIDTHS.1))
+        .set("min", &WIDTHS.0.to_string())
+        .set("max", &WIDTHS.1.to_string())
         .set("step", "0.5")
         .set(
             "aria-describedby",
             if wrong.is_some() { "card-hint card-problem" } else { "card-hint" },
         )
         .flag("aria-invalid", wrong.is_some())
-        .value(&number_text(width))
+        .value(&width.to_string())
         .handles("input", |field| field.number().map(|px| card_width(px).into()));
     let (smaller, larger) = &shown.steps;
     let no_card = shown.no_card.as_ref().map(|(label, skipped)| {

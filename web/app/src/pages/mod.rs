@@ -14,7 +14,6 @@ mod read;
 mod trial;
 
 use mimique_session::flow::{Input, ProgressView, View};
-use mimique_study::number_text;
 
 use crate::browser::focus;
 use crate::dom::{Element, FieldEvent, el, words};
@@ -139,7 +138,7 @@ fn px(length: f64) -> String {
 
 /// A number to its second decimal.
 fn hundredth(number: f64) -> String {
-    number_text((number * 100.0).round() / 100.0)
+    ((number * 100.0).round() / 100.0).to_string()
 }
 
 /// How far the session is, as a bar and in words for those who do not see it.

@@ -1,7 +1,6 @@
 //! A trial: the clip, then its questions. The canvas stays from one trial to the next.
 
 use mimique_session::flow::{BesideView, Input, Phase, TrialView, View};
-use mimique_study::number_text;
 
 use super::clock::clock;
 use super::questions::question_list;
@@ -10,7 +9,6 @@ use crate::act::Act;
 use crate::browser::{document, host};
 use crate::dom::{Element, el, words};
 use crate::engine::Engine;
-use crate::json;
 
 /// Which trial's clip has been seen: its questions appear then, and stay while it is played again.
 #[derive(Default)]
@@ -76,14 +74,14 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
     let now = document::pixel_ratio();
     let scale = size.device_pixel_ratio.filter(|_| now > 0.0).map_or(1.0, |then| then / now);
     let (width, height) = (size.width * scale, size.height * scale);
-    let look = json::write(&engine.plan.study.stimuli.look);
+    let look = json!(engine.plan.study.look).to_string();
     let beside = trial.beside.as_ref();
     let mut place = el("div", "stage").with(canvas(&trial.heading, &look, false));
     if let Phase::Loading { fraction } = trial.phase {
         let bar = el("progress", "")
             .set("max", "1")
             .set("aria-label", &trial.message)
-            .set("value", &number_text(fraction));
+            .set("value", &fraction.to_string());
         place = place.with(el("div", "veil").with(bar));
     }
     let caption = beside.and_then(|beside| beside.clip_caption.as_ref());
