@@ -158,11 +158,9 @@ async function start() {
     const refusal = await answer.json().catch(() => ({}));
     throw new Error(refusal.message ?? `The server answered ${answer.status}; reload the page.`);
   }
-  const { clips, study: file } = await answer.json();
+  const { clips, study: { look } } = await answer.json();
   const ids = Object.keys(clips);
   if (ids.length === 0) throw new Error("This study has no clips.");
-  // As the study file's reader: grey, 480 x 480, unless it says otherwise.
-  const look = { background: "#808080", width: 480, height: 480, ...file?.stimuli?.look };
   $("backend").textContent = await backend();
   player.panels = [...document.querySelectorAll(".preview-panel")].map(
     (element, i) => new Panel(element, clips, look, i > 0),

@@ -215,8 +215,7 @@ fn rows(rounds: &[Round]) -> Vec<Row> {
     let rate = |figure: fn(&Round) -> f64| format!("{:.0} frames/s", of(figure));
     let against = |figures: fn(&Round) -> [f64; 2], what: &str| {
         let ratios: Vec<f64> = rounds.iter().map(figures).map(|[own, peer]| own / peer).collect();
-        let (least, most) =
-            ratios.iter().fold((f64::MAX, 0.0_f64), |(l, m), &r| (l.min(r), m.max(r)));
+        let [least, most] = extremes(&ratios);
         let peer = median(rounds.iter().map(|round| figures(round)[1]).collect());
         let ratio = median(ratios);
         format!("{ratio:.0} x {what} ({peer:.0} frames/s); rounds {least:.0} to {most:.0}")
@@ -367,6 +366,11 @@ pub fn number(line: &str, key: &str) -> Result<f64> {
 pub fn text<'l>(line: &'l str, key: &str) -> Result<&'l str> {
     let rest = line.split_once(&format!("\"{key}\": \"")).with_context(|| format!("no {key}"))?.1;
     Ok(rest.split('"').next().unwrap_or_default())
+}
+
+/// The least and the greatest of positive figures.
+pub fn extremes(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::MAX, 0.0], |[least, most], &value| [least.min(value), most.max(value)])
 }
 
 /// Median.

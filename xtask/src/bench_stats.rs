@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::bench::{Partner, median, number, print, record, text};
+use crate::bench::{Partner, extremes, median, number, print, record, text};
 use crate::demo;
 use crate::install;
 use crate::process::{cargo, root, say, show, target};
@@ -52,8 +52,7 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
             times.push((seconds(&mut ours)?, seconds(&mut theirs)?));
         }
         let ratios: Vec<f64> = times.iter().map(|(own, peer)| peer / own).collect();
-        let (least, most) =
-            ratios.iter().fold((f64::MAX, 0.0_f64), |(l, m), &r| (l.min(r), m.max(r)));
+        let [least, most] = extremes(&ratios);
         let own = 1e3 * median(times.iter().map(|(own, _)| *own).collect());
         let peer = 1e3 * median(times.iter().map(|(_, peer)| *peer).collect());
         let name = if what == "read" { "CSV to typed columns" } else { &what };

@@ -50,20 +50,6 @@ pub struct AvatarSettings {
     pub driven: Driven,
 }
 
-/// Names of parts in the JSON.
-pub(crate) const PART_NAMES: [(&str, Part); 10] = [
-    ("skin", Part::Skin),
-    ("eyeLeft", Part::EyeLeft),
-    ("eyeRight", Part::EyeRight),
-    ("teeth", Part::Teeth),
-    ("tongue", Part::Tongue),
-    ("socket", Part::Socket),
-    ("lashes", Part::Lashes),
-    ("hair", Part::Hair),
-    ("eyeOverlay", Part::EyeOverlay),
-    ("other", Part::Other),
-];
-
 const KEYS: [&str; 8] =
     ["unit", "neutral", "parts", "vertexParts", "shapes", "leaveOut", "locked", "driven"];
 
@@ -172,8 +158,8 @@ fn unit(at: &Place<'_>, value: &Value) -> Result<f64, ReadError> {
 
 fn part(at: &Place<'_>, value: &Value) -> Result<Part, ReadError> {
     let text = at.text(value)?;
-    PART_NAMES.into_iter().find(|(name, _)| *name == text).map(|(_, part)| part).ok_or_else(|| {
-        let names = PART_NAMES.map(|(name, _)| name).join(", ");
+    Part::ALL.into_iter().find(|part| part.name() == text).ok_or_else(|| {
+        let names = Part::ALL.map(Part::name).join(", ");
         at.refuse(format!("{text:?} is no part"), format!("write one of {names}, or null"))
     })
 }

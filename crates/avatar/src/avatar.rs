@@ -105,6 +105,38 @@ pub enum Part {
     Other,
 }
 
+impl Part {
+    /// Every part.
+    pub const ALL: [Self; 10] = [
+        Self::Skin,
+        Self::EyeLeft,
+        Self::EyeRight,
+        Self::Teeth,
+        Self::Tongue,
+        Self::Socket,
+        Self::Lashes,
+        Self::Hair,
+        Self::EyeOverlay,
+        Self::Other,
+    ];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Skin => "skin",
+            Self::EyeLeft => "eyeLeft",
+            Self::EyeRight => "eyeRight",
+            Self::Teeth => "teeth",
+            Self::Tongue => "tongue",
+            Self::Socket => "socket",
+            Self::Lashes => "lashes",
+            Self::Hair => "hair",
+            Self::EyeOverlay => "eyeOverlay",
+            Self::Other => "other",
+        }
+    }
+}
+
 /// An eyeball turns rigidly: eye-look shapes do not move its vertices, they turn it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Eyeball {

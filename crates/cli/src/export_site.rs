@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_server::{Assets, HostedStudy, Stage};
-use mimique_session::Standing;
+use mimique_session::{SiteFile, Standing};
 use mimique_storage::durable_file;
-use mimique_study::Severity;
-use serde_json::{Map, json};
+use mimique_study::{Multilingual as _, Severity};
+use serde_json::json;
 
 use crate::check::check_file;
 use crate::serve::prepare_study;
@@ -155,20 +155,19 @@ fn write(
     // By the exported word: several standings share one, and its code.
     let code = |standing: Standing| {
         let code = standing.completion_code(recruitment)?;
-        Some((standing.export_word().to_owned(), code.into()))
+        Some((standing.export_word().to_owned(), code.to_owned()))
     };
-    let codes: Map<String, serde_json::Value> =
-        Standing::ALL.into_iter().filter_map(code).collect();
     let hosting = study.static_hosting.clone().unwrap_or_default();
-    let site = json!({
-        "bundle": bundle,
-        "stage": stage.word(),
-        "seed": study.seed,
-        "codes": codes,
-        "redirect": recruitment.redirect,
-        "hosting": hosting,
-        "email": study.contact.as_ref().map_or("", |contact| &contact.investigator.email),
-    });
+    let contact = study.contact.as_ref();
+    let site = SiteFile {
+        bundle: bundle.clone(),
+        stage: stage.word().to_owned(),
+        seed: study.seed,
+        codes: Standing::ALL.into_iter().filter_map(code).collect(),
+        redirect: recruitment.redirect.clone(),
+        hosting: hosting.clone(),
+        email: contact.map_or_else(String::new, |contact| contact.investigator.email.clone()),
+    };
     put("site.json", serde_json::to_string(&site)?.as_bytes())?;
     let language = study.default_language();
     let post = hosting.post.as_deref().map_or_else(String::new, origin);

@@ -1,6 +1,7 @@
 //! `mimique inspect`: what an avatar, a capture, a weight file, a marker map, a study or a pack
 //! holds, told from the file's content.
 
+use mimique_study::Multilingual as _;
 use std::borrow::Cow;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};

@@ -31,8 +31,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let (value, study) = load(&args.study)?;
     let config_hash = mimique_study::config_hash(&value);
     let seed = args.seed.unwrap_or(study.seed);
-    let conditions =
-        study.conditions_for(args.condition.as_deref()).with_context(|| format!("{file}"))?;
+    let conditions = study
+        .sequence
+        .conditions_for(args.condition.as_deref())
+        .with_context(|| format!("{file}"))?;
     let condition = match conditions.as_slice() {
         [] => None,
         [only] => Some(*only),
@@ -42,7 +44,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         ),
     };
     let draw = Draw { seed, config_hash: &config_hash, participant: args.participant, condition };
-    let items = order(&study, draw).with_context(|| format!("{file}"))?;
+    let items = order(&study.projection(), draw).with_context(|| format!("{file}"))?;
 
     let mut out = std::io::stdout().lock();
     if json {

@@ -6,15 +6,15 @@ use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
     Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw, KindOfQuestion as _,
-    LocalText, OptionOrder, OrderError, OrderedItem, Question, Questionnaire, Section, Sides,
-    Study, TimeLimit, Training, option_order, order, right_answers,
+    LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem, Question, Questionnaire,
+    Section, Sides, StudyProjection, TimeLimit, Training, option_order, order, right_answers,
 };
 
 /// What one participant goes through.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// The study.
-    pub study: Study,
+    /// The study, as the page needs it.
+    pub study: StudyProjection,
     /// The session: participant, seed, hash, withdrawal code.
     pub started: SessionStarted,
     /// The steps, from the first page to the debriefing.
@@ -106,7 +106,7 @@ pub struct Companion {
 
 impl Plan {
     /// The plan of the participant whose session has started.
-    pub fn new(study: Study, started: SessionStarted) -> Result<Self, OrderError> {
+    pub fn new(study: StudyProjection, started: SessionStarted) -> Result<Self, OrderError> {
         let draw = Draw {
             seed: started.seed,
             config_hash: &started.config_hash,
@@ -115,7 +115,6 @@ impl Plan {
         };
         let items = order(&study, draw)?;
         let mut steps = Vec::new();
-        let clips = study.clips();
         let mut push = |id: String, kind: StepKind| steps.push(Step::new(id, kind));
         if study.consent.is_some() {
             push("consent".to_owned(), StepKind::Consent);
@@ -135,7 +134,7 @@ impl Plan {
         let rounds = study
             .training
             .as_ref()
-            .map_or_else(Vec::new, |training| practice(&study, training, &clips, &mut steps));
+            .map_or_else(Vec::new, |training| practice(&study, training, &mut steps));
         let mut push = |id: String, kind: StepKind, time_limit: Option<TimeLimit>| {
             steps.push(Step { time_limit, ..Step::new(id, kind) });
         };
@@ -158,7 +157,7 @@ impl Plan {
                         number: trials,
                         condition: condition.clone(),
                         beside: block.beside.as_ref().and_then(|beside| {
-                            companion(beside, clip, &clips, sides.is_left(component, beside))
+                            companion(beside, clip, &study.clips, sides.is_left(component, beside))
                         }),
                         right: Answers::new(),
                     };
@@ -271,19 +270,14 @@ impl Step {
 
 /// Adds the practice trials of every round, with the pages that say what was right; returns where
 /// each round ends.
-fn practice(
-    study: &Study,
-    training: &Training,
-    clips: &[Clip],
-    steps: &mut Vec<Step>,
-) -> Vec<usize> {
+fn practice(study: &StudyProjection, training: &Training, steps: &mut Vec<Step>) -> Vec<usize> {
     let rounds = training.criterion.as_ref().map_or(1, |rule| rule.maximum_rounds.max(1));
     let mut ends = Vec::new();
     for round in 1..=rounds {
         let again = if round > 1 { format!("#{round}") } else { String::new() };
         for (index, clip) in training.clips.iter().enumerate() {
             let questions = questions(study, &training.questions);
-            let right = right_answers(training, clip, clips, &questions);
+            let right = right_answers(training, clip, &study.clips, &questions);
             let asked = !right.is_empty();
             let trial = TrialStep {
                 clip: clip.clone(),
@@ -310,13 +304,13 @@ fn practice(
     ends
 }
 
-fn questions(study: &Study, ids: &[String]) -> Vec<Question> {
+fn questions(study: &StudyProjection, ids: &[String]) -> Vec<Question> {
     ids.iter()
         .filter_map(|id| study.questions.iter().find(|question| question.id == *id).cloned())
         .collect()
 }
 
-fn option_orders(study: &Study, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
+fn option_orders(study: &StudyProjection, draw: Draw<'_>) -> BTreeMap<String, Vec<usize>> {
     let mut orders = BTreeMap::new();
     for question in study.all_questions() {
         if question.kind.option_order() == OptionOrder::Random {

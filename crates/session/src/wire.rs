@@ -19,7 +19,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::ClipSource;
+use mimique_study::{ClipSource, StudyProjection};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -35,17 +35,18 @@ pub struct StudySummary {
     pub config_hash: String,
 }
 
-/// Everything the participant's page needs: the study and where its clips are.
+/// Everything the participant's page needs: the study and where its clips are. The page hands the clips
+/// on to the stage as they came, and reads a `Bundle<Value>`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Bundle {
+pub struct Bundle<Clip = ClipSource> {
     /// Identifier used in addresses.
     pub study_id: String,
     /// SHA-256 of the canonical study file, hexadecimal.
     pub config_hash: String,
-    /// The study file (the page parses it with [`mimique_study::Study`]'s reader).
-    pub study: Value,
+    /// The study.
+    pub study: StudyProjection,
     /// Every clip, by its identifier in the study.
-    pub clips: BTreeMap<String, ClipSource>,
+    pub clips: BTreeMap<String, Clip>,
 }
 
 /// A participant arrives.

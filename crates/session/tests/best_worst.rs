@@ -56,7 +56,7 @@ fn the_best_and_the_worst_are_picked_and_exported() {
     while page.act(&mut |id, kind| answers(id, kind)) {}
 
     let record = || SessionRecord { started: &page.plan.started, events: &page.stored };
-    let table = tidy(&page.plan.study, &BTreeMap::new(), [record()]);
+    let table = tidy(&page.study, &BTreeMap::new(), [record()]);
     let answer = |table: &mimique_session::rows::Table, response: &str| {
         let rows = 0..table.rows.len();
         let mut found = rows.filter(|row| table.cell(*row, "response_id") == response);
@@ -71,7 +71,7 @@ fn the_best_and_the_worst_are_picked_and_exported() {
         let levels: Vec<&Value> = column.levels.iter().map(|(value, _)| value).collect();
         assert_eq!(levels, ["eyes", "mouth", "skin"]);
     }
-    let table = wide(&page.plan.study, &BTreeMap::new(), [record()]);
+    let table = wide(&page.study, &BTreeMap::new(), [record()]);
     assert_eq!(table.rows.len(), 1);
     assert_eq!(table.cell(0, "feature.best"), "skin");
     assert_eq!(table.cell(0, "feature.worst"), "eyes");

@@ -80,7 +80,7 @@ proptest! {
             config_hash: checked.config_hash().to_owned(),
             withdrawal_code: "w".into(),
         };
-        let plan = Plan::new(study, started);
+        let plan = Plan::new(study.projection(), started);
         prop_assert!(plan.is_ok(), "{:?}", plan.err());
         prop_assert!(plan.unwrap().trial_count(false) > 0);
     }

@@ -42,7 +42,7 @@ fn finished(participant: u64, condition: &str) -> Page {
 #[test]
 fn the_condition_is_in_every_row_and_stays_after_a_reload() {
     let (plain, named) = (finished(1, "plain"), finished(2, "named"));
-    let study = &plain.plan.study;
+    let study = &plain.study;
     let records = [&plain, &named]
         .map(|page| SessionRecord { started: &page.plan.started, events: &page.stored });
     let table = tidy(study, &BTreeMap::new(), records);

@@ -21,7 +21,7 @@ fn demo_with(sections: Value) -> String {
 
 fn table(page: &Page) -> Table {
     let record = SessionRecord { started: &page.plan.started, events: &page.stored };
-    tidy(&page.plan.study, &Default::default(), [record])
+    tidy(&page.study, &Default::default(), [record])
 }
 
 fn step(page: &Page) -> String {
@@ -80,7 +80,7 @@ fn a_device_that_cannot_be_mended_is_screened_out_with_reason_receipt_and_row() 
     let (mut study, session) = support::started(&demo_with(rules), 3);
     study.recruitment.screened_out_code = Some("N0".into());
     let mut page = Page::open(&demo_with(json!({})), 3);
-    page.plan = mimique_session::flow::Plan::new(study, session).unwrap();
+    page.plan = mimique_session::flow::Plan::new(study.projection(), session).unwrap();
     page.display = mimique_study::Display {
         desktop: false,
         refresh_hz: Some(24.0),
@@ -99,7 +99,7 @@ fn a_device_that_cannot_be_mended_is_screened_out_with_reason_receipt_and_row() 
     assert!(end.text.iter().any(|text| text.contains("computer")), "{:?}", end.text);
     assert_eq!(page.completed, Some(page.stored.len() as u64), "after everything has arrived");
     assert_eq!(status(&page.stored), "screened_out");
-    assert_eq!(Standing::DeviceRefused.completion_code(&page.plan.study.recruitment), Some("N0"));
+    assert_eq!(Standing::DeviceRefused.completion_code(&page.study.recruitment), Some("N0"));
     let table = table(&page);
     let last = table.rows.len() - 1;
     assert_eq!(table.cell(last, "trial_type"), "screening");

@@ -168,7 +168,7 @@ fn late_and_doubled_reports_change_nothing() {
 #[test]
 fn the_code_comes_only_after_everything_is_acknowledged() {
     let (study, session) = started(&study_text("demo.json"), 8);
-    let plan = Plan::new(study, session).unwrap();
+    let plan = Plan::new(study.projection(), session).unwrap();
     let mut page = Page::open(&study_text("demo.json"), 8);
     page.finish();
     // The same session at its end, with nothing acknowledged.
@@ -293,7 +293,7 @@ const WITH_PICTURES: &str = "{ id: 's', studyMetadata: { title: 'Faces', version
 #[test]
 fn pictures_are_loaded_before_their_page_and_no_trial_starts_without_them() {
     let (study, session) = started(WITH_PICTURES, 1);
-    let plan = Plan::new(study, session).unwrap();
+    let plan = Plan::new(study.projection(), session).unwrap();
     let shown = |state: &State| mimique_session::flow::view(&plan, state);
     let turn = |state: State, input: Input| update(&plan, state, input, 1e12);
     let prepared = |state, name: &str| turn(state, Input::ClipPrepared { clip: name.into() }).0;
@@ -412,7 +412,7 @@ fn template_goes_to_its_end_with_every_question_type_training_and_break() {
     let ids: Vec<&str> = page.plan.steps.iter().map(|step| step.id.as_str()).collect();
     assert!(ids.contains(&"training/1/joy3.lsts30") && ids.contains(&"rest"), "{ids:?}");
     // First of the drop-down's two options is the wrong one.
-    let study = &page.plan.study;
+    let study = &page.study;
     assert_eq!(Record::of(None, &page.stored).failed_checks(|step| study.questions_of(step)), 1);
 }
 
@@ -491,7 +491,7 @@ fn a_second_tab_takes_the_session_over_and_the_first_follows_after_a_reload() {
 #[test]
 fn a_slow_network_holds_nobody_up_and_the_code_back() {
     let (study, session) = started(&study_text("demo.json"), 17);
-    let plan = Plan::new(study, session).unwrap();
+    let plan = Plan::new(study.projection(), session).unwrap();
     let mut now_ms = 1_790_000_000_000.0;
     let mut state = State::new(&plan, "en");
     let mut made = 0_u64;

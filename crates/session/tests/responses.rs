@@ -63,7 +63,7 @@ fn answered(participant: u64) -> (Page, BTreeMap<(String, String), Value>) {
 #[test]
 fn tidy_rows_are_the_answers_given_with_their_factors() {
     let (page, given) = answered(1);
-    let study = &page.plan.study;
+    let study = &page.study;
     let table = tidy(study, &sources(study), [record(&page)]);
     assert_eq!(table.rows.len(), 2 + 12 * 3);
     assert_eq!(given.len(), table.rows.len());
@@ -107,7 +107,7 @@ fn the_provenance_is_that_of_the_clip_as_it_was_shown() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     while page.act(&mut first_answer) {}
     // As the server's table of clips is after its stimuli have changed under the same study file.
-    let served = sources(&page.plan.study);
+    let served = sources(&page.study);
     let mut logged = 0;
     for event in &mut page.stored {
         if let Some(log) = event.body.get_mut("log").filter(|log| log.is_object()) {
@@ -120,7 +120,7 @@ fn the_provenance_is_that_of_the_clip_as_it_was_shown() {
         }
     }
     assert_eq!(logged, 12);
-    let table = tidy(&page.plan.study, &served, [record(&page)]);
+    let table = tidy(&page.study, &served, [record(&page)]);
     for row in 0..table.rows.len() {
         let Some(order) = table.cell(row, "trial_order").as_u64() else { continue };
         let stimulus = table.cell(row, "stimulus").as_str().unwrap();
@@ -148,7 +148,7 @@ fn response_times_run_from_the_first_frame_to_the_last_change_of_the_answer() {
     let changed_at = page.stored.last().unwrap().at_ms;
     page.now_ms += 5_000.0;
     page.finish();
-    let study = &page.plan.study;
+    let study = &page.study;
     let table = tidy(study, &BTreeMap::new(), [record(&page)]);
     let row = (0..table.rows.len())
         .find(|&row| {
@@ -165,7 +165,7 @@ fn response_times_run_from_the_first_frame_to_the_last_change_of_the_answer() {
 #[test]
 fn trial_order_is_the_order_played() {
     let (page, _) = answered(3);
-    let table = tidy(&page.plan.study, &BTreeMap::new(), [record(&page)]);
+    let table = tidy(&page.study, &BTreeMap::new(), [record(&page)]);
     let mut played = vec![String::new(); 12];
     for row in 0..table.rows.len() {
         if let Some(order) = table.cell(row, "trial_order").as_u64() {
@@ -184,7 +184,7 @@ fn reloaded_trial_has_one_set_of_rows_and_says_that_it_was_interrupted() {
     page.send(Input::Answer { question: "emotion".into(), value: json!("joy") });
     page.reload();
     page.finish();
-    let table = tidy(&page.plan.study, &BTreeMap::new(), [record(&page)]);
+    let table = tidy(&page.study, &BTreeMap::new(), [record(&page)]);
     assert_eq!(table.rows.len(), 2 + 12 * 3);
     let interrupted: Vec<usize> = (0..table.rows.len())
         .filter(|&row| table.cell(row, "interruptions") == &json!(1))
@@ -201,7 +201,7 @@ fn status_follows_the_events() {
     assert_eq!(status(&page.stored), "completed");
     assert_eq!(status(&page.stored[..20]), "active");
     let table = tidy(
-        &page.plan.study,
+        &page.study,
         &BTreeMap::new(),
         [SessionRecord { events: &page.stored[..20], ..record(&page) }],
     );
@@ -212,7 +212,7 @@ fn status_follows_the_events() {
 #[test]
 fn wide_has_a_row_a_participant() {
     let people: Vec<(Page, _)> = (1..=3).map(answered).collect();
-    let study = &people[0].0.plan.study;
+    let study = &people[0].0.study;
     let table = wide(study, &BTreeMap::new(), people.iter().map(|(page, _)| record(page)));
     assert_eq!(table.rows.len(), 3);
     for (row, (page, given)) in people.iter().enumerate() {
@@ -284,7 +284,7 @@ const MANY_CELLS: &str = r#"{
 #[test]
 fn every_column_is_described() {
     let (page, _) = answered(6);
-    let study = &page.plan.study;
+    let study = &page.study;
     let table = tidy(study, &BTreeMap::new(), [record(&page)]);
     let description = psych_ds_description(study, &table);
     let variables = description["variableMeasured"].as_array().unwrap();

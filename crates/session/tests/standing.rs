@@ -56,7 +56,7 @@ proptest! {
             .map(|(sequence, body)| Event { sequence, at_ms: sequence as f64, body: body.clone() })
             .collect();
         let (study, session) = started(&study_text("demo.json"), 1);
-        let plan = Plan::new(study, session).unwrap();
+        let plan = Plan::new(study.projection(), session).unwrap();
         let (with, without) = (Record::of(Some(&plan), &events), Record::of(None, &events));
         prop_assert_eq!(with.standing, without.standing);
         prop_assert_eq!(&with.early_end, &without.early_end);

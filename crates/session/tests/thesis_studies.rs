@@ -16,7 +16,7 @@ const FOUR: [&str; 4] = ["emotion", "perceived_intensity", "ease", "believabilit
 
 fn plan(name: &str, participant: u64) -> Plan {
     let (study, session) = started(&study_text(name), participant);
-    Plan::new(study, session).unwrap()
+    Plan::new(study.projection(), session).unwrap()
 }
 
 /// Every performance by each of these ways of showing it.

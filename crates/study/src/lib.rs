@@ -10,6 +10,7 @@ mod instant;
 mod order;
 mod pairs;
 mod practice;
+mod projection;
 mod question;
 mod study_file;
 pub mod text;
@@ -28,6 +29,7 @@ pub use order::{
 };
 pub use pairs::AnswerOfPair;
 pub use practice::right_answers;
+pub use projection::StudyProjection;
 pub use question::{
     AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
     KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,

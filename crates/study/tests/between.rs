@@ -28,7 +28,7 @@ fn read(file: &Value) -> (Study, String) {
 
 fn drawn(study: &Study, hash: &str, slot: u64, condition: Option<&str>) -> Vec<OrderedItem> {
     let draw = Draw { seed: study.seed, config_hash: hash, participant: slot, condition };
-    order(study, draw).unwrap()
+    order(&study.projection(), draw).unwrap()
 }
 
 /// Clips by component, the components that are no trials as themselves, in the order drawn.
@@ -135,10 +135,10 @@ fn an_address_can_only_name_what_there_is() {
     let arms = ["plain", "with-hint"].map(|id| condition(id, "faces"));
     let file = small_file(1, &CLIPS, 1, json!({ "order": "fixed", "components": arms }));
     let study = Study::from_value(&file).unwrap();
-    assert_eq!(study.conditions_for(None).unwrap(), ["plain", "with-hint"]);
-    assert_eq!(study.conditions_for(Some("with-hint")).unwrap(), ["with-hint"]);
+    assert_eq!(study.sequence.conditions_for(None).unwrap(), ["plain", "with-hint"]);
+    assert_eq!(study.sequence.conditions_for(Some("with-hint")).unwrap(), ["with-hint"]);
     for name in ["Plain", "plain,with-hint", "", "{conditions}"] {
-        let unknown = study.conditions_for(Some(name)).unwrap_err();
+        let unknown = study.sequence.conditions_for(Some(name)).unwrap_err();
         assert_eq!(unknown.name, name);
         assert_eq!(
             unknown.to_string(),
@@ -157,8 +157,8 @@ fn an_address_can_only_name_what_there_is() {
     // Nor is it passed over where there is none.
     let file = small_file(1, &CLIPS, 1, json!({ "order": "fixed", "components": ["faces"] }));
     let study = Study::from_value(&file).unwrap();
-    assert_eq!(study.conditions_for(None).unwrap(), Vec::<&str>::new());
-    let unknown = study.conditions_for(Some("plain")).unwrap_err();
+    assert_eq!(study.sequence.conditions_for(None).unwrap(), Vec::<&str>::new());
+    let unknown = study.sequence.conditions_for(Some("plain")).unwrap_err();
     assert!(words("en").unknown_condition(&unknown).0.ends_with("has: –."), "{unknown}");
 }
 

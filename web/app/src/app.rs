@@ -186,7 +186,7 @@ impl App {
     fn after(&self, engine: &Rc<Engine>, view: View, shape: String, language: String) {
         let mut shown = self.shown.borrow_mut();
         if shown.language != language {
-            let title = engine.plan.study.study_metadata.title.in_language(&language);
+            let title = engine.plan.study.title.in_language(&language);
             document::describe(&language, title);
             shown.language = language;
         }

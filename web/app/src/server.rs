@@ -1,7 +1,5 @@
 //! Talking to the server: `mimique_session::wire`, as JSON.
 
-use std::collections::BTreeMap;
-
 use mimique_session::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
     Withdraw, Withdrawn,
@@ -11,16 +9,8 @@ use serde_json::Value;
 use crate::answer::Failure;
 use crate::requests::Requests;
 
-/// What the pages need of `wire::Bundle`: the clips go through to the stage as they came.
-#[derive(Debug, Clone)]
-pub struct Bundle {
-    /// SHA-256 of the canonical study file, hexadecimal.
-    pub config_hash: String,
-    /// The study file.
-    pub study: Value,
-    /// `wire::ClipSource` of every clip.
-    pub clips: BTreeMap<String, Value>,
-}
+/// What the server sends of a study; the clips go through to the stage as they came.
+pub type Bundle = mimique_session::wire::Bundle<Value>;
 
 /// The server that the page came from.
 #[derive(Default)]

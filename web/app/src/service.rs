@@ -3,7 +3,7 @@
 use mimique_session::wire::{
     Acknowledged, Event, Receipt, Resume, SessionStarted, StartSession, Withdrawn,
 };
-use mimique_study::Study;
+use mimique_study::StudyProjection;
 
 use crate::answer::Failure;
 use crate::browser::document;
@@ -46,7 +46,7 @@ impl Service {
     /// Begins a session; repeated with the same nonce it is the same session.
     pub async fn start(
         &self,
-        study: &Study,
+        study: &StudyProjection,
         body: &StartSession,
     ) -> Result<SessionStarted, Failure> {
         match self {

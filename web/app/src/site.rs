@@ -3,16 +3,14 @@
 //! Answers stay in this browser's IndexedDB; at the end they are posted to the study's address, where
 //! it names one, and offered as a file. Everything else of the page goes on as if a server answered.
 
-use std::collections::BTreeMap;
-
 use std::cell::RefCell;
 
 use mimique_session::wire::{
     Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
 };
-use mimique_session::{Record, SessionFile, Standing};
-use mimique_study::from_json::{self, FromJson};
-use mimique_study::{Draw, StaticHosting, Study, drawn_condition, json_text};
+use mimique_session::{Record, SessionFile, SiteFile, Standing};
+use mimique_study::{Draw, Multilingual as _, StudyProjection, drawn_condition};
+use serde_json::Value;
 
 use crate::answer::Failure;
 use crate::browser::document;
@@ -21,19 +19,6 @@ use crate::event_store::{EventStore, Identity, Store};
 use crate::outbox::put;
 use crate::requests::Requests;
 use crate::server::Bundle;
-
-/// What `mimique export-site` writes beside the pages.
-#[derive(Debug, Clone)]
-struct SiteFile {
-    bundle: Bundle,
-    stage: String,
-    seed: u64,
-    /// Status of the export -> code.
-    codes: BTreeMap<String, String>,
-    redirect: Option<String>,
-    hosting: StaticHosting,
-    email: String,
-}
 
 /// The answers of this page, and where they are kept.
 struct Answers {
@@ -59,7 +44,7 @@ pub struct Site {
     address: String,
     /// The study's name.
     study: String,
-    file: RefCell<Option<SiteFile>>,
+    file: RefCell<Option<SiteFile<Value>>>,
     answers: RefCell<Option<Answers>>,
     requests: Requests,
 }
@@ -83,7 +68,7 @@ impl Site {
 
     /// The study, from the site's file.
     pub async fn bundle(&self) -> Result<Bundle, Failure> {
-        let site: SiteFile = self.requests.get(&self.address).await?;
+        let site: SiteFile<Value> = self.requests.get(&self.address).await?;
         let bundle = site.bundle.clone();
         *self.file.borrow_mut() = Some(site);
         Ok(bundle)
@@ -91,11 +76,16 @@ impl Site {
 
     /// Begins a session: everything comes of nonce and address, so that a repeated start is the same
     /// session. Where the address names no condition, one is drawn: nobody counts here.
-    pub fn start(&self, study: &Study, body: &StartSession) -> Result<SessionStarted, Failure> {
-        let conditions = study.conditions_for(body.condition.as_deref()).map_err(|unknown| {
-            let (message, remedy) = study.words(&body.language).unknown_condition(&unknown);
-            refusal("unknown-condition", message, remedy)
-        })?;
+    pub fn start(
+        &self,
+        study: &StudyProjection,
+        body: &StartSession,
+    ) -> Result<SessionStarted, Failure> {
+        let conditions =
+            study.sequence.conditions_for(body.condition.as_deref()).map_err(|unknown| {
+                let (message, remedy) = study.words(&body.language).unknown_condition(&unknown);
+                refusal("unknown-condition", message, remedy)
+            })?;
         let nonce = &body.nonce;
         let number = nonce.get(..12).and_then(|digits| u64::from_str_radix(digits, 16).ok());
         let (Some(number), Some(name), Some(code)) = (number, nonce.get(12..20), nonce.get(20..))
@@ -109,20 +99,20 @@ impl Site {
                 participant: number,
                 condition: None,
             };
-            json_text::object([
-                ("condition", drawn_condition(draw, &conditions).into()),
-                ("session", nonce.as_str().into()),
-                ("participant_id", ["s", name].concat().into()),
+            SessionStarted {
+                session: nonce.clone(),
+                participant_id: format!("s{name}"),
+                participant: number,
                 // Nobody counts here: the place in squares and subsets is drawn.
-                ("participant", number.into()),
-                ("seed", site.seed.into()),
-                ("stage", site.stage.as_str().into()),
-                ("config_hash", site.bundle.config_hash.as_str().into()),
-                ("withdrawal_code", code.into()),
-            ])
+                slot: 0,
+                condition: drawn_condition(draw, &conditions).map(str::to_owned),
+                seed: site.seed,
+                stage: site.stage.clone(),
+                config_hash: site.bundle.config_hash.clone(),
+                withdrawal_code: code.to_owned(),
+            }
         });
-        let started = started.unwrap_or_default();
-        from_serde_json::from_str(&started).map_err(|error| Failure::Unreachable(error.to_string()))
+        started.ok_or_else(|| Failure::Unreachable("no site".to_owned()))
     }
 
     /// The session that this browser is in the middle of.

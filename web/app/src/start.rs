@@ -5,8 +5,8 @@ use std::rc::Rc;
 use mimique_session::Client;
 use mimique_session::flow::{Input, Plan, State};
 use mimique_session::wire::{Event, Refusal, SessionStarted, StartSession};
-use mimique_study::Study;
 use mimique_study::text::{Words, primary_language};
+use mimique_study::{Multilingual as _, StudyProjection};
 
 use crate::address::Address;
 use crate::answer::{Failure, is_gone};
@@ -43,11 +43,10 @@ pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine
         None => Address::parse(&document::path(), &query).ok_or(Trouble::NoStudy)?,
     };
     let bundle = bundle(&service, &address.study).await?;
-    let study =
-        Study::from_value(&bundle.study).map_err(|error| Trouble::Unreadable(error.to_string()))?;
+    let Bundle { study, clips, .. } = bundle;
     let language = language(&address, &study);
     *fixed = study.words(&language);
-    document::describe(&language, study.study_metadata.title.in_language(&language));
+    document::describe(&language, study.title.in_language(&language));
 
     if !host::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab);
@@ -75,7 +74,6 @@ pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine
     } else {
         (State::replay(&plan, &all), Input::Resumed)
     };
-    let clips = bundle.clips;
     let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
     let engine = Engine::new(beginning, changed);
     engine.dispatch(input(client()));
@@ -84,7 +82,7 @@ pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine
 }
 
 /// The language of the pages: the address's first, then the browser's, of those that the study has.
-fn language(address: &Address, study: &Study) -> String {
+fn language(address: &Address, study: &StudyProjection) -> String {
     let of_browser = document::languages();
     let mut wanted = address.language.iter().chain(&of_browser);
     wanted
@@ -133,7 +131,7 @@ async fn resume(
 async fn begin_session(
     service: &Service,
     address: &Address,
-    study: &Study,
+    study: &StudyProjection,
     language: &str,
 ) -> Result<SessionStarted, Trouble> {
     let known = Identity::load(&address.study).filter(|identity| identity.started.is_none());

@@ -408,7 +408,7 @@ fn plan() -> Plan {
         config_hash: "h".to_owned(),
         withdrawal_code: "w".to_owned(),
     };
-    Plan::new(study, started).expect("a plan")
+    Plan::new(study.projection(), started).expect("a plan")
 }
 
 #[test]

@@ -43,12 +43,13 @@ impl<'s> Design<'s> {
         let own = study.clips().len();
         let clips = scaled(study, clips.unwrap_or(own));
         let conditions = study.conditions();
+        let projection = study.projection();
         let mut walks = Vec::with_capacity(participants);
         for number in 1..=participants as u64 {
             let (condition, slot) = condition_and_slot(&conditions, number);
             let draw = Draw { seed: study.seed, config_hash, participant: slot, condition };
             let mut walk = Vec::new();
-            for item in order(study, draw)? {
+            for item in order(&projection, draw)? {
                 match item {
                     OrderedItem::Trial { component, clip, .. } => {
                         let places = clips.stand_ins.get(&clip).into_iter().flatten();

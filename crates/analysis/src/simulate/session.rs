@@ -3,7 +3,7 @@
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, PlayLog};
-use mimique_study::{Answers, Display, OrderError};
+use mimique_study::{Answers, Display, Multilingual as _, OrderError};
 
 use super::latent::ClipEffects;
 use super::model::Model;
@@ -39,7 +39,7 @@ pub(crate) fn events(
     seed: u64,
     started: &SessionStarted,
 ) -> Result<Vec<Event>, OrderError> {
-    let plan = Plan::new(model.study.clone(), started.clone())?;
+    let plan = Plan::new(model.study.projection(), started.clone())?;
     let person =
         |seed| Person::new(model, clips, seed, started.participant, started.condition.as_deref());
     // Practice is not part of the answers' stream.

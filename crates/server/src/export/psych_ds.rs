@@ -3,6 +3,7 @@
 use std::io::{Cursor, Write};
 
 use mimique_session::rows::{self, Column, Table};
+use mimique_study::Multilingual as _;
 use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 

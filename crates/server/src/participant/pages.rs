@@ -12,6 +12,7 @@ use crate::accounts::identity::Researcher;
 use crate::error::Error;
 use crate::state::App;
 use crate::studio::page::{StudioFiles, studio_page};
+use mimique_study::Multilingual as _;
 
 /// The list of studies, for those who may know it.
 pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {

@@ -14,7 +14,7 @@ use mimique_session::wire::{
 };
 use mimique_session::{Record, Standing};
 use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
-use mimique_study::{RepeatPrevention, Study};
+use mimique_study::{Multilingual as _, RepeatPrevention, Study};
 
 use crate::clock::now_ms;
 use crate::error::Error;
@@ -133,7 +133,7 @@ async fn conditions(
     token: &str,
     language: &str,
 ) -> Result<Vec<String>, Error> {
-    match study.study().conditions_for(asked.as_deref()) {
+    match study.study().sequence.conditions_for(asked.as_deref()) {
         Ok(names) => Ok(names.into_iter().map(str::to_owned).collect()),
         Err(_) if has_begun(app, token).await? => Ok(Vec::new()),
         Err(unknown) => {

@@ -66,8 +66,8 @@ impl HostedStudy {
         let bundle = Bundle {
             study_id: study.id.clone(),
             config_hash: config_hash(&file),
-            study: without_secrets(file.clone()),
-            clips: clips.into_iter().collect(),
+            study: study.projection(),
+            clips,
         };
         Self { study, stage, file, bundle }
     }
@@ -97,7 +97,7 @@ impl HostedStudy {
         &self.file
     }
 
-    /// What the page needs: the study without what participants must not know.
+    /// What the page needs.
     pub fn bundle(&self) -> &Bundle {
         &self.bundle
     }
@@ -115,7 +115,7 @@ impl HostedStudy {
     pub(crate) fn summary(&self) -> StudySummary {
         StudySummary {
             id: self.study.id.clone(),
-            title: self.file["studyMetadata"]["title"].clone(),
+            title: serde_json::json!(self.study.study_metadata.title),
             config_hash: self.bundle.config_hash.clone(),
         }
     }
@@ -155,21 +155,6 @@ impl HostedStudy {
         }
         Some(filled)
     }
-}
-
-/// The study without its codes (given only with the receipt) and without what would tell
-/// participants what is expected of them.
-fn without_secrets(mut file: Value) -> Value {
-    if let Some(study) = file.as_object_mut() {
-        study.remove("hypotheses");
-        study.remove("exclusions");
-        if let Some(recruitment) = study.get_mut("recruitment").and_then(Value::as_object_mut) {
-            for name in ["completionCode", "screenedOutCode", "failedChecksCode", "redirect"] {
-                recruitment.remove(name);
-            }
-        }
-    }
-    file
 }
 
 /// All but the unreserved characters of RFC 3986.

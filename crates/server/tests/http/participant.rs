@@ -14,7 +14,7 @@ pub type Planted = BTreeMap<(String, String, String), Value>;
 /// The events of a participant who finishes `steps` steps (all of them: the whole study), and the
 /// answers in them.
 pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec<Event>, Planted) {
-    let plan = Plan::new(study.clone(), started.clone()).unwrap();
+    let plan = Plan::new(study.projection(), started.clone()).unwrap();
     let mut log = Log::default();
     log.add(EventKind::Opened { client: Client::default(), language: "en".into() });
     let mut planted = Planted::new();

@@ -124,7 +124,7 @@ pub async fn everybody_agrees_on_every_session(server: &TestServer) {
         for part in events.chunks(1 + random.below(40) as usize) {
             server.stored(&started.session, part).await;
         }
-        let plan = Plan::new(hosted.study().clone(), started.clone()).unwrap();
+        let plan = Plan::new(hosted.study().projection(), started.clone()).unwrap();
         let standing = Record::of(None, &events).standing;
         assert_eq!(Record::of(Some(&plan), &events).standing, standing, "with and without a plan");
         by_events.insert(started.participant, standing);

@@ -10,7 +10,7 @@ use crate::event::{Calibrated, EventKind};
 use crate::plan::{Plan, Step, StepKind};
 use mimique_study::{
     AfterTraining, Answers, AttentionEnd, Calibration, Display, FullscreenRule, ScreeningRule,
-    Study, Unmet,
+    StudyProjection, Unmet,
 };
 
 /// Width of a bank card, millimetres (ISO/IEC 7810, ID-1).
@@ -200,12 +200,15 @@ impl Turn<'_> {
 }
 
 /// The first rule by which the study does not take this participant.
-pub(super) fn screening<'a>(study: &'a Study, state: &State) -> Option<&'a ScreeningRule> {
+pub(super) fn screening<'a>(
+    study: &'a StudyProjection,
+    state: &State,
+) -> Option<&'a ScreeningRule> {
     let answers = &state.record.answers;
     study.screening.iter().find(|rule| rule.condition.holds(answers.get(&rule.condition.question)))
 }
 
-fn screens_out_of_training(study: &Study) -> bool {
+fn screens_out_of_training(study: &StudyProjection) -> bool {
     let criterion = study.training.as_ref().and_then(|training| training.criterion.as_ref());
     criterion.is_some_and(|rule| rule.otherwise == AfterTraining::ScreenOut)
 }
@@ -217,7 +220,7 @@ pub(super) fn device_problems(plan: &Plan, state: &State) -> Option<Vec<Unmet>> 
 }
 
 /// Whether the pages fill the screen.
-pub(super) fn fullscreen_rule(study: &Study) -> FullscreenRule {
+pub(super) fn fullscreen_rule(study: &StudyProjection) -> FullscreenRule {
     study.device.as_ref().map_or(FullscreenRule::No, |rules| rules.fullscreen)
 }
 

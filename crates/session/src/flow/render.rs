@@ -165,8 +165,8 @@ impl Screen<'_> {
         };
         View::Consent {
             step: step.id.clone(),
-            title: self.text(&study.study_metadata.title),
-            description: self.text(&study.study_metadata.description),
+            title: self.text(&study.title),
+            description: self.text(&study.description),
             sections,
             contacts: contacts.collect(),
             languages,

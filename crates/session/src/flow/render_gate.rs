@@ -193,7 +193,7 @@ impl Screen<'_> {
     /// How large clips are shown: in millimetres where the study says so and the participant has
     /// calibrated the screen.
     pub(super) fn stage_size(&self) -> StageSize {
-        let look = &self.plan.study.stimuli.look;
+        let look = &self.plan.study.look;
         let calibrated = self.state.record.calibrated.as_ref();
         let px_per_mm = calibrated.and_then(|it| it.px_per_mm);
         match (look.width_mm, look.height_mm, px_per_mm) {

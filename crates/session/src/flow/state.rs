@@ -6,6 +6,7 @@ use crate::event::Calibrated;
 use crate::plan::Plan;
 use crate::record::Record;
 use crate::wire::{Event, Receipt};
+use mimique_study::Multilingual as _;
 
 /// The state of a session.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,6 +1,6 @@
 //! The fold: one event after the other.
 
-use mimique_study::{Answers, alike};
+use mimique_study::{Answers, Multilingual as _, alike};
 use serde_json::Value;
 
 use super::Record;

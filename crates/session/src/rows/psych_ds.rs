@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::column::Table;
-use mimique_study::Study;
 use mimique_study::columns::ColumnKind;
+use mimique_study::{Multilingual as _, Study};
 
 /// The dataset description of an export: title, authors, and
 /// `variableMeasured` for every column of the table.

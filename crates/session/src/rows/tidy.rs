@@ -12,8 +12,8 @@ use crate::event::PlayLog;
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
 use mimique_study::{
-    Answers, Clip, ClipSource, KindOfQuestion as _, Question, Sequence, SequenceItem, Study, alike,
-    component_of,
+    Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Sequence,
+    SequenceItem, Study, alike, component_of,
 };
 
 /// The tidy form. `clips` are the study's clips as the server prepared them; a session of another

@@ -27,13 +27,13 @@ pub fn check_anyhow(bytes: &[u8]) {
             participant,
             condition: None,
         };
-        assert!(order(&study, draw).is_ok(), "a checked order exists");
+        assert!(order(&study.projection(), draw).is_ok(), "a checked order exists");
         let started = serde_json::json!({
             "session": "s", "participant_id": "p", "participant": participant, "seed": study.seed,
             "stage": "live", "config_hash": checked.config_hash(), "withdrawal_code": "w",
         });
         let started: SessionStarted = serde_json::from_value(started).expect("a session");
-        let plan = Plan::new(study, started).expect("a checked study has a plan");
+        let plan = Plan::new(study.projection(), started).expect("a checked study has a plan");
         assert!(plan.trial_count(false) > 0);
         let mut state = State::new(&plan, "fr");
         let inputs = [Input::Opened(Client::default()), Input::Consent, Input::Next, Input::Tick];

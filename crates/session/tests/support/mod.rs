@@ -35,6 +35,8 @@ pub fn started(text: &str, participant: u64) -> (Study, SessionStarted) {
 
 /// A page that carries out effects as a browser does, and a server that stores at once.
 pub struct Page {
+    /// The study that the plan is drawn from.
+    pub study: Study,
     pub plan: Plan,
     pub state: State,
     pub stored: Vec<Event>,
@@ -54,9 +56,10 @@ impl Page {
     pub fn open_in(text: &str, participant: u64, condition: Option<&str>) -> Self {
         let (study, mut session) = started(text, participant);
         session.condition = condition.map(str::to_owned);
-        let plan = Plan::new(study, session).unwrap();
+        let plan = Plan::new(study.projection(), session).unwrap();
         let state = State::new(&plan, "en");
         let mut page = Self {
+            study,
             plan,
             state,
             stored: Vec::new(),

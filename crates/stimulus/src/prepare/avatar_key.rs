@@ -1,7 +1,7 @@
 //! What an avatar is known by: a hash of all that it holds, by content, since pictures, buffers and
 //! settings may lie in files of their own.
 
-use mimique_avatar::{Avatar, Eyeball, Mesh, Part};
+use mimique_avatar::{Avatar, Eyeball, Mesh};
 use mimique_clip::sha256_hex;
 use serde_json::{Value, json};
 
@@ -37,7 +37,7 @@ fn mesh(mesh: &Mesh) -> Value {
     let textured = mesh.textured.iter();
     json!({
         "name": mesh.name,
-        "part": part_word(mesh.part),
+        "part": mesh.part.name(),
         "positions": numbers(mesh.positions.as_flattened()),
         "triangles": numbers_of(&triangles),
         "vertexColours": numbers(mesh.vertex_colours.as_flattened()),
@@ -67,25 +67,9 @@ fn numbers(numbers: &[f32]) -> Value {
     numbers_of(&wide(numbers).collect::<Vec<f64>>())
 }
 
-/// A part as the settings beside an avatar write it.
-fn part_word(part: Part) -> &'static str {
-    match part {
-        Part::Skin => "skin",
-        Part::EyeLeft => "eyeLeft",
-        Part::EyeRight => "eyeRight",
-        Part::Teeth => "teeth",
-        Part::Tongue => "tongue",
-        Part::Socket => "socket",
-        Part::Lashes => "lashes",
-        Part::Hair => "hair",
-        Part::EyeOverlay => "eyeOverlay",
-        Part::Other => "other",
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use mimique_avatar::{Look, SparseShape, Texture, Textured};
+    use mimique_avatar::{Look, Part, SparseShape, Texture, Textured};
 
     use super::*;
 

@@ -7,6 +7,7 @@ use super::Subject;
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use crate::question::{KindOfQuestion as _, Question};
+use crate::study_file::Multilingual as _;
 
 pub(super) fn examine(
     subject: &Subject<'_>,

@@ -349,7 +349,7 @@ fn feasible(subject: &Subject<'_>, issues: &mut Issues) {
         participant: 0,
         condition: None,
     };
-    for flaw in prove(subject.study, draw) {
+    for flaw in prove(&subject.study.projection(), draw) {
         match flaw {
             Flaw::NoOrder(OrderError { pointer, why }) => {
                 issues.error(pointer, Problem::NoOrder { remedy: why.remedy(), why });

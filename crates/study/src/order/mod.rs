@@ -24,7 +24,8 @@ mod turns;
 
 use std::collections::BTreeMap;
 
-use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem, Study};
+use crate::projection::StudyProjection;
+use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem};
 use constrained::{Search, arrange};
 pub(crate) use proof::{CYCLES, Flaw, prove};
 pub use sides::Sides;
@@ -112,7 +113,7 @@ pub struct Draw<'a> {
     pub config_hash: &'a str,
     /// The participant's slot (`SessionStarted::slot` of the session).
     pub participant: u64,
-    /// The participant's condition ([`Study::conditions`]). It decides what is shown and names no
+    /// The participant's condition ([`Sequence::conditions`]). It decides what is shown and names no
     /// stream: a nested sequence of random order outside of conditions comes in the same order for the
     /// same slot of each.
     pub condition: Option<&'a str>,
@@ -131,22 +132,10 @@ impl<'a> Draw<'a> {
 }
 
 /// The order that a participant gets.
-pub fn order(study: &Study, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
-    let clips = study.clips();
-    let by_id = by_id(&clips);
-    let turns = Turns::of(draw.participant);
-    let mut context = Context { study, clips: &clips, by_id, draw, turns, squares: 1 };
+pub fn order(study: &StudyProjection, draw: Draw<'_>) -> Result<Vec<OrderedItem>, OrderError> {
+    let mut context = Context::new(study, draw);
     context.squares = context.all_squares(&study.sequence);
     context.sequence(&study.sequence, "/sequence", None)
-}
-
-fn by_id(clips: &[Clip]) -> BTreeMap<&str, &Clip> {
-    // One by one: to collect would bring a sort of its own into the page.
-    let mut known = BTreeMap::new();
-    for clip in clips {
-        known.insert(clip.id.as_str(), clip);
-    }
-    known
 }
 
 /// The order in which the options of a question are shown, as indices into the file's list.
@@ -163,8 +152,7 @@ pub fn drawn_condition<'c>(draw: Draw<'_>, conditions: &[&'c str]) -> Option<&'c
 }
 
 struct Context<'a> {
-    study: &'a Study,
-    clips: &'a [Clip],
+    study: &'a StudyProjection,
     by_id: BTreeMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
     turns: Turns,
@@ -172,7 +160,12 @@ struct Context<'a> {
     squares: u64,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    fn new(study: &'a StudyProjection, draw: Draw<'a>) -> Self {
+        let by_id = study.clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
+        Self { study, by_id, draw, turns: Turns::of(draw.participant), squares: 1 }
+    }
+
     fn sequence(
         &self,
         sequence: &Sequence,
@@ -219,7 +212,7 @@ impl Context<'_> {
         };
         let mut parts = Vec::new();
         for showing in 1..=trials.repetitions {
-            for clip in self.clips.iter().filter(|clip| trials.clips.takes(clip)) {
+            for clip in self.study.clips.iter().filter(|clip| trials.clips.takes(clip)) {
                 let mut trial = format!("{name}/{}", clip.id);
                 if showing > 1 {
                     trial = format!("{trial}#{showing}");

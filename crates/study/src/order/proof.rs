@@ -2,9 +2,9 @@
 
 use super::constrained::prove_arrangement;
 use super::samples::Drawn;
-use super::turns::Turns;
-use super::{Context, Draw, OrderError, OrderedItem, by_id, subset};
-use crate::study_file::{OrderRule, Sequence, SequenceItem, Study};
+use super::{Context, Draw, OrderError, OrderedItem, subset};
+use crate::projection::StudyProjection;
+use crate::study_file::{OrderRule, Sequence, SequenceItem};
 
 /// Most parts of all samples of one cycle together: each is ordered before a session starts.
 pub(crate) const MOST_PARTS: usize = 50_000;
@@ -25,10 +25,8 @@ pub(crate) enum Flaw {
 /// Finds, for every sequence with constraints and each sample of its first cycle, the order on which
 /// [`super::order`] falls back when its own search fails. Nothing else can leave a participant without
 /// one: a sequence's constraints depend on its own parts alone.
-pub(crate) fn prove(study: &Study, draw: Draw<'_>) -> Vec<Flaw> {
-    let clips = study.clips();
-    let turns = Turns::of(draw.participant);
-    let context = Context { study, clips: &clips, by_id: by_id(&clips), draw, turns, squares: 1 };
+pub(crate) fn prove(study: &StudyProjection, draw: Draw<'_>) -> Vec<Flaw> {
+    let context = Context::new(study, draw);
     let mut flaws = Vec::new();
     context.prove(&study.sequence, "/sequence", &mut flaws);
     flaws

@@ -1,14 +1,15 @@
 //! On which side a clip shown beside another stands: as the study says, or drawn.
 
 use super::{Draw, OrderedItem};
-use crate::study_file::{Beside, Component, Side, Study};
+use crate::projection::StudyProjection;
+use crate::study_file::{Beside, Component, Side};
 
 /// The sides that are drawn, by component: each side in half of the trials.
 pub struct Sides(Vec<(String, std::vec::IntoIter<bool>)>);
 
 impl Sides {
     /// Draws them for the items of a participant's [`super::order`].
-    pub fn new(study: &Study, draw: Draw<'_>, items: &[OrderedItem]) -> Self {
+    pub fn new(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Self {
         let drawn = study.components.iter().filter(|(_, component)| {
             matches!(component, Component::Trials(block)
                 if block.beside.as_ref().is_some_and(|beside| beside.side == Side::Random))

@@ -17,9 +17,7 @@ impl Sequence {
     pub fn is_shown_in(&self, condition: Option<&str>) -> bool {
         !self.conditional || (self.id.is_some() && self.id.as_deref() == condition)
     }
-}
 
-impl Study {
     /// Names of the conditions, in the order of the file; none where everybody is shown the same.
     pub fn conditions(&self) -> Vec<&str> {
         fn add<'a>(sequence: &'a Sequence, names: &mut Vec<&'a str>) {
@@ -32,7 +30,7 @@ impl Study {
             }
         }
         let mut names = Vec::new();
-        add(&self.sequence, &mut names);
+        add(self, &mut names);
         names
     }
 
@@ -48,5 +46,12 @@ impl Study {
                 conditions: if all.is_empty() { "–".to_owned() } else { all.join(", ") },
             }),
         }
+    }
+}
+
+impl Study {
+    /// Names of the conditions: [`Sequence::conditions`] of the whole sequence.
+    pub fn conditions(&self) -> Vec<&str> {
+        self.sequence.conditions()
     }
 }

@@ -86,7 +86,7 @@ impl BuiltinExpression {
 }
 
 /// One stimulus: an avatar, a segment, a method.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Clip {
     /// `joy2.lsts30`; with several avatars `joy2.lsts30.ada`.
     pub id: String,

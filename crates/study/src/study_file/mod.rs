@@ -10,6 +10,7 @@ mod clips;
 mod conduct;
 mod general;
 mod hypotheses;
+mod languages;
 mod local_text;
 mod media;
 mod method;
@@ -21,7 +22,6 @@ mod tables;
 use std::collections::BTreeMap;
 
 use crate::question::Question;
-use crate::text::{Words, primary_language, words};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +35,7 @@ pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
 pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
+pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining};
@@ -67,7 +68,7 @@ pub struct Study {
     /// Buttons and messages in other languages than English and French, by language and by name:
     /// `mimique check --words de` prints a beginning. In English and French it changes single texts.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub translations: BTreeMap<String, BTreeMap<String, String>>,
+    pub translations: Translations,
     /// Seed of every random stream (below 2^53).
     #[serde(default)]
     pub seed: u64,
@@ -164,29 +165,6 @@ impl Study {
     pub fn from_text(text: &str) -> Result<Self, StudyFileError> {
         Self::from_value(&parse(text)?)
     }
-
-    /// The default language: the first one, `en` if none is given.
-    pub fn default_language(&self) -> &str {
-        self.languages.first().map_or("en", String::as_str)
-    }
-
-    /// The fixed texts in a language: the study's own, those that are built in, or in English.
-    pub fn words(&self, language: &str) -> Words {
-        match self.translations.get(language) {
-            Some(own) => Words::translated(language, own),
-            None => words(language).clone(),
-        }
-    }
-
-    /// The language that a participant gets who asks for `wanted` (`fr-CA` gets `fr`).
-    pub fn language_for(&self, wanted: &str) -> &str {
-        let short = primary_language(wanted);
-        self.languages
-            .iter()
-            .find(|known| known.eq_ignore_ascii_case(wanted))
-            .or_else(|| self.languages.iter().find(|known| known.eq_ignore_ascii_case(short)))
-            .map_or_else(|| self.default_language(), String::as_str)
-    }
 }
 
 /// Parses the text of a study file: JSON, comments and trailing commas allowed.
@@ -257,15 +235,7 @@ fn nested_too_deeply(text: &str) -> Option<usize> {
 impl Study {
     /// Every question of the file: demographics, shared ones, those of questionnaires.
     pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
-        let pages = self.components.values().filter_map(|component| match component {
-            Component::Questionnaire(page) => Some(page),
-            _ => None,
-        });
-        self.demographics
-            .iter()
-            .chain(pages)
-            .flat_map(|page| &page.questions)
-            .chain(&self.questions)
+        questions_among(self.demographics.as_ref(), &self.components, &self.questions)
     }
 
     /// The questions that a step asks, by the step's identifier (`demographics`, `faces/joy2.box`).
@@ -287,6 +257,19 @@ impl Study {
             },
         }
     }
+}
+
+/// Every question of demographics, of questionnaires and of those that are shared.
+pub(crate) fn questions_among<'a>(
+    demographics: Option<&'a Questionnaire>,
+    components: &'a BTreeMap<String, Component>,
+    shared: &'a [Question],
+) -> impl Iterator<Item = &'a Question> {
+    let pages = components.values().filter_map(|component| match component {
+        Component::Questionnaire(page) => Some(page),
+        _ => None,
+    });
+    demographics.into_iter().chain(pages).flat_map(|page| &page.questions).chain(shared)
 }
 
 /// Name of the component (or of the section of the file) that a step comes from.

@@ -77,7 +77,7 @@ fn order_of(study: &Study, participants: &[u64]) -> String {
     let mut lines = String::new();
     for &participant in participants {
         let items = order(
-            study,
+            &study.projection(),
             Draw { seed: study.seed, config_hash: &hash, participant, condition: None },
         )
         .unwrap();
@@ -113,8 +113,8 @@ fn sides() -> String {
     let mut lines = String::new();
     for participant in PARTICIPANTS {
         let draw = Draw { seed: study.seed, config_hash: &hash, participant, condition: None };
-        let items = order(&study, draw).unwrap();
-        let mut sides = Sides::new(&study, draw, &items);
+        let items = order(&study.projection(), draw).unwrap();
+        let mut sides = Sides::new(&study.projection(), draw, &items);
         let side = |left: bool| if left { 'l' } else { 'r' };
         let of = items.iter().filter_map(|item| match item {
             OrderedItem::Trial { component, .. } => match study.components.get(component) {

@@ -49,7 +49,7 @@ pub fn clips(study: &Study, hash: &str, participant: u64) -> Vec<String> {
         OrderedItem::Trial { clip, .. } => Some(clip),
         OrderedItem::Component { .. } => None,
     };
-    order(study, draw).unwrap().into_iter().filter_map(clip).collect()
+    order(&study.projection(), draw).unwrap().into_iter().filter_map(clip).collect()
 }
 
 /// Numbers drawn from a seed: SplitMix64 (Steele, Lea & Flood 2014).

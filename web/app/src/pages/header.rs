@@ -10,7 +10,7 @@ use crate::engine::Engine;
 /// The header of every page, its notices, and the question whether somebody really means to go.
 pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
     let fixed = engine.words();
-    let title = &engine.plan.study.study_metadata.title;
+    let title = &engine.plan.study.title;
     let mut header = el("header", "site-header narrow").with(words(
         "span",
         "title",

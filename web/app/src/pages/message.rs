@@ -36,11 +36,11 @@ pub fn declined(engine: &Engine, title: &str, text: &str) -> Element {
 
 /// Where the study lets one browser take part again: a session of its own for the next person.
 pub fn another_person(engine: &Engine) -> Option<Element> {
-    let recruitment = &engine.plan.study.recruitment;
+    let study = &engine.plan.study;
     // Whoever was sent here by a recruiting site goes back there.
     let sent = document::arrival().recruitment;
-    let offered = matches!(recruitment.repeat_prevention, RepeatPrevention::None)
-        && !recruitment.url_parameters.iter().any(|name| sent.contains_key(name));
+    let offered = matches!(study.repeat_prevention, RepeatPrevention::None)
+        && !study.url_parameters.iter().any(|name| sent.contains_key(name));
     offered.then(|| {
         let again = button("", "another-person", engine.words().another_person());
         el("div", "actions").key("another-person").with(again.on("click", |_| Act::AnotherPerson))

@@ -77,7 +77,9 @@ pub(crate) fn stops(
     };
     let own: Vec<_> = sessions.iter().filter(|(session, _)| is_own(session)).collect();
     let Some((first, _)) = own.first() else { return Vec::new() };
-    let Ok(plan) = Plan::new(version.study.clone(), as_started(first)) else { return Vec::new() };
+    let Ok(plan) = Plan::new(version.study.projection(), as_started(first)) else {
+        return Vec::new();
+    };
     let labels = plan.steps.iter().map(|step| match &step.kind {
         StepKind::Trial(trial) if trial.training => StopLabel::Practice(trial.number),
         StepKind::Trial(trial) => StopLabel::Trial(trial.number),

@@ -48,7 +48,7 @@ impl SessionView {
     /// The view of a session and its events.
     pub fn new(version: &Version, session: &SessionRecord, events: &[Event]) -> Self {
         let started = as_started(session);
-        let plan = Plan::new(version.study.clone(), started.clone()).ok();
+        let plan = Plan::new(version.study.projection(), started.clone()).ok();
         let record = Record::of(plan.as_ref(), events);
         // Of deleted answers nothing but the standing is left.
         let standing = if session.is_deleted() { session.standing } else { record.standing };

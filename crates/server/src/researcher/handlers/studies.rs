@@ -11,6 +11,7 @@ use axum::response::{IntoResponse, Response};
 use mimique_analysis::Language;
 use mimique_session::Standing;
 use mimique_storage::{Exclusion, Role, SessionRecord};
+use mimique_study::Multilingual as _;
 use serde::Deserialize;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;

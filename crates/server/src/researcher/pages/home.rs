@@ -7,6 +7,7 @@ use mimique_storage::Role;
 use super::frame::{Frame, time};
 use super::study::stage_word;
 use crate::state::hosted_study::HostedStudy;
+use mimique_study::Multilingual as _;
 
 /// A study and how many sessions it has, of which so many complete.
 pub(crate) struct Listed {

@@ -4,6 +4,7 @@ use axum::response::Response;
 use maud::{Markup, html};
 use mimique_session::wire::Event;
 use mimique_storage::{Exclusion, Role, SessionRecord};
+use mimique_study::Multilingual as _;
 use serde_json::Value;
 
 use super::frame::{Frame, time};

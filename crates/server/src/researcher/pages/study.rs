@@ -6,6 +6,7 @@ use maud::{Markup, html};
 use mimique_analysis::Language;
 use mimique_session::Standing;
 use mimique_storage::{Role, SessionRecord};
+use mimique_study::Multilingual as _;
 
 use super::frame::{Frame, time};
 use super::standing_words::standing_word;

@@ -1,0 +1,117 @@
+//! A study as the participant's page needs it.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::question::Question;
+use crate::study_file::{
+    AttentionRule, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText, Look,
+    Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section, Sequence,
+    Study, Training, Translations, questions_among,
+};
+
+/// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
+/// sections that people go through, as the file has them, and the clips that its rules make. Avatars,
+/// captures and methods are not in it (the server has prepared the clips), and neither is what
+/// participants must not know: codes, hypotheses, exclusions, tables.
+///
+/// One projection serves all participants: the page draws its own order, because a static host has
+/// nobody else to draw it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub struct StudyProjection {
+    /// Identifier used in addresses and file names.
+    pub id: String,
+    /// Title.
+    pub title: LocalText,
+    /// A sentence on what it is about.
+    pub description: LocalText,
+    /// Languages of the pages, the first being the default.
+    pub languages: Vec<String>,
+    /// The study's own buttons and messages, by language and by name.
+    pub translations: Translations,
+    /// Whom a participant can write to.
+    pub contact: Option<Contact>,
+    /// Parameters of the address that a recruiting site sends.
+    pub url_parameters: Vec<String>,
+    /// How a second participation of one person is recognised.
+    pub repeat_prevention: RepeatPrevention,
+    /// What a participant agrees to.
+    pub consent: Option<Consent>,
+    /// What a device must have.
+    pub device: Option<DeviceRules>,
+    /// Questions about the participant.
+    pub demographics: Option<Questionnaire>,
+    /// Whom the study does not take.
+    pub screening: Vec<ScreeningRule>,
+    /// What becomes of failed attention checks.
+    pub attention_checks: Option<AttentionRule>,
+    /// Pages read before the first trial.
+    pub instructions: Vec<Section>,
+    /// How large a CSS pixel is, and how far away the eyes are.
+    pub calibration: Option<Calibration>,
+    /// Trials for practice.
+    pub training: Option<Training>,
+    /// Questions that several components ask.
+    pub questions: Vec<Question>,
+    /// What the sequence is made of, by name.
+    pub components: BTreeMap<String, Component>,
+    /// The order of components and trials.
+    pub sequence: Sequence,
+    /// Shown after the last answer.
+    pub debriefing: Vec<Section>,
+    /// Every clip with its factors, in the order of the file.
+    pub clips: Vec<Clip>,
+    /// The same look for every clip.
+    pub look: Look,
+}
+
+impl Study {
+    /// The study as the participant's page needs it.
+    pub fn projection(&self) -> StudyProjection {
+        let Recruitment { url_parameters, repeat_prevention, .. } = &self.recruitment;
+        StudyProjection {
+            id: self.id.clone(),
+            title: self.study_metadata.title.clone(),
+            description: self.study_metadata.description.clone(),
+            languages: self.languages.clone(),
+            translations: self.translations.clone(),
+            contact: self.contact.clone(),
+            url_parameters: url_parameters.clone(),
+            repeat_prevention: *repeat_prevention,
+            consent: self.consent.clone(),
+            device: self.device.clone(),
+            demographics: self.demographics.clone(),
+            screening: self.screening.clone(),
+            attention_checks: self.attention_checks.clone(),
+            instructions: self.instructions.clone(),
+            calibration: self.calibration.clone(),
+            training: self.training.clone(),
+            questions: self.questions.clone(),
+            components: self.components.clone(),
+            sequence: self.sequence.clone(),
+            debriefing: self.debriefing.clone(),
+            clips: self.clips(),
+            look: self.stimuli.look.clone(),
+        }
+    }
+}
+
+impl Multilingual for StudyProjection {
+    fn languages(&self) -> &[String] {
+        &self.languages
+    }
+
+    fn translations(&self) -> &Translations {
+        &self.translations
+    }
+}
+
+impl StudyProjection {
+    /// Every question: demographics, those of questionnaires, shared ones.
+    pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
+        questions_among(self.demographics.as_ref(), &self.components, &self.questions)
+    }
+}
