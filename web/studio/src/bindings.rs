@@ -2,7 +2,7 @@
 
 use wasm_bindgen::prelude::*;
 
-use crate::desk::{Desk, Problem};
+use crate::workspace::{Problem, Workspace};
 
 /// The module's entry.
 #[wasm_bindgen(start)]
@@ -10,11 +10,11 @@ pub fn start() {
     mimique_web_panics::report_panics("studio", "");
 }
 
-/// The studio's desk.
+/// The studio's workspace.
 #[wasm_bindgen]
 #[derive(Debug, Default)]
 pub struct Studio {
-    desk: Desk,
+    workspace: Workspace,
 }
 
 fn text(value: serde_json::Value) -> String {
@@ -27,13 +27,13 @@ fn error(problem: Problem) -> JsError {
 
 #[wasm_bindgen]
 impl Studio {
-    /// An empty desk.
+    /// An empty workspace.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// [`Desk::avatar_file`].
+    /// [`Workspace::avatar_file`].
     #[wasm_bindgen(js_name = avatarFile)]
     pub fn avatar_file(
         &mut self,
@@ -41,22 +41,22 @@ impl Studio {
         bytes: Vec<u8>,
         settings: Option<String>,
     ) -> Result<String, JsError> {
-        self.desk.avatar_file(file, bytes, settings.as_deref()).map(text).map_err(error)
+        self.workspace.avatar_file(file, bytes, settings.as_deref()).map(text).map_err(error)
     }
 
-    /// [`Desk::built_in_avatar`].
+    /// [`Workspace::built_in_avatar`].
     #[wasm_bindgen(js_name = builtInAvatar)]
     pub fn built_in_avatar(&mut self, seed: u32, vertices: usize) -> Result<String, JsError> {
-        self.desk.built_in_avatar(u64::from(seed), vertices).map(text).map_err(error)
+        self.workspace.built_in_avatar(u64::from(seed), vertices).map(text).map_err(error)
     }
 
-    /// [`Desk::avatar_pack`].
+    /// [`Workspace::avatar_pack`].
     #[wasm_bindgen(js_name = avatarPack)]
     pub fn avatar_pack(&self) -> Result<Vec<u8>, JsError> {
-        self.desk.avatar_pack().map_err(error)
+        self.workspace.avatar_pack().map_err(error)
     }
 
-    /// [`Desk::take_file`].
+    /// [`Workspace::take_file`].
     #[wasm_bindgen(js_name = takeFile)]
     pub fn take_file(
         &mut self,
@@ -65,16 +65,16 @@ impl Studio {
         unit: Option<String>,
         rate_hz: Option<f64>,
     ) -> Result<String, JsError> {
-        self.desk.take_file(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
+        self.workspace.take_file(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
     }
 
-    /// [`Desk::built_in_take`].
+    /// [`Workspace::built_in_take`].
     #[wasm_bindgen(js_name = builtInTake)]
     pub fn built_in_take(&mut self, actor: u32) -> String {
-        text(self.desk.built_in_take(u64::from(actor)))
+        text(self.workspace.built_in_take(u64::from(actor)))
     }
 
-    /// [`Desk::training_take`].
+    /// [`Workspace::training_take`].
     #[wasm_bindgen(js_name = trainingTake)]
     pub fn training_take(
         &mut self,
@@ -83,74 +83,74 @@ impl Studio {
         unit: Option<String>,
         rate_hz: Option<f64>,
     ) -> Result<String, JsError> {
-        self.desk.training_take(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
+        self.workspace.training_take(file, bytes, unit.as_deref(), rate_hz).map(text).map_err(error)
     }
 
-    /// [`Desk::training_weights`].
+    /// [`Workspace::training_weights`].
     #[wasm_bindgen(js_name = trainingWeights)]
     pub fn training_weights(&mut self, file: &str, bytes: &[u8]) -> Result<String, JsError> {
-        self.desk.training_weights(file, bytes).map(text).map_err(error)
+        self.workspace.training_weights(file, bytes).map(text).map_err(error)
     }
 
-    /// [`Desk::built_in_training`].
+    /// [`Workspace::built_in_training`].
     #[wasm_bindgen(js_name = builtInTraining)]
     pub fn built_in_training(&mut self, actor: u32) -> String {
-        text(self.desk.built_in_training(u64::from(actor)))
+        text(self.workspace.built_in_training(u64::from(actor)))
     }
 
-    /// [`Desk::set_training_neutral`].
+    /// [`Workspace::set_training_neutral`].
     #[wasm_bindgen(js_name = setTrainingNeutral)]
     pub fn set_training_neutral(&mut self, first: usize, end: usize) -> Result<String, JsError> {
-        self.desk.set_training_neutral(first, end).map(text).map_err(error)
+        self.workspace.set_training_neutral(first, end).map(text).map_err(error)
     }
 
-    /// [`Desk::training_state`].
+    /// [`Workspace::training_state`].
     #[wasm_bindgen(js_name = trainingState)]
     pub fn training_state(&self) -> String {
-        text(self.desk.training_state())
+        text(self.workspace.training_state())
     }
 
-    /// [`Desk::map_file`].
+    /// [`Workspace::map_file`].
     #[wasm_bindgen(js_name = mapFile)]
     pub fn map_file(&mut self, file: &str, map: &str) -> Result<String, JsError> {
-        self.desk.map_file(file, map).map(text).map_err(error)
+        self.workspace.map_file(file, map).map(text).map_err(error)
     }
 
-    /// [`Desk::suggest_map`].
+    /// [`Workspace::suggest_map`].
     #[wasm_bindgen(js_name = suggestMap)]
     pub fn suggest_map(&mut self) -> Result<String, JsError> {
-        self.desk.suggest_map().map(text).map_err(error)
+        self.workspace.suggest_map().map(text).map_err(error)
     }
 
-    /// [`Desk::place`].
+    /// [`Workspace::place`].
     pub fn place(
         &mut self,
         label: &str,
         vertex: Option<usize>,
         head: bool,
     ) -> Result<String, JsError> {
-        self.desk.place(label, vertex, head).map(text).map_err(error)
+        self.workspace.place(label, vertex, head).map(text).map_err(error)
     }
 
-    /// [`Desk::set_neutral`].
+    /// [`Workspace::set_neutral`].
     #[wasm_bindgen(js_name = setNeutral)]
     pub fn set_neutral(&mut self, first: usize, end: usize) -> Result<String, JsError> {
-        self.desk.set_neutral(first, end).map(text).map_err(error)
+        self.workspace.set_neutral(first, end).map(text).map_err(error)
     }
 
-    /// [`Desk::map_state`].
+    /// [`Workspace::map_state`].
     #[wasm_bindgen(js_name = mapState)]
     pub fn map_state(&self) -> Result<String, JsError> {
-        self.desk.map_state().map(text).map_err(error)
+        self.workspace.map_state().map(text).map_err(error)
     }
 
-    /// [`Desk::map_json`].
+    /// [`Workspace::map_json`].
     #[wasm_bindgen(js_name = mapJson)]
     pub fn map_json(&self) -> String {
-        self.desk.map_json()
+        self.workspace.map_json()
     }
 
-    /// [`Desk::solve`]; of a method with wrong parameters `{"problems": [...]}`, each with the field
+    /// [`Workspace::solve`]; of a method with wrong parameters `{"problems": [...]}`, each with the field
     /// and the entry that it is about.
     pub fn solve(
         &mut self,
@@ -161,43 +161,43 @@ impl Studio {
         if let Some(problems) = crate::method_fields::problems(method) {
             return Ok(text(problems));
         }
-        self.desk.solve(slot, method, hold_unseen).map(text).map_err(error)
+        self.workspace.solve(slot, method, hold_unseen).map(text).map_err(error)
     }
 
-    /// [`Desk::forget`].
+    /// [`Workspace::forget`].
     pub fn forget(&mut self, slot: &str) {
-        self.desk.forget(slot);
+        self.workspace.forget(slot);
     }
 
-    /// [`Desk::weights`].
+    /// [`Workspace::weights`].
     pub fn weights(&self, slot: &str) -> Result<Vec<f32>, JsError> {
-        self.desk.weights(slot).map_err(error)
+        self.workspace.weights(slot).map_err(error)
     }
 
-    /// [`Desk::series`].
+    /// [`Workspace::series`].
     pub fn series(&self, slot: &str, name: &str) -> Result<Vec<f32>, JsError> {
-        self.desk.series(slot, name).map_err(error)
+        self.workspace.series(slot, name).map_err(error)
     }
 
-    /// [`Desk::slot_pack`].
+    /// [`Workspace::slot_pack`].
     #[wasm_bindgen(js_name = slotPack)]
     pub fn slot_pack(&self, slot: &str) -> Result<Vec<u8>, JsError> {
-        self.desk.slot_pack(slot).map_err(error)
+        self.workspace.slot_pack(slot).map_err(error)
     }
 
-    /// [`Desk::marker_frame`].
+    /// [`Workspace::marker_frame`].
     #[wasm_bindgen(js_name = markerFrame)]
     pub fn marker_frame(&self, slot: &str, frame: usize) -> Result<Vec<f32>, JsError> {
-        self.desk.marker_frame(slot, frame).map_err(error)
+        self.workspace.marker_frame(slot, frame).map_err(error)
     }
 
-    /// [`Desk::difference`] as JSON.
+    /// [`Workspace::difference`] as JSON.
     pub fn difference(&self, a: &str, b: &str, frame: usize) -> Result<String, JsError> {
-        let found = self.desk.difference(a, b, frame).map_err(error)?;
+        let found = self.workspace.difference(a, b, frame).map_err(error)?;
         Ok(serde_json::to_string(&found)?)
     }
 
-    /// [`Desk::heat_map`], RGBA.
+    /// [`Workspace::heat_map`], RGBA.
     #[wasm_bindgen(js_name = heatMap)]
     #[allow(clippy::too_many_arguments, reason = "JavaScript has no tuples")]
     pub fn heat_map(
@@ -210,12 +210,14 @@ impl Studio {
         height: usize,
         full_mm: f32,
     ) -> Result<Vec<u8>, JsError> {
-        let picture =
-            self.desk.heat_map([a, b], frame, camera, [width, height], full_mm).map_err(error)?;
+        let picture = self
+            .workspace
+            .heat_map([a, b], frame, camera, [width, height], full_mm)
+            .map_err(error)?;
         Ok(picture.rgba)
     }
 
-    /// [`Desk::pick`].
+    /// [`Workspace::pick`].
     pub fn pick(
         &self,
         camera: &[f32],
@@ -224,49 +226,49 @@ impl Studio {
         x: f32,
         y: f32,
     ) -> Result<Option<usize>, JsError> {
-        self.desk.pick(camera, [width, height], [x, y]).map_err(error)
+        self.workspace.pick(camera, [width, height], [x, y]).map_err(error)
     }
 
-    /// [`Desk::suggest_expressions`].
+    /// [`Workspace::suggest_expressions`].
     #[wasm_bindgen(js_name = suggestExpressions)]
     pub fn suggest_expressions(&mut self, slot: &str, labels: &str) -> Result<String, JsError> {
-        self.desk.suggest_expressions(slot, labels).map(text).map_err(error)
+        self.workspace.suggest_expressions(slot, labels).map(text).map_err(error)
     }
 
-    /// [`Desk::set_expressions`].
+    /// [`Workspace::set_expressions`].
     #[wasm_bindgen(js_name = setExpressions)]
     pub fn set_expressions(&mut self, segments: &str) -> Result<String, JsError> {
-        self.desk.set_expressions(segments).map(text).map_err(error)
+        self.workspace.set_expressions(segments).map(text).map_err(error)
     }
 
-    /// [`Desk::expressions_file`].
+    /// [`Workspace::expressions_file`].
     #[wasm_bindgen(js_name = expressionsFile)]
     pub fn expressions_file(&mut self, file: &str, content: &str) -> Result<String, JsError> {
-        self.desk.expressions_file(file, content).map(text).map_err(error)
+        self.workspace.expressions_file(file, content).map(text).map_err(error)
     }
 
-    /// [`Desk::expressions_csv`].
+    /// [`Workspace::expressions_csv`].
     #[wasm_bindgen(js_name = expressionsCsv)]
     pub fn expressions_csv(&self) -> Result<String, JsError> {
-        self.desk.expressions_csv().map_err(error)
+        self.workspace.expressions_csv().map_err(error)
     }
 
-    /// [`Desk::expressions_eaf`].
+    /// [`Workspace::expressions_eaf`].
     #[wasm_bindgen(js_name = expressionsEaf)]
     pub fn expressions_eaf(&self, document: Option<String>, date: &str) -> Result<String, JsError> {
-        self.desk.expressions_eaf(document.as_deref(), date).map_err(error)
+        self.workspace.expressions_eaf(document.as_deref(), date).map_err(error)
     }
 
-    /// [`Desk::weights_csv`].
+    /// [`Workspace::weights_csv`].
     #[wasm_bindgen(js_name = weightsCsv)]
     pub fn weights_csv(&self, slot: &str) -> Result<String, JsError> {
-        self.desk.weights_csv(slot).map_err(error)
+        self.workspace.weights_csv(slot).map_err(error)
     }
 
-    /// [`Desk::animated_glb`].
+    /// [`Workspace::animated_glb`].
     #[wasm_bindgen(js_name = animatedGlb)]
     pub fn animated_glb(&self, slot: &str, first: usize, end: usize) -> Result<Vec<u8>, JsError> {
-        self.desk.animated_glb(slot, first, end).map_err(error)
+        self.workspace.animated_glb(slot, first, end).map_err(error)
     }
 }
 

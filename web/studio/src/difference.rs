@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::desk::{Desk, Problem};
+use crate::workspace::{Problem, Workspace};
 
 /// The difference of two solved takes in one frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -16,7 +16,7 @@ pub struct Difference {
     pub worst_mm: f64,
 }
 
-impl Desk {
+impl Workspace {
     /// How far the skin of two slots is apart in a frame.
     ///
     /// # Errors

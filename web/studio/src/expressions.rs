@@ -9,7 +9,7 @@ use mimique_stimulus::{
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::desk::{Desk, Problem, Take};
+use crate::workspace::{Problem, Take, Workspace};
 
 /// Tier of an ELAN document.
 const TIER: &str = "expressions";
@@ -30,7 +30,7 @@ struct Track {
     rate_hz: f64,
 }
 
-impl Desk {
+impl Workspace {
     /// Suggests expressions, from the weights of `slot` where there are some, else from the markers
     /// in a still head; answers the timeline.
     ///

@@ -11,10 +11,9 @@
 //! ```
 //!
 //! Every call throws an `Error` whose message says file, place, value and remedy. What comes in and
-//! goes out is JSON text and typed arrays; the work itself is [`Desk`]'s, which tests use natively.
+//! goes out is JSON text and typed arrays; the work itself is [`Workspace`]'s, which tests use natively.
 
 mod bindings;
-mod desk;
 mod difference;
 mod expressions;
 mod markers;
@@ -22,8 +21,9 @@ mod method_fields;
 mod picture;
 mod solved;
 mod training;
+mod workspace;
 
 pub use bindings::Studio;
-pub use desk::{Desk, Problem};
 pub use difference::Difference;
 pub use picture::{Picture, pick};
+pub use workspace::{Problem, Workspace};

@@ -3,9 +3,9 @@
 use mimique_stimulus::{MappedMarker, MarkerMap, MarkerPlace, suggest_map};
 use serde_json::{Value, json};
 
-use crate::desk::{Desk, Problem};
+use crate::workspace::{Problem, Workspace};
 
-impl Desk {
+impl Workspace {
     /// Takes the map of a file: JSON, or CSV with `marker,role,vertex`.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The skin drawn by the processor with the stage's own camera: a heat map of a difference, and the
 //! vertex under a click. Both work without a graphics device.
 
-use crate::desk::{Desk, Problem};
+use crate::workspace::{Problem, Workspace};
 use mimique_geometry::Point;
 
 /// A picture of `width` x `height` pixels.
@@ -17,13 +17,13 @@ pub struct Picture {
 
 /// A vertex on the screen: pixels from the upper left, depth 0 (near) to 1.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct ScreenVertex {
     x: f32,
     y: f32,
     depth: f32,
 }
 
-impl Desk {
+impl Workspace {
     /// A heat map of the difference of two slots in a frame, on the skin of the first. `camera` is
     /// the stage's clip-from-world matrix, column by column; `full_mm` is the brightest colour.
     ///
@@ -40,7 +40,8 @@ impl Desk {
         let camera = matrix(camera)?;
         let skin = self.moved_skin(a, frame)?;
         let difference = self.difference(a, b, frame)?.vertices_mm;
-        let seen: Vec<Seen> = skin.iter().map(|&p| project(&camera, p, [width, height])).collect();
+        let seen: Vec<ScreenVertex> =
+            skin.iter().map(|&p| project(&camera, p, [width, height])).collect();
         let mut picture = Picture { rgba: vec![0; 4 * width * height], width, height };
         let mut depth = vec![f32::INFINITY; width * height];
         for t in &self.face()?.skin.mesh.triangles {
@@ -89,7 +90,7 @@ pub fn pick(
     size: [usize; 2],
     [x, y]: [f32; 2],
 ) -> Option<usize> {
-    let seen: Vec<Seen> = positions.iter().map(|&p| project(camera, p, size)).collect();
+    let seen: Vec<ScreenVertex> = positions.iter().map(|&p| project(camera, p, size)).collect();
     let mut best: Option<(f32, usize)> = None;
     for t in triangles {
         let corners = t.map(|v| seen[v as usize]);
@@ -110,11 +111,11 @@ fn matrix(camera: &[f32]) -> Result<[f32; 16], Problem> {
     })
 }
 
-fn project(m: &[f32; 16], p: Point, [width, height]: [usize; 2]) -> Seen {
+fn project(m: &[f32; 16], p: Point, [width, height]: [usize; 2]) -> ScreenVertex {
     let p = p.as_vec3();
     let row = |r: usize| m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
     let w = row(3);
-    Seen {
+    ScreenVertex {
         x: (row(0) / w * 0.5 + 0.5) * width as f32,
         y: (0.5 - row(1) / w * 0.5) * height as f32,
         depth: row(2) / w,
@@ -122,9 +123,10 @@ fn project(m: &[f32; 16], p: Point, [width, height]: [usize; 2]) -> Seen {
 }
 
 /// Barycentric coordinates of a point in a triangle that faces the camera; none outside.
-fn shares([a, b, c]: [Seen; 3], x: f32, y: f32) -> Option<[f32; 3]> {
-    let cross =
-        |p: Seen, q: Seen, x: f32, y: f32| (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
+fn shares([a, b, c]: [ScreenVertex; 3], x: f32, y: f32) -> Option<[f32; 3]> {
+    let cross = |p: ScreenVertex, q: ScreenVertex, x: f32, y: f32| {
+        (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x)
+    };
     // Counter-clockwise triangles are clockwise on a screen whose y goes down.
     let area = -cross(a, b, c.x, c.y);
     if area.is_nan() || area <= 0.0 {
@@ -135,12 +137,13 @@ fn shares([a, b, c]: [Seen; 3], x: f32, y: f32) -> Option<[f32; 3]> {
 }
 
 fn each_pixel(
-    corners: [Seen; 3],
+    corners: [ScreenVertex; 3],
     [width, height]: [usize; 2],
     mut paint: impl FnMut(usize, [f32; 3], f32),
 ) {
-    let low = |of: fn(&Seen) -> f32| corners.iter().map(of).fold(f32::INFINITY, f32::min);
-    let high = |of: fn(&Seen) -> f32| corners.iter().map(of).fold(f32::NEG_INFINITY, f32::max);
+    let low = |of: fn(&ScreenVertex) -> f32| corners.iter().map(of).fold(f32::INFINITY, f32::min);
+    let high =
+        |of: fn(&ScreenVertex) -> f32| corners.iter().map(of).fold(f32::NEG_INFINITY, f32::max);
     let span = |low: f32, high: f32, most: usize| {
         (low.floor().max(0.0) as usize)..((high.ceil().max(0.0) as usize).min(most))
     };

@@ -10,7 +10,7 @@ use mimique_stimulus::{
 };
 use serde_json::{Value, json};
 
-use crate::desk::{Desk, Face, Problem, Take};
+use crate::workspace::{Face, Problem, Take, Workspace};
 
 /// A shape that moves no marker farther is unseen, metres.
 const UNSEEN_M: f64 = 1e-3;
@@ -31,7 +31,7 @@ pub(crate) struct Solved {
     pub iterations: Vec<f32>,
 }
 
-impl Desk {
+impl Workspace {
     /// Solves the take by a method (a `MethodSpec` as JSON) and keeps it under `slot`; answers facts
     /// and the report's summary. With `hold_unseen`, shapes that move no marker stay at 0, except
     /// those that the method bounds. `settings` of the facts are the method as it was solved, with

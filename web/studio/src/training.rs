@@ -7,7 +7,7 @@ use mimique_mocap::{Capture, WeightOptions, WeightsTable, read_weights};
 use mimique_stimulus::{Training, built_in_training};
 use serde_json::{Value, json};
 
-use crate::desk::{Desk, Problem, read_capture};
+use crate::workspace::{Problem, Workspace, read_capture};
 
 /// Neutral frames of a training take where nobody names others, as in `mimique solve`.
 const NEUTRAL: Range<usize> = 0..60;
@@ -22,7 +22,7 @@ pub(crate) struct TrainingFiles {
     head: Option<Vec<String>>,
 }
 
-impl Desk {
+impl Workspace {
     /// Takes the capture that `regression` learns from.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ use mimique_stimulus::{
 };
 use mimique_study::ClipSource;
 use mimique_study::Study;
-use mimique_web_studio::Desk;
+use mimique_web_studio::Workspace;
 use serde_json::{Value, json};
 
 /// Finest step of the markers of a take pack, metres.
@@ -130,24 +130,26 @@ impl Laboratory {
     }
 
     /// The studio with every file open.
-    fn desk(&self) -> Desk {
-        let mut desk = Desk::new();
-        desk.avatar_file("head.glb", self.bytes("head.glb"), None).unwrap();
-        desk.take_file("take.csv", &self.bytes("take.csv"), None, None).unwrap();
+    fn workspace(&self) -> Workspace {
+        let mut workspace = Workspace::new();
+        workspace.avatar_file("head.glb", self.bytes("head.glb"), None).unwrap();
+        workspace.take_file("take.csv", &self.bytes("take.csv"), None, None).unwrap();
         let map = self.bytes("map.json");
-        desk.map_file("map.json", &String::from_utf8_lossy(&map)).unwrap();
-        desk.training_take("learnt.csv", &self.bytes("learnt.csv"), None, None).unwrap();
-        desk.training_weights("learnt-weights.csv", &self.bytes("learnt-weights.csv")).unwrap();
-        desk.set_training_neutral(NEUTRAL[0], NEUTRAL[1]).unwrap();
-        desk
+        workspace.map_file("map.json", &String::from_utf8_lossy(&map)).unwrap();
+        workspace.training_take("learnt.csv", &self.bytes("learnt.csv"), None, None).unwrap();
+        workspace
+            .training_weights("learnt-weights.csv", &self.bytes("learnt-weights.csv"))
+            .unwrap();
+        workspace.set_training_neutral(NEUTRAL[0], NEUTRAL[1]).unwrap();
+        workspace
     }
 
     /// As the studio does it.
-    fn studio(&self, desk: &mut Desk, spec: &MethodSpec) -> String {
+    fn studio(&self, workspace: &mut Workspace, spec: &MethodSpec) -> String {
         if spec.method == Method::Recorded {
-            desk.take_file("recorded.csv", &self.bytes("recorded.csv"), None, None).unwrap();
+            workspace.take_file("recorded.csv", &self.bytes("recorded.csv"), None, None).unwrap();
         }
-        let facts = desk.solve("a", &serde_json::to_string(spec).unwrap(), false).unwrap();
+        let facts = workspace.solve("a", &serde_json::to_string(spec).unwrap(), false).unwrap();
         facts["weights_hash"].as_str().unwrap().to_owned()
     }
 
@@ -247,7 +249,7 @@ fn solve_studio_and_study_give_the_same_weights() {
     assert_on_steps(&laboratory.path("packs"), &clips["all.lsts"], &take);
 
     let mut hashes = BTreeMap::new();
-    let mut desk = laboratory.desk();
+    let mut workspace = laboratory.workspace();
     let avatar = read_avatar(&laboratory.path("head.glb")).unwrap().avatar;
     let (recorded, solved): (Vec<_>, Vec<_>) =
         methods.iter().partition(|(_, spec)| spec.method == Method::Recorded);
@@ -255,9 +257,9 @@ fn solve_studio_and_study_give_the_same_weights() {
         let study = &clips[&format!("all.{name}")];
         let native = laboratory.solve(spec);
         assert_eq!(native, study.weights_hash, "{name}: solve and study");
-        assert_eq!(native, laboratory.studio(&mut desk, spec), "{name}: solve and studio");
+        assert_eq!(native, laboratory.studio(&mut workspace, spec), "{name}: solve and studio");
         if spec.method.uses(Group::Shapes) {
-            assert_eyes_rest(&desk.weights("a").unwrap(), &avatar.shape_names, name);
+            assert_eyes_rest(&workspace.weights("a").unwrap(), &avatar.shape_names, name);
         }
         hashes.insert(native, name);
         let expected = match (spec.method, spec.head_lowpass_hz) {

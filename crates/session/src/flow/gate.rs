@@ -5,7 +5,7 @@ use super::allowed::shown_questions;
 use super::clock;
 use super::effect::Effect;
 use super::state::{Play, State};
-use super::update::Turn;
+use super::update::Transition;
 use crate::event::{Calibrated, EventKind};
 use crate::plan::{Plan, Step, StepKind};
 use mimique_study::{
@@ -23,7 +23,7 @@ pub(super) const DISTANCES_CM: std::ops::RangeInclusive<f64> = 15.0..=300.0;
 /// many.
 const MEASUREMENTS_RECORDED: u32 = 50;
 
-impl Turn<'_> {
+impl Transition<'_> {
     /// The page has measured the display.
     pub(super) fn measured(&mut self, display: &Display) -> bool {
         let first = self.state.record.display.is_none();

@@ -20,22 +20,22 @@ const UNEXPECTED_RECORDED: u32 = 100;
 
 /// One step of the machine. `now_ms` is the page's clock.
 pub fn update(plan: &Plan, state: State, input: Input, now_ms: f64) -> (State, Vec<Effect>) {
-    let mut turn = Turn { plan, state, effects: Vec::new(), now_ms };
-    turn.state.live.now_ms = now_ms;
-    if !turn.take(&input) {
-        turn.unexpected(&input);
+    let mut transition = Transition { plan, state, effects: Vec::new(), now_ms };
+    transition.state.live.now_ms = now_ms;
+    if !transition.take(&input) {
+        transition.unexpected(&input);
     }
-    (turn.state, turn.effects)
+    (transition.state, transition.effects)
 }
 
-pub(super) struct Turn<'a> {
+pub(super) struct Transition<'a> {
     pub(super) plan: &'a Plan,
     pub(super) state: State,
     pub(super) effects: Vec<Effect>,
     now_ms: f64,
 }
 
-impl<'a> Turn<'a> {
+impl<'a> Transition<'a> {
     /// Takes an input; false if it does not fit the state.
     fn take(&mut self, input: &Input) -> bool {
         match input {

@@ -3,8 +3,8 @@
 use crate::fit::Fit;
 use crate::fit::problem::FitError;
 use crate::fit::report::{FrameReport, FrameWarning};
-use crate::fit::seen::Seen;
 use crate::fit::setup::{Engine, FREE};
+use crate::fit::visible_markers::VisibleMarkers;
 use crate::gaussian_process::regression::{Regression, RegressionScratch};
 use crate::linear_algebra::dense::{axpy, dot, mul, mul_transposed};
 use crate::newton::minimise::NewtonState;
@@ -16,7 +16,7 @@ use crate::quadratic::box_qp::{BoxState, Outcome, worse};
 pub struct FrameSolver<'a> {
     fit: &'a Fit,
     /// What depends on the markers seen, kept while the same ones are missing.
-    some_seen: Option<Seen>,
+    some_visible: Option<VisibleMarkers>,
     /// The free weights as they were solved: the next frame starts from them.
     weights: Vec<f64>,
     /// The same times the gain.
@@ -52,7 +52,7 @@ impl<'a> FrameSolver<'a> {
     pub(crate) fn new(fit: &'a Fit) -> FrameSolver<'a> {
         FrameSolver {
             fit,
-            some_seen: None,
+            some_visible: None,
             weights: Vec::new(),
             amplified: Vec::new(),
             displacements: Vec::new(),
@@ -89,8 +89,8 @@ impl<'a> FrameSolver<'a> {
         assert_eq!(weights.len(), self.fit.shape_count(), "a frame has N weights");
         let missing_markers = self.take_in(d);
         let answer = self.answer();
-        let seen = self.some_seen.as_ref().unwrap_or(&self.fit.all_seen);
-        let importance = seen.importance;
+        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
+        let importance = visible.importance;
         weights.fill(0.0);
         // A search that ends nowhere shows the neutral face, and its frame is warned of.
         self.amplify();
@@ -130,7 +130,7 @@ impl<'a> FrameSolver<'a> {
     fn answer(&mut self) -> Answer {
         let fit = self.fit;
         let problem = &fit.problem;
-        let seen = self.some_seen.as_ref().unwrap_or(&fit.all_seen);
+        let visible = self.some_visible.as_ref().unwrap_or(&fit.all_visible);
         let n = problem.free.len();
         if self.weights.len() != n {
             self.weights.clear();
@@ -141,11 +141,11 @@ impl<'a> FrameSolver<'a> {
         let d = &self.displacements;
         match &problem.engine {
             Engine::Quadratic { data_weight, bounds, .. } => {
-                mul_transposed(&seen.deltas, d, &mut self.right);
+                mul_transposed(&visible.deltas, d, &mut self.right);
                 for x in &mut self.right {
                     *x *= data_weight;
                 }
-                self.qp.solve(&seen.system, &self.right, bounds, &mut self.weights).into()
+                self.qp.solve(&visible.system, &self.right, bounds, &mut self.weights).into()
             }
             Engine::Linked { bounds } => {
                 // The displacements carry the root of the importance, the sums need all of it.
@@ -155,19 +155,19 @@ impl<'a> FrameSolver<'a> {
                         axpy(root * d, sum, &mut self.right);
                     }
                 }
-                self.qp.solve(&seen.system, &self.right, bounds, &mut self.weights).into()
+                self.qp.solve(&visible.system, &self.right, bounds, &mut self.weights).into()
             }
             Engine::Surface(surface) => {
-                let (missing, importance) = (&seen.missing, &problem.importance);
+                let (missing, importance) = (&visible.missing, &problem.importance);
                 let weights = &mut self.weights;
                 let (outcome, energy) =
-                    surface.solve(&seen.system, missing, importance, d, weights);
+                    surface.solve(&visible.system, missing, importance, d, weights);
                 Answer { energy: Some(energy), ..outcome.into() }
             }
             Engine::Learnt { model, bounds } => self.predict(model, bounds),
             Engine::PseudoInverse => {
-                mul(&seen.system, d, &mut self.weights);
-                pseudo_inverse_outcome(seen, d, &self.weights, &mut self.scratch).into()
+                mul(&visible.system, d, &mut self.weights);
+                pseudo_inverse_outcome(visible, d, &self.weights, &mut self.scratch).into()
             }
             Engine::Smooth { objective, fallback_eps } => self.minimise(objective, *fallback_eps),
         }
@@ -176,13 +176,13 @@ impl<'a> FrameSolver<'a> {
     /// Newton's method on smooth energies.
     fn minimise(&mut self, objective: &Objective, fallback_eps: f64) -> Answer {
         let problem = &self.fit.problem;
-        let seen = self.some_seen.as_ref().unwrap_or(&self.fit.all_seen);
+        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let d = &self.displacements;
-        let rank = seen.triangle.len() / problem.free.len();
+        let rank = visible.triangle.len() / problem.free.len();
         self.right.resize(rank, 0.0);
-        mul(&seen.orthogonal, d, &mut self.right);
+        mul(&visible.orthogonal, d, &mut self.right);
         self.scratch.resize(d.len(), 0.0);
-        mul_transposed(&seen.orthogonal, &self.right, &mut self.scratch);
+        mul_transposed(&visible.orthogonal, &self.right, &mut self.scratch);
         for (r, d) in self.scratch.iter_mut().zip(d) {
             *r -= d;
         }
@@ -191,7 +191,7 @@ impl<'a> FrameSolver<'a> {
             &mut self.newton,
             objective,
             fallback_eps,
-            Matrices { triangle: &seen.triangle, gram: &seen.gram, shell: &problem.shell },
+            Matrices { triangle: &visible.triangle, gram: &visible.gram, shell: &problem.shell },
             Target { inside: &self.right, outside },
             &mut self.weights,
         );
@@ -201,13 +201,13 @@ impl<'a> FrameSolver<'a> {
     /// What the regression says of the displacements, put within the bounds.
     fn predict(&mut self, model: &Regression, bounds: &[[f64; 2]]) -> Answer {
         let problem = &self.fit.problem;
-        let seen = self.some_seen.as_ref().unwrap_or(&self.fit.all_seen);
+        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         // The nearest point of a box: nothing is left to improve.
         let outcome = Outcome { iterations: 1, kkt_error: 0.0, converged: true };
         self.scratch.resize(problem.shape_count, 0.0);
         let (d, scratch) = (&self.displacements, &mut self.scratch);
         let (deviation, is_far) =
-            model.predict(d, &seen.missing, &seen.system, scratch, &mut self.learnt);
+            model.predict(d, &visible.missing, &visible.system, scratch, &mut self.learnt);
         for ((w, &k), [low, high]) in self.weights.iter_mut().zip(&problem.free).zip(bounds) {
             *w = scratch[k].max(*low).min(*high);
         }
@@ -236,10 +236,10 @@ impl<'a> FrameSolver<'a> {
         if matches!(problem.engine, Engine::Smooth { .. }) && problem.gain == 1.0 {
             return self.newton.misfit();
         }
-        let seen = self.some_seen.as_ref().unwrap_or(&self.fit.all_seen);
+        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let d = &self.displacements;
         self.scratch.resize(d.len(), 0.0);
-        mul(&seen.deltas, &self.amplified, &mut self.scratch);
+        mul(&visible.deltas, &self.amplified, &mut self.scratch);
         for (r, d) in self.scratch.iter_mut().zip(d) {
             *r -= d;
         }
@@ -266,14 +266,14 @@ impl<'a> FrameSolver<'a> {
                 }
             }
         }
-        let current = self.some_seen.as_ref().unwrap_or(&self.fit.all_seen);
+        let current = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let same =
             d.chunks_exact(3).zip(&current.missing).all(|(row, &gone)| is_missing(row) == gone);
         if !same {
             self.qp.forget_factor();
             self.newton.reset();
-            self.some_seen = (missing > 0)
-                .then(|| Seen::new(problem, d.chunks_exact(3).map(is_missing).collect()));
+            self.some_visible = (missing > 0)
+                .then(|| VisibleMarkers::new(problem, d.chunks_exact(3).map(is_missing).collect()));
         }
         missing
     }
@@ -304,17 +304,22 @@ fn solve_smooth(
 }
 
 /// The normal equations' error in units of weight.
-fn pseudo_inverse_outcome(seen: &Seen, d: &[f64], c: &[f64], scratch: &mut Vec<f64>) -> Outcome {
+fn pseudo_inverse_outcome(
+    visible: &VisibleMarkers,
+    d: &[f64],
+    c: &[f64],
+    scratch: &mut Vec<f64>,
+) -> Outcome {
     let n = c.len();
     scratch.resize(d.len() + n, 0.0);
     let (residual, gradient) = scratch.split_at_mut(d.len());
-    mul(&seen.deltas, c, residual);
+    mul(&visible.deltas, c, residual);
     for (r, d) in residual.iter_mut().zip(d) {
         *r -= d;
     }
-    mul_transposed(&seen.deltas, residual, gradient);
+    mul_transposed(&visible.deltas, residual, gradient);
     let kkt_error = (0..n).fold(0.0, |worst: f64, i| {
-        let h = seen.gram[i * n + i];
+        let h = visible.gram[i * n + i];
         if h > 0.0 { worse(worst, (gradient[i] / h).abs()) } else { worst }
     });
     Outcome { iterations: 1, kkt_error, converged: kkt_error < 1e-6 }

@@ -3,14 +3,14 @@
 pub(crate) mod frame;
 pub(crate) mod problem;
 pub(crate) mod report;
-pub(crate) mod seen;
 pub(crate) mod setup;
+pub(crate) mod visible_markers;
 
 use crate::energy::operators::Operators;
 use crate::fit::frame::FrameSolver;
 use crate::fit::problem::{FitError, Problem};
 use crate::fit::report::{FrameReport, FrameSolution, TakeSolution};
-use crate::fit::seen::Seen;
+use crate::fit::visible_markers::VisibleMarkers;
 use crate::parameters::table::MethodSpec;
 
 /// Frames that are solved one after the other, each from the last one's answer; the next chunk
@@ -22,7 +22,7 @@ pub const CHUNK_FRAMES: usize = 128;
 pub struct Fit {
     pub(crate) problem: Problem,
     /// What depends on which markers are seen, for all of them.
-    pub(crate) all_seen: Seen,
+    pub(crate) all_visible: VisibleMarkers,
 }
 
 impl Fit {
@@ -33,8 +33,8 @@ impl Fit {
     /// have, operators built with other options, or a method that does not solve.
     pub fn new(operators: &Operators, spec: &MethodSpec) -> Result<Fit, FitError> {
         let problem = Problem::new(operators, spec)?;
-        let all_seen = Seen::new(&problem, vec![false; problem.marker_count]);
-        Ok(Fit { problem, all_seen })
+        let all_visible = VisibleMarkers::new(&problem, vec![false; problem.marker_count]);
+        Ok(Fit { problem, all_visible })
     }
 
     /// N, the weights of a frame.

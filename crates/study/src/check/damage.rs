@@ -43,7 +43,7 @@ impl Damage {
     }
 
     /// The file with its misspelt keys as they are meant.
-    pub fn mended(&self, file: &Value) -> Value {
+    pub fn corrected(&self, file: &Value) -> Value {
         let mut file = file.clone();
         // Inner ones first: their pointers name the outer ones as the file does.
         for (pointer, meant) in self.misspelt.iter().rev() {
@@ -58,24 +58,24 @@ impl Damage {
         file
     }
 
-    /// The finding on the mended file, with its place in the file as it is.
+    /// The finding on the corrected file, with its place in the file as it is.
     pub fn placed(&self, mut issue: Issue) -> Issue {
         for (pointer, meant) in &self.misspelt {
             let Some((parent, _)) = pointer.rsplit_once('/') else { continue };
-            let mended = format!("{parent}/{meant}");
-            if is_within(&issue.pointer, &mended) {
-                issue.pointer = format!("{pointer}{}", &issue.pointer[mended.len()..]);
+            let corrected = format!("{parent}/{meant}");
+            if is_within(&issue.pointer, &corrected) {
+                issue.pointer = format!("{pointer}{}", &issue.pointer[corrected.len()..]);
             }
         }
         issue
     }
 
-    /// Whether a finding on the mended file is true whatever the damaged places should say.
+    /// Whether a finding on the corrected file is true whatever the damaged places should say.
     pub fn leaves(&self, issue: &Issue) -> bool {
         self.places.iter().all(|place| !touches(&self.as_meant(place), issue))
     }
 
-    /// The pointer of a place in the mended file.
+    /// The pointer of a place in the corrected file.
     fn as_meant(&self, place: &str) -> String {
         let mut place = place.to_owned();
         for (pointer, meant) in self.misspelt.iter().rev() {

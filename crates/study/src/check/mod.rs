@@ -3,7 +3,7 @@
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
 //! raw types -> [`general`], [`questions`], [`conduct`], [`stimuli`], [`sequence`], [`hypotheses`],
 //! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
-//! later stages run on what can be read of the file ([`mend`]).
+//! later stages run on what can be read of the file ([`readable`]).
 
 mod assigned;
 mod attention;
@@ -16,10 +16,10 @@ mod general;
 mod hypotheses;
 mod issue;
 mod media;
-mod mend;
 mod nearest;
 mod problem;
 mod questions;
+mod readable;
 mod responses;
 mod schema;
 mod sequence;
@@ -109,7 +109,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
     let (texts, damage) = structure::examine(&schema, &value, issues);
     let config_hash = config_hash(&value);
     if !damage.is_none() || issues.has_errors() {
-        let readable = mend::readable(&Schemas { root: &schema }, &damage.mended(&value));
+        let readable = readable::readable(&Schemas { root: &schema }, &damage.corrected(&value));
         let study = Study::from_value(&readable).ok()?;
         let mut found = Issues::default();
         examine_study(&study, &value, &config_hash, &texts, lookup, &mut found);

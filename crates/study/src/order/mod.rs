@@ -11,16 +11,16 @@
 //! breaks a constraint.
 //!
 //! Squares and samples go round with the participants. Several of them in one study are balanced
-//! against each other: see [`Turns`].
+//! against each other: see [`Rotation`].
 
 mod constrained;
 mod latin_square;
 mod proof;
+mod rotation;
 mod samples;
 mod sides;
 mod stream;
 mod subset;
-mod turns;
 
 use std::collections::BTreeMap;
 
@@ -28,9 +28,9 @@ use crate::projection::StudyProjection;
 use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem};
 use constrained::{Search, arrange};
 pub(crate) use proof::{CYCLES, Flaw, prove};
+use rotation::Rotation;
 pub use sides::Sides;
 pub use stream::Stream;
-use turns::Turns;
 
 /// One item of a participant's order.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -155,7 +155,7 @@ struct Context<'a> {
     study: &'a StudyProjection,
     by_id: BTreeMap<&'a str, &'a Clip>,
     draw: Draw<'a>,
-    turns: Turns,
+    rotation: Rotation,
     /// The product of the periods of all squares.
     squares: u64,
 }
@@ -163,7 +163,7 @@ struct Context<'a> {
 impl<'a> Context<'a> {
     fn new(study: &'a StudyProjection, draw: Draw<'a>) -> Self {
         let by_id = study.clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
-        Self { study, by_id, draw, turns: Turns::of(draw.participant), squares: 1 }
+        Self { study, by_id, draw, rotation: Rotation::of(draw.participant), squares: 1 }
     }
 
     fn sequence(
@@ -241,7 +241,7 @@ impl<'a> Context<'a> {
             OrderRule::LatinSquare => {
                 let mut labels: Vec<usize> = (0..count).collect();
                 self.draw.shared_stream(&format!("latin square{pointer}")).shuffle(&mut labels);
-                let turn = self.turns.next(latin_square::rows(count));
+                let turn = self.rotation.next(latin_square::rows(count));
                 let row = latin_square::williams_row(count, turn);
                 Ok(row.into_iter().map(|index| labels[index]).collect())
             }

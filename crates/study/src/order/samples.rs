@@ -7,7 +7,7 @@
 //! which the check warns.
 
 use super::constrained::quickly_arranged;
-use super::turns::later_turn;
+use super::rotation::later_turn;
 use super::{Context, OrderedItem, latin_square, subset};
 use crate::study_file::{OrderRule, Sequence, SequenceItem};
 

@@ -10,7 +10,7 @@
 //! Where `v` is not prime each cycle has a circle of its own, shuffled anew: every pair is then equally
 //! likely in each. Where constraints must be met, `samples` says which of these circles are walked.
 
-use super::turns::greatest_common_divisor;
+use super::rotation::greatest_common_divisor;
 
 /// Participants after whom each of `count` parts was taken equally often.
 pub(super) fn cycle(count: usize, samples: usize) -> u64 {

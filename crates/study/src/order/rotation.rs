@@ -9,13 +9,13 @@ use std::cell::Cell;
 /// Samples are balanced against the squares of other sequences in the same way ([`later_turn`]), and
 /// their circle stays until these have gone round with it. Against each other, and against the square
 /// of their own sequence, they are balanced by chance: every cycle has another circle.
-pub(super) struct Turns {
+pub(super) struct Rotation {
     participant: u64,
     /// After how many participants all that was handed out comes round together.
     period: Cell<u64>,
 }
 
-impl Turns {
+impl Rotation {
     pub fn of(participant: u64) -> Self {
         Self { participant, period: Cell::new(1) }
     }
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     fn turns(participant: u64, periods: &[u64]) -> Vec<u64> {
-        let turns = Turns::of(participant);
+        let turns = Rotation::of(participant);
         periods.iter().map(|&period| turns.next(period)).collect()
     }
 

@@ -1,4 +1,4 @@
-//! What a method computes once for a set of seen markers, and again when markers are lost.
+//! What a method computes once for a set of visible markers, and again when markers are lost.
 
 use mimique_geometry::{orthogonal_triangular, pseudo_inverse};
 
@@ -6,9 +6,9 @@ use crate::fit::problem::Problem;
 use crate::fit::setup::Engine;
 use crate::linear_algebra::dense::{axpy, gram, packed_len};
 
-/// What is computed once for a set of seen markers.
+/// What is computed once for a set of visible markers.
 #[derive(Debug, Clone)]
-pub(crate) struct Seen {
+pub(crate) struct VisibleMarkers {
     /// Which markers are missing.
     pub(crate) missing: Vec<bool>,
     /// D, rows of missing markers 0.
@@ -25,8 +25,8 @@ pub(crate) struct Seen {
     pub(crate) importance: f64,
 }
 
-impl Seen {
-    pub(crate) fn new(problem: &Problem, missing: Vec<bool>) -> Seen {
+impl VisibleMarkers {
+    pub(crate) fn new(problem: &Problem, missing: Vec<bool>) -> VisibleMarkers {
         let n = problem.free.len();
         let mut deltas = problem.deltas.clone();
         for (rows, &gone) in deltas.chunks_exact_mut(3 * n).zip(&missing) {
@@ -51,7 +51,7 @@ impl Seen {
         };
         let importance = (problem.importance.iter().zip(&missing))
             .fold(0.0, |s, (w, &gone)| if gone { s } else { s + w });
-        Seen { missing, deltas, gram, orthogonal, triangle, system, importance }
+        VisibleMarkers { missing, deltas, gram, orthogonal, triangle, system, importance }
     }
 }
 

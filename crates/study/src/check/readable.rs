@@ -11,16 +11,16 @@ use super::values::JsonType;
 
 /// The file with stand-ins where it cannot be read.
 pub(super) fn readable(schemas: &Schemas<'_>, file: &Value) -> Value {
-    mended(schemas, schemas.root, file)
+    fitted(schemas, schemas.root, file)
 }
 
 /// A value as its schema wants it.
-fn mended<'a>(schemas: &Schemas<'a>, schema: &'a Value, value: &Value) -> Value {
+fn fitted<'a>(schemas: &Schemas<'a>, schema: &'a Value, value: &Value) -> Value {
     let parts = schemas.parts(schema);
     for part in &parts {
         if let Some(alternatives) = part.get("anyOf").and_then(Value::as_array) {
             return match schemas.fitting(alternatives, value) {
-                Some(alternative) => mended(schemas, alternative, value),
+                Some(alternative) => fitted(schemas, alternative, value),
                 None => stand_in(schemas, schema),
             };
         }
@@ -68,7 +68,7 @@ fn list<'a>(schemas: &Schemas<'a>, part: &'a Value, items: &[Value]) -> Value {
     let limit = |key| part.get(key).and_then(Value::as_u64).map(|count| count as usize);
     let most = limit("maxItems").unwrap_or(usize::MAX);
     let mut list: Vec<Value> =
-        items.iter().take(most).map(|item| mended(schemas, schema, item)).collect();
+        items.iter().take(most).map(|item| fitted(schemas, schema, item)).collect();
     while list.len() < limit("minItems").unwrap_or(0) {
         list.push(stand_in(schemas, schema));
     }
@@ -100,9 +100,9 @@ fn object<'a>(schemas: &Schemas<'a>, parts: &[&'a Value], map: &Map<String, Valu
             part.get("additionalProperties").or(part.get("unevaluatedProperties"))
         });
         match (known, others) {
-            (Some(schema), _) => found.insert(key.clone(), mended(schemas, schema, value)),
+            (Some(schema), _) => found.insert(key.clone(), fitted(schemas, schema, value)),
             (None, Some(Value::Bool(false))) => None,
-            (None, Some(schema)) => found.insert(key.clone(), mended(schemas, schema, value)),
+            (None, Some(schema)) => found.insert(key.clone(), fitted(schemas, schema, value)),
             (None, None) => found.insert(key.clone(), value.clone()),
         };
     }

@@ -1,16 +1,16 @@
-//! The studio's desk as the page uses it.
+//! The studio's workspace as the page uses it.
 
 use mimique_actor::{Density, HeadSpec, Identity, build_head, marker_sites, range_of_motion_take};
 use mimique_mocap::{Capture, LengthUnit, WeightsTable};
 use mimique_test_support::real_data;
-use mimique_web_studio::Desk;
+use mimique_web_studio::Workspace;
 use serde_json::Value;
 
-fn built_in() -> Desk {
-    let mut desk = Desk::new();
-    desk.built_in_avatar(1, 2_000).unwrap();
-    desk.built_in_take(1);
-    desk
+fn built_in() -> Workspace {
+    let mut workspace = Workspace::new();
+    workspace.built_in_avatar(1, 2_000).unwrap();
+    workspace.built_in_take(1);
+    workspace
 }
 
 fn number(value: &Value) -> f64 {
@@ -19,15 +19,15 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn the_built_in_actor_is_solved_without_any_file() {
-    let mut desk = built_in();
-    let state = desk.map_state().unwrap();
+    let mut workspace = built_in();
+    let state = workspace.map_state().unwrap();
     let placed = state["markers"].as_array().unwrap().iter().filter(|m| !m["vertex"].is_null());
     assert_eq!(placed.count(), 40);
-    let facts = desk.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#, true).unwrap();
+    let facts = workspace.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#, true).unwrap();
     let frames = facts["frames"].as_u64().unwrap() as usize;
-    assert_eq!(desk.weights("a").unwrap().len(), frames * 51);
+    assert_eq!(workspace.weights("a").unwrap().len(), frames * 51);
     for series in ["residual", "kkt", "iterations"] {
-        assert_eq!(desk.series("a", series).unwrap().len(), frames);
+        assert_eq!(workspace.series("a", series).unwrap().len(), frames);
     }
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{facts}");
     assert_eq!(facts["head_lowpass_hz"], 10.0);
@@ -36,45 +36,45 @@ fn the_built_in_actor_is_solved_without_any_file() {
     let held = facts["held"].as_array().unwrap();
     assert!(held.contains(&"eyeLookInLeft".into()) && held.len() < 10, "{held:?}");
     assert_eq!(facts["warnings"], serde_json::json!([]));
-    let resting = desk.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
+    let resting = workspace.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
     assert_eq!(resting["weights_hash"], facts["weights_hash"]);
     let asked = r#"{"method": "lsts", "alpha": 0.3, "gaze": "markers"}"#;
-    let free = desk.solve("b", asked, false).unwrap();
+    let free = workspace.solve("b", asked, false).unwrap();
     assert_eq!(free["gaze_at_rest"], serde_json::json!([]));
     assert!(free["warnings"][0].as_str().unwrap().contains("eyeLookInLeft"), "{free}");
 
     // Where the skin is and where it is asked to be agree with the residual.
     let frame = frames / 2;
-    let points = desk.marker_frame("a", frame).unwrap();
+    let points = workspace.marker_frame("a", frame).unwrap();
     assert_eq!(points.len(), 6 * 40);
     let square: f64 = points
         .chunks_exact(6)
         .map(|p| (0..3).map(|a| (1e3 * f64::from(p[a] - p[3 + a])).powi(2)).sum::<f64>())
         .sum();
-    let residual = f64::from(desk.series("a", "residual").unwrap()[frame]);
+    let residual = f64::from(workspace.series("a", "residual").unwrap()[frame]);
     let rms = (square / 40.0).sqrt();
     assert!((rms - residual).abs() < 0.01 * residual + 1e-3, "{rms} {residual}");
 }
 
 #[test]
 fn two_methods_differ_where_the_heat_map_says_so() {
-    let mut desk = built_in();
-    desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
-    desk.solve("b", r#"{"method": "box"}"#, true).unwrap();
+    let mut workspace = built_in();
+    workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    workspace.solve("b", r#"{"method": "box"}"#, true).unwrap();
     let frame = 500;
-    let same = desk.difference("a", "a", frame).unwrap();
+    let same = workspace.difference("a", "a", frame).unwrap();
     assert_eq!((same.rms_mm, same.worst_mm), (0.0, 0.0));
-    let found = desk.difference("a", "b", frame).unwrap();
+    let found = workspace.difference("a", "b", frame).unwrap();
     assert!(found.worst_mm > found.rms_mm && found.rms_mm > 0.0, "{found:?}");
     // Straight on, 0.36 m high: the head fills much of the picture.
     let s = 1.0 / 0.18;
     let camera = [s, 0., 0., 0., 0., s, 0., 0., 0., 0., -0.5, 0., 0., 0., 0.5, 1.0];
-    let picture = desk.heat_map(["b", "a"], frame, &camera, [64, 64], 3.0).unwrap();
+    let picture = workspace.heat_map(["b", "a"], frame, &camera, [64, 64], 3.0).unwrap();
     let drawn = picture.rgba.chunks_exact(4).filter(|p| p[3] == 255).count();
     assert!((400..3_500).contains(&drawn), "{drawn}");
-    assert!(desk.heat_map(["b", "a"], frame, &camera[..3], [64, 64], 3.0).is_err());
-    let vertex = desk.pick(&camera, [64, 64], [32.0, 32.0]).unwrap().unwrap();
-    let state = desk.place("chin", Some(vertex), false).unwrap();
+    assert!(workspace.heat_map(["b", "a"], frame, &camera[..3], [64, 64], 3.0).is_err());
+    let vertex = workspace.pick(&camera, [64, 64], [32.0, 32.0]).unwrap().unwrap();
+    let state = workspace.place("chin", Some(vertex), false).unwrap();
     let chin = state["markers"].as_array().unwrap().iter().find(|m| m["label"] == "chin").unwrap();
     assert_eq!(chin["vertex"], vertex);
     assert!(number(&chin["position"][2]) > 0.0, "a click finds the front: {chin}");
@@ -82,31 +82,31 @@ fn two_methods_differ_where_the_heat_map_says_so() {
 
 #[test]
 fn the_map_goes_out_and_comes_back() {
-    let mut desk = built_in();
-    desk.place("nose_tip", None, false).unwrap();
-    desk.set_neutral(5, 65).unwrap();
-    let text = desk.map_json();
-    let state = desk.map_file("markers.json", &text).unwrap();
+    let mut workspace = built_in();
+    workspace.place("nose_tip", None, false).unwrap();
+    workspace.set_neutral(5, 65).unwrap();
+    let text = workspace.map_json();
+    let state = workspace.map_file("markers.json", &text).unwrap();
     assert_eq!(state["neutral"], serde_json::json!([5, 65]));
-    assert_eq!(desk.map_json(), text);
+    assert_eq!(workspace.map_json(), text);
     for (problem, part) in [
         (
-            desk.place("no such", None, false).unwrap_err(),
+            workspace.place("no such", None, false).unwrap_err(),
             "no such: the capture has no such marker",
         ),
-        (desk.place("chin", Some(9_999_999), false).unwrap_err(), "vertex 9999999 of"),
-        (desk.set_neutral(9, 9).unwrap_err(), "9:9 of"),
-        (desk.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
+        (workspace.place("chin", Some(9_999_999), false).unwrap_err(), "vertex 9999999 of"),
+        (workspace.set_neutral(9, 9).unwrap_err(), "9:9 of"),
+        (workspace.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
         (
-            desk.solve("a", r#"{"method": "regression"}"#, true).unwrap_err(),
+            workspace.solve("a", r#"{"method": "regression"}"#, true).unwrap_err(),
             "training: open a range of motion and its weights",
         ),
-        (desk.solve("a", r#"{"method": "lasso"}"#, true).unwrap_err(), "method: "),
-        (desk.weights("c").unwrap_err(), "c: nothing is solved"),
+        (workspace.solve("a", r#"{"method": "lasso"}"#, true).unwrap_err(), "method: "),
+        (workspace.weights("c").unwrap_err(), "c: nothing is solved"),
     ] {
         assert!(problem.0.contains(part), "{problem}");
     }
-    let mut empty = Desk::new();
+    let mut empty = Workspace::new();
     assert!(
         empty.solve("a", r#"{"method": "lsts"}"#, true).unwrap_err().0.contains("no avatar yet")
     );
@@ -118,9 +118,9 @@ fn the_map_goes_out_and_comes_back() {
 
 #[test]
 fn expressions_are_suggested_mended_and_carried() {
-    let mut desk = built_in();
-    desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
-    let found = desk.suggest_expressions("a", "one, two").unwrap();
+    let mut workspace = built_in();
+    workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let found = workspace.suggest_expressions("a", "one, two").unwrap();
     let segments = found["segments"].as_array().unwrap();
     // Eighteen are played; what is suggested beyond them is a blink's length.
     let seconds = |s: &&Value| number(&s["expression_s"][1]) - number(&s["expression_s"][0]);
@@ -128,54 +128,55 @@ fn expressions_are_suggested_mended_and_carried() {
     assert!(segments.len() <= 20, "{found}");
     assert_eq!((&segments[0]["label"], &segments[1]["label"]), (&"one".into(), &"two".into()));
     let edited = r#"[{"label": "joy", "expression": [100, 300]}, {"label": "fear", "expression": [600, 900]}]"#;
-    desk.set_expressions(edited).unwrap();
-    let csv = desk.expressions_csv().unwrap();
-    let eaf = desk.expressions_eaf(None, "2026-01-01T00:00:00+00:00").unwrap();
+    workspace.set_expressions(edited).unwrap();
+    let csv = workspace.expressions_csv().unwrap();
+    let eaf = workspace.expressions_eaf(None, "2026-01-01T00:00:00+00:00").unwrap();
     for (file, text) in [("segments.csv", csv), ("segments.eaf", eaf)] {
-        desk.set_expressions("[]").unwrap();
-        let back = desk.expressions_file(file, &text).unwrap();
+        workspace.set_expressions("[]").unwrap();
+        let back = workspace.expressions_file(file, &text).unwrap();
         assert_eq!(back["segments"][1]["label"], "fear", "{file}: {text}");
         assert_eq!(back["segments"][0]["expression"], serde_json::json!([100, 300]), "{file}");
     }
-    let problem = desk.set_expressions(r#"[{"label": "x", "expression": [5, 5]}]"#).unwrap_err();
+    let problem =
+        workspace.set_expressions(r#"[{"label": "x", "expression": [5, 5]}]"#).unwrap_err();
     assert!(problem.0.contains("x: frames 5:5 of"), "{problem}");
 }
 
 #[test]
 fn what_is_exported_is_what_was_solved() {
-    let mut desk = built_in();
-    desk.solve("a", r#"{"method": "box"}"#, true).unwrap();
-    let csv = desk.weights_csv("a").unwrap();
-    let glb = desk.animated_glb("a", 60, 160).unwrap();
-    let mut again = Desk::new();
+    let mut workspace = built_in();
+    workspace.solve("a", r#"{"method": "box"}"#, true).unwrap();
+    let csv = workspace.weights_csv("a").unwrap();
+    let glb = workspace.animated_glb("a", 60, 160).unwrap();
+    let mut again = Workspace::new();
     let facts = again.avatar_file("animated.glb", glb, None).unwrap();
     assert_eq!(facts["shapes"].as_array().unwrap().len(), 51);
     again.take_file("weights.csv", csv.as_bytes(), None, None).unwrap();
     let facts = again.solve("a", r#"{"method": "recorded"}"#, true).unwrap();
     assert_eq!(facts["warnings"], serde_json::json!([]));
-    let (a, b) = (desk.weights("a").unwrap(), again.weights("a").unwrap());
+    let (a, b) = (workspace.weights("a").unwrap(), again.weights("a").unwrap());
     assert_eq!(a.len(), b.len());
     assert!(a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-6));
 }
 
 #[test]
 fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
-    let mut desk = built_in();
-    let plain = desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let mut workspace = built_in();
+    let plain = workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
     let shapes: Vec<&str> =
         plain["shapes"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect();
     let column = |weights: &[f32], name: &str| -> Vec<f32> {
         let k = shapes.iter().position(|s| *s == name).unwrap();
         weights.iter().skip(k).step_by(shapes.len()).copied().collect()
     };
-    let before = column(&desk.weights("a").unwrap(), "jawOpen");
+    let before = column(&workspace.weights("a").unwrap(), "jawOpen");
     assert!(before.iter().any(|&w| w > 0.3) && before.iter().any(|&w| w < 0.1));
 
     // No gaze is given, but the bounds of one of its shapes are: it is not held.
     let method = r#"{"method": "lsts", "locked": ["mouthPucker"], "importance": {"chin": 0.0},
         "bounds": {"jawOpen": [0.1, 0.2], "eyeLookInLeft": [0.25, 0.25]}}"#;
-    let facts = desk.solve("b", method, true).unwrap();
-    let weights = desk.weights("b").unwrap();
+    let facts = workspace.solve("b", method, true).unwrap();
+    let weights = workspace.weights("b").unwrap();
     assert!(column(&weights, "jawOpen").iter().all(|w| (0.1..=0.2).contains(w)));
     assert!(column(&weights, "mouthPucker").iter().all(|&w| w == 0.0));
     assert!(column(&weights, "eyeLookInLeft").iter().all(|&w| w == 0.25));
@@ -184,7 +185,7 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
     assert!(locked.contains(&"mouthPucker".into()) && locked.contains(&"eyeLookInRight".into()));
     assert!(!locked.contains(&"eyeLookInLeft".into()), "{settings}");
     // Without the studio's own holding they are the whole method.
-    let again = desk.solve("c", &settings.to_string(), false).unwrap();
+    let again = workspace.solve("c", &settings.to_string(), false).unwrap();
     assert_eq!(again["weights_hash"], facts["weights_hash"]);
     assert_ne!(again["weights_hash"], plain["weights_hash"]);
 
@@ -196,20 +197,20 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
         (r#"{"method": "lsts", "importance": {"chin": -1}}"#, "method: importance.chin: is -1"),
         (r#"{"method": "lsts", "bounds": {"jaw": [0, 1]}}"#, "jaw"),
     ] {
-        let problem = desk.solve("a", method, true).unwrap_err();
+        let problem = workspace.solve("a", method, true).unwrap_err();
         assert!(problem.0.contains(part), "{problem}");
     }
 }
 
 #[test]
 fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
-    let mut desk = built_in();
+    let mut workspace = built_in();
     let method = r#"{"method": "regression", "basisVectors": 40}"#;
-    assert_eq!(desk.training_state()["missing"], "open a range of motion and its weights");
-    let state = desk.built_in_training(1);
+    assert_eq!(workspace.training_state()["missing"], "open a range of motion and its weights");
+    let state = workspace.built_in_training(1);
     assert_eq!(state["missing"], Value::Null);
-    let facts = desk.solve("a", method, true).unwrap();
-    let built_in_weights = desk.weights("a").unwrap();
+    let facts = workspace.solve("a", method, true).unwrap();
+    let built_in_weights = workspace.weights("a").unwrap();
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 5.0, "{}", facts["summary"]);
 
     // The same actor's range of motion as files.
@@ -223,26 +224,26 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     let table = WeightsTable::at_rate(take.shape_names, take.truth, 0, take.rate_hz);
     let capture = Capture::new(take.labels, take.rate_hz, LengthUnit::Millimetre, take.positions);
     let text = mimique_mocap::write_csv(&capture).unwrap();
-    let mut desk = built_in();
+    let mut workspace = built_in();
     let short: String = table.to_csv().lines().take(100).map(|line| format!("{line}\n")).collect();
-    let state = desk.training_weights("rom-weights.csv", short.as_bytes()).unwrap();
+    let state = workspace.training_weights("rom-weights.csv", short.as_bytes()).unwrap();
     assert_eq!(state["missing"], "open the capture that these weights belong to");
-    let state = desk.training_take("rom.csv", text.as_bytes(), None, None).unwrap();
+    let state = workspace.training_take("rom.csv", text.as_bytes(), None, None).unwrap();
     let missing = format!("rom.csv has {frames} frames, rom-weights.csv 99; give a row");
     assert!(state["missing"].as_str().unwrap().starts_with(&missing), "{state}");
-    assert!(desk.solve("a", method, true).unwrap_err().0.contains("rom-weights.csv 99"));
-    let state = desk.training_weights("rom-weights.csv", table.to_csv().as_bytes()).unwrap();
+    assert!(workspace.solve("a", method, true).unwrap_err().0.contains("rom-weights.csv 99"));
+    let state = workspace.training_weights("rom-weights.csv", table.to_csv().as_bytes()).unwrap();
     assert_eq!((&state["missing"], &state["neutral"]), (&Value::Null, &serde_json::json!([0, 60])));
-    desk.set_training_neutral(take.neutral[0], take.neutral[1]).unwrap();
-    desk.solve("a", method, true).unwrap();
-    let weights = desk.weights("a").unwrap();
+    workspace.set_training_neutral(take.neutral[0], take.neutral[1]).unwrap();
+    workspace.solve("a", method, true).unwrap();
+    let weights = workspace.weights("a").unwrap();
     assert_eq!(weights, built_in_weights);
     assert!(weights.iter().any(|&w| w > 0.3));
 
     for (problem, part) in [
-        (desk.set_training_neutral(5, 5).unwrap_err(), "rom.csv: neutral frames 5:5 of"),
-        (desk.training_weights("w.csv", b"frame,time\n").unwrap_err(), "w.csv: "),
-        (desk.training_take("t.c3d", b"", None, None).unwrap_err(), "t.c3d: "),
+        (workspace.set_training_neutral(5, 5).unwrap_err(), "rom.csv: neutral frames 5:5 of"),
+        (workspace.training_weights("w.csv", b"frame,time\n").unwrap_err(), "w.csv: "),
+        (workspace.training_take("t.c3d", b"", None, None).unwrap_err(), "t.c3d: "),
     ] {
         assert!(problem.0.contains(part), "{problem}");
     }
@@ -252,11 +253,11 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
 fn a_real_capture_is_matched_and_solved_without_help() {
     let Some(data) = real_data("a_real_capture_is_matched_and_solved_without_help") else { return };
     let read = |path: &str| std::fs::read(data.join(path)).unwrap();
-    let mut desk = Desk::new();
-    desk.avatar_file("ict-facekit.glb", read("ict-facekit/ict-facekit.glb"), None).unwrap();
-    desk.take_file("JawMoCap.c3d", &read("animface/JawMoCap.c3d"), None, None).unwrap();
-    let state = desk.suggest_map().unwrap();
+    let mut workspace = Workspace::new();
+    workspace.avatar_file("ict-facekit.glb", read("ict-facekit/ict-facekit.glb"), None).unwrap();
+    workspace.take_file("JawMoCap.c3d", &read("animface/JawMoCap.c3d"), None, None).unwrap();
+    let state = workspace.suggest_map().unwrap();
     assert!(state["suggestion"]["notes"].is_array());
-    let facts = desk.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let facts = workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
 }

@@ -1,4 +1,4 @@
-//! What lies on the desk: an avatar, a take, a marker map, solved takes.
+//! What lies on the workspace: an avatar, a take, a marker map, solved takes.
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ impl std::error::Error for Problem {}
 
 /// Everything that the studio knows.
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct Workspace {
     pub(crate) face: Option<Face>,
     pub(crate) take: Option<Take>,
     pub(crate) map: MarkerMap,
@@ -65,8 +65,8 @@ pub(crate) enum Take {
     Weights { name: String, table: WeightsTable },
 }
 
-impl Desk {
-    /// An empty desk.
+impl Workspace {
+    /// An empty workspace.
     pub fn new() -> Self {
         Self::default()
     }
