@@ -4,8 +4,8 @@
 const HEAD = 12;
 const KIND = [..."MMOP"].map((letter) => letter.charCodeAt(0));
 
-/// The pack with its body inflated, or a thrown Error if it is damaged. What is no operators pack comes back
-/// as it is: clips of recorded weights have none, and the solver says so where it needs one.
+/// The pack with its body inflated, or a thrown Error if it is damaged. Bytes that are not an operators pack come back
+/// as they are: clips of recorded weights have none, and the solver says so where it needs one.
 export async function inflated(pack) {
   if (pack.length < HEAD || KIND.some((letter, at) => pack[at] !== letter)) return pack;
   const body = new Blob([pack.subarray(HEAD)]).stream().pipeThrough(new DecompressionStream("deflate"));

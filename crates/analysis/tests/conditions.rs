@@ -264,7 +264,7 @@ fn a_difference_of_response_times_is_planted_too() {
     let found = &result.points[0].hypotheses[0];
     assert_eq!(found.power.recommended.positive, 40);
     assert!(found.false_positives.unwrap().recommended.positive < 10);
-    // What a study has of itself plants the difference that its hypothesis looks for.
+    // The default parameters of a study plant the difference that its hypothesis looks for.
     let own = Parameters::for_study(&study);
     let effects = &own.times.effects["assigned_condition"];
     assert!((effects["rested"] - effects["at-once"] - 0.1).abs() < 1e-9, "{effects:?}");

@@ -375,7 +375,7 @@ fn places_in_pictures_are_transformed_and_checked() {
     assert_eq!(b.read().avatar.meshes[0].uvs[0], [0.375, 0.5]);
     b.document["textures"] = json!([]);
     assert!(b.refusal().contains("texture 0 does not exist"), "{}", b.refusal());
-    // What is no PNG and no JPEG is said, and the plain colour stays.
+    // An image that is neither PNG nor JPEG is reported, and the plain colour stays.
     let read = textured(b"RIFF....WEBPVP8 ").read();
     assert!(read.avatar.textures.is_empty() && read.avatar.meshes[0].textured.is_empty());
     assert!(read.notes.iter().any(|n| n.contains("images[0] is no PNG")), "{:?}", read.notes);

@@ -59,7 +59,7 @@ fn parameter(row: &Parameter, method: Method) -> Value {
 
 /// What is wrong with a method (JSON), for the controls that it is about: `{"problems": [...]}`, each
 /// with `field`, `entry` (or null), `place` and `text`; `None` for a method without problems, and for
-/// what is no JSON.
+/// text that is not JSON.
 pub fn problems(method: &str) -> Option<Value> {
     let given: Value = serde_json::from_str(method).ok()?;
     let problems = MethodSpec::checked(&given).err()?;

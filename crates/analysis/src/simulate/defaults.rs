@@ -1,4 +1,4 @@
-//! Parameters that a study has of itself: of the size that comparable studies found.
+//! Default parameters of a study: effects of the size that comparable studies found.
 //!
 //! * Ratings: a mean at two thirds of the scale and effects of 0.4 points of 7, as C. Reverdy's thesis
 //!   (2019) measured (tables 6.6 and 6.9: means 4.5-5.9; 0.29 points between two settings of one method,
@@ -105,7 +105,7 @@ const OTHER_ANSWER: f64 = 0.03;
 const INTENSITY_STEP: f64 = 0.15;
 
 impl Parameters {
-    /// The parameters that a study has of itself.
+    /// The default parameters of a study.
     pub fn for_study(study: &Study) -> Self {
         let clips = study.clips();
         let levels = factor_levels(study, &clips);

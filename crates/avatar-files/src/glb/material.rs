@@ -75,7 +75,7 @@ fn transformed(uv: [f32; 2], t: &gltf::json::extensions::texture::TextureTransfo
 pub(super) struct Pictures<'a> {
     container: &'a Container,
     folder: Option<&'a Path>,
-    /// By image and whether its alpha counts; nothing for what is no PNG and no JPEG.
+    /// By image and whether its alpha counts; nothing for an image that is neither PNG nor JPEG.
     found: HashMap<(usize, bool), Option<usize>>,
     /// Those that surfaces carry.
     pub textures: Vec<Texture>,

@@ -68,7 +68,7 @@ enum Part {
 }
 
 impl Part {
-    /// `None` for several parts and for what is no range: then the whole file is the answer.
+    /// `None` for several parts and for text that is not a range: then the whole file is the answer.
     fn read(wanted: &str, length: usize) -> Option<Self> {
         let (first, last) = wanted.trim().strip_prefix("bytes=")?.split_once('-')?;
         let number =

@@ -283,7 +283,7 @@ fn token(app: &App, study: &str, nonce: &str) -> String {
     hex::encode(&secret::derive(&app.token_key, &["session", study, nonce])[..16])
 }
 
-/// What is no token is no session's either.
+/// Text that is not a token belongs to no session.
 fn token_hash(token: &str) -> Result<String, Error> {
     if secret::is_hex(token, TOKEN_DIGITS) {
         Ok(secret::hash(token))
@@ -317,7 +317,7 @@ fn started(app: &App, token: String, record: &SessionRecord) -> SessionStarted {
     }
 }
 
-/// What a browser says of itself: one short word or number, so that no user agent string fits.
+/// What a browser reports about itself: one short word or number, so that no user agent string fits.
 fn one_word(text: &str) -> String {
     text.chars().take_while(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).take(24).collect()
 }

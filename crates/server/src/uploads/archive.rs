@@ -1,5 +1,5 @@
 //! An uploaded archive, unpacked into a folder: every name stays inside it, every byte is counted
-//! while it is unpacked, whatever the archive says of itself.
+//! while it is unpacked, whatever the archive declares.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};

@@ -43,7 +43,7 @@ pub struct Page {
     pub now_ms: f64,
     pub played: Vec<String>,
     pub completed: Option<u64>,
-    /// What the browser says of itself.
+    /// What the browser reports about itself.
     pub display: Display,
 }
 

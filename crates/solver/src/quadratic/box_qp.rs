@@ -96,7 +96,7 @@ impl BoxState {
                     c[i] = c[i].clamp(bounds[i][0], bounds[i][1]);
                 }
                 let kkt_error = kkt_error(q, &self.gradient, c, bounds);
-                // What is no number violates nothing.
+                // A value that is not a number violates nothing.
                 let finite = c.iter().chain(&self.gradient).all(|x| x.is_finite());
                 return Outcome { iterations, kkt_error, converged: violations == 0 && finite };
             }
@@ -183,7 +183,7 @@ pub(crate) fn kkt_error(q: &[f64], gradient: &[f64], c: &[f64], bounds: &[[f64; 
     })
 }
 
-/// The larger of two errors; what is no number is infinitely wrong.
+/// The larger of two errors; a value that is not a number counts as infinitely wrong.
 pub(crate) fn worse(worst: f64, error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { worst.max(error) }
 }

@@ -1,4 +1,4 @@
-//! What `mimique test` runs: each test and each description as one value that says all of itself.
+//! What `mimique test` runs: each test and each description as one value that holds everything about it.
 //!
 //! A [`Procedure`] stands in the file of its computation, with its name, its options, its words and the
 //! R and Python functions that compute the same. Adding one is that file and a line in [`PROCEDURES`];

@@ -45,7 +45,7 @@ impl Contingency {
         })
     }
 
-    /// From a table file: labels in the first column, counts in the others. Refuses what is no count.
+    /// From a table file: labels in the first column, counts in the others. Refuses a cell that is not a count.
     pub fn from_table(table: &Table) -> Result<Self, Refusal> {
         let names = table.names();
         let rows: Vec<String> = (0..table.rows())

@@ -58,7 +58,7 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
 /// What an analysis can group by.
 pub(super) fn factor_names(subject: &Subject<'_>) -> BTreeSet<String> {
     let mut names: BTreeSet<String> = subject.study.factor_names().into_iter().collect();
-    // People differ by what they say of themselves.
+    // People differ by what they report about themselves.
     names.extend(
         subject.study.demographics.iter().flat_map(|page| &page.questions).map(|q| q.id.clone()),
     );

@@ -77,7 +77,7 @@ pub enum Summary {
     Texts,
 }
 
-/// What a kind of question says of itself.
+/// What every kind of question defines.
 #[enum_dispatch]
 pub trait KindOfQuestion {
     /// What is wrong with its definition; `place` is the question's JSON pointer.

@@ -15,7 +15,7 @@ pub struct MethodEntry {
     /// Method and parameters.
     #[serde(flatten)]
     pub spec: MethodSpec,
-    /// Factors of the clips made with it. `method` (its word) and `alpha` are there of themselves.
+    /// Factors of the clips made with it. `method` (its name) and `alpha` are always there.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
     /// Name for people.

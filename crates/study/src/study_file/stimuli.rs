@@ -218,7 +218,7 @@ pub struct Segment {
     /// What a built-in actor performs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub performance: Option<Performance>,
-    /// Factors of its clips. A performance's `expression` and `intensity` are there of themselves.
+    /// Factors of its clips. A performance's `expression` and `intensity` are always there.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
 }
