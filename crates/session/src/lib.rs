@@ -12,6 +12,6 @@ pub mod wire;
 
 pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside};
 pub use record::{Attempt, EarlyEnd, EndReason, FinishedStep, Record};
-pub use session_file::{SessionFile, SessionFileError};
+pub use session_file::{SessionFile, SessionFileError, WrongLine};
 pub use site_file::SiteFile;
 pub use standing::Standing;

@@ -31,12 +31,12 @@ pub struct SessionFile {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SessionFileError {
     /// A line is not what it should be.
-    #[error("line {line}: {message}; take the file as the page wrote it")]
+    #[error("line {line}: {why}; take the file as the page wrote it")]
     Line {
         /// From 1.
         line: usize,
         /// What is wrong.
-        message: String,
+        why: WrongLine,
     },
     /// The end is missing: the file was cut off.
     #[error("line {line}: the end is missing; download or copy the file again, whole")]
@@ -56,58 +56,87 @@ pub enum SessionFileError {
     },
 }
 
+/// Why a line is not what it should be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum WrongLine {
+    /// It cannot be read as what stands there.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The file is of another version, or of another kind.
+    #[error("no session of version {VERSION}")]
+    Version,
+    /// Another event is due.
+    #[error("event {found} where {due} is due")]
+    Sequence {
+        /// The event's number.
+        found: u64,
+        /// The number that follows the event before.
+        due: u64,
+    },
+}
+
+/// The first line.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    mimique_session: u64,
+    study: String,
+    started: SessionStarted,
+}
+
+/// The last line.
+#[derive(Serialize, Deserialize)]
+struct End {
+    events: usize,
+    sha256: String,
+}
+
 impl SessionFile {
     /// The file, and the SHA-256 of all its lines but the last, which serves as the receipt.
     pub fn write(&self) -> (String, String) {
-        let head =
-            json!({ "mimique_session": VERSION, "study": self.study, "started": self.started });
-        let mut text = format!("{head}\n");
+        let head = Head {
+            mimique_session: VERSION,
+            study: self.study.clone(),
+            started: self.started.clone(),
+        };
+        let mut text = format!("{}\n", json!(head));
         for event in &self.events {
             text.push_str(&format!("{}\n", json!(event)));
         }
         let hash = sha256(&text);
-        let end = json!({ "events": self.events.len(), "sha256": hash });
-        text.push_str(&format!("{end}\n"));
+        let end = End { events: self.events.len(), sha256: hash.clone() };
+        text.push_str(&format!("{}\n", json!(end)));
         (text, hash)
     }
 
     /// Reads a file.
     pub fn read(text: &str) -> Result<Self, SessionFileError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let wrong = |line: usize, message: &str| SessionFileError::Line {
-            line,
-            message: message.to_owned(),
-        };
-        let value = |line: usize, text: &str| -> Result<Value, SessionFileError> {
-            serde_json::from_str(text).map_err(|error| wrong(line, &error.to_string()))
+        let wrong = |line: usize, why: WrongLine| SessionFileError::Line { line, why };
+        let unreadable = |line: usize| {
+            move |error: serde_json::Error| wrong(line, WrongLine::Unreadable(error.to_string()))
         };
         let mut lines = (1..).zip(text.split_inclusive('\n'));
         let (_, first) = lines.next().ok_or(SessionFileError::CutOff { line: 1 })?;
-        let head = value(1, first)?;
+        let head: Value = serde_json::from_str(first).map_err(unreadable(1))?;
         if head["mimique_session"] != VERSION {
-            return Err(wrong(1, &format!("no session of version {VERSION}")));
+            return Err(wrong(1, WrongLine::Version));
         }
-        let study = head["study"].as_str().ok_or_else(|| wrong(1, "no study"))?.to_owned();
-        let started = SessionStarted::deserialize(&head["started"])
-            .map_err(|error| wrong(1, &error.to_string()))?;
+        let Head { study, started, .. } = Head::deserialize(head).map_err(unreadable(1))?;
         let mut file = Self { study, started, events: Vec::new() };
         let mut length = first.len();
         for (line, part) in lines {
-            let value = value(line, part)?;
-            if value.get("sha256").is_some() {
-                let written = value["sha256"].as_str().unwrap_or_default().to_owned();
+            let value: Value = serde_json::from_str(part).map_err(unreadable(line))?;
+            if let Ok(End { sha256: written, .. }) = End::deserialize(&value) {
                 let found = sha256(&text[..length]);
                 if found != written {
                     return Err(SessionFileError::Changed { found, written });
                 }
                 return Ok(file);
             }
-            let event =
-                Event::deserialize(value).map_err(|error| wrong(line, &error.to_string()))?;
-            if event.sequence != file.events.len() as u64 {
-                let message =
-                    format!("event {} where {} is due", event.sequence, file.events.len());
-                return Err(wrong(line, &message));
+            let event = Event::deserialize(value).map_err(unreadable(line))?;
+            let due = file.events.len() as u64;
+            if event.sequence != due {
+                return Err(wrong(line, WrongLine::Sequence { found: event.sequence, due }));
             }
             file.events.push(event);
             length += part.len();
