@@ -81,6 +81,7 @@ fn a_device_that_cannot_be_mended_is_screened_out_with_reason_receipt_and_row() 
     study.recruitment.screened_out_code = Some("N0".into());
     let mut page = Page::open(&demo_with(json!({})), 3);
     page.plan = mimique_session::flow::Plan::new(study.projection(), session).unwrap();
+    page.study = study;
     page.display = mimique_study::Display {
         desktop: false,
         refresh_hz: Some(24.0),
