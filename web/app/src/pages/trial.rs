@@ -74,7 +74,7 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
     let now = document::pixel_ratio();
     let scale = size.device_pixel_ratio.filter(|_| now > 0.0).map_or(1.0, |then| then / now);
     let (width, height) = (size.width * scale, size.height * scale);
-    let look = json!(engine.plan.study.look).to_string();
+    let look = serde_json::json!(engine.plan.study.look).to_string();
     let beside = trial.beside.as_ref();
     let mut place = el("div", "stage").with(canvas(&trial.heading, &look, false));
     if let Phase::Loading { fraction } = trial.phase {
