@@ -75,8 +75,7 @@ fn packed(
     suffix: &str,
     compress: fn(&[u8]) -> io::Result<Option<Vec<u8>>>,
 ) -> io::Result<String> {
-    let digest = Sha256::digest(bytes);
-    let stem: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    let stem = hex::encode(Sha256::digest(bytes));
     let path = out.join(format!("{stem}.{suffix}"));
     if !path.exists() {
         // An empty file stands for "not worth compressing".

@@ -262,7 +262,7 @@ impl Module {
         hash.update(wasm_bindgen_cli_support_version());
         hash.update(self.opt_level);
         FEATURES.iter().chain(&WASM_OPT).for_each(|option| hash.update(option));
-        Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect())
+        Ok(hex::encode(hash.finalize()))
     }
 }
 

@@ -8,11 +8,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use anyhow::{anyhow, bail};
 use mimique_geometry::coordinates;
 use mimique_mocap::{CaptureFile, WeightOptions, stabilise};
-use mimique_session::rows::iso_time;
 use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, cut, read_segments,
     study_segments, suggest, write_segments,
 };
+use mimique_study::iso_time;
 use serde_json::json;
 
 use crate::capture_options::CaptureOptions;

@@ -18,15 +18,7 @@ pub fn canonical(value: &Value) -> String {
 
 /// SHA-256 of the canonical text, hexadecimal.
 pub fn config_hash(study: &Value) -> String {
-    hexadecimal(&Sha256::digest(canonical(study).as_bytes()))
-}
-
-/// Lower-case hexadecimal.
-pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    hex::encode(Sha256::digest(canonical(study)))
 }
 
 fn write_value(text: &mut String, value: &Value) {

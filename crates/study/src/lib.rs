@@ -23,7 +23,7 @@ pub use check::{
 };
 pub use clip_source::ClipSource;
 pub use device::{Display, Unmet};
-pub use instant::instant_ms;
+pub use instant::{instant_ms, iso_time};
 pub use order::{
     Draw, NoOrder, OrderError, OrderedItem, Sides, Stream, drawn_condition, option_order, order,
 };

@@ -1,8 +1,9 @@
 //! JSON lines: tidy rows, or stored events.
 
-use mimique_session::rows::{Column, iso_time};
+use mimique_session::rows::Column;
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_storage::Storage;
+use mimique_study::iso_time;
 use serde_json::{Map, Value, json};
 
 use super::error::ExportError;

@@ -14,7 +14,7 @@ pub fn pack() -> String {
 
 /// SHA-256, hexadecimal.
 pub fn sha256(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(Sha256::digest(text))
 }
 
 /// A study of one questionnaire.

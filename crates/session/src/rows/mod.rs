@@ -14,7 +14,6 @@ mod study_columns;
 mod tidy;
 mod wide;
 
-pub use cells::iso_time;
 pub use column::{Column, Table};
 pub use psych_ds::psych_ds_description;
 pub use tidy::tidy;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::SessionRecord;
-use super::cells::{answer_cells, iso_time, milliseconds, number, plain};
+use super::cells::{answer_cells, milliseconds, number, plain};
 use super::column::{Column, Table};
 use super::study_columns::{assigned_column, factor_column, question_columns};
 use crate::event::PlayLog;
@@ -13,7 +13,7 @@ use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Sequence,
-    SequenceItem, Study, alike, component_of,
+    SequenceItem, Study, alike, component_of, iso_time,
 };
 
 /// The tidy form. `clips` are the study's clips as the server prepared them; a session of another

@@ -4,8 +4,8 @@ use axum::http::header;
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, Markup, html};
 use mimique_analysis::Language;
-use mimique_session::rows::iso_time;
 use mimique_storage::Role;
+use mimique_study::iso_time;
 
 use crate::accounts::csrf::FormToken;
 use crate::accounts::identity::Researcher;
