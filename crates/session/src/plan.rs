@@ -114,84 +114,17 @@ impl Plan {
             condition: started.condition.as_deref(),
         };
         let items = order(&study, draw)?;
-        let mut steps = Vec::new();
-        let mut push = |id: String, kind: StepKind| steps.push(Step::new(id, kind));
-        if study.consent.is_some() {
-            push("consent".to_owned(), StepKind::Consent);
-        }
-        if study.device.is_some() {
-            push("device".to_owned(), StepKind::Device);
-        }
-        if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {
-            push("demographics".to_owned(), StepKind::Questions { page, demographics: true });
-        }
-        for (index, section) in study.instructions.iter().enumerate() {
-            push(format!("instructions/{}", index + 1), StepKind::Page(section.clone()));
-        }
-        if let Some(calibration) = study.calibration.clone() {
-            push("calibration".to_owned(), StepKind::Calibration(calibration));
-        }
-        let rounds = study
-            .training
-            .as_ref()
-            .map_or_else(Vec::new, |training| practice(&study, training, &mut steps));
-        let mut push = |id: String, kind: StepKind, time_limit: Option<TimeLimit>| {
-            steps.push(Step { time_limit, ..Step::new(id, kind) });
+        let mut steps = before_training(&study);
+        let rounds = match &study.training {
+            Some(training) => practice(&study, training, &mut steps),
+            None => Vec::new(),
         };
-        let mut sides = Sides::new(&study, draw, &items);
-        let mut trials = 0;
-        let mut shown: Vec<&str> = Vec::new();
-        for item in &items {
-            match item {
-                OrderedItem::Trial { trial, component, clip, condition } => {
-                    let Some(Component::Trials(block)) = study.components.get(component) else {
-                        continue;
-                    };
-                    trials += 1;
-                    let step = TrialStep {
-                        clip: clip.clone(),
-                        questions: questions(&study, &block.questions),
-                        instruction: block.instruction.clone(),
-                        maximum_replays: block.maximum_replays,
-                        training: false,
-                        number: trials,
-                        condition: condition.clone(),
-                        beside: block.beside.as_ref().and_then(|beside| {
-                            companion(beside, clip, &study.clips, sides.is_left(component, beside))
-                        }),
-                        right: Answers::new(),
-                    };
-                    push(trial.clone(), StepKind::Trial(step), block.time_limit.clone());
-                }
-                OrderedItem::Component { component } => {
-                    shown.push(component);
-                    let times = shown.iter().filter(|each| *each == component).count();
-                    let id = match times {
-                        1 => component.clone(),
-                        again => format!("{component}#{again}"),
-                    };
-                    let (kind, limit) = match study.components.get(component) {
-                        Some(Component::Questionnaire(page)) => (
-                            StepKind::Questions { page: page.clone(), demographics: false },
-                            page.time_limit.clone(),
-                        ),
-                        Some(Component::Page(page)) => (
-                            StepKind::Page(Section {
-                                heading: page.heading.clone(),
-                                text: page.text.clone(),
-                            }),
-                            page.time_limit.clone(),
-                        ),
-                        Some(Component::Break(rest)) => (StepKind::Break(rest.clone()), None),
-                        Some(Component::Trials(_)) | None => continue,
-                    };
-                    push(id, kind, limit);
-                }
-            }
-        }
-        for (index, section) in study.debriefing.iter().enumerate() {
-            push(format!("debriefing/{}", index + 1), StepKind::Debriefing(section.clone()), None);
-        }
+        steps.extend(ordered(&study, draw, &items));
+        let debriefing = study.debriefing.iter().enumerate().map(|(index, section)| {
+            let id = format!("debriefing/{}", index + 1);
+            Step::new(id, StepKind::Debriefing(section.clone()))
+        });
+        steps.extend(debriefing);
         let option_orders = option_orders(&study, draw);
         let translated = study.translations.keys().map(|each| study.words(each)).collect();
         Ok(Self { study, started, steps, option_orders, rounds, translated })
@@ -229,6 +162,88 @@ impl TrialStep {
     pub fn clips(&self) -> impl Iterator<Item = &str> {
         std::iter::once(self.clip.as_str()).chain(self.beside.iter().map(|each| each.clip.as_str()))
     }
+}
+
+/// The steps before the first trial for practice.
+fn before_training(study: &StudyProjection) -> Vec<Step> {
+    let mut steps = Vec::new();
+    let mut push = |id: &str, kind: StepKind| steps.push(Step::new(id.to_owned(), kind));
+    if study.consent.is_some() {
+        push("consent", StepKind::Consent);
+    }
+    if study.device.is_some() {
+        push("device", StepKind::Device);
+    }
+    if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {
+        push("demographics", StepKind::Questions { page, demographics: true });
+    }
+    for (index, section) in study.instructions.iter().enumerate() {
+        push(&format!("instructions/{}", index + 1), StepKind::Page(section.clone()));
+    }
+    if let Some(calibration) = study.calibration.clone() {
+        push("calibration", StepKind::Calibration(calibration));
+    }
+    steps
+}
+
+/// The trials and components of the sequence, in the participant's order.
+fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Vec<Step> {
+    let mut sides = Sides::new(study, draw, items);
+    let mut trials = 0;
+    let mut shown: Vec<&str> = Vec::new();
+    let mut steps = Vec::new();
+    for item in items {
+        steps.extend(match item {
+            OrderedItem::Trial { trial, component, clip, condition } => {
+                let Some(Component::Trials(block)) = study.components.get(component) else {
+                    continue;
+                };
+                trials += 1;
+                let step = TrialStep {
+                    clip: clip.clone(),
+                    questions: questions(study, &block.questions),
+                    instruction: block.instruction.clone(),
+                    maximum_replays: block.maximum_replays,
+                    training: false,
+                    number: trials,
+                    condition: condition.clone(),
+                    beside: block.beside.as_ref().and_then(|beside| {
+                        companion(beside, clip, &study.clips, sides.is_left(component, beside))
+                    }),
+                    right: Answers::new(),
+                };
+                let time_limit = block.time_limit.clone();
+                Some(Step { id: trial.clone(), kind: StepKind::Trial(step), time_limit })
+            }
+            OrderedItem::Component { component } => {
+                shown.push(component);
+                let times = shown.iter().filter(|each| *each == component).count();
+                let id = match times {
+                    1 => component.clone(),
+                    again => format!("{component}#{again}"),
+                };
+                study.components.get(component).and_then(|found| component_step(id, found))
+            }
+        });
+    }
+    steps
+}
+
+/// The step of a component that is no block of trials.
+fn component_step(id: String, component: &Component) -> Option<Step> {
+    let (kind, time_limit) = match component {
+        Component::Questionnaire(page) => (
+            StepKind::Questions { page: page.clone(), demographics: false },
+            page.time_limit.clone(),
+        ),
+        Component::Page(page) => {
+            let section = Section { heading: page.heading.clone(), text: page.text.clone() };
+            (StepKind::Page(section), page.time_limit.clone())
+        }
+        Component::Break(rest) => (StepKind::Break(rest.clone()), None),
+        Component::Trials(_) => return None,
+    };
+    Some(Step { id, kind, time_limit })
 }
 
 fn companion(beside: &Beside, clip: &str, clips: &[Clip], left: bool) -> Option<Companion> {
