@@ -39,11 +39,12 @@ impl<'a> Schemas<'a> {
     /// The alternative of `anyOf` that a value is of, by its type.
     pub fn fitting(&self, alternatives: &'a [Value], value: &Value) -> Option<&'a Value> {
         alternatives.iter().find(|alternative| {
-            self.parts(alternative).iter().any(|part| {
+            let fits = self.parts(alternative).iter().any(|part| {
                 part.get("type").is_some_and(|types| has_one(types, value))
                     || part.get("anyOf").is_some()
                     || part.get("oneOf").is_some()
-            }) && !(value.is_null() && !accepts_null(alternative))
+            });
+            fits && (!value.is_null() || accepts_null(alternative))
         })
     }
 }
