@@ -6,11 +6,15 @@
 use std::sync::Arc;
 
 use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
-use mimique_study::{Answers, Component, KindOfQuestion as _, Study};
+use mimique_study::{
+    Answers, Component, KindOfQuestion as _, Questionnaire, Study, TrialsComponent,
+};
 use serde_json::Value;
 
 use super::design::{Design, Step, has_conditions};
-use crate::simulate::{BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths};
+use crate::simulate::{
+    Asked, BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths,
+};
 use crate::trials::export::{Answer, Export, Person as Who, Trial, exclude_people, why_left_out};
 
 impl Design<'_> {
@@ -92,22 +96,10 @@ impl<'d> Data<'d> {
                     else {
                         continue;
                     };
-                    let mut told = Answers::new();
-                    for question in &page.questions {
-                        if !question.is_shown(&told, &earlier) {
-                            continue;
-                        }
+                    if let Some(told) = page_answers(&mut person, &mut who, page, &earlier) {
                         has_rows = true;
-                        let answer = person.page_answer(&question.id);
-                        if let Some(check) = &question.attention_check {
-                            who.failed_checks +=
-                                usize::from(!is_same(answer.as_ref(), &check.expected));
-                        }
-                        if let Some(answer) = answer {
-                            told.insert(question.id.clone(), answer);
-                        }
+                        earlier.extend(told);
                     }
-                    earlier.extend(told);
                 }
                 Step::Page(_) => {}
                 Step::Trial { clip, block } => {
@@ -144,28 +136,8 @@ impl<'d> Data<'d> {
             return;
         };
         let needs = &self.design.needs;
-        let mut trial = Trial {
-            stimulus: self.model.clips[clip].id.as_str().into(),
-            // The order of trials, and what stands beside a clip, have no part in the study's tests.
-            order: None,
-            beside: None,
-            levels: self.levels[clip].clone(),
-            frames: None,
-            late: None,
-            longest_ms: None,
-        };
-        let clip_ms = eighths(self.model.parameters.times.clip_ms);
-        let mut since_onset_ms = clip_ms;
-        if needs.display {
-            let showing = person.showing(component.maximum_replays);
-            let again = eighths(BEFORE_REPLAY_MS) + eighths(60.0) + clip_ms;
-            since_onset_ms += showing.replays as f64 * again;
-            trial.frames = Some(showing.frames.len() as f64);
-            trial.late = Some(showing.late() as f64);
-            trial.longest_ms = Some((showing.longest_ms() * 1000.0).round() / 1000.0);
-        }
+        let (trial, mut since_onset_ms) = self.show(person, component, clip);
         who.trials += 1;
-        let number = self.trials.len();
         let mut quickest: Option<f64> = None;
         let mut told = Answers::new();
         for id in &component.questions {
@@ -191,47 +163,61 @@ impl<'d> Data<'d> {
             if has_conditions(self.design.study) {
                 told.insert(id.clone(), as_json(asked, raw.clone()));
             }
-            for response in &needs.responses {
-                let Some(suffix) = response.strip_prefix(id.as_str()) else { continue };
-                if !suffix.is_empty() && !suffix.starts_with('.') {
-                    continue;
-                }
-                // Several hypotheses may be about one response.
-                let again =
-                    |(to, answer): &(String, Answer)| answer.trial == number && to == response;
-                if self.answers.iter().rev().take(needs.responses.len()).any(again) {
-                    continue;
-                }
-                let (answer, correct, truth) = match (&raw, &asked.way) {
-                    (Raw::Option(option), Way::Recognised(recognised)) => {
-                        let options = asked.question.kind.options();
-                        let right = recognised.clips[clip].as_ref().map(|row| row.right);
-                        (
-                            options[*option].value.clone(),
-                            right.map(|right| right == *option),
-                            right.map(|right| options[right].value.clone()),
-                        )
-                    }
-                    (Raw::Json(Value::Object(parts)), _) => {
-                        let part = parts.get(suffix.trim_start_matches('.'));
-                        let Some(part) = part else { continue };
-                        (text(part), None, None)
-                    }
-                    _ => (text(&as_json(asked, raw.clone())), None, None),
-                };
-                let answer = Answer {
-                    person: place,
-                    number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
-                    text: answer.into(),
-                    correct,
-                    truth: truth.map(Into::into),
-                    rt_ms,
-                    trial: number,
-                };
-                self.answers.push((response.clone(), answer));
-            }
+            self.keep(id, &Given { person: place, clip, asked, raw: &raw, rt_ms });
         }
         self.trials.push((place, trial, quickest));
+    }
+
+    /// Shows the clip of a trial: the trial's row, and the time from its onset to the end of its last
+    /// play, milliseconds.
+    fn show(
+        &self,
+        person: &mut Person<'_>,
+        component: &TrialsComponent,
+        clip: usize,
+    ) -> (Trial, f64) {
+        let mut trial = Trial {
+            stimulus: self.model.clips[clip].id.as_str().into(),
+            // The order of trials, and what stands beside a clip, have no part in the study's tests.
+            order: None,
+            beside: None,
+            levels: self.levels[clip].clone(),
+            frames: None,
+            late: None,
+            longest_ms: None,
+        };
+        let clip_ms = eighths(self.model.parameters.times.clip_ms);
+        let mut since_onset_ms = clip_ms;
+        if self.design.needs.display {
+            let showing = person.showing(component.maximum_replays);
+            let again = eighths(BEFORE_REPLAY_MS) + eighths(60.0) + clip_ms;
+            since_onset_ms += showing.replays as f64 * again;
+            trial.frames = Some(showing.frames.len() as f64);
+            trial.late = Some(showing.late() as f64);
+            trial.longest_ms = Some((showing.longest_ms() * 1000.0).round() / 1000.0);
+        }
+        (trial, since_onset_ms)
+    }
+
+    /// Keeps an answer to a question of the trial that is being made, once for each response that the
+    /// hypotheses are about.
+    fn keep(&mut self, question: &str, given: &Given<'_>) {
+        let responses = &self.design.needs.responses;
+        let trial = self.trials.len();
+        for response in responses {
+            let Some(suffix) = response.strip_prefix(question) else { continue };
+            if !suffix.is_empty() && !suffix.starts_with('.') {
+                continue;
+            }
+            // Several hypotheses may be about one response.
+            let again = |(to, answer): &(String, Answer)| answer.trial == trial && to == response;
+            if self.answers.iter().rev().take(responses.len()).any(again) {
+                continue;
+            }
+            let part = suffix.trim_start_matches('.');
+            let Some(answer) = given.as_answer(part, trial) else { continue };
+            self.answers.push((response.clone(), answer));
+        }
     }
 
     /// Applies the study's exclusions.
@@ -267,6 +253,68 @@ impl<'d> Data<'d> {
         }
         self.export
     }
+}
+
+/// An answer of a trial before it is kept.
+struct Given<'a> {
+    person: usize,
+    clip: usize,
+    asked: &'a Asked<'a>,
+    raw: &'a Raw,
+    rt_ms: Option<f64>,
+}
+
+impl Given<'_> {
+    /// The answer, or its part of a name, as the export has it; none where the part was not answered.
+    fn as_answer(&self, part: &str, trial: usize) -> Option<Answer> {
+        let (answer, correct, truth) = match (self.raw, &self.asked.way) {
+            (Raw::Option(option), Way::Recognised(recognised)) => {
+                let options = self.asked.question.kind.options();
+                let right = recognised.clips[self.clip].as_ref().map(|row| row.right);
+                (
+                    options[*option].value.clone(),
+                    right.map(|right| right == *option),
+                    right.map(|right| options[right].value.clone()),
+                )
+            }
+            (Raw::Json(Value::Object(parts)), _) => (text(parts.get(part)?), None, None),
+            _ => (text(&as_json(self.asked, self.raw.clone())), None, None),
+        };
+        Some(Answer {
+            person: self.person,
+            number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
+            text: answer.into(),
+            correct,
+            truth: truth.map(Into::into),
+            rt_ms: self.rt_ms,
+            trial,
+        })
+    }
+}
+
+/// The answers of a page, its attention checks counted; none where no question is shown.
+fn page_answers(
+    person: &mut Person<'_>,
+    who: &mut Who,
+    page: &Questionnaire,
+    earlier: &Answers,
+) -> Option<Answers> {
+    let mut told = Answers::new();
+    let mut is_empty = true;
+    for question in &page.questions {
+        if !question.is_shown(&told, earlier) {
+            continue;
+        }
+        is_empty = false;
+        let answer = person.page_answer(&question.id);
+        if let Some(check) = &question.attention_check {
+            who.failed_checks += usize::from(!is_same(answer.as_ref(), &check.expected));
+        }
+        if let Some(answer) = answer {
+            told.insert(question.id.clone(), answer);
+        }
+    }
+    (!is_empty).then_some(told)
 }
 
 fn numbers_about(study: &Study) -> impl Iterator<Item = String> {
@@ -327,10 +375,9 @@ mod tests {
         lines.join("\n")
     }
 
-    #[test]
-    fn direct_answers_are_those_of_the_export() {
+    /// The demo study with every rule that leaves people or trials out, a response time, and a condition.
+    fn strict_demo() -> Value {
         let (mut value, _) = study("demo.json");
-        // Every rule that leaves people or trials out, a response time, and a condition.
         value["exclusions"] = serde_json::json!({
             "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
             "longestFrameMs": 33.0, "shortestRtMs": 4200.0,
@@ -360,6 +407,12 @@ mod tests {
         }
         value["questions"][2]["showIf"] =
             serde_json::json!({"question": "perceived_intensity", "atLeast": 3});
+        value
+    }
+
+    #[test]
+    fn direct_answers_are_those_of_the_export() {
+        let value = strict_demo();
         let study = Study::from_value(&value).unwrap();
         let hash = mimique_study::config_hash(&value);
         let mut parameters = Parameters::for_study(&study);
