@@ -9,7 +9,7 @@ use crate::hypothesis::not_tested::of_pair_in_words;
 use crate::hypothesis::test_line::TestLine;
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
-use crate::trials::export::AskedQuestion;
+use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// One place of a table of tests, for `results.json`.
