@@ -38,40 +38,54 @@ pub(crate) fn person_level(
     for overall in &result.overall {
         sentences.push(overall_sentence(naming, overall, factor, label));
     }
-    let tested = result.pairs.len();
-    if tested <= 3 {
-        let mut unshown = false;
-        for (place, pair) in result.pairs.iter().enumerate() {
-            // Named once; the sentences after it are about the same question.
-            let topic = (place == 0).then(|| topic(language, kind, label));
-            let (words, shown) = pair_sentence(naming, pair, kind, factor, topic, tested);
-            sentences.push(words);
-            unshown |= !shown;
-        }
-        if unshown {
-            sentences.push(language.pick(
-                "Where no difference was shown, that is no proof that there is none; the interval says how large it may be.",
-                "Là où aucune différence n’a été montrée, cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.",
-            ).to_owned());
-        }
-        return sentences.join(" ");
+    if result.pairs.len() <= 3 {
+        sentences.extend(each_pair(naming, &result.pairs, kind, factor, label));
+    } else {
+        sentences.extend(many_pairs(naming, &result.pairs, kind, factor));
     }
-    let different: Vec<&Pair> = result
-        .pairs
+    sentences.join(" ")
+}
+
+/// A sentence on each pair.
+fn each_pair(
+    naming: &Naming<'_>,
+    pairs: &[Pair],
+    kind: MeasureKind,
+    factor: &str,
+    label: &str,
+) -> Vec<String> {
+    let language = naming.language;
+    let mut sentences = Vec::new();
+    let mut unshown = false;
+    for (place, pair) in pairs.iter().enumerate() {
+        // Named once; the sentences after it are about the same question.
+        let topic = (place == 0).then(|| topic(language, kind, label));
+        let (words, shown) = pair_sentence(naming, pair, kind, factor, topic, pairs.len());
+        sentences.push(words);
+        unshown |= !shown;
+    }
+    if unshown {
+        sentences.push(language.pick(
+            "Where no difference was shown, that is no proof that there is none; the interval says how large it may be.",
+            "Là où aucune différence n’a été montrée, cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.",
+        ).to_owned());
+    }
+    sentences
+}
+
+/// How many pairs differ, and which.
+fn many_pairs(naming: &Naming<'_>, pairs: &[Pair], kind: MeasureKind, factor: &str) -> Vec<String> {
+    let (language, tested) = (naming.language, pairs.len());
+    let different: Vec<&Pair> = pairs
         .iter()
         .filter(|pair| pair.wilcoxon.p_that_counts().is_some_and(|p| p < LEVEL))
         .collect();
-    sentences.push(if different.is_empty() {
-        language.pick(
+    if different.is_empty() {
+        return vec![language.pick(
             format!("None of the {tested} pairs differs after Holm’s correction."),
             format!("Aucune des {tested} paires ne diffère après correction de Holm."),
-        )
-    } else {
-        language.pick(
-            format!("{} of {tested} pairs differ after Holm’s correction:", different.len()),
-            format!("{} paires sur {tested} diffèrent après correction de Holm :", different.len()),
-        )
-    });
+        )];
+    }
     let words: Vec<String> = different
         .iter()
         .map(|pair| {
@@ -86,10 +100,11 @@ pub(crate) fn person_level(
             )
         })
         .collect();
-    if !words.is_empty() {
-        sentences.push(format!("{}.", words.join(", ")));
-    }
-    sentences.join(" ")
+    let count = language.pick(
+        format!("{} of {tested} pairs differ after Holm’s correction:", different.len()),
+        format!("{} paires sur {tested} diffèrent après correction de Holm :", different.len()),
+    );
+    vec![count, format!("{}.", words.join(", "))]
 }
 
 /// The higher level first, and by how much.
@@ -117,32 +132,11 @@ fn pair_sentence(
 ) -> (String, bool) {
     let language = naming.language;
     let (a, b) = (level(naming, factor, &pair.a), level(naming, factor, &pair.b));
-    // A level's name keeps its letters at the start of a sentence; a word begins with a capital.
-    let sentence = |words: String, begins_with_level: bool| match &topic {
-        Some(topic) => format!("{topic}, {words}"),
-        None if begins_with_level => words,
-        None => {
-            let mut letters = words.chars();
-            letters
-                .next()
-                .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-        }
-    };
+    let sentence = |words, begins_with_level| sentence(topic.as_deref(), words, begins_with_level);
     let line = match &pair.wilcoxon {
         Outcome::Ok(line) => line,
-        Outcome::Undefined { .. } if pair.n == 0 => {
-            let words = language.pick(
-                format!("nobody has answers for both {a} and {b}: nothing can be compared."),
-                format!("personne n’a de réponses à la fois pour {a} et {b} : rien à comparer."),
-            );
-            return (sentence(words, false), true);
-        }
         Outcome::Undefined { .. } => {
-            let words = language.pick(
-                format!("each of the {} people has the same mean for {a} and {b}: no test is defined.", pair.n),
-                format!("chacune des {} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini.", pair.n),
-            );
-            return (sentence(words, false), true);
+            return (sentence(undefined_pair(language, pair.n, &a, &b), false), true);
         }
     };
     let observed = observed(language, kind, pair, line);
@@ -181,6 +175,34 @@ fn pair_sentence(
         format!("aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes.", pair.n),
     );
     (sentence(words, false), false)
+}
+
+/// Words as a sentence. A level's name keeps its letters at the start; a word begins with a capital.
+fn sentence(topic: Option<&str>, words: String, begins_with_level: bool) -> String {
+    match topic {
+        Some(topic) => format!("{topic}, {words}"),
+        None if begins_with_level => words,
+        None => {
+            let mut letters = words.chars();
+            letters
+                .next()
+                .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        }
+    }
+}
+
+/// Why `people` people's answers to two levels cannot be tested.
+fn undefined_pair(language: Language, people: usize, a: &str, b: &str) -> String {
+    if people == 0 {
+        return language.pick(
+            format!("nobody has answers for both {a} and {b}: nothing can be compared."),
+            format!("personne n’a de réponses à la fois pour {a} et {b} : rien à comparer."),
+        );
+    }
+    language.pick(
+        format!("each of the {people} people has the same mean for {a} and {b}: no test is defined."),
+        format!("chacune des {people} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini."),
+    )
 }
 
 /// The median difference with its interval.
@@ -277,21 +299,8 @@ fn overall_sentence(
         },
         _ => None,
     };
-    let what = match &line.row.term {
-        Term::Whole => naming.factor(factor),
-        pair @ Term::Pair(_) => format!("{} ({pair})", naming.factor(factor)),
-        Term::Effect(factors) => naming.interaction(factors),
-        term @ (Term::Differences(_) | Term::Relation(_)) => term.to_string(),
-    };
-    let numbers = format!(
-        "{}{} = {}, {}, {} = {}",
-        line.names.statistic,
-        line.degrees_in_brackets(),
-        language.number(line.row.statistic),
-        language.p(line.p_that_counts()),
-        line.names.effect_symbol,
-        line.row.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
-    );
+    let what = compared(naming, factor, &line.row.term);
+    let numbers = numbers(language, line);
     let significant = line.p_that_counts() < LEVEL;
     if interaction.is_some() && line.call.design != Design::Combinations {
         return acting_together(language, line, &what, &numbers, significant);
@@ -321,6 +330,29 @@ fn overall_sentence(
     language.pick(
         format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.row.n),
         format!("Aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+    )
+}
+
+/// What a test compares.
+fn compared(naming: &Naming<'_>, factor: &str, term: &Term) -> String {
+    match term {
+        Term::Whole => naming.factor(factor),
+        pair @ Term::Pair(_) => format!("{} ({pair})", naming.factor(factor)),
+        Term::Effect(factors) => naming.interaction(factors),
+        term @ (Term::Differences(_) | Term::Relation(_)) => term.to_string(),
+    }
+}
+
+/// Statistic, p and effect of a test.
+fn numbers(language: Language, line: &TestLine) -> String {
+    format!(
+        "{}{} = {}, {}, {} = {}",
+        line.names.statistic,
+        line.degrees_in_brackets(),
+        language.number(line.row.statistic),
+        language.p(line.p_that_counts()),
+        line.names.effect_symbol,
+        line.row.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
     )
 }
 

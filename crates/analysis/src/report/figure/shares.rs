@@ -22,11 +22,7 @@ pub(crate) fn shares(
     let heading = if titled { gap } else { 6.0 };
     let bottom = top + rows as f64 * line + groups.len() as f64 * heading;
     let mut svg = Svg::new(caption, bottom + 30.0);
-    for &tick in &axis.ticks {
-        let x = axis.place(tick);
-        svg.line([x, top - 4.0], [x, bottom], "rule");
-        svg.text(x, bottom + 17.0, "small", Anchor::Middle, &language.percent(tick));
-    }
+    percent_rules(&mut svg, language, &axis, (top, bottom));
     if let Some(chance) = chance {
         guessing_line(&mut svg, language, axis.place(chance), (top, bottom));
     }
@@ -68,6 +64,15 @@ pub(crate) fn shares(
         format!("Points avec intervalles : {}.", spoken.join(", ")),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }
+}
+
+/// Lines down the figure with their percentages below.
+fn percent_rules(svg: &mut Svg, language: Language, axis: &Axis, (top, bottom): (f64, f64)) {
+    for &tick in &axis.ticks {
+        let x = axis.place(tick);
+        svg.line([x, top - 4.0], [x, bottom], "rule");
+        svg.text(x, bottom + 17.0, "small", Anchor::Middle, &language.percent(tick));
+    }
 }
 
 /// A line where guessing would come to lie.
