@@ -8,6 +8,8 @@
 mod clips;
 mod curve;
 mod dataset;
+#[cfg(test)]
+mod dataset_tests;
 mod design;
 mod table;
 

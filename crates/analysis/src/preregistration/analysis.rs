@@ -203,11 +203,10 @@ fn interaction_test(language: Language, traits: usize) -> &'static str {
             "interaction by people’s differences: for each pair of levels of the factor within people, whether each person’s difference of means depends on the factor about people (Mann-Whitney of two groups, Kruskal-Wallis of more), smallest p after Holm’s correction over the pairs",
             "interaction par les différences des personnes : pour chaque paire de niveaux du facteur intra-personnes, la différence des moyennes de chaque personne dépend-elle du facteur propre aux personnes (Mann-Whitney pour deux groupes, Kruskal-Wallis au-delà), plus petit p après correction de Holm sur les paires",
         ),
-        2 => language
-            .pick(
-                "interaction of the Scheirer-Ray-Hare test on one mean a person",
-                "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
-            ),
+        2 => language.pick(
+            "interaction of the Scheirer-Ray-Hare test on one mean a person",
+            "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
+        ),
         _ => language.pick(
             "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
             "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",

@@ -1,17 +1,16 @@
 //! The tidy export of a study as people, trials and answers, with the study's exclusions applied.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use mimique_session::Standing;
 use mimique_stats::{Refusal, Table};
-use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{Exclusions, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
-use crate::trials::column::Column;
 use crate::trials::combinations::Combinations;
+use crate::trials::sessions::{Sessions, about_people};
 use crate::trials::trial_rows::{TrialReader, TrialRows, stretches};
 
 /// One person.
@@ -125,7 +124,7 @@ pub(crate) struct Export {
 pub(crate) const BY_RESEARCHER: &str = "excluded by the researcher";
 
 /// In the place of the status of somebody whom the researcher excluded.
-const EXCLUDED: &str = "excluded";
+pub(super) const EXCLUDED: &str = "excluded";
 
 /// Columns that must be there.
 const NEEDED: [&str; 5] = ["participant_id", "trial_id", "trial_type", "response_id", "answer"];
@@ -219,72 +218,6 @@ impl Export {
     }
 }
 
-/// The people of an export before any is left out.
-struct Sessions<'t> {
-    people: Vec<Person>,
-    /// Stage of each person.
-    stages: Vec<&'t str>,
-    /// The researcher's reason for excluding each person, where one is given.
-    reasons: Vec<Option<&'t str>>,
-    /// Place in `people` of each row of the table.
-    person_of_row: Vec<usize>,
-}
-
-impl<'t> Sessions<'t> {
-    fn read(table: &'t Table) -> Result<Self, Refusal> {
-        let [participant, status, stage, attention] =
-            ["participant_id", "status", "stage", "attention_passed"]
-                .map(|name| Column::of(table, name));
-        let mut people: Vec<Person> = Vec::new();
-        let mut place: HashMap<&str, usize> = HashMap::new();
-        let mut person_of_row = Vec::with_capacity(table.rows());
-        let mut stages: Vec<&str> = Vec::new();
-        // Rows of one person mostly follow each other.
-        let mut last: Option<(&str, usize)> = None;
-        for row in 0..table.rows() {
-            let id = participant.needed(row)?;
-            let same = last.filter(|(known, _)| *known == id).map(|(_, person)| person);
-            let person = same.unwrap_or_else(|| {
-                *place.entry(id).or_insert_with(|| {
-                    people.push(Person {
-                        id: id.to_owned(),
-                        status: status.text(row).unwrap_or("unknown").to_owned(),
-                        trials: 0,
-                        failed_checks: 0,
-                        excluded: None,
-                    });
-                    stages.push(stage.text(row).unwrap_or("live"));
-                    people.len() - 1
-                })
-            });
-            last = Some((id, person));
-            if attention.text(row) == Some("false") {
-                people[person].failed_checks += 1;
-            }
-            person_of_row.push(person);
-        }
-        let reasons = vec![None; people.len()];
-        let mut sessions = Self { people, stages, reasons, person_of_row };
-        sessions.mark_excluded(table);
-        Ok(sessions)
-    }
-
-    /// The server marks whom the researcher excluded; how the session stood is kept beside it.
-    fn mark_excluded(&mut self, table: &'t Table) {
-        if !(table.has("excluded") && table.has("exclusion_reason")) {
-            return;
-        }
-        let [excluded, reason] =
-            ["excluded", "exclusion_reason"].map(|name| Column::of(table, name));
-        for (row, &person) in self.person_of_row.iter().enumerate() {
-            if excluded.text(row) == Some("true") {
-                EXCLUDED.clone_into(&mut self.people[person].status);
-                self.reasons[person] = reason.text(row);
-            }
-        }
-    }
-}
-
 /// Why a trial is left out, if it is: its first reason. `quickest_ms` is its shortest response time.
 pub(crate) fn why_left_out(
     rules: &Exclusions,
@@ -365,38 +298,4 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
         words.push(format!("rt < {limit} ms"));
     }
     words
-}
-
-/// Columns of answers about the person, and of the assigned condition: the same in each of the person's
-/// rows.
-fn about_people(
-    table: &Table,
-    study: &Study,
-    person_of_row: &[usize],
-    people: usize,
-) -> Vec<(String, Vec<Option<String>>)> {
-    let questions: Vec<&str> = study
-        .demographics
-        .iter()
-        .flat_map(|page| &page.questions)
-        .map(|question| question.id.as_str())
-        .collect();
-    let conditions = !study.conditions().is_empty();
-    let own = |name: &String| {
-        (conditions && name == ASSIGNED_CONDITION)
-            || questions.iter().any(|id| {
-                name == id || name.strip_prefix(id).is_some_and(|rest| rest.starts_with('.'))
-            })
-    };
-    let mut about = Vec::new();
-    for (place, name) in table.names().iter().enumerate().filter(|(_, name)| own(name)) {
-        let mut cells: Vec<Option<String>> = vec![None; people];
-        for (row, &person) in person_of_row.iter().enumerate() {
-            if cells[person].is_none() {
-                cells[person] = table.cell(row, place).map(str::to_owned);
-            }
-        }
-        about.push((name.clone(), cells));
-    }
-    about
 }

@@ -5,4 +5,5 @@ pub(crate) mod column;
 pub(crate) mod combinations;
 pub(crate) mod export;
 pub(crate) mod measure;
+mod sessions;
 pub(crate) mod trial_rows;

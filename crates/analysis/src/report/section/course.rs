@@ -119,19 +119,19 @@ fn trend_in_words(language: Language, label: &str, trend: &Outcome<TestLine>) ->
             let rho = language.fixed(line.row.effect.unwrap_or(0.0), 2);
             if line.row.p_value < 0.05 {
                 language.pick(
-                    format!("{}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {} people.", label, line.row.n),
-                    format!("{} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes.", label, line.row.n),
+                    format!("{label}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {} people.", line.row.n),
+                    format!("{label} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes.", line.row.n),
                 )
             } else {
                 language.pick(
-                    format!("{}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {} people; that is no proof that there is none.", label, line.row.n),
-                    format!("{} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", label, line.row.n),
+                    format!("{label}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {} people; that is no proof that there is none.", line.row.n),
+                    format!("{label} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
                 )
             }
         }
         Outcome::Undefined { reason } => language.pick(
-            format!("{}: no test is defined ({reason}).", label),
-            format!("{} : aucun test n’est défini ({reason}).", label),
+            format!("{label}: no test is defined ({reason})."),
+            format!("{label} : aucun test n’est défini ({reason})."),
         ),
     }
 }
