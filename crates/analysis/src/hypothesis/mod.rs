@@ -23,7 +23,8 @@ use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
 use crate::language::Language;
 use crate::language::naming::Naming;
-use crate::trials::export::{AskedQuestion, Export};
+use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Export;
 use crate::trials::measure::{Measure, MeasureKind, as_numbers};
 
 /// A hypothesis and what came out.

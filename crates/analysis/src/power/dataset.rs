@@ -6,11 +6,15 @@
 use std::sync::Arc;
 
 use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
-use mimique_study::{Answers, Component, KindOfQuestion as _, Study};
+use mimique_study::{
+    Answers, Component, KindOfQuestion as _, Questionnaire, Study, TrialsComponent,
+};
 use serde_json::Value;
 
 use super::design::{Design, Step, has_conditions};
-use crate::simulate::{BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths};
+use crate::simulate::{
+    Asked, BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths,
+};
 use crate::trials::export::{Answer, Export, Person as Who, Trial, exclude_people, why_left_out};
 
 impl Design<'_> {
@@ -92,22 +96,10 @@ impl<'d> Data<'d> {
                     else {
                         continue;
                     };
-                    let mut told = Answers::new();
-                    for question in &page.questions {
-                        if !question.is_shown(&told, &earlier) {
-                            continue;
-                        }
+                    if let Some(told) = page_answers(&mut person, &mut who, page, &earlier) {
                         has_rows = true;
-                        let answer = person.page_answer(&question.id);
-                        if let Some(check) = &question.attention_check {
-                            who.failed_checks +=
-                                usize::from(!is_same(answer.as_ref(), &check.expected));
-                        }
-                        if let Some(answer) = answer {
-                            told.insert(question.id.clone(), answer);
-                        }
+                        earlier.extend(told);
                     }
-                    earlier.extend(told);
                 }
                 Step::Page(_) => {}
                 Step::Trial { clip, block } => {
@@ -144,28 +136,8 @@ impl<'d> Data<'d> {
             return;
         };
         let needs = &self.design.needs;
-        let mut trial = Trial {
-            stimulus: self.model.clips[clip].id.as_str().into(),
-            // The order of trials, and what stands beside a clip, have no part in the study's tests.
-            order: None,
-            beside: None,
-            levels: self.levels[clip].clone(),
-            frames: None,
-            late: None,
-            longest_ms: None,
-        };
-        let clip_ms = eighths(self.model.parameters.times.clip_ms);
-        let mut since_onset_ms = clip_ms;
-        if needs.display {
-            let showing = person.showing(component.maximum_replays);
-            let again = eighths(BEFORE_REPLAY_MS) + eighths(60.0) + clip_ms;
-            since_onset_ms += showing.replays as f64 * again;
-            trial.frames = Some(showing.frames.len() as f64);
-            trial.late = Some(showing.late() as f64);
-            trial.longest_ms = Some((showing.longest_ms() * 1000.0).round() / 1000.0);
-        }
+        let (trial, mut since_onset_ms) = self.show(person, component, clip);
         who.trials += 1;
-        let number = self.trials.len();
         let mut quickest: Option<f64> = None;
         let mut told = Answers::new();
         for id in &component.questions {
@@ -191,47 +163,61 @@ impl<'d> Data<'d> {
             if has_conditions(self.design.study) {
                 told.insert(id.clone(), as_json(asked, raw.clone()));
             }
-            for response in &needs.responses {
-                let Some(suffix) = response.strip_prefix(id.as_str()) else { continue };
-                if !suffix.is_empty() && !suffix.starts_with('.') {
-                    continue;
-                }
-                // Several hypotheses may be about one response.
-                let again =
-                    |(to, answer): &(String, Answer)| answer.trial == number && to == response;
-                if self.answers.iter().rev().take(needs.responses.len()).any(again) {
-                    continue;
-                }
-                let (answer, correct, truth) = match (&raw, &asked.way) {
-                    (Raw::Option(option), Way::Recognised(recognised)) => {
-                        let options = asked.question.kind.options();
-                        let right = recognised.clips[clip].as_ref().map(|row| row.right);
-                        (
-                            options[*option].value.clone(),
-                            right.map(|right| right == *option),
-                            right.map(|right| options[right].value.clone()),
-                        )
-                    }
-                    (Raw::Json(Value::Object(parts)), _) => {
-                        let part = parts.get(suffix.trim_start_matches('.'));
-                        let Some(part) = part else { continue };
-                        (text(part), None, None)
-                    }
-                    _ => (text(&as_json(asked, raw.clone())), None, None),
-                };
-                let answer = Answer {
-                    person: place,
-                    number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
-                    text: answer.into(),
-                    correct,
-                    truth: truth.map(Into::into),
-                    rt_ms,
-                    trial: number,
-                };
-                self.answers.push((response.clone(), answer));
-            }
+            self.keep(id, &Given { person: place, clip, asked, raw: &raw, rt_ms });
         }
         self.trials.push((place, trial, quickest));
+    }
+
+    /// Shows the clip of a trial: the trial's row, and the time from its onset to the end of its last
+    /// play, milliseconds.
+    fn show(
+        &self,
+        person: &mut Person<'_>,
+        component: &TrialsComponent,
+        clip: usize,
+    ) -> (Trial, f64) {
+        let mut trial = Trial {
+            stimulus: self.model.clips[clip].id.as_str().into(),
+            // The order of trials, and what stands beside a clip, have no part in the study's tests.
+            order: None,
+            beside: None,
+            levels: self.levels[clip].clone(),
+            frames: None,
+            late: None,
+            longest_ms: None,
+        };
+        let clip_ms = eighths(self.model.parameters.times.clip_ms);
+        let mut since_onset_ms = clip_ms;
+        if self.design.needs.display {
+            let showing = person.showing(component.maximum_replays);
+            let again = eighths(BEFORE_REPLAY_MS) + eighths(60.0) + clip_ms;
+            since_onset_ms += showing.replays as f64 * again;
+            trial.frames = Some(showing.frames.len() as f64);
+            trial.late = Some(showing.late() as f64);
+            trial.longest_ms = Some((showing.longest_ms() * 1000.0).round() / 1000.0);
+        }
+        (trial, since_onset_ms)
+    }
+
+    /// Keeps an answer to a question of the trial that is being made, once for each response that the
+    /// hypotheses are about.
+    fn keep(&mut self, question: &str, given: &Given<'_>) {
+        let responses = &self.design.needs.responses;
+        let trial = self.trials.len();
+        for response in responses {
+            let Some(suffix) = response.strip_prefix(question) else { continue };
+            if !suffix.is_empty() && !suffix.starts_with('.') {
+                continue;
+            }
+            // Several hypotheses may be about one response.
+            let again = |(to, answer): &(String, Answer)| answer.trial == trial && to == response;
+            if self.answers.iter().rev().take(responses.len()).any(again) {
+                continue;
+            }
+            let part = suffix.trim_start_matches('.');
+            let Some(answer) = given.as_answer(part, trial) else { continue };
+            self.answers.push((response.clone(), answer));
+        }
     }
 
     /// Applies the study's exclusions.
@@ -269,6 +255,68 @@ impl<'d> Data<'d> {
     }
 }
 
+/// An answer of a trial before it is kept.
+struct Given<'a> {
+    person: usize,
+    clip: usize,
+    asked: &'a Asked<'a>,
+    raw: &'a Raw,
+    rt_ms: Option<f64>,
+}
+
+impl Given<'_> {
+    /// The answer, or its part of a name, as the export has it; none where the part was not answered.
+    fn as_answer(&self, part: &str, trial: usize) -> Option<Answer> {
+        let (answer, correct, truth) = match (self.raw, &self.asked.way) {
+            (Raw::Option(option), Way::Recognised(recognised)) => {
+                let options = self.asked.question.kind.options();
+                let right = recognised.clips[self.clip].as_ref().map(|row| row.right);
+                (
+                    options[*option].value.clone(),
+                    right.map(|right| right == *option),
+                    right.map(|right| options[right].value.clone()),
+                )
+            }
+            (Raw::Json(Value::Object(parts)), _) => (text(parts.get(part)?), None, None),
+            _ => (text(&as_json(self.asked, self.raw.clone())), None, None),
+        };
+        Some(Answer {
+            person: self.person,
+            number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
+            text: answer.into(),
+            correct,
+            truth: truth.map(Into::into),
+            rt_ms: self.rt_ms,
+            trial,
+        })
+    }
+}
+
+/// The answers of a page, its attention checks counted; none where no question is shown.
+fn page_answers(
+    person: &mut Person<'_>,
+    who: &mut Who,
+    page: &Questionnaire,
+    earlier: &Answers,
+) -> Option<Answers> {
+    let mut told = Answers::new();
+    let mut is_empty = true;
+    for question in &page.questions {
+        if !question.is_shown(&told, earlier) {
+            continue;
+        }
+        is_empty = false;
+        let answer = person.page_answer(&question.id);
+        if let Some(check) = &question.attention_check {
+            who.failed_checks += usize::from(!is_same(answer.as_ref(), &check.expected));
+        }
+        if let Some(answer) = answer {
+            told.insert(question.id.clone(), answer);
+        }
+    }
+    (!is_empty).then_some(told)
+}
+
 fn numbers_about(study: &Study) -> impl Iterator<Item = String> {
     let questions = study.demographics.iter().flat_map(|page| &page.questions);
     questions
@@ -277,7 +325,7 @@ fn numbers_about(study: &Study) -> impl Iterator<Item = String> {
 }
 
 /// A cell as the export has it.
-fn text(value: &Value) -> String {
+pub(super) fn text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
@@ -286,113 +334,4 @@ fn is_same(answer: Option<&Value>, expected: &Value) -> bool {
         (Some(left), Some(right)) => left == right,
         _ => answer == expected,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use mimique_session::rows::{self, SessionRecord};
-
-    use super::*;
-    use crate::Parameters;
-    use crate::simulate::Simulation;
-    use mimique_stats::Table;
-
-    fn study(name: &str) -> (Value, Study) {
-        let path = format!("{}/../../study-config/{name}", env!("CARGO_MANIFEST_DIR"));
-        let value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
-        let study = Study::from_value(&value).unwrap();
-        (value, study)
-    }
-
-    /// The tidy export of simulated sessions, as CSV.
-    fn csv(study: &Study, hash: &str, parameters: &Parameters, seed: u64, people: u64) -> String {
-        let simulation = Simulation::new(study, hash, parameters, seed).unwrap();
-        let sessions: Vec<_> = (1..=people)
-            .map(|number| simulation.session(number).unwrap())
-            .filter(|session| !session.events.is_empty())
-            .collect();
-        let records = sessions
-            .iter()
-            .map(|session| SessionRecord { started: &session.started, events: &session.events });
-        let table = rows::tidy(study, &BTreeMap::new(), records);
-        let quoted = |cell: String| format!("\"{}\"", cell.replace('"', "\"\""));
-        let line = |cells: Vec<String>| cells.into_iter().map(quoted).collect::<Vec<_>>().join(",");
-        let mut lines = vec![line(table.columns.iter().map(|c| c.name.clone()).collect())];
-        for row in &table.rows {
-            let cell = |value: &Value| if value.is_null() { String::new() } else { text(value) };
-            lines.push(line(row.iter().map(cell).collect()));
-        }
-        lines.join("\n")
-    }
-
-    #[test]
-    fn direct_answers_are_those_of_the_export() {
-        let (mut value, _) = study("demo.json");
-        // Every rule that leaves people or trials out, a response time, and a condition.
-        value["exclusions"] = serde_json::json!({
-            "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
-            "longestFrameMs": 33.0, "shortestRtMs": 4200.0,
-        });
-        value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
-            "id": "H5", "statement": "s", "test": "wilcoxon", "response": "believability",
-            "measure": "rt", "factors": ["method"],
-        }));
-        value["components"]["check"] = serde_json::json!({"type": "questionnaire", "questions": [{
-            "id": "check", "type": "singleChoice", "prompt": "Choose blue",
-            "attentionCheck": {"expected": "blue"},
-            "options": [{"value": "red", "label": "Red"}, {"value": "blue", "label": "Blue"}],
-        }]});
-        let conditions = ["rested", "at-once"].map(|id| {
-            serde_json::json!({
-                "id": id, "conditional": true, "order": "random", "components": ["faces"],
-                "interruptions": [{"component": "check", "spacing": 100, "firstLocation": 4}],
-            })
-        });
-        value["sequence"] = serde_json::json!({"order": "fixed", "components": conditions});
-        // It shifts answers and times.
-        for measure in ["answer", "rt"] {
-            value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
-                "id": measure, "statement": "s", "test": "mann-whitney", "measure": measure,
-                "response": "believability", "factors": [ASSIGNED_CONDITION],
-            }));
-        }
-        value["questions"][2]["showIf"] =
-            serde_json::json!({"question": "perceived_intensity", "atLeast": 3});
-        let study = Study::from_value(&value).unwrap();
-        let hash = mimique_study::config_hash(&value);
-        let mut parameters = Parameters::for_study(&study);
-        parameters.dropout = crate::Dropout { declined: 0.1, per_trial: 0.01, withdrawn: 0.3 };
-        parameters.careless.share = 0.2;
-        parameters.display.slow_people = 0.3;
-        let people = 60;
-        let design = Design::new(&study, &hash, people, None).unwrap();
-        let model = design.model(&parameters);
-        for seed in [1, 99] {
-            let text = csv(&study, &hash, &parameters, seed, people as u64);
-            let table = Table::parse(text.as_bytes()).unwrap();
-            let read = Export::read(&table, &study).unwrap();
-            let direct = design.answers(&model, seed, people);
-            assert_eq!(direct.people, read.people);
-            assert_eq!(direct.flow, read.flow);
-            // The place in the order has no part in the tests: the direct path leaves it out.
-            let unplaced: Vec<Trial> = read
-                .trials
-                .iter()
-                .map(|trial| Trial { order: None, beside: None, ..trial.clone() })
-                .collect();
-            assert_eq!(direct.trials, unplaced);
-            assert_eq!(direct.factors, read.factors);
-            assert!(direct.about.iter().any(|(name, _)| name == ASSIGNED_CONDITION));
-            for (question, cells) in &direct.about {
-                let column = read.about.iter().find(|(name, _)| name == question).unwrap();
-                assert_eq!(cells, &column.1, "{question}");
-            }
-            assert_eq!(direct.answers, read.answers);
-            // The rules bite, or this test says little.
-            assert!(read.flow.people_left_out.len() >= 2, "{:?}", read.flow);
-            assert!(read.flow.trials_left_out.len() >= 3, "{:?}", read.flow);
-        }
-    }
 }

@@ -8,6 +8,8 @@
 mod clips;
 mod curve;
 mod dataset;
+#[cfg(test)]
+mod dataset_tests;
 mod design;
 mod table;
 
@@ -172,13 +174,8 @@ pub fn power(
     let effects: Vec<bool> =
         study.hypotheses.iter().map(|each| parameters.has_effect(study, each)).collect();
     let most = options.participants.iter().copied().max().unwrap_or(0);
-    let own_clips = study.clips().len();
-    let sizes: Vec<Option<usize>> = match options.clips.as_slice() {
-        [] => vec![None],
-        given => given.iter().map(|&clips| (clips != own_clips).then_some(clips)).collect(),
-    };
     let mut points = Vec::new();
-    for clips in sizes {
+    for clips in clip_numbers(study, options) {
         let design = Design::new(study, config_hash, most, clips)?;
         let model = design.model(parameters);
         let null_model = options.false_positives.then(|| design.model(&null));
@@ -210,8 +207,7 @@ pub fn power(
             points.push(PowerPoint {
                 participants,
                 clips: design.clips.clips.len(),
-                people_used: with.iter().map(|run| run.people as f64).sum::<f64>()
-                    / options.runs as f64,
+                people_used: mean_people(&with),
                 hypotheses,
             });
         }
@@ -223,6 +219,19 @@ pub fn power(
         alpha: options.alpha,
         points,
     })
+}
+
+/// Numbers of clips to simulate; none stands for the study's own.
+fn clip_numbers(study: &Study, options: &PowerOptions) -> Vec<Option<usize>> {
+    let own = study.clips().len();
+    match options.clips.as_slice() {
+        [] => vec![None],
+        given => given.iter().map(|&clips| (clips != own).then_some(clips)).collect(),
+    }
+}
+
+fn mean_people(runs: &[Run]) -> f64 {
+    runs.iter().map(|run| run.people as f64).sum::<f64>() / runs.len() as f64
 }
 
 /// How many runs [`power`] makes.

@@ -4,7 +4,7 @@ use mimique_stats::{
     ChiSquare, Friedman, KruskalWallis, MannWhitney, ScheirerRayHare, Spearman, TestNames,
     TestResult, Wilcoxon,
 };
-use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, TestName};
+use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
 use super::{Preregistration, Text};
 use crate::hypothesis::is_two_way;
@@ -17,39 +17,7 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     text.heading(2, "Analysis plan", "Plan d’analyse");
     text.heading(3, "Statistical models", "Modèles statistiques");
     for hypothesis in &study.hypotheses {
-        let (recommended, thesis) = tests(from, hypothesis);
-        let factors: Vec<String> =
-            hypothesis.factors.iter().map(|each| naming.factor(each)).collect();
-        let of = match hypothesis.measure {
-            Measure::Answer => format!("`{}`", hypothesis.response),
-            Measure::Correct => language.pick(
-                format!("right answers to `{}`", hypothesis.response),
-                format!("bonnes réponses à `{}`", hypothesis.response),
-            ),
-            Measure::Rt => language.pick(
-                format!("response time of `{}`", hypothesis.response),
-                format!("temps de réponse à `{}`", hypothesis.response),
-            ),
-        };
-        let by = factors.join(" × ");
-        text.line(&format!("- **{}** ({of}, {by}){}", hypothesis.id, language.pick(":", " :")));
-        if !hypothesis.levels.is_empty() {
-            let levels: Vec<String> = hypothesis
-                .levels
-                .iter()
-                .map(|level| naming.level(&hypothesis.factors[0], &level.to_string()))
-                .collect();
-            let words = language.pick("levels compared: ", "niveaux comparés : ");
-            text.line(&format!("  - {words}{}", levels.join(", ")));
-        }
-        text.line(&format!("  - {} {recommended}.", language.pick("decides:", "décide :")));
-        text.line(&format!(
-            "  - {} {thesis}.",
-            language.pick(
-                "for comparison with earlier work, not evidence (trials of one person are not independent):",
-                "pour comparaison avec les travaux antérieurs, sans valeur de preuve (les essais d’une personne ne sont pas indépendants) :"
-            )
-        ));
+        model(text, from, naming, hypothesis);
     }
     text.line("");
     text.both(
@@ -91,73 +59,125 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     );
 }
 
-/// The test that decides and the one of the thesis, in words.
-fn tests(from: &Preregistration<'_>, hypothesis: &Hypothesis) -> (String, String) {
-    let (language, study) = (from.language, from.study);
-    let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let clips = study.clips();
-    let of_clips = study.factor_names().iter().any(|name| name == factor);
-    let levels = match hypothesis.levels.len() {
-        0 => factor_levels(study, &clips).get(factor).map_or(0, Vec::len),
-        named => named,
+/// Model of a hypothesis: what is compared, which test decides, and the one of the thesis.
+fn model(
+    text: &mut Text,
+    from: &Preregistration<'_>,
+    naming: &Naming<'_>,
+    hypothesis: &Hypothesis,
+) {
+    let language = from.language;
+    let setting = Setting::of(from.study, hypothesis);
+    let recommended = recommended_test(language, hypothesis, &setting);
+    let thesis = test_of_the_thesis(language, hypothesis, &setting);
+    let factors: Vec<String> = hypothesis.factors.iter().map(|each| naming.factor(each)).collect();
+    let of = match hypothesis.measure {
+        Measure::Answer => format!("`{}`", hypothesis.response),
+        Measure::Correct => language.pick(
+            format!("right answers to `{}`", hypothesis.response),
+            format!("bonnes réponses à `{}`", hypothesis.response),
+        ),
+        Measure::Rt => language.pick(
+            format!("response time of `{}`", hypothesis.response),
+            format!("temps de réponse à `{}`", hypothesis.response),
+        ),
     };
-    let asked = study.all_questions().find(|question| question.id == hypothesis.response);
-    let recognition = hypothesis.measure != Measure::Rt
-        && asked.is_some_and(|question| question.kind.truth().is_some());
-    let about_people = |factor: &str| {
-        !study.factor_names().iter().any(|name| name == factor)
-            && (traits(study).contains_key(factor)
-                || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor))
-    };
-    let is_trait = about_people(factor);
-    let traits_of_two = hypothesis.factors.iter().take(2).filter(|f| about_people(f)).count();
-    let name = |names: TestNames| names.in_words[language.pick(0, 1)];
-    let of_trials = |names| {
-        let name = name(names);
-        language.pick(format!("{name} of trials"), format!("{name} sur les essais"))
-    };
-    let of_people = |names| {
-        let name = name(names);
+    let by = factors.join(" × ");
+    text.line(&format!("- **{}** ({of}, {by}){}", hypothesis.id, language.pick(":", " :")));
+    if !hypothesis.levels.is_empty() {
+        let levels: Vec<String> = hypothesis
+            .levels
+            .iter()
+            .map(|level| naming.level(&hypothesis.factors[0], &level.to_string()))
+            .collect();
+        let words = language.pick("levels compared: ", "niveaux comparés : ");
+        text.line(&format!("  - {words}{}", levels.join(", ")));
+    }
+    text.line(&format!("  - {} {recommended}.", language.pick("decides:", "décide :")));
+    text.line(&format!(
+        "  - {} {thesis}.",
         language.pick(
-            format!("{name} on one mean a person"),
-            format!("{name} sur une moyenne par personne"),
+            "for comparison with earlier work, not evidence (trials of one person are not independent):",
+            "pour comparaison avec les travaux antérieurs, sans valeur de preuve (les essais d’une personne ne sont pas indépendants) :"
         )
-    };
-    let wilcoxon = name(Wilcoxon::NAMES);
+    ));
+}
+
+/// What of a study decides which tests a hypothesis gets.
+struct Setting {
+    /// Levels compared of the first factor.
+    levels: usize,
+    /// Whether the first factor is one of the clips.
+    of_clips: bool,
+    /// Whether the first factor is about people.
+    is_trait: bool,
+    /// How many of the first two factors are about people.
+    traits_of_two: usize,
+    /// Whether right answers are counted.
+    recognition: bool,
+}
+
+impl Setting {
+    fn of(study: &Study, hypothesis: &Hypothesis) -> Self {
+        let factor = hypothesis.factors.first().map_or("", String::as_str);
+        let levels = match hypothesis.levels.len() {
+            0 => factor_levels(study, &study.clips()).get(factor).map_or(0, Vec::len),
+            named => named,
+        };
+        let asked = study.all_questions().find(|question| question.id == hypothesis.response);
+        let about_people = |factor: &str| {
+            !study.factor_names().iter().any(|name| name == factor)
+                && (traits(study).contains_key(factor)
+                    || study.demographics.iter().flat_map(|p| &p.questions).any(|q| q.id == factor))
+        };
+        Self {
+            levels,
+            of_clips: study.factor_names().iter().any(|name| name == factor),
+            is_trait: about_people(factor),
+            traits_of_two: hypothesis.factors.iter().take(2).filter(|f| about_people(f)).count(),
+            recognition: hypothesis.measure != Measure::Rt
+                && asked.is_some_and(|question| question.kind.truth().is_some()),
+        }
+    }
+}
+
+fn name(language: Language, names: TestNames) -> &'static str {
+    names.in_words[language.pick(0, 1)]
+}
+
+fn of_trials(language: Language, names: TestNames) -> String {
+    let name = name(language, names);
+    language.pick(format!("{name} of trials"), format!("{name} sur les essais"))
+}
+
+fn of_people(language: Language, names: TestNames) -> String {
+    let name = name(language, names);
+    language.pick(
+        format!("{name} on one mean a person"),
+        format!("{name} sur une moyenne par personne"),
+    )
+}
+
+/// The test that decides, in words.
+fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setting) -> String {
+    let wilcoxon = name(language, Wilcoxon::NAMES);
     let wilcoxon = language.pick(
         format!("{wilcoxon} on person means, exact and conditional on the observed ranks, zeros by Pratt"),
         format!("{wilcoxon} sur les moyennes par personne, exact et conditionnel aux rangs observés, zéros selon Pratt"),
     );
-    let recommended = if is_two_way(hypothesis.test) && traits_of_two == 1 {
-        language.pick(
-            "interaction by people’s differences: for each pair of levels of the factor within people, whether each person’s difference of means depends on the factor about people (Mann-Whitney of two groups, Kruskal-Wallis of more), smallest p after Holm’s correction over the pairs",
-            "interaction par les différences des personnes : pour chaque paire de niveaux du facteur intra-personnes, la différence des moyennes de chaque personne dépend-elle du facteur propre aux personnes (Mann-Whitney pour deux groupes, Kruskal-Wallis au-delà), plus petit p après correction de Holm sur les paires",
-        )
-        .to_owned()
-    } else if is_two_way(hypothesis.test) && traits_of_two == 2 {
-        language
-            .pick(
-                "interaction of the Scheirer-Ray-Hare test on one mean a person",
-                "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
-            )
-            .to_owned()
-    } else if is_two_way(hypothesis.test) {
-        language.pick(
-            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
-            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",
-        )
-        .to_owned()
-    } else if is_trait {
-        match (hypothesis.test, levels) {
+    if is_two_way(hypothesis.test) {
+        interaction_test(language, setting.traits_of_two).to_owned()
+    } else if setting.is_trait {
+        match (hypothesis.test, setting.levels) {
             (TestName::Spearman, _) => {
-                let name = name(Spearman::NAMES);
+                let name = name(language, Spearman::NAMES);
                 language.pick(
                     format!("{name} with person means"),
                     format!("{name} avec les moyennes par personne"),
                 )
             }
-            (_, 2) => of_people(MannWhitney::NAMES),
-            _ => of_people(KruskalWallis::NAMES),
+            (_, 2) => of_people(language, MannWhitney::NAMES),
+            _ => of_people(language, KruskalWallis::NAMES),
         }
     } else if hypothesis.test == TestName::Spearman {
         language.pick(
@@ -165,31 +185,54 @@ fn tests(from: &Preregistration<'_>, hypothesis: &Hypothesis) -> (String, String
             "test des rangs signés des corrélations de Spearman propres à chaque personne contre zéro",
         )
         .to_owned()
-    } else if levels == 2 {
+    } else if setting.levels == 2 {
         wilcoxon
     } else {
-        let friedman = name(Friedman::NAMES);
+        let friedman = name(language, Friedman::NAMES);
         language.pick(
             format!("{friedman} on person means with Iman and Davenport’s F; then, for pairs, {wilcoxon}, corrected by Holm"),
             format!("{friedman} sur les moyennes par personne, F d’Iman et Davenport ; puis, pour les paires, {wilcoxon}, corrigé par Holm"),
         )
-    };
-    let thesis = match hypothesis.test {
-        _ if is_two_way(hypothesis.test) => of_trials(ScheirerRayHare::NAMES) + ", type I",
-        TestName::Spearman => of_trials(Spearman::NAMES),
-        TestName::MannWhitney => of_trials(MannWhitney::NAMES),
-        TestName::Wilcoxon if !recognition && of_clips => language
+    }
+}
+
+/// The test of an interaction that decides, by how many of the two factors are about people.
+fn interaction_test(language: Language, traits: usize) -> &'static str {
+    match traits {
+        1 => language.pick(
+            "interaction by people’s differences: for each pair of levels of the factor within people, whether each person’s difference of means depends on the factor about people (Mann-Whitney of two groups, Kruskal-Wallis of more), smallest p after Holm’s correction over the pairs",
+            "interaction par les différences des personnes : pour chaque paire de niveaux du facteur intra-personnes, la différence des moyennes de chaque personne dépend-elle du facteur propre aux personnes (Mann-Whitney pour deux groupes, Kruskal-Wallis au-delà), plus petit p après correction de Holm sur les paires",
+        ),
+        2 => language.pick(
+            "interaction of the Scheirer-Ray-Hare test on one mean a person",
+            "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
+        ),
+        _ => language.pick(
+            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
+            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",
+        ),
+    }
+}
+
+/// The test of the thesis, in words.
+fn test_of_the_thesis(language: Language, hypothesis: &Hypothesis, setting: &Setting) -> String {
+    match hypothesis.test {
+        _ if is_two_way(hypothesis.test) => {
+            of_trials(language, ScheirerRayHare::NAMES) + ", type I"
+        }
+        TestName::Spearman => of_trials(language, Spearman::NAMES),
+        TestName::MannWhitney => of_trials(language, MannWhitney::NAMES),
+        TestName::Wilcoxon if !setting.recognition && setting.of_clips => language
             .pick(
                 "Wilcoxon’s test of matched trials as R computed it in 2019",
                 "test de Wilcoxon sur les essais appariés tel que R le calculait en 2019",
             )
             .to_owned(),
-        TestName::KruskalWallis => of_trials(KruskalWallis::NAMES),
-        _ if recognition => of_trials(ChiSquare::NAMES),
-        TestName::ChiSquare if of_clips => of_trials(ChiSquare::NAMES),
-        _ => of_trials(KruskalWallis::NAMES),
-    };
-    (recommended, thesis)
+        TestName::KruskalWallis => of_trials(language, KruskalWallis::NAMES),
+        _ if setting.recognition => of_trials(language, ChiSquare::NAMES),
+        TestName::ChiSquare if setting.of_clips => of_trials(language, ChiSquare::NAMES),
+        _ => of_trials(language, KruskalWallis::NAMES),
+    }
 }
 
 fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {

@@ -68,41 +68,12 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
         ReportFile { path: "report.md".to_owned(), text: markdown::markdown(&document) },
         ReportFile { path: "results.json".to_owned(), text: results },
     ];
-    let mut in_latex = Vec::new();
-    for block in &document.blocks {
-        match block {
-            Block::Table(data) => {
-                files.push(ReportFile {
-                    path: format!("tables/{}.csv", data.id),
-                    text: data.to_csv(),
-                });
-                files.push(ReportFile {
-                    path: format!("tables/{}.tex", data.id),
-                    text: latex::table(data),
-                });
-                in_latex.push(data.id.as_str());
-            }
-            Block::Figure(figure) => {
-                files.push(ReportFile {
-                    path: format!("figures/{}.svg", figure.id),
-                    text: figure.svg.clone(),
-                });
-                files.push(ReportFile {
-                    path: format!("tables/figure-{}.csv", figure.data.id),
-                    text: figure.data.to_csv(),
-                });
-                files.push(ReportFile {
-                    path: format!("tables/figure-{}.tex", figure.data.id),
-                    text: latex::table(&figure.data),
-                });
-            }
-            _ => {}
-        }
-    }
+    files.extend(document.blocks.iter().flat_map(block_files));
     files.extend(replay);
+    let tables: Vec<&str> = document.blocks.iter().filter_map(table_id).collect();
     files.push(ReportFile {
         path: "tables/all.tex".to_owned(),
-        text: latex::document(&document.title, &in_latex),
+        text: latex::document(&document.title, &tables),
     });
     Ok(Report {
         files,
@@ -110,4 +81,28 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
         trials: export.flow.trials_used,
         readings,
     })
+}
+
+/// The files of a block: a table as CSV and LaTeX, a figure as SVG and as a table.
+fn block_files(block: &Block) -> Vec<ReportFile> {
+    let file = |path, text| ReportFile { path, text };
+    match block {
+        Block::Table(data) => vec![
+            file(format!("tables/{}.csv", data.id), data.to_csv()),
+            file(format!("tables/{}.tex", data.id), latex::table(data)),
+        ],
+        Block::Figure(figure) => vec![
+            file(format!("figures/{}.svg", figure.id), figure.svg.clone()),
+            file(format!("tables/figure-{}.csv", figure.data.id), figure.data.to_csv()),
+            file(format!("tables/figure-{}.tex", figure.data.id), latex::table(&figure.data)),
+        ],
+        _ => Vec::new(),
+    }
+}
+
+fn table_id(block: &Block) -> Option<&str> {
+    match block {
+        Block::Table(data) => Some(&data.id),
+        _ => None,
+    }
 }

@@ -99,16 +99,7 @@ pub(crate) fn two_columns(
         (thesis_heading(language).to_owned(), 3),
         (recommended_heading(language).to_owned(), 4),
     ];
-    // The two kinds of test answer the same question in the same order: overall first, then pairs.
-    let overall = people
-        .overall
-        .iter()
-        .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
-    let beside = if people.pairs.len() > PAIRS_BESIDE { &[] } else { people.pairs.as_slice() };
-    let pairs = beside.iter().map(|pair| {
-        (naming.pair(factor, &pair.a, &pair.b), &pair.wilcoxon, difference(language, kind, pair))
-    });
-    let recommended: Vec<(String, &Outcome<TestLine>, String)> = overall.chain(pairs).collect();
+    let recommended = recommended_lines(naming, factor, kind, people);
     // With two levels the paired test of trials stands beside the pair.
     let mut of_trials: Vec<&Outcome<TestLine>> = trials.tests.iter().collect();
     if people.overall.is_empty() {
@@ -134,13 +125,40 @@ pub(crate) fn two_columns(
         }
         table.row(row);
     }
-    // Interactions and many levels have no differences to show.
+    drop_empty_differences(&mut table);
+    table
+}
+
+/// Label, test and difference of each recommended test, as those of trials stand: overall first, then
+/// pairs.
+fn recommended_lines<'p>(
+    naming: &Naming<'_>,
+    factor: &str,
+    kind: MeasureKind,
+    people: &'p PersonLevel,
+) -> Vec<(String, &'p Outcome<TestLine>, String)> {
+    let overall = people
+        .overall
+        .iter()
+        .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
+    let beside = if people.pairs.len() > PAIRS_BESIDE { &[] } else { people.pairs.as_slice() };
+    let pairs = beside.iter().map(|pair| {
+        (
+            naming.pair(factor, &pair.a, &pair.b),
+            &pair.wilcoxon,
+            difference(naming.language, kind, pair),
+        )
+    });
+    overall.chain(pairs).collect()
+}
+
+/// Interactions and many levels have no differences to show.
+fn drop_empty_differences(table: &mut DataTable) {
     if table.rows.iter().all(|row| row.last().is_some_and(String::is_empty)) {
         table.columns.pop();
         table.rows.iter_mut().for_each(|row| drop(row.pop()));
         table.groups[2].1 -= 1;
     }
-    table
 }
 
 /// More pairs than this stand in a table of their own, below.

@@ -135,32 +135,9 @@ impl Parameters {
                     choices.insert(id(), shares.collect());
                 }
                 Simulated::Number(field) => {
-                    // Most numbers that a study asks for are ages.
-                    let (low, high) =
-                        (field.minimum.unwrap_or(0.0), field.maximum.unwrap_or(100.0));
-                    let (mean, sd) = if low <= 30.0 && high >= 60.0 {
-                        (30.0, 10.0)
-                    } else {
-                        ((low + high) / 2.0, (high - low) / 6.0)
-                    };
-                    numbers.insert(id(), NumberAnswer { mean, sd });
+                    numbers.insert(id(), typed_number(field.minimum, field.maximum));
                 }
                 Simulated::Rated | Simulated::Drawn { by_shares: false } => {}
-            }
-        }
-        let mut times = Times {
-            median_ms: 2500.0,
-            sigma: 0.5,
-            person_sigma: 0.3,
-            effects: BTreeMap::new(),
-            clip_ms: 3000.0,
-        };
-        for hypothesis in study.hypotheses.iter().filter(|each| each.measure == Measure::Rt) {
-            for factor in &hypothesis.factors {
-                times.effects.insert(
-                    factor.clone(),
-                    spread(&tested(hypothesis, factor, &levels), TIME_EFFECT),
-                );
             }
         }
         Self {
@@ -168,7 +145,7 @@ impl Parameters {
             recognition,
             choices,
             numbers,
-            times,
+            times: times(study, &levels),
             careless: Careless { share: 0.03, attention_pass: 0.5, time_share: 0.4 },
             attention_pass: 0.98,
             dropout: Dropout { declined: 0.03, per_trial: 0.001, withdrawn: 0.1 },
@@ -188,6 +165,29 @@ impl Parameters {
 }
 
 type Levels = BTreeMap<String, Vec<String>>;
+
+/// A number within bounds. Most numbers that a study asks for are ages.
+fn typed_number(minimum: Option<f64>, maximum: Option<f64>) -> NumberAnswer {
+    let (low, high) = (minimum.unwrap_or(0.0), maximum.unwrap_or(100.0));
+    let (mean, sd) = if low <= 30.0 && high >= 60.0 {
+        (30.0, 10.0)
+    } else {
+        ((low + high) / 2.0, (high - low) / 6.0)
+    };
+    NumberAnswer { mean, sd }
+}
+
+/// Response times, shifted by the factors of hypotheses about them.
+fn times(study: &Study, levels: &Levels) -> Times {
+    let mut effects = BTreeMap::new();
+    for hypothesis in study.hypotheses.iter().filter(|each| each.measure == Measure::Rt) {
+        for factor in &hypothesis.factors {
+            let shifts = spread(&tested(hypothesis, factor, levels), TIME_EFFECT);
+            effects.insert(factor.clone(), shifts);
+        }
+    }
+    Times { median_ms: 2500.0, sigma: 0.5, person_sigma: 0.3, effects, clip_ms: 3000.0 }
+}
 
 fn rating(study: &Study, levels: &Levels, response: &str, scale: Scale, in_trials: bool) -> Rating {
     let unit = scale.span() / 6.0;

@@ -68,6 +68,22 @@ impl<'p> From<&'p Recognition> for Spread<'p> {
     }
 }
 
+/// The level of each clip as a number, and how many levels there are.
+fn codes_by_level(clips: &[Clip], factor: &str) -> (Vec<Option<usize>>, usize) {
+    let mut names: Vec<String> = Vec::new();
+    let codes = clips
+        .iter()
+        .map(|clip| {
+            let name = clip.factor_text(factor)?;
+            Some(names.iter().position(|known| *known == name).unwrap_or_else(|| {
+                names.push(name);
+                names.len() - 1
+            }))
+        })
+        .collect();
+    (codes, names.len())
+}
+
 impl Latent {
     /// `segments` is the segment of each clip. `is_trait` tells questions about the participant from
     /// factors of clips.
@@ -112,18 +128,8 @@ impl Latent {
             .iter()
             .filter(|(_, sd)| **sd > 0.0)
             .map(|(factor, sd)| {
-                let mut names: Vec<String> = Vec::new();
-                let codes = clips
-                    .iter()
-                    .map(|clip| {
-                        let name = level(clip, factor)?;
-                        Some(names.iter().position(|known| *known == name).unwrap_or_else(|| {
-                            names.push(name);
-                            names.len() - 1
-                        }))
-                    })
-                    .collect();
-                (*sd, codes, names.len())
+                let (codes, count) = codes_by_level(clips, factor);
+                (*sd, codes, count)
             })
             .collect();
         Self {

@@ -21,7 +21,7 @@ use mimique_session::wire::{Event, SessionStarted};
 use mimique_study::{OrderError, Study};
 
 pub(crate) use latent::ClipEffects;
-pub(crate) use model::{Model, Way};
+pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
     ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
     Recognition, Times,

@@ -5,7 +5,7 @@ use mimique_study::{Answers, KindOfQuestion as _};
 use serde_json::Value;
 
 use super::latent::{ClipEffects, told};
-use super::model::{Asked, Model, Rated, Way};
+use super::model::{Asked, Model, Rated, Recognised, Way};
 use super::random::Draws;
 
 /// One simulated person. Answers, times and what happens to the display have streams of their own, so
@@ -237,16 +237,8 @@ impl Mind<'_> {
         trial: usize,
     ) -> Option<Raw> {
         let asked = &self.model.questions[question];
-        let parameters = self.model.parameters;
         if let Some(check) = &asked.question.attention_check {
-            let pass = match self.careless {
-                true => parameters.careless.attention_pass,
-                false => parameters.attention_pass,
-            };
-            if draws.happens(pass) {
-                return Some(Raw::Json(check.expected.clone()));
-            }
-            return other_than(asked, &check.expected, draws);
+            return self.answer_to_check(draws, asked, &check.expected);
         }
         // Most people answer what they need not answer.
         if !asked.question.required && !draws.happens(0.8) {
@@ -264,58 +256,52 @@ impl Mind<'_> {
                     Raw::Json(Value::Object(parts.zip(values).collect()))
                 }
             },
-            Way::Recognised(recognised) => {
-                let row = clip.and_then(|clip| Some((clip, recognised.clips[clip].as_ref()?)));
-                match row {
-                    Some((clip, row)) if !self.careless => {
-                        let value = self.values[recognised.latent][clip] + draws.normal();
-                        Raw::Option(if value > row.threshold {
-                            row.right
-                        } else {
-                            draws.weighted(&row.wrong)
-                        })
-                    }
-                    _ => Raw::Option(draws.below(recognised.options)),
-                }
-            }
+            Way::Recognised(recognised) => Raw::Option(self.recognise(draws, recognised, clip)),
             Way::One(weights) => Raw::Option(draws.weighted(weights)),
             Way::Several { weights, fewest, most } => {
                 let options = asked.question.kind.options();
-                let most_likely = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-                let mut chosen: Vec<usize> = (0..weights.len())
-                    .filter(|&place| draws.happens(0.5 * weights[place] / most_likely))
-                    .collect();
-                while chosen.len() > *most {
-                    let place = draws.below(chosen.len());
-                    chosen.remove(place);
-                }
-                while chosen.len() < *fewest && chosen.len() < options.len() {
-                    let place = draws.below(options.len());
-                    if !chosen.contains(&place) {
-                        chosen.push(place);
-                    }
-                }
-                chosen.sort_unstable();
+                let chosen = several(draws, weights, *fewest, *most);
                 Raw::Json(chosen.into_iter().map(|place| options[place].value.as_str()).collect())
             }
             Way::Number { mean, sd, low, high, whole } => {
                 let value = (mean + sd * draws.normal()).clamp(*low, *high);
                 Raw::Number(if *whole {
-                    let value = value.round();
-                    // Rounding must not leave bounds that are no whole numbers.
-                    if value < *low {
-                        low.ceil()
-                    } else if value > *high {
-                        high.floor()
-                    } else {
-                        value
-                    }
+                    whole_number(value, *low, *high)
                 } else {
                     (value * 100.0).round() / 100.0
                 })
             }
             Way::Drawn { weights } => Raw::Json(asked.question.kind.drawn(weights, draws)),
         })
+    }
+
+    fn answer_to_check(
+        &self,
+        draws: &mut Draws,
+        asked: &Asked<'_>,
+        expected: &Value,
+    ) -> Option<Raw> {
+        let parameters = self.model.parameters;
+        let pass = match self.careless {
+            true => parameters.careless.attention_pass,
+            false => parameters.attention_pass,
+        };
+        if draws.happens(pass) {
+            return Some(Raw::Json(expected.clone()));
+        }
+        other_than(asked, expected, draws)
+    }
+
+    /// The place of the option that is taken for what a clip shows.
+    fn recognise(&self, draws: &mut Draws, recognised: &Recognised, clip: Option<usize>) -> usize {
+        let row = clip.and_then(|clip| Some((clip, recognised.clips[clip].as_ref()?)));
+        match row {
+            Some((clip, row)) if !self.careless => {
+                let value = self.values[recognised.latent][clip] + draws.normal();
+                if value > row.threshold { row.right } else { draws.weighted(&row.wrong) }
+            }
+            _ => draws.below(recognised.options),
+        }
     }
 
     fn rate(&self, draws: &mut Draws, rated: &Rated, clip: Option<usize>, trial: usize) -> f64 {
@@ -327,6 +313,39 @@ impl Mind<'_> {
         });
         let value = value + rated.noise_sd * draws.normal();
         rated.scale.value(rated.borders.partition_point(|border| *border <= value))
+    }
+}
+
+/// Places of several options, ascending: at least `fewest`, at most `most`.
+fn several(draws: &mut Draws, weights: &[f64], fewest: usize, most: usize) -> Vec<usize> {
+    let most_likely = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let mut chosen: Vec<usize> = (0..weights.len())
+        .filter(|&place| draws.happens(0.5 * weights[place] / most_likely))
+        .collect();
+    while chosen.len() > most {
+        let place = draws.below(chosen.len());
+        chosen.remove(place);
+    }
+    while chosen.len() < fewest && chosen.len() < weights.len() {
+        let place = draws.below(weights.len());
+        if !chosen.contains(&place) {
+            chosen.push(place);
+        }
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// The nearest whole number within bounds.
+fn whole_number(value: f64, low: f64, high: f64) -> f64 {
+    let value = value.round();
+    // Rounding must not leave bounds that are no whole numbers.
+    if value < low {
+        low.ceil()
+    } else if value > high {
+        high.floor()
+    } else {
+        value
     }
 }
 

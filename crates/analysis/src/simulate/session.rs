@@ -3,7 +3,7 @@
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, PlayLog};
-use mimique_study::{Answers, Display, Multilingual as _, OrderError};
+use mimique_study::{Answers, Calibration, Display, Multilingual as _, OrderError};
 
 use super::latent::ClipEffects;
 use super::model::Model;
@@ -148,28 +148,12 @@ impl Walk<'_, '_> {
                     self.read(15_000.0);
                 }
                 StepKind::Device => {
-                    self.page.send(Input::Measured(display(&client)));
-                    if self.page.state.record.step != here {
-                        continue;
-                    }
-                    self.read(4_000.0);
-                    self.page.send(Input::Next);
-                    self.page.send(Input::Fullscreen(true));
-                    if self.page.state.record.step == here {
-                        self.page.send(Input::GiveUp);
-                    }
+                    self.check_device(&client);
                     continue;
                 }
                 StepKind::Calibration(calibration) => {
                     self.shown(&step.id);
-                    self.read(20_000.0);
-                    if calibration.card {
-                        let device_pixel_ratio = client.device_pixel_ratio;
-                        self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
-                    }
-                    if calibration.ask_distance {
-                        self.page.send(Input::Distance(Some(60.0)));
-                    }
+                    self.calibrate(calibration, &client);
                 }
             }
             self.page.send(Input::Next);
@@ -177,6 +161,33 @@ impl Walk<'_, '_> {
                 // An answer that its question does not take; the person can go no further.
                 return;
             }
+        }
+    }
+
+    /// The device is measured, made to fit where that is possible, or given up.
+    fn check_device(&mut self, client: &Client) {
+        let here = self.page.state.record.step;
+        self.page.send(Input::Measured(display(client)));
+        if self.page.state.record.step != here {
+            return;
+        }
+        self.read(4_000.0);
+        self.page.send(Input::Next);
+        self.page.send(Input::Fullscreen(true));
+        if self.page.state.record.step == here {
+            self.page.send(Input::GiveUp);
+        }
+    }
+
+    /// A card is held to the screen, and the distance from it is told.
+    fn calibrate(&mut self, calibration: &Calibration, client: &Client) {
+        self.read(20_000.0);
+        if calibration.card {
+            let device_pixel_ratio = client.device_pixel_ratio;
+            self.page.send(Input::CardWidth { px: 324.0, device_pixel_ratio });
+        }
+        if calibration.ask_distance {
+            self.page.send(Input::Distance(Some(60.0)));
         }
     }
 

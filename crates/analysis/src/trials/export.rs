@@ -1,18 +1,16 @@
 //! The tidy export of a study as people, trials and answers, with the study's exclusions applied.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::ops::RangeInclusive;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use mimique_session::Standing;
 use mimique_stats::{Refusal, Table};
-use mimique_study::columns::ASSIGNED_CONDITION;
-use mimique_study::{Exclusions, KindOfQuestion as _, Question, Study};
+use mimique_study::{Exclusions, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
-use crate::trials::column::Column;
 use crate::trials::combinations::Combinations;
+use crate::trials::sessions::{Sessions, about_people};
 use crate::trials::trial_rows::{TrialReader, TrialRows, stretches};
 
 /// One person.
@@ -126,7 +124,7 @@ pub(crate) struct Export {
 pub(crate) const BY_RESEARCHER: &str = "excluded by the researcher";
 
 /// In the place of the status of somebody whom the researcher excluded.
-const EXCLUDED: &str = "excluded";
+pub(super) const EXCLUDED: &str = "excluded";
 
 /// Columns that must be there.
 const NEEDED: [&str; 5] = ["participant_id", "trial_id", "trial_type", "response_id", "answer"];
@@ -164,49 +162,9 @@ impl Export {
                 "give the tidy form that `mimique export --format csv` writes",
             ));
         }
-        let column = |name: &str| Column::of(table, name);
-        let [participant, status, stage, attention] =
-            ["participant_id", "status", "stage", "attention_passed"].map(column);
-        let mut people: Vec<Person> = Vec::new();
-        let mut place: HashMap<&str, usize> = HashMap::new();
-        let mut person_of_row = Vec::with_capacity(table.rows());
-        let mut stages: Vec<&str> = Vec::new();
-        // Rows of one person mostly follow each other.
-        let mut last: Option<(&str, usize)> = None;
-        for row in 0..table.rows() {
-            let id = participant.needed(row)?;
-            let same = last.filter(|(known, _)| *known == id).map(|(_, person)| person);
-            let person = same.unwrap_or_else(|| {
-                *place.entry(id).or_insert_with(|| {
-                    people.push(Person {
-                        id: id.to_owned(),
-                        status: status.text(row).unwrap_or("unknown").to_owned(),
-                        trials: 0,
-                        failed_checks: 0,
-                        excluded: None,
-                    });
-                    stages.push(stage.text(row).unwrap_or("live"));
-                    people.len() - 1
-                })
-            });
-            last = Some((id, person));
-            if attention.text(row) == Some("false") {
-                people[person].failed_checks += 1;
-            }
-            person_of_row.push(person);
-        }
-        // The server marks whom the researcher excluded; how the session stood is kept beside it.
-        let mut reasons: Vec<Option<&str>> = vec![None; people.len()];
-        if table.has("excluded") && table.has("exclusion_reason") {
-            let [excluded, reason] = ["excluded", "exclusion_reason"].map(column);
-            for (row, &person) in person_of_row.iter().enumerate() {
-                if excluded.text(row) == Some("true") {
-                    EXCLUDED.clone_into(&mut people[person].status);
-                    reasons[person] = reason.text(row);
-                }
-            }
-        }
-        let mut flow = exclude_people(study, &mut people, &stages);
+        let mut sessions = Sessions::read(table)?;
+        let mut flow = exclude_people(study, &mut sessions.people, &sessions.stages);
+        let Sessions { people, person_of_row, reasons, .. } = sessions;
         for (person, reason) in people.iter().zip(&reasons) {
             if let (Some(BY_RESEARCHER), Some(reason)) = (person.excluded, reason) {
                 *flow.researcher_reasons.entry((*reason).to_owned()).or_insert(0) += 1;
@@ -257,63 +215,6 @@ impl Export {
     pub(crate) fn level(&self, answer: &Answer, factor: &str) -> Option<&str> {
         let place = self.factors.iter().position(|name| name == factor)?;
         self.trials[answer.trial].levels[place].as_deref()
-    }
-
-    /// Questions that were answered in trials, in the study's order, then any other.
-    pub(crate) fn questions<'s>(&self, study: &'s Study) -> Vec<AskedQuestion<'s>> {
-        let asked: BTreeSet<&str> = self.answers.keys().map(String::as_str).collect();
-        let mut found: Vec<AskedQuestion<'s>> = Vec::new();
-        let mut left = asked.clone();
-        for question in &study.questions {
-            let own = asked.iter().filter(|id| {
-                **id == question.id
-                    || id.strip_prefix(&question.id).is_some_and(|rest| rest.starts_with('.'))
-            });
-            for id in own {
-                if left.remove(*id) {
-                    found.push(AskedQuestion { id: (*id).to_owned(), question: Some(question) });
-                }
-            }
-        }
-        found
-            .extend(left.into_iter().map(|id| AskedQuestion { id: id.to_owned(), question: None }));
-        found
-    }
-}
-
-/// A question that was answered in trials.
-#[derive(Debug, Clone)]
-pub(crate) struct AskedQuestion<'s> {
-    /// As in the export (`grid.valence`).
-    pub id: String,
-    /// Its place in the study file; none for one that the file no longer has.
-    pub question: Option<&'s Question>,
-}
-
-impl AskedQuestion<'_> {
-    /// What is asked, with the part of a question that has several.
-    pub(crate) fn label(&self, language: &str) -> String {
-        let Some(question) = self.question else { return self.id.clone() };
-        let part = self.id.strip_prefix(&question.id).unwrap_or_default();
-        let part = part.trim_start_matches('.');
-        let prompt = question.prompt.in_language(language);
-        if part.is_empty() { prompt.to_owned() } else { format!("{prompt} ({part})") }
-    }
-
-    /// Whether the clip holds the right answer.
-    pub(crate) fn is_recognition(&self) -> bool {
-        self.question.is_some_and(|question| question.kind.truth().is_some())
-    }
-
-    /// The factor of the clip that holds the right answer; empty where there is none.
-    pub(crate) fn truth(&self) -> String {
-        let truth = self.question.and_then(|question| question.kind.truth());
-        truth.unwrap_or_default().to_owned()
-    }
-
-    /// First and last point of a scale of few points.
-    pub(crate) fn scale(&self) -> Option<(i64, i64)> {
-        self.question?.kind.points().map(RangeInclusive::into_inner)
     }
 }
 
@@ -397,38 +298,4 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
         words.push(format!("rt < {limit} ms"));
     }
     words
-}
-
-/// Columns of answers about the person, and of the assigned condition: the same in each of the person's
-/// rows.
-fn about_people(
-    table: &Table,
-    study: &Study,
-    person_of_row: &[usize],
-    people: usize,
-) -> Vec<(String, Vec<Option<String>>)> {
-    let questions: Vec<&str> = study
-        .demographics
-        .iter()
-        .flat_map(|page| &page.questions)
-        .map(|question| question.id.as_str())
-        .collect();
-    let conditions = !study.conditions().is_empty();
-    let own = |name: &String| {
-        (conditions && name == ASSIGNED_CONDITION)
-            || questions.iter().any(|id| {
-                name == id || name.strip_prefix(id).is_some_and(|rest| rest.starts_with('.'))
-            })
-    };
-    let mut about = Vec::new();
-    for (place, name) in table.names().iter().enumerate().filter(|(_, name)| own(name)) {
-        let mut cells: Vec<Option<String>> = vec![None; people];
-        for (row, &person) in person_of_row.iter().enumerate() {
-            if cells[person].is_none() {
-                cells[person] = table.cell(row, place).map(str::to_owned);
-            }
-        }
-        about.push((name.clone(), cells));
-    }
-    about
 }

@@ -7,7 +7,8 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use serde::Serialize;
 
 use crate::language::Language;
-use crate::trials::export::{AskedQuestion, Export};
+use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Export;
 
 /// What kind of number a measure is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -1,7 +1,9 @@
 //! The trials of an export, with the study's exclusions applied, and what was measured in them.
 
+pub(crate) mod asked_question;
 pub(crate) mod column;
 pub(crate) mod combinations;
 pub(crate) mod export;
 pub(crate) mod measure;
+mod sessions;
 pub(crate) mod trial_rows;

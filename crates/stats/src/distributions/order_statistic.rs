@@ -42,68 +42,17 @@ const ASIDE: u64 = LISTED / 4;
 /// The `k`-th and the next (`k` from 1) smallest; of the last one itself twice.
 pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
     let (smallest, largest) = pairs.range();
-    // Invariant: fewer than k at `low`, k or more at `high`.
-    let (mut low, mut high) =
-        (Limit::below(smallest), Limit { value: largest, count: pairs.all() });
-    let all = high.count.pairs;
-    if let Some((below, above)) = pairs.guess(k as f64 / all as f64) {
-        for limit in [below, above].map(|value| Limit::at(value, pairs)) {
-            if limit.count.pairs < k {
-                if limit.value > low.value {
-                    low = limit;
-                }
-            } else if limit.value < high.value {
-                high = limit;
-            }
-        }
-    }
-    let (mut low_weight, mut high_weight) = (1.0f64, 1.0f64);
-    let mut last_side = None;
-    let mut step = 0;
-    while high.count.distinct - low.count.distinct > LISTED {
-        step += 1;
-        // A little to the side of k where more pairs are left, so that k comes to lie between.
-        let (under, over) = (k - low.count.pairs, high.count.pairs - k);
-        let aside = (under.max(over) / 4).min(ASIDE) as f64;
-        let target = k as f64 - 0.5 + if under > over { -aside } else { aside };
-        let below = (low.count.pairs as f64 - target) * low_weight;
-        let above = (high.count.pairs as f64 - target) * high_weight;
-        let by_line = low.value + (high.value - low.value) * (-below / (above - below));
-        // Every fourth step halves the bits, so that no shape of the counts can stall the search.
-        let inside = by_line > low.value && by_line < high.value;
-        let middle = if inside && step % 4 != 0 { by_line } else { halfway(low.value, high.value) };
-        if !(middle > low.value && middle < high.value) {
-            break;
-        }
-        let limit = Limit::at(middle, pairs);
-        let is_low = limit.count.pairs < k;
-        if is_low {
-            low = limit;
-            low_weight = 1.0;
-            high_weight = if last_side == Some(true) { high_weight / 2.0 } else { 1.0 };
-        } else {
-            high = limit;
-            high_weight = 1.0;
-            low_weight = if last_side == Some(false) { low_weight / 2.0 } else { 1.0 };
-        }
-        last_side = Some(is_low);
-    }
+    let all = pairs.all();
+    let mut bracket =
+        Bracket { low: Limit::below(smallest), high: Limit { value: largest, count: all } };
+    bracket.guess(pairs, k);
+    bracket.narrow(pairs, k);
+    let Bracket { low, high } = bracket;
     let mut listed: Vec<(f64, u64)> = Vec::new();
     pairs.between(low.value, high.value, |value, count| listed.push((value, count)));
     let mut below = low.count.pairs;
-    // Up to the next one: what lies above need not be in order.
     if listed.iter().all(|(_, count)| *count == 1) {
-        let needed = (k - below + 1) as usize;
-        if needed < listed.len() {
-            listed.select_nth_unstable_by(needed, |a, b| a.0.total_cmp(&b.0));
-            listed.truncate(needed);
-        }
-        let last_two = listed.len().saturating_sub(2);
-        if last_two > 0 {
-            listed.select_nth_unstable_by(last_two, |a, b| a.0.total_cmp(&b.0));
-            below += last_two as u64;
-            listed.drain(..last_two);
-        }
+        below += keep_two(&mut listed, (k - below + 1) as usize);
     }
     listed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut first = None;
@@ -113,7 +62,7 @@ pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
             first = Some(value);
         }
         if let Some(first) = first
-            && (below > k || k == all)
+            && (below > k || k == all.pairs)
         {
             return (first, value);
         }
@@ -122,6 +71,22 @@ pub(crate) fn two_from(pairs: &impl Pairs, k: u64) -> (f64, f64) {
     let first = first.unwrap_or(high.value);
     let next = next_above(pairs, high.value, largest);
     (first, next.unwrap_or(first))
+}
+
+/// Keeps the first so many smallest, and of those the last two, which are not in order; gives back how
+/// many smaller ones were dropped.
+fn keep_two(listed: &mut Vec<(f64, u64)>, needed: usize) -> u64 {
+    // What lies above the next one need not be in order.
+    if needed < listed.len() {
+        listed.select_nth_unstable_by(needed, |a, b| a.0.total_cmp(&b.0));
+        listed.truncate(needed);
+    }
+    let last_two = listed.len().saturating_sub(2);
+    if last_two > 0 {
+        listed.select_nth_unstable_by(last_two, |a, b| a.0.total_cmp(&b.0));
+        listed.drain(..last_two);
+    }
+    last_two as u64
 }
 
 /// The smallest pair value above a limit.
@@ -141,6 +106,67 @@ fn next_above(pairs: &impl Pairs, limit: f64, largest: f64) -> Option<f64> {
     let mut least = f64::INFINITY;
     pairs.between(limit, high, |value, _| least = least.min(value));
     Some(least)
+}
+
+/// Limits on both sides of the k-th value: fewer than k pairs at `low`, k or more at `high`.
+struct Bracket {
+    low: Limit,
+    high: Limit,
+}
+
+impl Bracket {
+    /// Moves the ends to the limits that the pairs guess.
+    fn guess(&mut self, pairs: &impl Pairs, k: u64) {
+        let all = self.high.count.pairs;
+        if let Some((below, above)) = pairs.guess(k as f64 / all as f64) {
+            for limit in [below, above].map(|value| Limit::at(value, pairs)) {
+                if limit.count.pairs < k {
+                    if limit.value > self.low.value {
+                        self.low = limit;
+                    }
+                } else if limit.value < self.high.value {
+                    self.high = limit;
+                }
+            }
+        }
+    }
+
+    /// Moves the ends until few pairs are left between them, by false position.
+    fn narrow(&mut self, pairs: &impl Pairs, k: u64) {
+        let Self { low, high } = self;
+        let (mut low_weight, mut high_weight) = (1.0f64, 1.0f64);
+        let mut last_side = None;
+        let mut step = 0;
+        while high.count.distinct - low.count.distinct > LISTED {
+            step += 1;
+            // A little to the side of k where more pairs are left, so that k comes to lie between.
+            let (under, over) = (k - low.count.pairs, high.count.pairs - k);
+            let aside = (under.max(over) / 4).min(ASIDE) as f64;
+            let target = k as f64 - 0.5 + if under > over { -aside } else { aside };
+            let below = (low.count.pairs as f64 - target) * low_weight;
+            let above = (high.count.pairs as f64 - target) * high_weight;
+            let by_line = low.value + (high.value - low.value) * (-below / (above - below));
+            // Every fourth step halves the bits, so that no shape of the counts can stall the search.
+            let inside = by_line > low.value && by_line < high.value;
+            let middle =
+                if inside && step % 4 != 0 { by_line } else { halfway(low.value, high.value) };
+            if !(middle > low.value && middle < high.value) {
+                break;
+            }
+            let limit = Limit::at(middle, pairs);
+            let is_low = limit.count.pairs < k;
+            if is_low {
+                *low = limit;
+                low_weight = 1.0;
+                high_weight = if last_side == Some(true) { high_weight / 2.0 } else { 1.0 };
+            } else {
+                *high = limit;
+                high_weight = 1.0;
+                low_weight = if last_side == Some(false) { low_weight / 2.0 } else { 1.0 };
+            }
+            last_side = Some(is_low);
+        }
+    }
 }
 
 struct Limit {

@@ -80,46 +80,11 @@ pub fn aligned_rank_transform(
     for factor in &used {
         factor.require_levels(2)?;
     }
-    let sizes: Vec<usize> = used.iter().map(|factor| factor.levels.len()).collect();
-    let cells: usize = sizes.iter().product();
-    let blocks = block.rows(&rows);
-    let cell_of = |i: usize| {
-        used.iter().fold(0, |cell, factor| cell * factor.levels.len() + factor.codes[i] as usize)
+    let layout = match Layout::balanced(&used, &block.rows(&rows)) {
+        Outcome::Undefined { reason } => return Ok(Outcome::Undefined { reason }),
+        Outcome::Ok(layout) => layout,
     };
-    let mut found: HashMap<(u32, usize), usize> = HashMap::new();
-    for i in 0..rows.len() {
-        *found.entry((blocks.codes[i], cell_of(i))).or_insert(0) += 1;
-    }
-    let complete: Vec<bool> = (0..blocks.levels.len() as u32)
-        .map(|block| (0..cells).all(|cell| found.contains_key(&(block, cell))))
-        .collect();
-    let kept: Vec<usize> =
-        (0..rows.len()).filter(|&i| complete[blocks.codes[i] as usize]).collect();
-    let n_blocks = complete.iter().filter(|complete| **complete).count();
-    if n_blocks < 2 {
-        return Ok(Outcome::undefined(format!(
-            "{n_blocks} of {} blocks have a response in each of the {cells} combinations, at least two are needed",
-            blocks.levels.len()
-        )));
-    }
-    let per_cell = kept.len() / (n_blocks * cells);
-    let uneven = found
-        .iter()
-        .filter(|((block, _), _)| complete[*block as usize])
-        .any(|(_, &count)| count != per_cell);
-    if uneven {
-        return Ok(Outcome::undefined(
-            "the combinations have different numbers of responses; the transform is for balanced designs".to_owned(),
-        ));
-    }
-    let layout = Layout {
-        sizes,
-        cells: kept.iter().map(|&i| cell_of(i)).collect(),
-        blocks: kept.iter().map(|&i| blocks.codes[i] as usize).collect(),
-        n_blocks: blocks.levels.len(),
-        used_blocks: n_blocks,
-    };
-    let values: Vec<f64> = kept.iter().map(|&i| response.values[rows[i]]).collect();
+    let values: Vec<f64> = layout.rows.iter().map(|&i| response.values[rows[i]]).collect();
     if values.iter().all(|&value| value == values[0]) {
         return Ok(Outcome::undefined(format!(
             "column \"{}\": all {} values are equal ({})",
@@ -128,25 +93,14 @@ pub fn aligned_rank_transform(
             values[0]
         )));
     }
-    let mut terms: Vec<usize> = (1..1 << factors.len()).collect();
-    terms.sort_by_key(|term: &usize| (term.count_ones(), *term));
-    let effects = terms
-        .into_iter()
-        .map(|term| {
-            let names = (0..factors.len())
-                .filter(|factor| term >> factor & 1 == 1)
-                .map(|factor| factors[factor].name.clone());
-            layout.effect(&values, term, Term::Effect(names.collect()))
-        })
-        .collect();
     Ok(Outcome::Ok(AlignedRankTransform {
         test: "aligned-rank-transform",
         variant: "aligned, midranks, analysis of variance with the block as random intercept",
         n: values.len(),
         dropped,
-        n_blocks,
-        incomplete_blocks: blocks.levels.len() - n_blocks,
-        effects,
+        n_blocks: layout.used_blocks,
+        incomplete_blocks: layout.n_blocks - layout.used_blocks,
+        effects: layout.effects(&values, factors),
         warnings: vec![
             "not reliable on ordinal answers with few steps: fit a cumulative link mixed model before relying on an interaction".to_owned(),
         ],
@@ -155,6 +109,8 @@ pub fn aligned_rank_transform(
 
 /// A balanced layout: cell and block of each observation.
 struct Layout {
+    /// The observations: rows of complete blocks.
+    rows: Vec<usize>,
     sizes: Vec<usize>,
     cells: Vec<usize>,
     blocks: Vec<usize>,
@@ -163,6 +119,66 @@ struct Layout {
 }
 
 impl Layout {
+    /// The complete blocks. Undefined if there are fewer than two, or if their cells differ in size.
+    fn balanced(factors: &[Factor], block: &Factor) -> Outcome<Self> {
+        let sizes: Vec<usize> = factors.iter().map(|factor| factor.levels.len()).collect();
+        let cells: usize = sizes.iter().product();
+        let cell_of = |i: usize| {
+            factors
+                .iter()
+                .fold(0, |cell, factor| cell * factor.levels.len() + factor.codes[i] as usize)
+        };
+        let mut found: HashMap<(u32, usize), usize> = HashMap::new();
+        for (i, &code) in block.codes.iter().enumerate() {
+            *found.entry((code, cell_of(i))).or_insert(0) += 1;
+        }
+        let complete: Vec<bool> = (0..block.levels.len() as u32)
+            .map(|block| (0..cells).all(|cell| found.contains_key(&(block, cell))))
+            .collect();
+        let rows: Vec<usize> =
+            (0..block.codes.len()).filter(|&i| complete[block.codes[i] as usize]).collect();
+        let used_blocks = complete.iter().filter(|complete| **complete).count();
+        if used_blocks < 2 {
+            return Outcome::undefined(format!(
+                "{used_blocks} of {} blocks have a response in each of the {cells} combinations, at least two are needed",
+                block.levels.len()
+            ));
+        }
+        let per_cell = rows.len() / (used_blocks * cells);
+        let uneven = found
+            .iter()
+            .filter(|((block, _), _)| complete[*block as usize])
+            .any(|(_, &count)| count != per_cell);
+        if uneven {
+            return Outcome::undefined(
+                "the combinations have different numbers of responses; the transform is for balanced designs",
+            );
+        }
+        Outcome::Ok(Self {
+            sizes,
+            cells: rows.iter().map(|&i| cell_of(i)).collect(),
+            blocks: rows.iter().map(|&i| block.codes[i] as usize).collect(),
+            rows,
+            n_blocks: block.levels.len(),
+            used_blocks,
+        })
+    }
+
+    /// Every effect, main effects first.
+    fn effects(&self, values: &[f64], factors: &[&Factor]) -> Vec<ArtEffect> {
+        let mut terms: Vec<usize> = (1..1 << factors.len()).collect();
+        terms.sort_by_key(|term: &usize| (term.count_ones(), *term));
+        terms
+            .into_iter()
+            .map(|term| {
+                let names = (0..factors.len())
+                    .filter(|factor| term >> factor & 1 == 1)
+                    .map(|factor| factors[factor].name.clone());
+                self.effect(values, term, Term::Effect(names.collect()))
+            })
+            .collect()
+    }
+
     fn effect(&self, values: &[f64], term: usize, name: Term) -> ArtEffect {
         let all = (1 << self.sizes.len()) - 1;
         let cell_means = self.means(values, all);

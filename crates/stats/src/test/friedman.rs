@@ -134,24 +134,8 @@ pub fn friedman(blocks: &Blocks) -> Outcome<Friedman> {
     // Conover 1999: (k - 1) sum (R_j - n (k + 1)/2)^2 / within-block sum of squares of ranks.
     let statistic = (groups_f - 1.0) * between / within;
     let tail = chi_square_upper(statistic, groups_f - 1.0);
-    let room = blocks_f * (groups_f - 1.0) - statistic;
-    let (df1, df2) = (k - 1, (k - 1) * (n - 1));
-    let iman_davenport = (room > 1e-9 && df2 > 0).then(|| {
-        let f = (blocks_f - 1.0) * statistic / room;
-        let tail = f_upper(f, df1 as f64, df2 as f64);
-        ImanDavenport { F: f, df1, df2, p_value: tail.p, ln_p: tail.ln_p }
-    });
-    let mut warnings = Vec::new();
-    if iman_davenport.is_none() {
-        warnings.push(if n < 2 {
-            "one block only: Iman and Davenport's F does not exist".to_owned()
-        } else {
-            "all blocks agree perfectly: Iman and Davenport's F does not exist".to_owned()
-        });
-    }
-    if blocks.incomplete > 0 {
-        warnings.push(format!("{} incomplete blocks were left out", blocks.incomplete));
-    }
+    let iman_davenport = iman_davenport(statistic, n, k);
+    let warnings = warnings(blocks, iman_davenport.is_some());
     Outcome::Ok(Friedman {
         test: "friedman",
         variant: "chi-square approximation, corrected for ties; complete blocks only",
@@ -175,12 +159,42 @@ pub fn friedman(blocks: &Blocks) -> Outcome<Friedman> {
         iman_davenport,
         quade: quade(blocks, &ranks),
         posthoc_wilcoxon_holm: pairwise(blocks, thesis_p_without_rounding),
-        posthoc_exact_pratt_holm: pairwise(blocks, |differences| {
-            let differences = Numbers { name: String::new(), values: differences.to_vec() };
-            Some(wilcoxon(&differences, WilcoxonOptions::default()).ok()?.ok()?.p_value)
-        }),
+        posthoc_exact_pratt_holm: pairwise(blocks, exact_pratt_p),
         warnings,
     })
+}
+
+/// F with k - 1 and (k - 1)(n - 1) degrees of freedom, of Friedman's chi-square of n blocks and k groups.
+fn iman_davenport(chi_square: f64, n: usize, k: usize) -> Option<ImanDavenport> {
+    let (blocks, groups) = (n as f64, k as f64);
+    let room = blocks * (groups - 1.0) - chi_square;
+    let (df1, df2) = (k - 1, (k - 1) * (n - 1));
+    (room > 1e-9 && df2 > 0).then(|| {
+        let f = (blocks - 1.0) * chi_square / room;
+        let tail = f_upper(f, df1 as f64, df2 as f64);
+        ImanDavenport { F: f, df1, df2, p_value: tail.p, ln_p: tail.ln_p }
+    })
+}
+
+fn warnings(blocks: &Blocks, has_iman_davenport: bool) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if !has_iman_davenport {
+        warnings.push(if blocks.responses.len() < 2 {
+            "one block only: Iman and Davenport's F does not exist".to_owned()
+        } else {
+            "all blocks agree perfectly: Iman and Davenport's F does not exist".to_owned()
+        });
+    }
+    if blocks.incomplete > 0 {
+        warnings.push(format!("{} incomplete blocks were left out", blocks.incomplete));
+    }
+    warnings
+}
+
+/// p of the recommended Wilcoxon test of differences; none where it is undefined.
+fn exact_pratt_p(differences: &[f64]) -> Option<f64> {
+    let differences = Numbers { name: String::new(), values: differences.to_vec() };
+    Some(wilcoxon(&differences, WilcoxonOptions::default()).ok()?.ok()?.p_value)
 }
 
 fn without_noise(values: &[f64]) -> Vec<f64> {

@@ -73,10 +73,7 @@ pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWh
     let u = (grouped.doubled_sums[0] - (m * (m + 1)) as u64) as f64 / 2.0;
     let pairs = (m * n) as f64;
 
-    let total = (m + n) as f64;
-    let variance =
-        |tie_term: f64| pairs / 12.0 * ((total + 1.0) - tie_term / (total * (total - 1.0)));
-    let sd = variance(ranks.tie_term()).sqrt();
+    let sd = u_variance(m, n, ranks.tie_term()).sqrt();
     let distance = u - pairs / 2.0;
     let correction = if distance == 0.0 { 0.0 } else { 0.5 * distance.signum() };
     let plain = normal_tail(distance / sd, Alternative::TwoSided);
@@ -84,30 +81,13 @@ pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWh
     let small = m < 50 && n < 50;
     let exact = small && !ranks.has_ties();
 
-    let mut warnings = Vec::new();
     let (tail, cut) = if exact {
-        let distribution = u_distribution(m, n);
-        let observed = u as usize;
-        let at_most: f64 = distribution[..=observed].iter().sum();
-        let at_least: f64 = distribution[observed..].iter().sum();
-        let reachable = distribution[0] <= (1.0 - LEVEL) / 2.0;
-        (Tail::from_p(at_most.min(at_least)).doubled(), reachable.then(|| cut_of(distribution)))
+        exact_tail_and_cut(u as usize, m, n)
     } else {
-        if small {
-            warnings.push("cannot compute exact p-value with ties".to_owned());
-            warnings.push("cannot compute exact confidence intervals with ties".to_owned());
-        }
         // Inverting the test: only ties inside a sample remain at every shift.
-        let inner = x.tie_term() + y.tie_term();
-        let reach =
-            0.5 + normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance(inner).max(0.0).sqrt();
-        let cut = (pairs / 2.0 - reach).floor();
-        (corrected, (cut >= 0.0).then_some(cut as u64))
+        (corrected, normal_cut(m, n, x.tie_term() + y.tie_term()))
     };
     let interval = two_sample_interval(&x, &y, cut);
-    if !interval.level_reached {
-        warnings.push("too few observations for an interval of 95 %: the widest is given".into());
-    }
     Ok(Outcome::Ok(MannWhitney {
         test: "mann-whitney",
         variant: if exact {
@@ -129,8 +109,43 @@ pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWh
         ci_low: interval.ci_low,
         ci_high: interval.ci_high,
         conf_level: LEVEL,
-        warnings,
+        warnings: warnings(small && !exact, interval.level_reached),
     }))
+}
+
+/// Two-sided tail of U without ties, and the cut of the interval; none where 95 % cannot be reached.
+fn exact_tail_and_cut(u: usize, m: usize, n: usize) -> (Tail, Option<u64>) {
+    let distribution = u_distribution(m, n);
+    let at_most: f64 = distribution[..=u].iter().sum();
+    let at_least: f64 = distribution[u..].iter().sum();
+    let reachable = distribution[0] <= (1.0 - LEVEL) / 2.0;
+    (Tail::from_p(at_most.min(at_least)).doubled(), reachable.then(|| cut_of(distribution)))
+}
+
+/// Cut of the interval by the normal approximation; none where 95 % cannot be reached.
+fn normal_cut(m: usize, n: usize, tie_term: f64) -> Option<u64> {
+    let reach = 0.5
+        + normal_quantile_upper((1.0 - LEVEL) / 2.0) * u_variance(m, n, tie_term).max(0.0).sqrt();
+    let cut = ((m * n) as f64 / 2.0 - reach).floor();
+    (cut >= 0.0).then_some(cut as u64)
+}
+
+/// Variance of U of samples of `m` and `n`, corrected for ties.
+fn u_variance(m: usize, n: usize, tie_term: f64) -> f64 {
+    let (pairs, total) = ((m * n) as f64, (m + n) as f64);
+    pairs / 12.0 * ((total + 1.0) - tie_term / (total * (total - 1.0)))
+}
+
+fn warnings(inexact_by_ties: bool, level_reached: bool) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if inexact_by_ties {
+        warnings.push("cannot compute exact p-value with ties".to_owned());
+        warnings.push("cannot compute exact confidence intervals with ties".to_owned());
+    }
+    if !level_reached {
+        warnings.push("too few observations for an interval of 95 %: the widest is given".into());
+    }
+    warnings
 }
 
 /// Probability of every U of samples of `m` and `n` without ties (Mann and Whitney 1947): the counts of

@@ -147,23 +147,7 @@ pub fn scheirer_ray_hare(
     if ranks.values.len() == 1 {
         return Ok(Outcome::undefined(equal_values(&response.name, n, ranks.values[0])));
     }
-    let (a, b) = (first.levels.len(), second.levels.len());
-    let cells: Vec<u32> = first
-        .codes
-        .iter()
-        .zip(&second.codes)
-        .map(|(&row, &column)| row * b as u32 + column)
-        .collect();
-    let mut counts = vec![0u64; a * b];
-    cells.iter().for_each(|&cell| counts[cell as usize] += 1);
-    let doubled = ranks.doubled_sums(&cells, a * b);
-    let centre = (n as f64 + 1.0) / 2.0;
-    let sums = doubled
-        .iter()
-        .zip(&counts)
-        .map(|(&sum, &count)| sum as f64 / 2.0 - count as f64 * centre)
-        .collect();
-    let cells = Cells { rows: a, columns: b, counts, sums };
+    let cells = rank_sums(&ranks, &first, &second);
     let two_way = TwoWaySums::of(&cells, ranks.sum_of_squares());
     let table = |ss: [f64; 3]| srh_table(n, &two_way, ss);
     let type3 = two_way.type3().map(&table);
@@ -173,7 +157,7 @@ pub fn scheirer_ray_hare(
     if empty_cells > 0 {
         warnings.push(format!(
             "{empty_cells} of {} combinations of {} and {} have no observation: the interaction loses as many degrees of freedom, type III is not defined",
-            a * b,
+            cells.rows * cells.columns,
             first.name,
             second.name
         ));
@@ -205,6 +189,27 @@ pub fn scheirer_ray_hare(
         type3,
         warnings,
     }))
+}
+
+/// Sums of the midranks about their mean, by the combination of two factors.
+fn rank_sums(ranks: &Ranks, first: &Factor, second: &Factor) -> Cells {
+    let (rows, columns) = (first.levels.len(), second.levels.len());
+    let cells: Vec<u32> = first
+        .codes
+        .iter()
+        .zip(&second.codes)
+        .map(|(&row, &column)| row * columns as u32 + column)
+        .collect();
+    let mut counts = vec![0u64; rows * columns];
+    cells.iter().for_each(|&cell| counts[cell as usize] += 1);
+    let doubled = ranks.doubled_sums(&cells, rows * columns);
+    let centre = (cells.len() as f64 + 1.0) / 2.0;
+    let sums = doubled
+        .iter()
+        .zip(&counts)
+        .map(|(&sum, &count)| sum as f64 / 2.0 - count as f64 * centre)
+        .collect();
+    Cells { rows, columns, counts, sums }
 }
 
 fn srh_table(n: usize, two_way: &TwoWaySums, ss: [f64; 3]) -> SrhTable {

@@ -100,16 +100,6 @@ pub fn sign(differences: &Numbers, alternative: Alternative) -> Result<Outcome<S
     let share = proportion(positive as u64, used as u64);
     let (median_ci, median_ci_level) = median_interval(&sorted);
     let level_reached = median_ci_level >= LEVEL;
-    let mut warnings = Vec::new();
-    if used < n {
-        warnings.push(format!("{} of {n} differences are zero and are dropped", n - used));
-    }
-    let least = binomial_half_at_least(used, used).doubled().p;
-    if alternative == Alternative::TwoSided && least > 0.05 {
-        warnings.push(format!(
-            "{used} non-zero differences can never give p below {least}: too few for a test at 5 %"
-        ));
-    }
     Ok(Outcome::Ok(Sign {
         test: "sign",
         variant: "exact binomial, zeros dropped",
@@ -131,8 +121,22 @@ pub fn sign(differences: &Numbers, alternative: Alternative) -> Result<Outcome<S
         median_ci,
         median_ci_level,
         level_reached,
-        warnings,
+        warnings: warnings(n, used, alternative),
     }))
+}
+
+fn warnings(n: usize, used: usize, alternative: Alternative) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if used < n {
+        warnings.push(format!("{} of {n} differences are zero and are dropped", n - used));
+    }
+    let least = binomial_half_at_least(used, used).doubled().p;
+    if alternative == Alternative::TwoSided && least > 0.05 {
+        warnings.push(format!(
+            "{used} non-zero differences can never give p below {least}: too few for a test at 5 %"
+        ));
+    }
+    warnings
 }
 
 /// The narrowest interval of the median between the k-th smallest and the k-th largest of ascending

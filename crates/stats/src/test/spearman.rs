@@ -72,20 +72,7 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
             )));
         }
     }
-    let (squares, kendall_tau_b) = if kendall::is_small_table(&rank_x, &rank_y) {
-        let ranks = (0..n).map(|i| (rank_x.doubled_rank(i), rank_y.doubled_rank(i)));
-        (sum_of_squares(ranks), kendall::by_table(&rank_x, &rank_y))
-    } else {
-        // In the order of x neither ranks are looked up all over the memory.
-        let order = rank_y.codes_in_order_of(&rank_x);
-        let of_x = rank_x.doubled.iter().zip(&rank_x.counts);
-        let of_x = of_x.flat_map(|(&rank, &count)| std::iter::repeat_n(rank, count as usize));
-        let of_y = order.iter().map(|&code| match rank_y.has_ties() {
-            true => rank_y.doubled[code as usize],
-            false => 2 * (u64::from(code) + 1),
-        });
-        (sum_of_squares(of_x.zip(of_y)), kendall::by_sorting(&rank_x, &rank_y, order))
-    };
+    let (squares, kendall_tau_b) = squares_and_tau_b(&rank_x, &rank_y);
     let (ssx, ssy) = (rank_x.sum_of_squares(), rank_y.sum_of_squares());
     // Cov = (SSx + SSy - sum d^2) / 2
     let rho = ((ssx + ssy - squares / 4.0) / 2.0 / (ssx * ssy).sqrt()).clamp(-1.0, 1.0);
@@ -95,22 +82,9 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
     let ties = rank_x.has_ties() || rank_y.has_ties();
     let perfect = 1.0 - rho * rho < 1e-15;
     let t = (!perfect && n > 2).then(|| rho * ((size - 2.0) / (1.0 - rho * rho)).sqrt());
-    let t_tail = t.map(|t| t_two_sided(t, size - 2.0));
-    let exact =
-        (!ties && n <= ENUMERATED).then(|| two_sided(&|q, upper| exact_tail(n, q, upper), s, n));
-    let edgeworth = (!ties && n > ENUMERATED && n <= EDGEWORTH)
-        .then(|| two_sided(&|q, upper| edgeworth_tail(n, q, upper), s, n));
-    let default = exact.or(edgeworth).or(t_tail.map(|tail| tail.p));
-    let mut semantics = vec![
-        ("R_default".to_owned(), default),
-        ("t_approximation".to_owned(), t_tail.map(|tail| tail.p)),
-        ("scipy".to_owned(), t_tail.map(|tail| tail.p)),
-    ];
-    if exact.is_some() {
-        semantics.push(("exact_permutation".to_owned(), exact));
-    }
+    let significance = Significance::of(n, s, ties, t);
     let mut warnings = Vec::new();
-    if perfect && default.is_none() {
+    if perfect && significance.p().is_none() {
         warnings.push("the correlation is perfect: t has no finite value, no p is given".into());
     }
     if n <= 3 {
@@ -125,27 +99,88 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
     };
     Ok(Outcome::Ok(Spearman {
         test: "spearman",
-        variant: match (exact, edgeworth) {
-            (Some(_), _) => "exact over all orders, no ties",
-            (_, Some(_)) => "Edgeworth series (AS 89), no ties",
-            _ if ties => "t approximation, ties",
-            _ => "t approximation",
-        },
+        variant: significance.variant(),
         n,
         dropped,
         rho,
         S: s,
         t,
         df: n.saturating_sub(2),
-        p_value: default,
-        ln_p: t_tail.map(|tail| tail.ln_p),
-        p_by_semantics: Labelled(semantics),
+        p_value: significance.p(),
+        ln_p: significance.by_t.map(|tail| tail.ln_p),
+        p_by_semantics: significance.by_semantics(),
         ci95_fisher: interval(1.0),
         ci95_fieller: interval(1.06),
         ci95_bonett_wright: interval(1.0 + rho * rho / 2.0),
         kendall_tau_b,
         warnings,
     }))
+}
+
+/// Sum of squared differences of doubled ranks, and Kendall's tau-b.
+fn squares_and_tau_b(x: &Ranks, y: &Ranks) -> (f64, f64) {
+    if kendall::is_small_table(x, y) {
+        let ranks = (0..x.len()).map(|i| (x.doubled_rank(i), y.doubled_rank(i)));
+        return (sum_of_squares(ranks), kendall::by_table(x, y));
+    }
+    // In the order of x neither ranks are looked up all over the memory.
+    let order = y.codes_in_order_of(x);
+    let of_x = x.doubled.iter().zip(&x.counts);
+    let of_x = of_x.flat_map(|(&rank, &count)| std::iter::repeat_n(rank, count as usize));
+    let of_y = order.iter().map(|&code| match y.has_ties() {
+        true => y.doubled[code as usize],
+        false => 2 * (u64::from(code) + 1),
+    });
+    (sum_of_squares(of_x.zip(of_y)), kendall::by_sorting(x, y, order))
+}
+
+/// Two-sided p of every variant that exists for a correlation.
+struct Significance {
+    ties: bool,
+    exact: Option<f64>,
+    edgeworth: Option<f64>,
+    by_t: Option<Tail>,
+}
+
+impl Significance {
+    fn of(n: usize, s: f64, ties: bool, t: Option<f64>) -> Self {
+        Self {
+            ties,
+            exact: (!ties && n <= ENUMERATED)
+                .then(|| two_sided(&|q, upper| exact_tail(n, q, upper), s, n)),
+            edgeworth: (!ties && n > ENUMERATED && n <= EDGEWORTH)
+                .then(|| two_sided(&|q, upper| edgeworth_tail(n, q, upper), s, n)),
+            by_t: t.map(|t| t_two_sided(t, n as f64 - 2.0)),
+        }
+    }
+
+    /// The p that counts, as R chooses it.
+    fn p(&self) -> Option<f64> {
+        self.exact.or(self.edgeworth).or(self.by_t.map(|tail| tail.p))
+    }
+
+    /// How it was computed.
+    fn variant(&self) -> &'static str {
+        match (self.exact, self.edgeworth) {
+            (Some(_), _) => "exact over all orders, no ties",
+            (_, Some(_)) => "Edgeworth series (AS 89), no ties",
+            _ if self.ties => "t approximation, ties",
+            _ => "t approximation",
+        }
+    }
+
+    fn by_semantics(&self) -> Labelled<Option<f64>> {
+        let by_t = self.by_t.map(|tail| tail.p);
+        let mut semantics = vec![
+            ("R_default".to_owned(), self.p()),
+            ("t_approximation".to_owned(), by_t),
+            ("scipy".to_owned(), by_t),
+        ];
+        if self.exact.is_some() {
+            semantics.push(("exact_permutation".to_owned(), self.exact));
+        }
+        Labelled(semantics)
+    }
 }
 
 /// Sum of squared differences of doubled ranks: an integer, so its order does not matter.

@@ -1,5 +1,7 @@
 //! The flow of people and trials, from the export to the analysis.
 
+use std::collections::BTreeMap;
+
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Svg};
@@ -12,13 +14,74 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
             "Participants et essais, de l’export à l’analyse",
         )
         .to_owned();
-    let reasons = |left_out: &std::collections::BTreeMap<&'static str, usize>| -> Vec<String> {
-        left_out
-            .iter()
-            .map(|(reason, count)| format!("{}: {count}", in_words(language, reason)))
-            .collect()
+    let steps = steps(language, flow);
+    let mut data = DataTable::new(
+        "participants",
+        caption.clone(),
+        language.pick(["step", "number", "left out"], ["étape", "nombre", "écartés"]),
+    );
+    let (left, width, height) = (4.0, 262.0, 44.0);
+    let mut y = 8.0;
+    let tops: Vec<f64> = steps
+        .iter()
+        .map(|step| {
+            let top = y;
+            y += height + 26.0 + 16.0 * (step.left_out.len() as f64 - 1.0).max(0.0);
+            top
+        })
+        .collect();
+    let mut svg = Svg::new(&caption, y - 14.0);
+    let mut spoken = Vec::new();
+    for (place, (Step { count, label, left_out }, top)) in steps.iter().zip(&tops).enumerate() {
+        svg.class_rect([left, *top, width, height], "empty");
+        svg.text(left + 14.0, top + 27.5, "strong", Anchor::Start, &count.to_string());
+        svg.text(left + 58.0, top + 27.5, "", Anchor::Start, label);
+        if let Some(next) = tops.get(place + 1) {
+            let x = left + 30.0;
+            svg.line([x, top + height], [x, *next], "whisker");
+            svg.line([x, *next], [x - 4.0, next - 6.0], "whisker");
+            svg.line([x, *next], [x + 4.0, next - 6.0], "whisker");
+        }
+        if !left_out.is_empty() {
+            let heading = language.pick("left out", "écartés");
+            svg.line([left + width, top + 22.0], [left + width + 16.0, top + 22.0], "whisker");
+            svg.text(left + width + 22.0, top + 18.0, "soft", Anchor::Start, heading);
+            for (line, reason) in left_out.iter().enumerate() {
+                let y = top + 35.0 + 16.0 * line as f64;
+                svg.text(left + width + 22.0, y, "", Anchor::Start, reason);
+            }
+        }
+        spoken.push(format!("{count} {label}"));
+        data.row([(*label).to_owned(), count.to_string(), left_out.join("; ")]);
+    }
+    let alt = format!("{}.", spoken.join(", "));
+    Figure { id: "participants".to_owned(), caption, alt, svg: svg.finish(), data }
+}
+
+/// How many are left at a step, and how many were left out after it, by reason.
+struct Step {
+    count: usize,
+    label: &'static str,
+    left_out: Vec<String>,
+}
+
+fn steps(language: Language, flow: &Flow) -> [Step; 4] {
+    let step = |count, english, french, left_out| {
+        let label = language.pick(english, french);
+        Step { count, label, left_out }
     };
-    let mut people_out = reasons(&flow.people_left_out);
+    let people_left_out = people_left_out(language, flow);
+    let trials_left_out = reasons(language, &flow.trials_left_out);
+    [
+        step(flow.people, "people with answers", "personnes avec des réponses", people_left_out),
+        step(flow.people_used, "people in the analysis", "personnes dans l’analyse", Vec::new()),
+        step(flow.trials, "trials they answered", "essais de ces personnes", trials_left_out),
+        step(flow.trials_used, "trials in the analysis", "essais dans l’analyse", Vec::new()),
+    ]
+}
+
+fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
+    let mut people_out = reasons(language, &flow.people_left_out);
     if !flow.researcher_reasons.is_empty() {
         // Each of the researcher's own reasons has its line.
         let whole = format!("{}: ", in_words(language, BY_RESEARCHER));
@@ -30,66 +93,13 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
             people_out.splice(place..=place, lines);
         }
     }
-    let trials_out = reasons(&flow.trials_left_out);
-    let steps = [
-        (
-            flow.people,
-            language.pick("people with answers", "personnes avec des réponses"),
-            people_out,
-        ),
-        (
-            flow.people_used,
-            language.pick("people in the analysis", "personnes dans l’analyse"),
-            Vec::new(),
-        ),
-        (flow.trials, language.pick("trials they answered", "essais de ces personnes"), trials_out),
-        (
-            flow.trials_used,
-            language.pick("trials in the analysis", "essais dans l’analyse"),
-            Vec::new(),
-        ),
-    ];
-    let mut data = DataTable::new(
-        "participants",
-        caption.clone(),
-        language.pick(["step", "number", "left out"], ["étape", "nombre", "écartés"]),
-    );
-    let (left, width, height) = (4.0, 262.0, 44.0);
-    let mut y = 8.0;
-    let tops: Vec<f64> = steps
-        .iter()
-        .map(|(_, _, out)| {
-            let top = y;
-            y += height + 26.0 + 16.0 * (out.len() as f64 - 1.0).max(0.0);
-            top
-        })
-        .collect();
-    let mut svg = Svg::new(&caption, y - 14.0);
-    let mut spoken = Vec::new();
-    for (place, ((count, label, out), top)) in steps.iter().zip(&tops).enumerate() {
-        svg.class_rect([left, *top, width, height], "empty");
-        svg.text(left + 14.0, top + 27.5, "strong", Anchor::Start, &count.to_string());
-        svg.text(left + 58.0, top + 27.5, "", Anchor::Start, label);
-        if let Some(next) = tops.get(place + 1) {
-            let x = left + 30.0;
-            svg.line([x, top + height], [x, *next], "whisker");
-            svg.line([x, *next], [x - 4.0, next - 6.0], "whisker");
-            svg.line([x, *next], [x + 4.0, next - 6.0], "whisker");
-        }
-        if !out.is_empty() {
-            let heading = language.pick("left out", "écartés");
-            svg.line([left + width, top + 22.0], [left + width + 16.0, top + 22.0], "whisker");
-            svg.text(left + width + 22.0, top + 18.0, "soft", Anchor::Start, heading);
-            for (line, reason) in out.iter().enumerate() {
-                let y = top + 35.0 + 16.0 * line as f64;
-                svg.text(left + width + 22.0, y, "", Anchor::Start, reason);
-            }
-        }
-        spoken.push(format!("{count} {label}"));
-        data.row([(*label).to_owned(), count.to_string(), out.join("; ")]);
-    }
-    let alt = format!("{}.", spoken.join(", "));
-    Figure { id: "participants".to_owned(), caption, alt, svg: svg.finish(), data }
+    people_out
+}
+
+fn reasons(language: Language, left_out: &BTreeMap<&'static str, usize>) -> Vec<String> {
+    let line =
+        |(reason, count): (&&str, &usize)| format!("{}: {count}", in_words(language, reason));
+    left_out.iter().map(line).collect()
 }
 
 /// A reason as it fits beside the chart.

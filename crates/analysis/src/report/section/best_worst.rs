@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
-use crate::trials::export::AskedQuestion;
+use crate::trials::asked_question::AskedQuestion;
 
 /// How often the options of a question were picked.
 #[derive(Debug, Clone, PartialEq, Serialize)]

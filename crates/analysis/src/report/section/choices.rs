@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
-use crate::trials::export::{Answer, AskedQuestion};
+use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Answer;
 
 /// How often each of two clips was chosen, for every two that were shown together.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::hypothesis::person_level;
 use crate::hypothesis::test_line::TestLine;
+use crate::language::Language;
 use crate::report::document::{Block, slug};
 use crate::report::figure::people::{self, Part};
 use crate::report::section::Writer;
@@ -103,30 +104,35 @@ impl Writer<'_> {
             let id = format!("course-{}", slug(&measure.id));
             let drawing = people::course(language, &id, &caption, measure.kind, &parts);
             self.figure(drawing);
-            let words = match &trend {
-                Outcome::Ok(line) => {
-                    let p = language.p(line.row.p_value);
-                    let rho = language.fixed(line.row.effect.unwrap_or(0.0), 2);
-                    if line.row.p_value < 0.05 {
-                        language.pick(
-                            format!("{}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {} people.", measure.label, line.row.n),
-                            format!("{} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes.", measure.label, line.row.n),
-                        )
-                    } else {
-                        language.pick(
-                            format!("{}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {} people; that is no proof that there is none.", measure.label, line.row.n),
-                            format!("{} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", measure.label, line.row.n),
-                        )
-                    }
-                }
-                Outcome::Undefined { reason } => language.pick(
-                    format!("{}: no test is defined ({reason}).", measure.label),
-                    format!("{} : aucun test n’est défini ({reason}).", measure.label),
-                ),
-            };
+            let words = trend_in_words(language, &measure.label, &trend);
             self.blocks.push(Block::Reading(words));
             self.results.course.push(Course { measure: measure.id.clone(), trend });
         }
+    }
+}
+
+/// Whether answers change with the place of the trial.
+fn trend_in_words(language: Language, label: &str, trend: &Outcome<TestLine>) -> String {
+    match trend {
+        Outcome::Ok(line) => {
+            let p = language.p(line.row.p_value);
+            let rho = language.fixed(line.row.effect.unwrap_or(0.0), 2);
+            if line.row.p_value < 0.05 {
+                language.pick(
+                    format!("{label}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {} people.", line.row.n),
+                    format!("{label} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes.", line.row.n),
+                )
+            } else {
+                language.pick(
+                    format!("{label}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {} people; that is no proof that there is none.", line.row.n),
+                    format!("{label} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+                )
+            }
+        }
+        Outcome::Undefined { reason } => language.pick(
+            format!("{label}: no test is defined ({reason})."),
+            format!("{label} : aucun test n’est défini ({reason})."),
+        ),
     }
 }
 

@@ -1,15 +1,16 @@
 //! Tables in the study's own layout: means, matrices, and the choice among all layouts.
 
-use mimique_stats::{Factor, Outcome, confusion};
+use mimique_stats::{Confusion, Factor, Outcome, confusion};
 use mimique_study::{AnswerOfPair, KindOfQuestion as _, Layout, Measure as What, TableLayout};
 use serde::Serialize;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::not_tested::of_pair_in_words;
 use crate::hypothesis::test_line::TestLine;
+use crate::language::Language;
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
-use crate::trials::export::AskedQuestion;
+use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// One place of a table of tests, for `results.json`.
@@ -159,15 +160,9 @@ impl<'a> Writer<'a> {
         headings.extend(levels.iter().map(|level| self.naming.level(name, level)));
         let mut table = self.layout_table(layout, headings);
         if let Some((_, cells)) = self.export.about.iter().find(|(column, _)| column == name) {
-            let people = |level: &String| {
-                let used = cells.iter().zip(&self.export.people).filter(|(cell, person)| {
-                    person.excluded.is_none() && cell.as_deref() == Some(level)
-                });
-                used.count().to_string()
-            };
             let mut line = vec![language.pick("people", "effectifs").to_owned(), String::new()];
             line.extend(second.map(|_| String::new()));
-            line.extend(levels.iter().map(people));
+            line.extend(levels.iter().map(|level| self.people_of_level(cells, level).to_string()));
             table.row(line);
         }
         for row in &rows {
@@ -203,6 +198,15 @@ impl<'a> Writer<'a> {
         table
     }
 
+    /// People in the analysis who gave this answer; `cells` has one a person.
+    fn people_of_level(&self, cells: &[Option<String>], level: &str) -> usize {
+        let used = cells
+            .iter()
+            .zip(&self.export.people)
+            .filter(|(cell, person)| person.excluded.is_none() && cell.as_deref() == Some(level));
+        used.count()
+    }
+
     /// `1 (very weak) to 7 (very strong)`; for recognition that it is a share.
     fn scale_words(&self, row: &Row<'_>) -> String {
         let language = self.language();
@@ -228,41 +232,7 @@ impl<'a> Writer<'a> {
         let rows = self.layout_rows(layout);
         let Some(row) = rows.first() else { return self.layout_table(layout, [""; 0]) };
         let truth = row.asked.truth();
-        let answers = self.export.answers_to(&row.asked.id);
-        let parts: Vec<Option<String>> = match layout.factors.first() {
-            None => vec![None],
-            Some(name) => {
-                let found = self.layout_column(&row.measure, name);
-                found.into_iter().flat_map(|column| column.factor.levels).map(Some).collect()
-            }
-        };
-        let of_part = |part: &Option<String>| -> Vec<_> {
-            answers
-                .iter()
-                .filter(|answer| match (layout.factors.first(), part) {
-                    (Some(name), Some(part)) => {
-                        let about = self.export.about.iter().find(|(column, _)| column == name);
-                        let level = match about {
-                            Some((_, cells)) => cells[answer.person].as_deref(),
-                            None => self.export.level(answer, name),
-                        };
-                        level == Some(part)
-                    }
-                    _ => true,
-                })
-                .collect()
-        };
-        let matrices: Vec<_> = parts
-            .iter()
-            .filter_map(|part| {
-                let chosen = of_part(part);
-                let shown = chosen.iter().map(|answer| answer.truth.as_deref());
-                let shown = Factor::from_cells("truth", shown, |_| None);
-                let given = chosen.iter().map(|answer| Some(&*answer.text));
-                let given = Factor::from_cells(&row.asked.id, given, |_| None);
-                Some((part, confusion(&shown, &given).ok()?))
-            })
-            .collect();
+        let matrices = self.matrices(layout, row);
         let order = self.naming.level_order(&row.asked.id);
         let labels: Vec<&String> = order
             .iter()
@@ -288,22 +258,69 @@ impl<'a> Writer<'a> {
             table.groups.push((heading, labels.len()));
         }
         for label in &labels {
-            let mut line = vec![name_of(label)];
-            let mut shown = false;
-            for (_, matrix) in &matrices {
-                let all: u64 = matrix.labels.iter().map(|answer| matrix.count(label, answer)).sum();
-                shown |= all > 0;
-                line.extend(labels.iter().map(|answer| match all {
-                    0 => "NA".to_owned(),
-                    all => {
-                        language.fixed(100.0 * matrix.count(label, answer) as f64 / all as f64, 1)
-                    }
-                }));
-            }
-            if shown {
-                table.row(line);
+            let rows: Vec<_> = matrices
+                .iter()
+                .map(|(_, matrix)| matrix_row(language, matrix, label, &labels))
+                .collect();
+            if rows.iter().any(Option::is_some) {
+                let missing = || vec!["NA".to_owned(); labels.len()];
+                let cells = rows.into_iter().flat_map(|row| row.unwrap_or_else(missing));
+                table.row(std::iter::once(name_of(label)).chain(cells).collect::<Vec<_>>());
             }
         }
         table
     }
+
+    /// A confusion matrix for each level of the layout's factor, or one of all answers.
+    fn matrices(&self, layout: &TableLayout, row: &Row<'_>) -> Vec<(Option<String>, Confusion)> {
+        let answers = self.export.answers_to(&row.asked.id);
+        let parts: Vec<Option<String>> = match layout.factors.first() {
+            None => vec![None],
+            Some(name) => {
+                let found = self.layout_column(&row.measure, name);
+                found.into_iter().flat_map(|column| column.factor.levels).map(Some).collect()
+            }
+        };
+        let of_part = |part: &Option<String>| -> Vec<_> {
+            answers
+                .iter()
+                .filter(|answer| match (layout.factors.first(), part) {
+                    (Some(name), Some(part)) => {
+                        let about = self.export.about.iter().find(|(column, _)| column == name);
+                        let level = match about {
+                            Some((_, cells)) => cells[answer.person].as_deref(),
+                            None => self.export.level(answer, name),
+                        };
+                        level == Some(part)
+                    }
+                    _ => true,
+                })
+                .collect()
+        };
+        parts
+            .into_iter()
+            .filter_map(|part| {
+                let chosen = of_part(&part);
+                let shown = chosen.iter().map(|answer| answer.truth.as_deref());
+                let shown = Factor::from_cells("truth", shown, |_| None);
+                let given = chosen.iter().map(|answer| Some(&*answer.text));
+                let given = Factor::from_cells(&row.asked.id, given, |_| None);
+                Some((part, confusion(&shown, &given).ok()?))
+            })
+            .collect()
+    }
+}
+
+/// Percentages of the answers to what was played; none where it never was.
+fn matrix_row(
+    language: Language,
+    matrix: &Confusion,
+    played: &str,
+    answers: &[&String],
+) -> Option<Vec<String>> {
+    let all: u64 = matrix.labels.iter().map(|answer| matrix.count(played, answer)).sum();
+    (all > 0).then(|| {
+        let share = |answer: &&String| 100.0 * matrix.count(played, answer) as f64 / all as f64;
+        answers.iter().map(|answer| language.fixed(share(answer), 1)).collect()
+    })
 }

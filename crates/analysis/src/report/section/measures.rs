@@ -14,7 +14,7 @@ use crate::report::figure;
 use crate::report::results::TwoWay;
 use crate::report::section::Writer;
 use crate::report::tables;
-use crate::trials::export::AskedQuestion;
+use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::{Measure, MeasureKind};
 
 impl Writer<'_> {

@@ -26,7 +26,8 @@ use crate::report::document::{Block, Document, Figure, escape};
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
-use crate::trials::export::{AskedQuestion, Export};
+use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Export;
 use crate::trials::measure::Measure;
 
 /// Levels beyond which a column is no factor that people compare.

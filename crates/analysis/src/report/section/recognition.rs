@@ -7,7 +7,7 @@ use crate::report::document::{Block, slug};
 use crate::report::figure;
 use crate::report::results::NamedConfusion;
 use crate::report::section::Writer;
-use crate::trials::export::AskedQuestion;
+use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::Measure;
 
 impl Writer<'_> {

@@ -49,21 +49,7 @@ pub(super) fn fit(cells: &[Cell], points: usize) -> Option<OrderedProbit> {
             Cell { x: cell.x.clone(), counts }
         })
         .collect();
-    let mut marginal = vec![0.0; points];
-    for cell in &cells {
-        for (sum, count) in marginal.iter_mut().zip(&cell.counts) {
-            *sum += count;
-        }
-    }
-    let all: f64 = marginal.iter().sum();
-    let mut cumulative = 0.0;
-    let mut parameters: Vec<f64> = marginal[..points - 1]
-        .iter()
-        .map(|count| {
-            cumulative += count / all;
-            -mimique_stats::normal_quantile_upper(cumulative)
-        })
-        .collect();
+    let mut parameters = marginal_thresholds(&cells, points);
     parameters.resize(points - 1 + effects, 0.0);
     let mut likelihood = log_likelihood(&cells, points, &parameters)?;
     for _ in 0..60 {
@@ -96,6 +82,25 @@ pub(super) fn fit(cells: &[Cell], points: usize) -> Option<OrderedProbit> {
     }
     let effects = parameters.split_off(points - 1);
     Some(OrderedProbit { thresholds: parameters, effects })
+}
+
+/// Thresholds of all answers together, without effects: where the scoring begins.
+fn marginal_thresholds(cells: &[Cell], points: usize) -> Vec<f64> {
+    let mut marginal = vec![0.0; points];
+    for cell in cells {
+        for (sum, count) in marginal.iter_mut().zip(&cell.counts) {
+            *sum += count;
+        }
+    }
+    let all: f64 = marginal.iter().sum();
+    let mut cumulative = 0.0;
+    marginal[..points - 1]
+        .iter()
+        .map(|count| {
+            cumulative += count / all;
+            -mimique_stats::normal_quantile_upper(cumulative)
+        })
+        .collect()
 }
 
 /// Probability of each point at a latent mean.

@@ -1,5 +1,8 @@
 //! Pearson's chi-square test of a contingency table.
 
+mod fisher;
+mod independence;
+
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, chi_square_upper};
@@ -11,6 +14,8 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::table::Table;
 use crate::table::contingency::Contingency;
 use crate::words::{format_number, format_p};
+use fisher::fisher_two_sided;
+use independence::Independence;
 
 /// One chi-square statistic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -120,79 +125,42 @@ fn warnings(table: &Contingency, min_expected: f64, cells_below_5: usize) -> Vec
 
 /// Are rows and columns independent? Refuses a single row or column, naming it.
 pub fn chi_square(table: &Contingency) -> Result<ChiSquare, Refusal> {
-    let (r, c) = (table.rows.len(), table.columns.len());
     require_levels(table)?;
-    let row_sums: Vec<f64> =
-        table.counts.iter().map(|row| row.iter().sum::<u64>() as f64).collect();
-    let column_sums: Vec<f64> =
-        (0..c).map(|j| table.counts.iter().map(|row| row[j]).sum::<u64>() as f64).collect();
-    let n: u64 = table.counts.iter().flatten().sum();
-    let total = n as f64;
-    let expected = |i: usize, j: usize| row_sums[i] * column_sums[j] / total;
-    let cells = || (0..r).flat_map(move |i| (0..c).map(move |j| (i, j)));
-    let observed = |i: usize, j: usize| table.counts[i][j] as f64;
-
-    let df = (r - 1) * (c - 1);
-    let statistic = |shrink: f64| -> f64 {
-        cells()
-            .map(|(i, j)| {
-                let e = expected(i, j);
-                ((observed(i, j) - e).abs() - shrink).max(0.0).powi(2) / e
-            })
-            .sum()
-    };
-    let two_by_two = r == 2 && c == 2;
-    // In a 2x2 table all |O - E| are equal.
-    let yates = if two_by_two { (observed(0, 0) - expected(0, 0)).abs().min(0.5) } else { 0.0 };
-    let min_expected = cells().map(|(i, j)| expected(i, j)).fold(f64::INFINITY, f64::min);
-    let cells_below_5 = cells().filter(|&(i, j)| expected(i, j) < 5.0).count();
+    let model = Independence::of(table);
+    let two_by_two = (table.rows.len(), table.columns.len()) == (2, 2);
+    let (min_expected, cells_below_5) = (model.min_expected(), model.cells_below(5.0));
     let doubt = (cells_below_5 > 0).then_some(DOUBTFUL);
     let variant = |method, shrink| {
-        let statistic = statistic(shrink);
+        let (statistic, df) = (model.statistic(shrink), model.df());
         let Tail { p, ln_p } = chi_square_upper(statistic, df as f64);
         ChiSquareVariant { method, statistic, df, p_value: p, ln_p, warnings: doubt }
     };
-    const PLAIN: &str = "Pearson's Chi-squared test";
-    let uncorrected = variant(PLAIN, 0.0);
+    let uncorrected = variant("Pearson's Chi-squared test", 0.0);
     let default_yates_if_2x2 = if two_by_two {
-        variant("Pearson's Chi-squared test with Yates' continuity correction", yates)
+        variant("Pearson's Chi-squared test with Yates' continuity correction", model.yates())
     } else {
         uncorrected.clone()
     };
-
-    let phi_squared = uncorrected.statistic / total;
-    let smaller = (r.min(c) - 1) as f64;
-    let g: f64 = 2.0
-        * cells()
-            .filter(|&(i, j)| observed(i, j) > 0.0)
-            .map(|(i, j)| observed(i, j) * (observed(i, j) / expected(i, j)).ln())
-            .sum::<f64>();
     let named = |value: &dyn Fn(usize, usize) -> f64| {
-        Labelled::zip(
-            &table.rows,
-            (0..r).map(|i| Labelled::zip(&table.columns, (0..c).map(|j| value(i, j)))),
-        )
+        let row = |i| Labelled::zip(&table.columns, (0..table.columns.len()).map(|j| value(i, j)));
+        Labelled::zip(&table.rows, (0..table.rows.len()).map(row))
     };
-    let warnings = warnings(table, min_expected, cells_below_5);
+    let phi_squared = uncorrected.statistic / model.total;
     Ok(ChiSquare {
         test: "chi-square",
-        n,
+        n: table.counts.iter().flatten().sum(),
         dropped: table.dropped,
         left_out: table.left_out.clone(),
         observed: Labelled::zip(
             &table.rows,
             table.counts.iter().map(|row| Labelled::zip(&table.columns, row.iter().copied())),
         ),
-        expected: named(&expected),
+        expected: named(&|i, j| model.expected(i, j)),
         min_expected,
         cells_below_5,
-        std_residuals: named(&|i, j| {
-            let e = expected(i, j);
-            let spread = e * (1.0 - row_sums[i] / total) * (1.0 - column_sums[j] / total);
-            (observed(i, j) - e) / spread.sqrt()
-        }),
-        cramers_v: (phi_squared / smaller).sqrt(),
-        cramers_v_bias_corrected: bias_corrected_v(phi_squared, r, c, total),
+        std_residuals: named(&|i, j| model.standardised_residual(i, j)),
+        cramers_v: model.cramers_v(phi_squared),
+        cramers_v_bias_corrected: model.bias_corrected_v(phi_squared),
         ln_p: uncorrected.ln_p,
         fisher_p: two_by_two.then(|| {
             fisher_two_sided([
@@ -200,54 +168,16 @@ pub fn chi_square(table: &Contingency) -> Result<ChiSquare, Refusal> {
                 [table.counts[1][0], table.counts[1][1]],
             ])
         }),
-        g_test: GTest { statistic: g, df, p_value: chi_square_upper(g.max(0.0), df as f64).p },
+        g_test: g_test(&model),
         default_yates_if_2x2,
         uncorrected,
-        warnings,
+        warnings: warnings(table, min_expected, cells_below_5),
     })
 }
 
-fn bias_corrected_v(phi_squared: f64, r: usize, c: usize, n: f64) -> Option<f64> {
-    if n < 2.0 {
-        return None;
-    }
-    let (r1, c1) = ((r - 1) as f64, (c - 1) as f64);
-    let corrected = (phi_squared - r1 * c1 / (n - 1.0)).max(0.0);
-    let smaller = (r1 - r1 * r1 / (n - 1.0)).min(c1 - c1 * c1 / (n - 1.0));
-    (smaller > 0.0).then(|| (corrected / smaller).sqrt())
-}
-
-/// Fisher's exact test, two-sided: the tables with the same margins that are no more probable.
-fn fisher_two_sided(counts: [[u64; 2]; 2]) -> f64 {
-    let [[a, b], [c, d]] = counts;
-    let (row, other, column) = (a + b, c + d, a + c);
-    let low = column.saturating_sub(other);
-    let high = row.min(column);
-    // Probabilities relative to that of the observed table, by the ratio of neighbours.
-    let ratio = |x: u64| {
-        // P(x + 1) / P(x)
-        (row - x) as f64 * (column - x) as f64 / ((x + 1) as f64 * (other + x + 1 - column) as f64)
-    };
-    // Equal probabilities must count as equal.
-    let limit = 1.0 + 1e-7;
-    let (mut all, mut extreme) = (1.0, 1.0);
-    let mut add = |relative: f64| {
-        all += relative;
-        if relative <= limit {
-            extreme += relative;
-        }
-    };
-    let mut relative = 1.0;
-    for x in a..high {
-        relative *= ratio(x);
-        add(relative);
-    }
-    relative = 1.0;
-    for x in (low..a).rev() {
-        relative /= ratio(x);
-        add(relative);
-    }
-    (extreme / all).min(1.0)
+fn g_test(model: &Independence<'_>) -> GTest {
+    let (statistic, df) = (model.likelihood_ratio(), model.df());
+    GTest { statistic, df, p_value: chi_square_upper(statistic.max(0.0), df as f64).p }
 }
 
 /// `mimique test chi-square`.

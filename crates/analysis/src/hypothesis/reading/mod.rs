@@ -1,0 +1,203 @@
+//! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
+//! for more than a number.
+
+mod pairs;
+
+use mimique_stats::{Outcome, Term};
+
+use crate::hypothesis::call::Design;
+use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::person_level::PersonLevel;
+use crate::hypothesis::test_line::{TestLine, Unit};
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::trials::measure::MeasureKind;
+use pairs::{each_pair, many_pairs};
+
+/// The level of a test.
+const LEVEL: f64 = 0.05;
+
+/// What a comparison within people says.
+pub(crate) fn comparison(naming: &Naming<'_>, result: &Comparison, label: &str) -> String {
+    person_level(naming, &result.recommended, result.kind, &result.factor, label)
+}
+
+/// What tests on one value a person say.
+pub(crate) fn person_level(
+    naming: &Naming<'_>,
+    result: &PersonLevel,
+    kind: MeasureKind,
+    factor: &str,
+    label: &str,
+) -> String {
+    let language = naming.language;
+    let mut sentences = Vec::new();
+    if result.people > 0 && result.incomplete * 4 > result.people {
+        sentences.push(language.pick(
+            format!("{} people could be used; {} have no trial at some level and could not.", result.people, result.incomplete),
+            format!("{} personnes ont pu être utilisées ; {} n’ont pas d’essai à certains niveaux et n’ont pu l’être.", result.people, result.incomplete),
+        ));
+    }
+    for overall in &result.overall {
+        sentences.push(overall_sentence(naming, overall, factor, label));
+    }
+    if result.pairs.len() <= 3 {
+        sentences.extend(each_pair(naming, &result.pairs, kind, factor, label));
+    } else {
+        sentences.extend(many_pairs(naming, &result.pairs, kind, factor));
+    }
+    sentences.join(" ")
+}
+
+/// A difference in the unit that people read: points of percent, seconds, points of the scale.
+pub(crate) fn difference(language: Language, kind: MeasureKind, value: f64) -> String {
+    match kind {
+        MeasureKind::Recognition => language.fixed(value * 100.0, 1),
+        MeasureKind::ResponseTime | MeasureKind::Rating => language.fixed(value, 2),
+    }
+}
+
+/// That unit.
+fn unit(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Recognition => language.pick(" percentage points", " points de pourcentage"),
+        MeasureKind::ResponseTime => " s",
+        MeasureKind::Rating => "",
+    }
+}
+
+fn overall_sentence(
+    naming: &Naming<'_>,
+    outcome: &Outcome<TestLine>,
+    factor: &str,
+    label: &str,
+) -> String {
+    let language = naming.language;
+    let line = match outcome {
+        Outcome::Undefined { reason } => {
+            return language.pick(
+                format!("“{label}”: no test is defined ({reason})."),
+                format!("« {label} » : aucun test n’est défini ({reason})."),
+            );
+        }
+        Outcome::Ok(line) => line,
+    };
+    let interaction = match &line.row.term {
+        Term::Effect(factors) => match factors.as_slice() {
+            [first, second, ..] => Some((first, second)),
+            _ => None,
+        },
+        _ => None,
+    };
+    let what = compared(naming, factor, &line.row.term);
+    let numbers = numbers(language, line);
+    let significant = line.p_that_counts() < LEVEL;
+    if interaction.is_some() && line.call.design != Design::Combinations {
+        return acting_together(language, line, &what, &numbers, significant);
+    }
+    if significant {
+        if interaction.is_some() {
+            return language.pick(
+                format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it."),
+                format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier."),
+            );
+        }
+        return language.pick(
+            format!("The levels of {what} differ: {numbers}, {} people.", line.row.n),
+            format!(
+                "Les niveaux du facteur {what} diffèrent : {numbers}, {} personnes.",
+                line.row.n
+            ),
+        );
+    }
+    if let Some((first, second)) = interaction {
+        let (first, second) = (naming.factor(first), naming.factor(second));
+        return language.pick(
+            format!("That the effect of {first} depends on {second} was not shown: {numbers}, {} people; that is no proof that it does not.", line.row.n),
+            format!("Que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’en dépend pas.", line.row.n),
+        );
+    }
+    language.pick(
+        format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.row.n),
+        format!("Aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+    )
+}
+
+/// What a test compares.
+fn compared(naming: &Naming<'_>, factor: &str, term: &Term) -> String {
+    match term {
+        Term::Whole => naming.factor(factor),
+        pair @ Term::Pair(_) => format!("{} ({pair})", naming.factor(factor)),
+        Term::Effect(factors) => naming.interaction(factors),
+        term @ (Term::Differences(_) | Term::Relation(_)) => term.to_string(),
+    }
+}
+
+/// Statistic, p and effect of a test.
+fn numbers(language: Language, line: &TestLine) -> String {
+    format!(
+        "{}{} = {}, {}, {} = {}",
+        line.names.statistic,
+        line.degrees_in_brackets(),
+        language.number(line.row.statistic),
+        language.p(line.p_that_counts()),
+        line.names.effect_symbol,
+        line.row.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
+    )
+}
+
+/// Whether two factors act together, one of which at least is about people.
+fn acting_together(
+    language: Language,
+    line: &TestLine,
+    what: &str,
+    numbers: &str,
+    significant: bool,
+) -> String {
+    let test = line.names.test;
+    let how = match &line.unit {
+        Unit::DifferencesOfPeople(pair) => language.pick(
+            format!("{test} of each person’s difference {pair}, the smallest p of all pairs of levels after Holm’s correction: {numbers}, {} people", line.row.n),
+            format!("{test} sur la différence {pair} de chaque personne, le plus petit p de toutes les paires de niveaux après correction de Holm : {numbers}, {} personnes", line.row.n),
+        ),
+        _ => language.pick(
+            format!("{test} on one mean a person: {numbers}, {} people", line.row.n),
+            format!("{test} sur une moyenne par personne : {numbers}, {} personnes", line.row.n),
+        ),
+    };
+    if significant {
+        language.pick(
+            format!("The two factors act together ({what}). {how}."),
+            format!("Les deux facteurs agissent ensemble ({what}). {how}."),
+        )
+    } else {
+        language.pick(
+            format!("That the two factors act together ({what}) was not shown. {how}; that is no proof that they do not."),
+            format!("Que les deux facteurs agissent ensemble ({what}) n’a pas été montré. {how} ; cela ne prouve pas qu’ils ne le font pas."),
+        )
+    }
+}
+
+/// What the correction for all hypotheses of the study leaves of one.
+pub(crate) fn over_hypotheses(language: Language, p: f64, p_holm: f64, tested: usize) -> String {
+    let corrected = language.p(p_holm);
+    let lost = p < LEVEL && p_holm >= LEVEL;
+    if lost {
+        return language.pick(
+            format!("Corrected for the {tested} hypotheses of this study: {corrected}, no longer below 0.05."),
+            format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}, qui n’est plus sous 0,05."),
+        );
+    }
+    language.pick(
+        format!("Corrected for the {tested} hypotheses of this study: {corrected}."),
+        format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}."),
+    )
+}
+
+/// Said wherever trial-level tests stand.
+pub(crate) fn trial_level_caution(language: Language) -> &'static str {
+    language.pick(
+        "The columns “as in the thesis” treat every trial as if it came from another person, although each person answered many. Their p counts one opinion several times: it is printed for comparison with the thesis and supports no conclusion here.",
+        "Les colonnes « comme dans la thèse » traitent chaque essai comme s’il venait d’une autre personne, alors que chacune en a fait plusieurs. Leur p compte une même opinion plusieurs fois : il est imprimé pour comparaison avec la thèse et n’autorise ici aucune conclusion.",
+    )
+}

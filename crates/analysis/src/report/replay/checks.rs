@@ -1,0 +1,213 @@
+//! Every number of the results under a key, with the call that computes it again.
+
+use mimique_stats::Outcome;
+
+use crate::hypothesis::call::{Call, Design};
+use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::person_level::{Pair, PersonLevel};
+use crate::hypothesis::test_line::TestLine;
+use crate::hypothesis::trial_level::TrialLevel;
+use crate::report::results::Results;
+
+/// One computation: a key, how it is called, and what came out.
+pub(super) struct Check {
+    pub key: String,
+    pub call: Call,
+    pub values: Vec<(&'static str, f64)>,
+}
+
+/// p-values that are corrected together: keys of their checks, and keys for the corrected ones.
+pub(super) struct Family {
+    pub of: Vec<String>,
+    pub into: Vec<String>,
+    pub p_holm: Vec<f64>,
+}
+
+/// Walks the results.
+#[derive(Default)]
+pub(super) struct Collector {
+    checks: Vec<Check>,
+    families: Vec<Family>,
+}
+
+impl Collector {
+    /// The checks and families of a report, in its order.
+    pub(super) fn of(results: &Results<'_>) -> (Vec<Check>, Vec<Family>) {
+        let mut all = Self::default();
+        let mut decided = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        for result in &results.hypotheses {
+            let key = format!("hypothesis:{}", result.id);
+            all.trial_level(&key, &result.as_in_the_thesis);
+            all.person_level(&key, &result.recommended);
+            if let (Some(p_holm), Some(deciding)) =
+                (result.p_holm_over_hypotheses, deciding_key(&key, &result.recommended))
+            {
+                decided.of.push(deciding);
+                decided.into.push(format!("{key}:over hypotheses"));
+                decided.p_holm.push(p_holm);
+            }
+        }
+        all.families.extend((!decided.of.is_empty()).then_some(decided));
+        for matrix in &results.confusion {
+            let by = matrix.by.as_deref().unwrap_or_default();
+            let result = &matrix.result;
+            let [wilson_low, wilson_high] = result.accuracy_ci_wilson;
+            let mut values = vec![
+                ("n", result.n as f64),
+                ("accuracy", result.accuracy),
+                ("wilson_low", wilson_low),
+                ("wilson_high", wilson_high),
+            ];
+            values.extend(result.kappa.map(|kappa| ("kappa", kappa)));
+            let call = Call::new(Design::Answers, "confusion").text(&matrix.response).text(by);
+            let levels = matrix.by.as_ref().map(|_| matrix.of.clone());
+            all.checks.push(Check {
+                key: format!("confusion:{}:{}", matrix.response, matrix.of),
+                call: call.list(levels.as_slice()),
+                values,
+            });
+        }
+        for comparison in &results.comparisons {
+            all.comparison(comparison);
+        }
+        for two in &results.two_way {
+            let key = format!("two-way:{}:{}", two.measure, two.factors.join(":"));
+            all.trial_level(&key, &two.as_in_the_thesis);
+            all.person_level(&key, &two.recommended);
+        }
+        for course in &results.course {
+            all.line(format!("course:{}", course.measure), &course.trend);
+        }
+        all.layouts(results);
+        (all.checks, all.families)
+    }
+
+    fn comparison(&mut self, comparison: &Comparison) {
+        let (measure, factor) = (&comparison.measure, &comparison.factor);
+        let key = format!("comparison:{measure}:{factor}");
+        for (level, outcome) in comparison.descriptions.iter() {
+            let Outcome::Ok(d) = outcome else { continue };
+            let mut values = vec![
+                ("n", d.n as f64),
+                ("mean", d.mean),
+                ("median", d.median),
+                ("q1", d.q1),
+                ("q3", d.q3),
+            ];
+            values.extend(d.sd.map(|sd| ("sd", sd)));
+            self.checks.push(Check {
+                key: format!("{key}:{level}"),
+                call: Call::new(Design::Level, "describe").text(measure).text(factor).text(level),
+                values,
+            });
+        }
+        for (place, (level, mean)) in comparison.person_means.iter().enumerate() {
+            let Some(mean) = mean else { continue };
+            let call = Call::new(Design::PersonMean, "mean").text(measure).text(factor);
+            self.checks.push(Check {
+                key: format!("{key}:{level}:people"),
+                call: call.list(&comparison.levels).number(place + 1),
+                values: vec![("mean", *mean)],
+            });
+        }
+        self.trial_level(&key, &comparison.as_in_the_thesis);
+        self.person_level(&key, &comparison.recommended);
+    }
+
+    fn layouts(&mut self, results: &Results<'_>) {
+        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let mut row = None;
+        for cell in &results.layouts {
+            let key = format!("table:{}:{}:{}", cell.table, cell.row, cell.column);
+            // The pairs of a row are corrected together.
+            if row.replace((&cell.table, &cell.row)) != Some((&cell.table, &cell.row)) {
+                self.close(&mut family);
+            }
+            if let Some(outcome) = &cell.as_in_the_thesis {
+                self.line(format!("{key}:thesis"), outcome);
+            }
+            if let Some(outcome) = &cell.recommended {
+                let key = format!("{key}:recommended");
+                self.line(key.clone(), outcome);
+                if let Outcome::Ok(TestLine { p_holm: Some(p), call, .. }) = outcome
+                    && call.design == Design::People
+                {
+                    family.of.push(key.clone());
+                    family.into.push(key);
+                    family.p_holm.push(*p);
+                }
+            }
+        }
+        self.close(&mut family);
+    }
+
+    fn close(&mut self, family: &mut Family) {
+        let empty = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let whole = std::mem::replace(family, empty);
+        self.families.extend((!whole.of.is_empty()).then_some(whole));
+    }
+
+    fn trial_level(&mut self, key: &str, trials: &TrialLevel) {
+        for (place, outcome) in trials.tests.iter().enumerate() {
+            self.line(format!("{key}:thesis {}", place + 1), outcome);
+        }
+    }
+
+    fn person_level(&mut self, key: &str, people: &PersonLevel) {
+        for (place, outcome) in people.overall.iter().enumerate() {
+            self.line(overall_key(key, place), outcome);
+        }
+        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        for pair in &people.pairs {
+            let key = pair_key(key, pair);
+            self.line(key.clone(), &pair.wilcoxon);
+            let (Outcome::Ok(line), Some(check)) = (&pair.wilcoxon, self.checks.last_mut()) else {
+                continue;
+            };
+            if let Some(difference) = pair.difference {
+                check.values.extend([
+                    ("estimate", difference.estimate),
+                    ("low", difference.ci_low),
+                    ("high", difference.ci_high),
+                ]);
+            }
+            if let Some(p_holm) = line.p_holm {
+                family.of.push(key.clone());
+                family.into.push(key);
+                family.p_holm.push(p_holm);
+            }
+        }
+        self.close(&mut family);
+    }
+
+    fn line(&mut self, key: String, outcome: &Outcome<TestLine>) {
+        let Outcome::Ok(line) = outcome else { return };
+        let mut values = vec![
+            ("statistic", line.row.statistic),
+            ("p", line.row.p_value),
+            ("n", line.row.n as f64),
+        ];
+        values.extend(line.row.effect.map(|effect| ("effect", effect)));
+        if line.call.design == Design::DifferencesByTrait {
+            values.extend(line.p_holm.map(|p| ("p_holm", p)));
+        }
+        self.checks.push(Check { key, call: line.call.clone(), values });
+    }
+}
+
+fn overall_key(key: &str, place: usize) -> String {
+    format!("{key}:recommended {}", place + 1)
+}
+
+fn pair_key(key: &str, pair: &Pair) -> String {
+    format!("{key}:{} | {}", pair.a, pair.b)
+}
+
+/// The check whose p decides a hypothesis.
+fn deciding_key(key: &str, people: &PersonLevel) -> Option<String> {
+    match (people.overall.len(), people.pairs.as_slice()) {
+        (0, [one]) => Some(pair_key(key, one)),
+        (0, _) => None,
+        (several, _) => Some(overall_key(key, several - 1)),
+    }
+}

@@ -1,0 +1,94 @@
+//! The trials of the analysis as a table that other programs read.
+
+use std::borrow::Cow;
+
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+use crate::language::Language;
+use crate::report::document::csv_text;
+use crate::report::section::Writer;
+use crate::trials::export::Export;
+use crate::trials::measure::{Measure, MeasureKind};
+
+/// A column of the trials' file.
+enum Cells<'e> {
+    Texts(Vec<&'e str>),
+    Numbers(Vec<Option<f64>>),
+}
+
+impl Cells<'_> {
+    /// The text of a cell, in bytes.
+    fn bytes(&self, row: usize) -> Cow<'_, [u8]> {
+        match self {
+            Self::Texts(cells) => Cow::Borrowed(cells[row].as_bytes()),
+            Self::Numbers(cells) => match cells[row] {
+                Some(number) => Cow::Owned(number.to_string().into_bytes()),
+                None => Cow::Borrowed(&[]),
+            },
+        }
+    }
+}
+
+/// One line a trial in the analysis: person, clip, factors, answers about the person, every measure.
+pub(super) fn trials(writer: &Writer<'_>) -> String {
+    let export: &Export = writer.export;
+    let rows = export.trials.len();
+    let mut person = vec![0; rows];
+    for answer in export.answers.values().flatten() {
+        person[answer.trial] = answer.person;
+    }
+    let ids = person.iter().map(|&person| export.people[person].id.as_str());
+    let clips = export.trials.iter().map(|trial| &*trial.stimulus);
+    let orders = export.trials.iter().map(|trial| trial.order.map(|order| order as f64));
+    let mut columns: Vec<(String, Cells<'_>)> = vec![
+        ("participant_id".to_owned(), Cells::Texts(ids.collect())),
+        ("stimulus".to_owned(), Cells::Texts(clips.collect())),
+        ("trial_order".to_owned(), Cells::Numbers(orders.collect())),
+    ];
+    for (place, factor) in export.factors.iter().enumerate() {
+        let levels = export.trials.iter().map(|trial| trial.levels[place].as_deref());
+        columns
+            .push((factor.clone(), Cells::Texts(levels.map(Option::unwrap_or_default).collect())));
+    }
+    for (name, cells) in &export.about {
+        let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());
+        columns.push((name.clone(), Cells::Texts(texts.collect())));
+    }
+    let mut measures: Vec<Measure> = Vec::new();
+    for asked in export.questions(writer.study) {
+        let measure = Measure::of_question(export, &asked, Language::English);
+        if measure.as_ref().is_some_and(|measure| measure.kind == MeasureKind::Recognition) {
+            let (mut truth, mut given) = (vec![""; rows], vec![""; rows]);
+            for answer in export.answers_to(&asked.id) {
+                truth[answer.trial] = answer.truth.as_deref().unwrap_or_default();
+                given[answer.trial] = &answer.text;
+            }
+            columns.push((format!("{}.truth", asked.id), Cells::Texts(truth)));
+            columns.push((format!("{}.answer", asked.id), Cells::Texts(given)));
+        }
+        measures.extend(measure);
+        measures.extend(Measure::response_time(export, &asked, Language::English));
+    }
+    for measure in measures {
+        let mut cells = vec![None; rows];
+        for (value, &trial) in measure.values.iter().zip(&measure.trial) {
+            cells[trial] = Some(*value);
+        }
+        columns.push((measure.id, Cells::Numbers(cells)));
+    }
+    in_lines(&columns, rows)
+}
+
+/// The columns as CSV, pieces of it at the same time.
+fn in_lines(columns: &[(String, Cells<'_>)], rows: usize) -> String {
+    let lines = |first: usize| {
+        let row = |row: usize| columns.iter().map(move |(_, cells)| cells.bytes(row));
+        csv_text((first..(first + ROWS).min(rows)).map(row))
+    };
+    let starts: Vec<usize> = (0..rows).step_by(ROWS).collect();
+    let pieces: Vec<String> = starts.into_par_iter().map(lines).collect();
+    csv_text([columns.iter().map(|(name, _)| name)]) + &pieces.concat()
+}
+
+/// Lines of the trials' file that are written together.
+const ROWS: usize = 4096;
