@@ -18,7 +18,7 @@ use anyhow::Context as _;
 use mimique_server::{Assets, HostedStudy, Stage};
 use mimique_session::{SiteFile, Standing};
 use mimique_storage::durable_file;
-use mimique_study::{Multilingual as _, Severity};
+use mimique_study::{CheckedStudy, Multilingual as _, Severity, Study};
 use serde_json::json;
 
 use crate::check::check_file;
@@ -56,19 +56,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         "{}: there is something in this folder; choose another by --out",
         place()
     );
-    let report = check_file(&args.study)?;
-    let mut problems = Vec::new();
-    for issue in &report.issues {
-        let at = issue.place();
-        let text =
-            format!("{}: {at}: {}; {}", args.study.display(), issue.message(), issue.remedy());
-        match issue.severity {
-            Severity::Error => problems.push(text),
-            Severity::Warning => eprintln!("warning: {text}"),
-        }
-    }
-    anyhow::ensure!(problems.is_empty(), "{}", problems.join("\nerror: "));
-    let Some(checked) = report.study else { anyhow::bail!("{}: no study", args.study.display()) };
+    let checked = checked_study(&args.study)?;
     let clips = prepare_study(&args.study, checked.study(), &args.packs)
         .map_err(|problem| anyhow::anyhow!(problem))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
@@ -111,66 +99,39 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The study of a file without errors; its warnings are printed.
+fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
+    let report = check_file(file)?;
+    let mut problems = Vec::new();
+    for issue in &report.issues {
+        let at = issue.place();
+        let text = format!("{}: {at}: {}; {}", file.display(), issue.message(), issue.remedy());
+        match issue.severity {
+            Severity::Error => problems.push(text),
+            Severity::Warning => eprintln!("warning: {text}"),
+        }
+    }
+    anyhow::ensure!(problems.is_empty(), "{}", problems.join("\nerror: "));
+    report.study.ok_or_else(|| anyhow::anyhow!("{}: no study", file.display()))
+}
+
 /// Writes the site; returns the number of files and bytes.
 fn write(
     folder: &Path,
     assets: &Assets,
-    study: &mimique_study::Study,
+    study: &Study,
     hosted: &HostedStudy,
     stage: Stage,
     packs: &Path,
 ) -> anyhow::Result<(usize, u64)> {
-    let mut written = (0, 0);
-    let mut put = |name: &str, bytes: &[u8]| -> anyhow::Result<()> {
-        let path = folder.join(name);
-        let place = || path.display().to_string();
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).with_context(place)?;
-        }
-        std::fs::write(&path, bytes).with_context(place)?;
-        written = (written.0 + 1, written.1 + bytes.len() as u64);
-        Ok(())
-    };
+    let mut folder = Folder { path: folder, files: 0, bytes: 0 };
     let prefix = format!("assets/{}", assets.hash());
-    for (name, bytes) in assets.files() {
-        // Pages of the server, and what only they need.
-        let servers = name.ends_with(".html")
-            || ["researcher/", "studio/", "studio.", "studio_bg."]
-                .iter()
-                .any(|start| name.starts_with(start));
-        if !servers {
-            put(&format!("{prefix}/{name}"), bytes)?;
-        }
-    }
-    let bundle = hosted.bundle();
-    let mut hashes: Vec<&str> = bundle.clips.values().flat_map(|clip| clip.packs()).collect();
-    hashes.sort_unstable();
-    hashes.dedup();
-    for hash in hashes {
-        let path = packs.join(hash);
-        let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
-        put(&format!("packs/{hash}"), &bytes)?;
-    }
-    let recruitment = &study.recruitment;
-    // By the exported word: several standings share one, and its code.
-    let code = |standing: Standing| {
-        let code = standing.completion_code(recruitment)?;
-        Some((standing.export_word().to_owned(), code.to_owned()))
-    };
-    let hosting = study.static_hosting.clone().unwrap_or_default();
-    let contact = study.contact.as_ref();
-    let site = SiteFile {
-        bundle: bundle.clone(),
-        stage: stage.word().to_owned(),
-        seed: study.seed,
-        codes: Standing::ALL.into_iter().filter_map(code).collect(),
-        redirect: recruitment.redirect.clone(),
-        hosting: hosting.clone(),
-        email: contact.map_or_else(String::new, |contact| contact.investigator.email.clone()),
-    };
-    put("site.json", serde_json::to_string(&site)?.as_bytes())?;
+    write_assets(&mut folder, assets, &prefix)?;
+    write_packs(&mut folder, hosted, packs)?;
+    let site = site_file(study, hosted, stage);
+    folder.put("site.json", serde_json::to_string(&site)?.as_bytes())?;
     let language = study.default_language();
-    let post = hosting.post.as_deref().map_or_else(String::new, origin);
+    let post = site.hosting.post.as_deref().map_or_else(String::new, origin);
     let values = [
         ("assets", prefix.as_str()),
         ("lang", language),
@@ -181,8 +142,79 @@ fn write(
     let page = assets.page("participant/site.html", &values).context(
         "participant/site.html is not among the pages; run `cargo xtask web` and build again",
     )?;
-    put("index.html", page.as_bytes())?;
-    Ok(written)
+    folder.put("index.html", page.as_bytes())?;
+    Ok((folder.files, folder.bytes))
+}
+
+/// A folder that is being written, with what it holds so far.
+struct Folder<'a> {
+    path: &'a Path,
+    files: usize,
+    bytes: u64,
+}
+
+impl Folder<'_> {
+    /// Writes a file, and makes its folder where it is not there.
+    fn put(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
+        let path = self.path.join(name);
+        let place = || path.display().to_string();
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).with_context(place)?;
+        }
+        std::fs::write(&path, bytes).with_context(place)?;
+        self.files += 1;
+        self.bytes += bytes.len() as u64;
+        Ok(())
+    }
+}
+
+/// Modules, scripts and styles of the participant's page.
+fn write_assets(folder: &mut Folder<'_>, assets: &Assets, prefix: &str) -> anyhow::Result<()> {
+    for (name, bytes) in assets.files() {
+        // Pages of the server, and what only they need.
+        let servers = name.ends_with(".html")
+            || ["researcher/", "studio/", "studio.", "studio_bg."]
+                .iter()
+                .any(|start| name.starts_with(start));
+        if !servers {
+            folder.put(&format!("{prefix}/{name}"), bytes)?;
+        }
+    }
+    Ok(())
+}
+
+/// The packs of all clips, each once.
+fn write_packs(folder: &mut Folder<'_>, hosted: &HostedStudy, packs: &Path) -> anyhow::Result<()> {
+    let clips = hosted.bundle().clips.values();
+    let mut hashes: Vec<&str> = clips.flat_map(|clip| clip.packs()).collect();
+    hashes.sort_unstable();
+    hashes.dedup();
+    for hash in hashes {
+        let path = packs.join(hash);
+        let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
+        folder.put(&format!("packs/{hash}"), &bytes)?;
+    }
+    Ok(())
+}
+
+/// What `site.json` says: the study, its clips, its codes, and where the answers go.
+fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage) -> SiteFile {
+    let recruitment = &study.recruitment;
+    // By the exported word: several standings share one, and its code.
+    let code = |standing: Standing| {
+        let code = standing.completion_code(recruitment)?;
+        Some((standing.export_word().to_owned(), code.to_owned()))
+    };
+    let contact = study.contact.as_ref();
+    SiteFile {
+        bundle: hosted.bundle().clone(),
+        stage: stage.word().to_owned(),
+        seed: study.seed,
+        codes: Standing::ALL.into_iter().filter_map(code).collect(),
+        redirect: recruitment.redirect.clone(),
+        hosting: study.static_hosting.clone().unwrap_or_default(),
+        email: contact.map_or_else(String::new, |contact| contact.investigator.email.clone()),
+    }
 }
 
 /// Scheme and host of an address, as a content security policy wants them.

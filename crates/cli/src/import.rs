@@ -53,32 +53,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     };
     let place = || args.study.display().to_string();
     let writer = Unstored::new(file, clips, args.format).with_context(place)?;
-    let mut sessions = Sessions::default();
-    for path in session_files(&args.files)? {
-        let session = read_session(&path)?;
-        let at = path.display();
-        anyhow::ensure!(
-            session.study == study.id,
-            "{at}: line 1: a session of study {}, not of {}; leave it out, or name its study file",
-            session.study,
-            study.id
-        );
-        let (here, there) = (writer.config_hash(), &session.started.config_hash);
-        anyhow::ensure!(
-            there == here,
-            "{at}: line 1: a session of version {}, and {} is version {}; give the file that the site was made from",
-            short(there),
-            place(),
-            short(here)
-        );
-        sessions.add(path, session)?;
-    }
-    let Sessions { known: sessions, read } = sessions;
-    let mut ordered: Vec<&SessionFile> = sessions.values().map(|(_, session)| session).collect();
-    let begun = |session: &SessionFile| session.events.first().map_or(0.0, |event| event.at_ms);
-    ordered.sort_by(|left, right| begun(left).total_cmp(&begun(right)));
-    let written = ordered
-        .iter()
+    let sessions = read_sessions(&args, &study.id, writer.config_hash())?;
+    let read = sessions.read;
+    let written = sessions
+        .in_order_of_time()
+        .into_iter()
         .map(|session| writer.write(&session.started, &session.events))
         .collect::<Result<Vec<_>, _>>()?;
     let count = written.len();
@@ -106,6 +85,30 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(stdout, "  {}", path.display())?;
     }
     Ok(())
+}
+
+/// The sessions of the files named, all of one version of the study.
+fn read_sessions(args: &Args, study: &str, config_hash: &str) -> anyhow::Result<Sessions> {
+    let mut sessions = Sessions::default();
+    for path in session_files(&args.files)? {
+        let session = read_session(&path)?;
+        let at = path.display();
+        anyhow::ensure!(
+            session.study == study,
+            "{at}: line 1: a session of study {}, not of {study}; leave it out, or name its study file",
+            session.study
+        );
+        let there = &session.started.config_hash;
+        anyhow::ensure!(
+            there == config_hash,
+            "{at}: line 1: a session of version {}, and {} is version {}; give the file that the site was made from",
+            short(there),
+            args.study.display(),
+            short(config_hash)
+        );
+        sessions.add(path, session)?;
+    }
+    Ok(sessions)
 }
 
 /// Sessions by their identifier, each with the file that it was first read from.
@@ -140,6 +143,14 @@ impl Sessions {
             *known = session;
         }
         Ok(())
+    }
+
+    /// The sessions, the first to begin first.
+    fn in_order_of_time(&self) -> Vec<&SessionFile> {
+        let begun = |session: &SessionFile| session.events.first().map_or(0.0, |event| event.at_ms);
+        let mut sessions: Vec<_> = self.known.values().map(|(_, session)| session).collect();
+        sessions.sort_by(|left, right| begun(left).total_cmp(&begun(right)));
+        sessions
     }
 }
 

@@ -2,7 +2,7 @@
 //! and clips; the curve, the tables, and a preregistration written from the study file.
 
 use std::io::{IsTerminal, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Context as _;
@@ -62,20 +62,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let place = || args.study.display().to_string();
     let config_hash = mimique_study::config_hash(&file);
     let parameters = args.assumptions.read(&study)?;
-    let mut participants = args.participants.clone();
-    participants.sort_unstable();
-    participants.dedup();
-    let mut clips = args.clips.clone();
-    clips.sort_unstable();
-    clips.dedup();
-    let options = PowerOptions {
-        participants,
-        clips,
-        runs: args.runs,
-        seed: args.seed,
-        alpha: args.alpha,
-        false_positives: !args.no_false_positives,
-    };
+    let options = power_options(&args);
     let bar = progress_bar(power_runs(&options));
     let result = power(&study, &config_hash, &parameters, &options, &|| bar.inc(1));
     bar.finish_and_clear();
@@ -83,12 +70,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let language = args.language;
     let mut written = Vec::new();
     let mut write = |path: PathBuf, text: String| -> anyhow::Result<()> {
-        if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
-            std::fs::create_dir_all(parent)
-                .map_err(|error| anyhow::anyhow!("no folder can be made ({error})"))
-                .with_context(|| parent.display().to_string())?;
-        }
-        output::write(&path, text.as_bytes())?;
+        write_with_folder(&path, &text)?;
         written.push(path.display().to_string());
         Ok(())
     };
@@ -132,6 +114,34 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "  {path}")?;
     }
     Ok(())
+}
+
+/// What is simulated: every number of people and of clips once, in ascending order.
+fn power_options(args: &Args) -> PowerOptions {
+    let ascending = |numbers: &[usize]| {
+        let mut numbers = numbers.to_vec();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers
+    };
+    PowerOptions {
+        participants: ascending(&args.participants),
+        clips: ascending(&args.clips),
+        runs: args.runs,
+        seed: args.seed,
+        alpha: args.alpha,
+        false_positives: !args.no_false_positives,
+    }
+}
+
+/// Writes a file, and makes its folder where it is not there.
+fn write_with_folder(path: &Path, text: &str) -> anyhow::Result<()> {
+    if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty()) {
+        std::fs::create_dir_all(parent)
+            .map_err(|error| anyhow::anyhow!("no folder can be made ({error})"))
+            .with_context(|| parent.display().to_string())?;
+    }
+    output::write(path, text.as_bytes())
 }
 
 /// A bar on stderr, where somebody looks at it.

@@ -1,7 +1,7 @@
 //! `mimique segment`: the expressions of a long take, suggested, carried between CSV and ELAN, and
 //! told as the segments of a study file.
 
-use std::io::Write as _;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -139,16 +139,27 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         )?;
         return Ok(());
     }
+    print_segments(&mut out, &args, &take, &found.segments)?;
+    Ok(())
+}
+
+/// The segments, a line each.
+fn print_segments(
+    out: &mut impl Write,
+    args: &Args,
+    take: &Take,
+    segments: &[TakeSegment],
+) -> std::io::Result<()> {
     writeln!(
         out,
         "{}: {} expressions in {:.1} s at {} Hz{}",
         args.take.display(),
-        found.segments.len(),
+        segments.len(),
         take.frames() as f64 / take.rate_hz,
         take.rate_hz,
         if args.from.is_none() { ", suggested: look at them before they are used" } else { "" },
     )?;
-    for s in &found.segments {
+    for s in segments {
         writeln!(
             out,
             "{:<16} frames {:>6} to {:>6}, clip {:>6} to {:>6}, {:.2} s",
@@ -160,8 +171,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             s.clip.len() as f64 / take.rate_hz,
         )?;
     }
-    take.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
-    Ok(())
+    take.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))
 }
 
 /// The take's channels: weights as they are, or the markers in a still head.

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_analysis::{Parameters, Simulation};
-use mimique_server::export::{Format, Unstored};
+use mimique_server::export::{Exported, Format, Unstored};
 use mimique_stats::Table;
 use mimique_study::Study;
 use rayon::prelude::*;
@@ -113,23 +113,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .with_context(place)?;
     let exported = writer.join(sessions)?;
     let (participants, rows) = (exported.participants, exported.rows);
-    std::fs::create_dir_all(&args.out)
-        .map_err(|error| {
-            anyhow::anyhow!("no folder can be made ({error}); choose another by --out")
-        })
-        .with_context(|| args.out.display().to_string())?;
-    // One file goes under its own name, several are a folder of their own.
-    let target = match exported.files.as_slice() {
-        [(name, _)] => args.out.join(name),
-        _ => args.out.clone(),
-    };
-    let mut written = exported.write(&target)?;
-    let path = args.out.join("parameters.json");
-    let mut text = serde_json::to_string_pretty(&parameters)?;
-    text.push('\n');
-    output::write(&path, text.as_bytes())?;
-    written.push(path);
-
+    let written = write(&args.out, exported, &parameters)?;
     let mut out = std::io::stdout().lock();
     if json {
         let files: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
@@ -153,4 +137,29 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "  {}", path.display())?;
     }
     Ok(())
+}
+
+/// Writes the export and `parameters.json` into a folder; returns the files.
+fn write(
+    folder: &Path,
+    exported: Exported,
+    parameters: &Parameters,
+) -> anyhow::Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| {
+            anyhow::anyhow!("no folder can be made ({error}); choose another by --out")
+        })
+        .with_context(|| folder.display().to_string())?;
+    // One file goes under its own name, several are a folder of their own.
+    let target = match exported.files.as_slice() {
+        [(name, _)] => folder.join(name),
+        _ => folder.to_owned(),
+    };
+    let mut written = exported.write(&target)?;
+    let path = folder.join("parameters.json");
+    let mut text = serde_json::to_string_pretty(parameters)?;
+    text.push('\n');
+    output::write(&path, text.as_bytes())?;
+    written.push(path);
+    Ok(written)
 }

@@ -73,6 +73,34 @@ pub(crate) fn add_cap(
     topology: &Topology,
     who: &Identity,
 ) {
+    let inside = depths_inside_hair(skin, fine, topology, who);
+    let (from, triangles) = haired_skin(skin, &inside);
+    let colour = who.hair_colour;
+    avatar.meshes.push(Mesh {
+        name: "hair".to_string(),
+        part: Part::Hair,
+        positions: from.iter().map(|&v| lifted(skin, v, inside[v], who).metres()).collect(),
+        triangles,
+        vertex_colours: from
+            .iter()
+            .map(|&v| {
+                let shine = 1.0 + 0.28 * lock(skin.positions[v]) as f32;
+                colour.map(|c| c * shine)
+            })
+            .collect(),
+        base_colour: colour,
+        shapes: skin.shapes.iter().map(|d| sparse(from.iter().map(|&v| d[v]))).collect(),
+        ..Mesh::default()
+    });
+}
+
+/// How far inside the hair each vertex of the skin is, mm; negative outside.
+fn depths_inside_hair(
+    skin: &SkinLayer,
+    fine: &Subdivided,
+    topology: &Topology,
+    who: &Identity,
+) -> Vec<f64> {
     let ear: Vec<Vec3> = topology
         .sites
         .iter()
@@ -83,9 +111,7 @@ pub(crate) fn add_cap(
         })
         .collect();
     let ear = fine.refine(&ear);
-    // How far inside the hair a vertex is, mm.
-    let inside: Vec<f64> = skin
-        .positions
+    skin.positions
         .iter()
         .zip(&ear)
         .map(|(p, e)| {
@@ -96,7 +122,11 @@ pub(crate) fn add_cap(
             // Round the ear the line is drawn on the ear's own loops, so that it stays smooth.
             p.y - hair_line(bearing, who) - 70.0 * e.x
         })
-        .collect();
+        .collect()
+}
+
+/// The part of the skin that the hair covers: the skin's vertices, and triangles of them.
+fn haired_skin(skin: &SkinLayer, inside: &[f64]) -> (Vec<usize>, Vec<[u32; 3]>) {
     let mut own = vec![u32::MAX; skin.positions.len()];
     let mut from = Vec::new();
     let mut triangles = Vec::new();
@@ -117,44 +147,30 @@ pub(crate) fn add_cap(
         // Bent along the same diagonal as the skin under it, which would else come through.
         triangles.extend(split(q, quad.map(|v| skin.positions[v as usize])));
     }
-    let lock = |p: Vec3| {
-        // Combed back from a side parting: locks run along the head.
-        let across = p.x + 0.18 * p.z - 16.0 + 0.05 * p.y;
-        libm::sin(across * 0.42 + 1.7 * libm::sin(p.z * 0.045)) * 0.6
-            + libm::sin(across * 1.13 + 0.6 + 1.1 * libm::sin(p.z * 0.08)) * 0.4
-    };
-    let lifted = |v: usize| {
-        let (p, n) = (skin.positions[v], skin.normals[v]);
-        let top = smoothstep(30.0, 100.0, p.y);
-        let full = mix(mix(6.5, 5.0, who.masculinity), mix(11.5, 13.0, who.masculinity), top);
-        let full = full - 3.0 * who.age * who.masculinity;
-        // A lick over the forehead on one side of the parting.
-        let lick =
-            5.0 * bump((p.x - 4.0) / 24.0) * bump((p.y - 88.0) / 16.0) * smoothstep(0.0, 50.0, p.z);
-        let depth = inside[v];
-        // Straight through zero, so that the visible edge is the hair line itself on any mesh.
-        let rise =
-            0.26 * depth.clamp(-10.0, 5.0) + (full - 1.3 + lick) * smoothstep(3.0, 26.0, depth);
-        let relief = 0.75 * lock(p) * smoothstep(3.0, 16.0, depth);
-        p + n * (rise + relief)
-    };
-    let colour = who.hair_colour;
-    avatar.meshes.push(Mesh {
-        name: "hair".to_string(),
-        part: Part::Hair,
-        positions: from.iter().map(|&v| lifted(v).metres()).collect(),
-        triangles,
-        vertex_colours: from
-            .iter()
-            .map(|&v| {
-                let shine = 1.0 + 0.28 * lock(skin.positions[v]) as f32;
-                colour.map(|c| c * shine)
-            })
-            .collect(),
-        base_colour: colour,
-        shapes: skin.shapes.iter().map(|d| sparse(from.iter().map(|&v| d[v]))).collect(),
-        ..Mesh::default()
-    });
+    (from, triangles)
+}
+
+/// The relief of the locks at a place, from -1 to 1.
+fn lock(p: Vec3) -> f64 {
+    // Combed back from a side parting: locks run along the head.
+    let across = p.x + 0.18 * p.z - 16.0 + 0.05 * p.y;
+    libm::sin(across * 0.42 + 1.7 * libm::sin(p.z * 0.045)) * 0.6
+        + libm::sin(across * 1.13 + 0.6 + 1.1 * libm::sin(p.z * 0.08)) * 0.4
+}
+
+/// A vertex of the skin lifted to the surface of the hair.
+fn lifted(skin: &SkinLayer, v: usize, depth: f64, who: &Identity) -> Vec3 {
+    let (p, n) = (skin.positions[v], skin.normals[v]);
+    let top = smoothstep(30.0, 100.0, p.y);
+    let full = mix(mix(6.5, 5.0, who.masculinity), mix(11.5, 13.0, who.masculinity), top);
+    let full = full - 3.0 * who.age * who.masculinity;
+    // A lick over the forehead on one side of the parting.
+    let lick =
+        5.0 * bump((p.x - 4.0) / 24.0) * bump((p.y - 88.0) / 16.0) * smoothstep(0.0, 50.0, p.z);
+    // Straight through zero, so that the visible edge is the hair line itself on any mesh.
+    let rise = 0.26 * depth.clamp(-10.0, 5.0) + (full - 1.3 + lick) * smoothstep(3.0, 26.0, depth);
+    let relief = 0.75 * lock(p) * smoothstep(3.0, 16.0, depth);
+    p + n * (rise + relief)
 }
 
 /// Stations along a brow and across it.

@@ -94,11 +94,7 @@ pub fn performance_weights(
     let sway = Sway::new(clip, strength, &whole, duration_s, &mut rng);
     let find = |name: &str| shape_names.iter().position(|s| s == name);
     let lids = [find("eyeBlinkLeft"), find("eyeBlinkRight")];
-    let yielding: Vec<usize> = ["eyeWide", "eyeSquint", "eyeLookDown", "cheekSquint"]
-        .iter()
-        .flat_map(|s| [find(&format!("{s}Left")), find(&format!("{s}Right"))])
-        .flatten()
-        .collect();
+    let yielding = yielding_to_blinks(&find);
     let looks: Vec<(usize, f64, f64)> = look_axes(&find);
     let mut out = Performance {
         rate_hz,
@@ -255,6 +251,15 @@ fn look_axes(find: &dyn Fn(&str) -> Option<usize>) -> Vec<(usize, f64, f64)> {
     .into_iter()
     .filter_map(|(name, x, y)| Some((find(name)?, x, y)))
     .collect()
+}
+
+/// Shapes about the eyes that a blink takes the lids from.
+fn yielding_to_blinks(find: &dyn Fn(&str) -> Option<usize>) -> Vec<usize> {
+    ["eyeWide", "eyeSquint", "eyeLookDown", "cheekSquint"]
+        .iter()
+        .flat_map(|s| [find(&format!("{s}Left")), find(&format!("{s}Right"))])
+        .flatten()
+        .collect()
 }
 
 /// Slow sway of the head, and the movement that belongs to the emotion.

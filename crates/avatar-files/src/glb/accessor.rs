@@ -1,5 +1,6 @@
 //! Numbers out of a glTF accessor: any component type, normalised integers, strides, sparse parts.
 
+use gltf::json::accessor::sparse::Sparse;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index};
@@ -44,44 +45,13 @@ impl Container {
         };
         // Room is made only for what the file is known to hold.
         let mut out = vec![[0f32; N]; count];
-        let element = |bytes: &[u8]| -> [f32; N] {
-            std::array::from_fn(|a| {
-                number(&bytes[a * component.size()..], component, normalised) as f32
-            })
-        };
         if let Some(window) = dense {
             for (i, value) in out.iter_mut().enumerate() {
-                *value = element(&window.bytes[i * window.stride..]);
+                *value = element(&window.bytes[i * window.stride..], component, normalised);
             }
         }
         if let Some(sparse) = &accessor.sparse {
-            let count = sparse.count.0 as usize;
-            let Checked::Valid(index_type) = sparse.indices.component_type else {
-                return Err(ReadError::damaged(place, "sparse indices of an unknown type"));
-            };
-            let size = index_type.0.size();
-            let indices = self.window(
-                sparse.indices.buffer_view.value(),
-                sparse.indices.byte_offset.0,
-                count,
-                size,
-                place,
-            )?;
-            let values = self.window(
-                sparse.values.buffer_view.value(),
-                sparse.values.byte_offset.0,
-                count,
-                N * component.size(),
-                place,
-            )?;
-            for i in 0..count {
-                let at = number(&indices.bytes[i * indices.stride..], index_type.0, false) as usize;
-                let length = out.len();
-                let slot = out.get_mut(at).ok_or_else(|| {
-                    ReadError::damaged(place, format!("sparse index {at} of {length} elements"))
-                })?;
-                *slot = element(&values.bytes[i * values.stride..]);
-            }
+            self.replace_sparse(accessor, sparse, component, &mut out, place)?;
         }
         if let Some(bad) = out.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
             return Err(ReadError::damaged(
@@ -90,6 +60,45 @@ impl Container {
             ));
         }
         Ok(out)
+    }
+
+    /// The elements that the sparse part of an accessor puts in the place of others.
+    fn replace_sparse<const N: usize>(
+        &self,
+        accessor: &Accessor,
+        sparse: &Sparse,
+        component: ComponentType,
+        out: &mut [[f32; N]],
+        place: &str,
+    ) -> Result<(), ReadError> {
+        let count = sparse.count.0 as usize;
+        let Checked::Valid(index_type) = sparse.indices.component_type else {
+            return Err(ReadError::damaged(place, "sparse indices of an unknown type"));
+        };
+        let size = index_type.0.size();
+        let indices = self.window(
+            sparse.indices.buffer_view.value(),
+            sparse.indices.byte_offset.0,
+            count,
+            size,
+            place,
+        )?;
+        let values = self.window(
+            sparse.values.buffer_view.value(),
+            sparse.values.byte_offset.0,
+            count,
+            N * component.size(),
+            place,
+        )?;
+        for i in 0..count {
+            let at = number(&indices.bytes[i * indices.stride..], index_type.0, false) as usize;
+            let length = out.len();
+            let slot = out.get_mut(at).ok_or_else(|| {
+                ReadError::damaged(place, format!("sparse index {at} of {length} elements"))
+            })?;
+            *slot = element(&values.bytes[i * values.stride..], component, accessor.normalized);
+        }
+        Ok(())
     }
 
     /// How many numbers each element has; nothing where the accessor does not exist or does not say.
@@ -232,6 +241,11 @@ fn component(accessor: &Accessor, place: &str) -> Result<ComponentType, ReadErro
         Checked::Valid(generic) => Ok(generic.0),
         Checked::Invalid => Err(ReadError::damaged(place, "an unknown component type")),
     }
+}
+
+/// The numbers of an element.
+fn element<const N: usize>(bytes: &[u8], component: ComponentType, normalised: bool) -> [f32; N] {
+    std::array::from_fn(|a| number(&bytes[a * component.size()..], component, normalised) as f32)
 }
 
 /// One number; normalised integers as the glTF specification (3.11) scales them.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Index};
 use serde::Deserialize;
 
 use super::container::Container;
@@ -86,6 +87,7 @@ pub(super) fn surfaces(
     let targets = mesh.primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len));
     let shape_names = target_names(mesh, targets.max().unwrap_or(0), &place)?;
 
+    let drawn = PlacedMesh { container, placement, node, node_name, mesh_name, shape_names };
     let mut out: Vec<Surface> = Vec::new();
     let mut by_vertices: HashMap<(usize, Option<usize>), usize> = HashMap::new();
     for (k, primitive) in mesh.primitives.iter().enumerate() {
@@ -102,7 +104,6 @@ pub(super) fn surfaces(
         let Some(vertices) = attributes.get(&Checked::Valid(Semantic::Positions)) else {
             return Err(ReadError::damaged(place, "no POSITION"));
         };
-        let material = primitive.material.and_then(|m| root.materials.get(m.value()));
         let key = (vertices.value(), primitive.material.map(|m| m.value()));
         if let Some(&earlier) = by_vertices.get(&key) {
             let count = out[earlier].positions.len();
@@ -111,39 +112,64 @@ pub(super) fn surfaces(
             out[earlier].triangles.extend(more);
             continue;
         }
-        let local = container.floats::<3>(*vertices, &format!("{place}.attributes.POSITION"))?;
+        by_vertices.insert(key, out.len());
+        out.push(drawn.surface(primitive, *vertices, budget, &place)?);
+    }
+    Ok(out)
+}
+
+/// A mesh on its node.
+struct PlacedMesh<'a> {
+    container: &'a Container,
+    placement: &'a Placement,
+    node: usize,
+    node_name: String,
+    mesh_name: String,
+    shape_names: Vec<String>,
+}
+
+impl PlacedMesh<'_> {
+    /// The surface of a primitive, whose vertices lie in the accessor `vertices`.
+    fn surface(
+        &self,
+        primitive: &Primitive,
+        vertices: Index<Accessor>,
+        budget: &mut Budget,
+        place: &str,
+    ) -> Result<Surface, ReadError> {
+        let container = self.container;
+        let local = container.floats::<3>(vertices, &format!("{place}.attributes.POSITION"))?;
         let targets = primitive.targets.as_ref().map_or(0, Vec::len);
-        budget.take(3 * local.len() * (1 + targets), &place)?;
-        let at = placement.of_vertices(container, primitive, local.len(), &place)?;
+        budget.take(3 * local.len() * (1 + targets), place)?;
+        let at = self.placement.of_vertices(container, primitive, local.len(), place)?;
         let mirrored = at.mirrors();
-        let shapes = shapes(container, primitive, local.len(), &at, &place)?;
-        let triangles = triangles(container, primitive, local.len(), mirrored, &place)?;
-        budget.take(3 * triangles.len(), &place)?;
-        let paint = Paint::of(container, primitive, material, local.len(), &place)?;
+        let shapes = shapes(container, primitive, local.len(), &at, place)?;
+        let triangles = triangles(container, primitive, local.len(), mirrored, place)?;
+        budget.take(3 * triangles.len(), place)?;
+        let material = primitive.material.and_then(|m| container.root.materials.get(m.value()));
+        let paint = Paint::of(container, primitive, material, local.len(), place)?;
         let base_colour = material.map_or(NO_MATERIAL, |m| {
             let [r, g, b, _] = m.pbr_metallic_roughness.base_color_factor.0;
             [r, g, b].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 })
         });
         // Colours stand for themselves where there is no material.
         let factor = if material.is_some() { base_colour } else { [1.0; 3] };
-        let colours = colours(container, primitive, local.len(), factor, budget, &place)?;
-        by_vertices.insert(key, out.len());
-        out.push(Surface {
-            node,
-            node_name: node_name.clone(),
-            mesh_name: mesh_name.clone(),
+        let colours = colours(container, primitive, local.len(), factor, budget, place)?;
+        Ok(Surface {
+            node: self.node,
+            node_name: self.node_name.clone(),
+            mesh_name: self.mesh_name.clone(),
             material_name: material.and_then(|m| m.name.clone()).unwrap_or_default(),
-            positions: moved(local, &at, Transform::point, &place)?,
+            positions: moved(local, &at, Transform::point, place)?,
             mirrored,
             paint,
             triangles,
             base_colour,
             colours,
-            shape_names: shape_names[..shapes.len()].to_vec(),
+            shape_names: self.shape_names[..shapes.len()].to_vec(),
             shapes,
-        });
+        })
     }
-    Ok(out)
 }
 
 /// `COLOR_0` times the material's colour, each from 0 to 1; its alpha is not read.

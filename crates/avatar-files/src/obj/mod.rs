@@ -8,6 +8,7 @@ mod material;
 mod parse;
 
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
 use self::material::{Material, NO_MATERIAL, Pictures, materials};
 use self::parse::{Corner, Group, Obj, parse, parse_positions};
@@ -289,13 +290,8 @@ impl Poses {
             let (picture, first) = (texture(group), triangles.len());
             let eye = matches!(part, Part::EyeLeft | Part::EyeRight);
             // An eye takes its colours vertex by vertex: the stage draws iris and cornea itself.
-            let painted = match picture.filter(|_| eye) {
-                Some(index) => Some(
-                    Image::decode(&self.pictures.textures[index])
-                        .map_err(|e| ReadError::damaged(&group.material, e.to_string()))?,
-                ),
-                None => None,
-            };
+            let painted =
+                picture.filter(|_| eye).map(|index| self.image(index, group)).transpose()?;
             for t in &group.triangles {
                 let t = t.map(|c| {
                     used.binary_search(&corner(&c, picture.is_none())).unwrap_or_default() as u32
@@ -309,12 +305,7 @@ impl Poses {
                 }
             }
             let Some(texture) = picture.filter(|_| !eye) else { continue };
-            match textured.last_mut() {
-                Some(last) if last.texture == texture && last.triangles.end == first => {
-                    last.triangles.end = triangles.len();
-                }
-                _ => textured.push(Textured { triangles: first..triangles.len(), texture }),
-            }
+            add_textured(&mut textured, first..triangles.len(), texture);
         }
         if !textured.is_empty() {
             uvs = used.iter().map(|c| place(c.1)).collect();
@@ -323,13 +314,6 @@ impl Poses {
             vertex_colours.clear();
         }
         let neutral = &self.neutral.positions;
-        let shapes = self.posed.values().map(|posed| {
-            let moved = |&(v, _): &Corner| {
-                let (p, q) = (posed[v as usize], neutral[v as usize]);
-                single([p[0] - q[0], p[1] - q[1], p[2] - q[2]])
-            };
-            SparseShape::from_dense(&used.iter().map(moved).collect::<Vec<_>>())
-        });
         Ok(Mesh {
             name,
             part,
@@ -337,10 +321,39 @@ impl Poses {
             triangles,
             vertex_colours,
             base_colour,
-            shapes: shapes.collect(),
+            shapes: self.shapes(&used),
             uvs,
             textured,
         })
+    }
+
+    /// The picture of a group, decoded.
+    fn image(&self, index: usize, group: &Group) -> Result<Image, ReadError> {
+        Image::decode(&self.pictures.textures[index])
+            .map_err(|e| ReadError::damaged(&group.material, e.to_string()))
+    }
+
+    /// The displacements of the vertices of corners in every pose.
+    fn shapes(&self, used: &[Corner]) -> Vec<SparseShape> {
+        let neutral = &self.neutral.positions;
+        let of_pose = |posed: &Vec<[f64; 3]>| {
+            let moved = |&(v, _): &Corner| {
+                let (p, q) = (posed[v as usize], neutral[v as usize]);
+                single([p[0] - q[0], p[1] - q[1], p[2] - q[2]])
+            };
+            SparseShape::from_dense(&used.iter().map(moved).collect::<Vec<_>>())
+        };
+        self.posed.values().map(of_pose).collect()
+    }
+}
+
+/// Adds triangles with a picture, to the run before them where it has the same one.
+fn add_textured(textured: &mut Vec<Textured>, triangles: Range<usize>, texture: usize) {
+    match textured.last_mut() {
+        Some(last) if last.texture == texture && last.triangles.end == triangles.start => {
+            last.triangles.end = triangles.end;
+        }
+        _ => textured.push(Textured { triangles, texture }),
     }
 }
 

@@ -105,12 +105,21 @@ pub(super) fn mesh_to(out: &mut PackWriter, mesh: &Mesh, places: &mut Places) ->
     steps.error
 }
 
-/// Reads what [`mesh_to`] wrote.
-pub(super) fn mesh_from(
-    r: &mut PackReader<'_>,
-    shape_count: usize,
-    places: &mut Places,
-) -> Result<Mesh, PackError> {
+/// What a pack says of a mesh before its numbers.
+struct Header {
+    name: String,
+    part: Part,
+    base_colour: [f32; 3],
+    /// Unit of displacements, metres.
+    unit: f32,
+    coloured: bool,
+    textured: Vec<Textured>,
+    vertex_count: usize,
+    triangle_count: usize,
+}
+
+/// Reads what stands before the numbers of a mesh, as far as it can be true.
+fn header_from(r: &mut PackReader<'_>) -> Result<Header, PackError> {
     let name = r.text()?;
     let part = r.u8()? as usize;
     let Some(&part) = PARTS.get(part) else { return r.refuse(format!("part {part}")) };
@@ -126,10 +135,10 @@ pub(super) fn mesh_from(
         other => return r.refuse(format!("colour flag {other}")),
     };
     let textured = textured_from(r)?;
-    let (count, triangle_count) = (r.varint()? as usize, r.varint()? as usize);
-    if count.max(triangle_count) > MOST.min(r.left().saturating_mul(MOST_A_BYTE)) {
+    let (vertex_count, triangle_count) = (r.varint()? as usize, r.varint()? as usize);
+    if vertex_count.max(triangle_count) > MOST.min(r.left().saturating_mul(MOST_A_BYTE)) {
         return r.refuse(format!(
-            "{count} vertices and {triangle_count} triangles in {} bytes",
+            "{vertex_count} vertices and {triangle_count} triangles in {} bytes",
             r.left()
         ));
     }
@@ -137,6 +146,17 @@ pub(super) fn mesh_from(
     {
         return r.refuse(format!("a picture to triangle {beyond} of {triangle_count}"));
     }
+    Ok(Header { name, part, base_colour, unit, coloured, textured, vertex_count, triangle_count })
+}
+
+/// Reads what [`mesh_to`] wrote.
+pub(super) fn mesh_from(
+    r: &mut PackReader<'_>,
+    shape_count: usize,
+    places: &mut Places,
+) -> Result<Mesh, PackError> {
+    let header = header_from(r)?;
+    let Header { unit, vertex_count: count, triangle_count, .. } = header;
     let length = r.count(1)?;
     let mut coder = IntegerReader::new(r.raw(length)?);
     let mut triangles = vec![[0u32; 3]; triangle_count];
@@ -151,12 +171,12 @@ pub(super) fn mesh_from(
     let positions = values.iter().map(|q| q.map(|x| x as f32 * POSITION_STEP)).collect();
     let halves = Halves::new(&prediction, places, first);
     let (mut vertex_colours, mut uvs) = (vec![], vec![]);
-    if coloured && !coder.spent() {
+    if header.coloured && !coder.spent() {
         plain(&mut coder, &prediction, &halves, &mut values);
         vertex_colours =
             values.iter().map(|c| c.map(|c| colour_of_byte(c.clamp(0, 255) as u8))).collect();
     }
-    if !textured.is_empty() && !coder.spent() {
+    if !header.textured.is_empty() && !coder.spent() {
         plain(&mut coder, &prediction, &halves, &mut values);
         uvs = values.iter().map(|q| [q[0], q[1]].map(|x| x as f32 * UV_STEP)).collect();
     }
@@ -173,18 +193,18 @@ pub(super) fn mesh_from(
         }
     }
     if coder.spent() || read.len() < shape_count {
-        return r.refuse(format!("mesh {name} is damaged within {length} bytes"));
+        return r.refuse(format!("mesh {} is damaged within {length} bytes", header.name));
     }
     Ok(Mesh {
-        name,
-        part,
+        name: header.name,
+        part: header.part,
         positions,
         triangles,
         vertex_colours,
-        base_colour,
+        base_colour: header.base_colour,
         shapes: read,
         uvs,
-        textured,
+        textured: header.textured,
     })
 }
 

@@ -1,6 +1,6 @@
 //! What `mimique solve` says.
 
-use std::io::Write as _;
+use std::io::Write;
 
 use mimique_stimulus::{SolveReport, SolvedCapture};
 use serde_json::{Value, json};
@@ -15,18 +15,38 @@ pub(super) fn print(
     json: bool,
 ) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    let report = &solved.report;
     if json {
-        let mut value = serde_json::to_value(report)?;
-        if let Value::Object(map) = &mut value {
-            // One object a frame is for --report.
-            map.remove("frames");
-            map.insert("notes".into(), json!(notes));
-            map.insert("out".into(), json!(args.out));
-        }
-        writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
-        return Ok(());
+        print_json(&mut out, args, &solved.report, notes)
+    } else {
+        Ok(print_text(&mut out, args, &solved.report, notes)?)
     }
+}
+
+/// All of the report but the frames.
+fn print_json(
+    out: &mut impl Write,
+    args: &Args,
+    report: &SolveReport,
+    notes: &[String],
+) -> anyhow::Result<()> {
+    let mut value = serde_json::to_value(report)?;
+    if let Value::Object(map) = &mut value {
+        // One object a frame is for --report.
+        map.remove("frames");
+        map.insert("notes".into(), json!(notes));
+        map.insert("out".into(), json!(args.out));
+    }
+    writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
+    Ok(())
+}
+
+/// A few lines of the report.
+fn print_text(
+    out: &mut impl Write,
+    args: &Args,
+    report: &SolveReport,
+    notes: &[String],
+) -> std::io::Result<()> {
     let SolveReport { summary, seconds, .. } = report;
     writeln!(
         out,
@@ -59,18 +79,7 @@ pub(super) fn print(
             "gaze at rest: no gaze is given, so {count} shapes that turn the eyes stay at 0"
         )?;
     }
-    if let Some(learnt) = &report.regression {
-        writeln!(
-            out,
-            "learnt from {} frames, {} basis vectors; length scale {:.3}, signal {:.3}, noise {:.4}; predictive deviation {:.3} at worst",
-            learnt.training_frames,
-            learnt.basis_vectors,
-            learnt.kernel.length,
-            learnt.kernel.signal,
-            learnt.kernel.noise,
-            summary.deviation_worst.unwrap_or(0.0),
-        )?;
-    }
+    print_regression(out, report)?;
     writeln!(
         out,
         "seconds: read {:.3}, set-up {:.3}, front end {:.3}, solve {:.3}, check {:.3}, write {:.3}",
@@ -83,6 +92,20 @@ pub(super) fn print(
     )?;
     writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
-    report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))?;
-    Ok(())
+    report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))
+}
+
+/// What a regression has learnt from; nothing of another method.
+fn print_regression(out: &mut impl Write, report: &SolveReport) -> std::io::Result<()> {
+    let Some(learnt) = &report.regression else { return Ok(()) };
+    writeln!(
+        out,
+        "learnt from {} frames, {} basis vectors; length scale {:.3}, signal {:.3}, noise {:.4}; predictive deviation {:.3} at worst",
+        learnt.training_frames,
+        learnt.basis_vectors,
+        learnt.kernel.length,
+        learnt.kernel.signal,
+        learnt.kernel.noise,
+        report.summary.deviation_worst.unwrap_or(0.0),
+    )
 }

@@ -35,42 +35,7 @@ pub fn stillest(capture: &Capture, seconds: f64) -> Option<Stillest> {
     // `as` saturates; the clamp keeps the window inside the take.
     let window = ((seconds * capture.rate_hz).round() as usize).clamp(1, frames);
     let windows = frames - window + 1;
-    let usual = usual_face(capture);
-    let mut variance = vec![0.0; windows];
-    let mut strangeness = vec![0.0; windows];
-    let mut counted = vec![0_usize; windows];
-    let mut sums = Vec::with_capacity(frames + 1);
-    for (marker, origin) in usual.iter().enumerate() {
-        // Centred on its usual place, so that sums of squares keep their digits.
-        let Some(origin) = origin else { continue };
-        sums.clear();
-        sums.push((0_usize, [0.0; 3], 0.0));
-        for frame in 0..frames {
-            let p = capture.frame(frame)[marker];
-            let (mut n, mut sum, mut squares) = sums[frame];
-            if !p[0].is_nan() {
-                n += 1;
-                for k in 0..3 {
-                    let d = p[k] - origin[k];
-                    sum[k] += d;
-                    squares += d * d;
-                }
-            }
-            sums.push((n, sum, squares));
-        }
-        for start in 0..windows {
-            let (a, b) = (&sums[start], &sums[start + window]);
-            let n = b.0 - a.0;
-            if n == 0 || 2 * n < window {
-                continue;
-            }
-            let mean_square = (b.2 - a.2) / n as f64;
-            let square_mean: f64 = (0..3).map(|k| ((b.1[k] - a.1[k]) / n as f64).powi(2)).sum();
-            variance[start] += (mean_square - square_mean).max(0.0);
-            strangeness[start] += square_mean;
-            counted[start] += 1;
-        }
-    }
+    let Windows { variance, strangeness, counted } = Windows::of(capture, window);
     let enough = |start: usize| 10 * counted[start] >= 9 * markers;
     let any_enough = (0..windows).any(enough);
     let eligible = |start: usize| counted[start] > 0 && (!any_enough || enough(start));
@@ -92,6 +57,61 @@ pub fn stillest(capture: &Capture, seconds: f64) -> Option<Stillest> {
             mean(a).total_cmp(&mean(b))
         })
         .map(|start| Stillest { frames: start..start + window, deviation: deviation(start) })
+}
+
+/// How the markers stand in every window of a take, by its first frame.
+struct Windows {
+    /// Sum over the markers: variance about their own mean in the window.
+    variance: Vec<f64>,
+    /// Sum over the markers: squared distance of that mean from their usual place.
+    strangeness: Vec<f64>,
+    /// Markers that are present in half of the window at least.
+    counted: Vec<usize>,
+}
+
+impl Windows {
+    /// The windows of `window` frames.
+    fn of(capture: &Capture, window: usize) -> Self {
+        let frames = capture.frames();
+        let windows = frames - window + 1;
+        let usual = usual_face(capture);
+        let mut variance = vec![0.0; windows];
+        let mut strangeness = vec![0.0; windows];
+        let mut counted = vec![0_usize; windows];
+        let mut sums = Vec::with_capacity(frames + 1);
+        for (marker, origin) in usual.iter().enumerate() {
+            // Centred on its usual place, so that sums of squares keep their digits.
+            let Some(origin) = origin else { continue };
+            sums.clear();
+            sums.push((0_usize, [0.0; 3], 0.0));
+            for frame in 0..frames {
+                let p = capture.frame(frame)[marker];
+                let (mut n, mut sum, mut squares) = sums[frame];
+                if !p[0].is_nan() {
+                    n += 1;
+                    for k in 0..3 {
+                        let d = p[k] - origin[k];
+                        sum[k] += d;
+                        squares += d * d;
+                    }
+                }
+                sums.push((n, sum, squares));
+            }
+            for start in 0..windows {
+                let (a, b) = (&sums[start], &sums[start + window]);
+                let n = b.0 - a.0;
+                if n == 0 || 2 * n < window {
+                    continue;
+                }
+                let mean_square = (b.2 - a.2) / n as f64;
+                let square_mean: f64 = (0..3).map(|k| ((b.1[k] - a.1[k]) / n as f64).powi(2)).sum();
+                variance[start] += (mean_square - square_mean).max(0.0);
+                strangeness[start] += square_mean;
+                counted[start] += 1;
+            }
+        }
+        Self { variance, strangeness, counted }
+    }
 }
 
 /// The median place of every marker; `None` for one that is never seen.

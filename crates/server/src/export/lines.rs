@@ -7,7 +7,8 @@ use mimique_study::iso_time;
 use serde_json::{Map, Value, json};
 
 use super::error::ExportError;
-use super::table::{Merged, Sources, as_started};
+use super::merged::Merged;
+use super::sources::{Sources, as_started};
 
 /// One object a row, its keys in alphabetical order.
 pub(super) fn rows(table: &Merged) -> Result<Vec<u8>, ExportError> {

@@ -11,20 +11,22 @@
 //! A study that was changed while it ran has several versions; each session is read by its own, and
 //! the table has the columns of all.
 
+mod csv;
 pub(crate) mod error;
 pub(crate) mod exported;
 pub(crate) mod format;
 mod lines;
+mod merged;
 mod psych_ds;
-pub(crate) mod table;
+pub(crate) mod sources;
 mod unstored;
 
+pub use csv::Cells;
 pub use error::ExportError;
 pub use exported::Exported;
 pub use format::Format;
 use mimique_storage::Storage;
-pub use table::Cells;
-use table::Sources;
+use sources::Sources;
 pub use unstored::{Unstored, Written};
 
 /// What may be asked of an export.
@@ -50,13 +52,13 @@ pub async fn export(
         Format::Csv => {
             let tidy = sources.tidy(storage).await?;
             let counts = (tidy.participants, tidy.rows.len());
-            (vec![(format!("{stem}.csv"), table::csv(&tidy, options.cells)?)], counts.0, counts.1)
+            (vec![(format!("{stem}.csv"), csv::table(&tidy, options.cells)?)], counts.0, counts.1)
         }
         Format::Wide => {
             let wide = sources.wide(storage).await?;
             let counts = (wide.participants, wide.rows.len());
             (
-                vec![(format!("{study_id}_wide.csv"), table::csv(&wide, options.cells)?)],
+                vec![(format!("{study_id}_wide.csv"), csv::table(&wide, options.cells)?)],
                 counts.0,
                 counts.1,
             )
@@ -77,7 +79,7 @@ pub async fn export(
                 psych_ds::files(
                     &sources,
                     &tidy.columns,
-                    table::csv(&tidy, options.cells)?,
+                    csv::table(&tidy, options.cells)?,
                     counts,
                 )?,
                 counts.0,
@@ -92,7 +94,7 @@ pub async fn export(
 pub(crate) async fn dictionary(storage: &Storage, study_id: &str) -> Result<Vec<u8>, ExportError> {
     let study_id = choose(storage, Some(study_id)).await?;
     let sources = Sources::load(storage, &study_id, false).await?;
-    table::dictionary(&sources.columns())
+    csv::dictionary(&sources.columns())
 }
 
 /// The study file as it is served now.

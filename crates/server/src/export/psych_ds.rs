@@ -8,7 +8,7 @@ use zip::CompressionMethod;
 use zip::write::SimpleFileOptions;
 
 use super::error::ExportError;
-use super::table::Sources;
+use super::sources::Sources;
 
 /// The files by their paths in the data set, in alphabetical order. `csv` is the tidy table with these
 /// columns, of so many participants and rows.

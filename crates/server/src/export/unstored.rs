@@ -9,12 +9,14 @@ use mimique_study::ClipSource;
 use mimique_study::{StudyFileError, config_hash};
 use serde_json::Value;
 
+use super::csv::{self, Cells};
 use super::error::ExportError;
 use super::exported::Exported;
 use super::format::Format;
 use super::lines::{add_event, add_row};
+use super::merged::Merged;
 use super::psych_ds;
-use super::table::{self, Cells, Merged, Sources, Version};
+use super::sources::{Sources, Version};
 
 /// Writes sessions one by one, in any number of threads, and joins them to an export.
 pub struct Unstored {
@@ -84,7 +86,7 @@ impl Unstored {
                             add_row(&mut written.bytes, &self.columns, row)?;
                         }
                     }
-                    _ => written.bytes = table::csv_rows(&rows)?,
+                    _ => written.bytes = csv::rows(&rows)?,
                 }
             }
         }
@@ -99,7 +101,7 @@ impl Unstored {
         let study_id = self.sources.study_id.clone();
         let (mut bytes, mut rows, mut participants) = (Vec::new(), 0, 0);
         if matches!(self.format, Format::Csv | Format::PsychDs) {
-            bytes = table::csv_header(&self.columns)?;
+            bytes = csv::header(&self.columns)?;
         }
         let mut whole = Vec::new();
         for session in sessions {
@@ -123,7 +125,7 @@ impl Unstored {
                 let table = rows::wide(&version.study, &version.clips, records);
                 (participants, rows) = (table.rows.len(), table.rows.len());
                 let merged = Merged::of_everybody(table, participants);
-                vec![(format!("{study_id}_wide.csv"), table::csv(&merged, Cells::AsTheyAre)?)]
+                vec![(format!("{study_id}_wide.csv"), csv::table(&merged, Cells::AsTheyAre)?)]
             }
         };
         Ok(Exported { study_id, files, participants, rows })

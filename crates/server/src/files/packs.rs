@@ -11,7 +11,7 @@ use mimique_storage::{Storage, StorageError};
 use sha2::{Digest, Sha256};
 
 use super::compression;
-use crate::export::table::Version;
+use crate::export::sources::Version;
 use crate::files::static_file::StaticFile;
 
 /// Packs in memory, by hash.

@@ -9,7 +9,7 @@ use mimique_study::{Study, StudyFileError, config_hash};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::Value;
 
-use crate::export::table::Version;
+use crate::export::sources::Version;
 
 /// Whether answers count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_avatar::pack::encode_pack;
 use mimique_clip::{decode_operators, encode_operators, encode_take};
-use mimique_solver::{Linking, Method, MethodSpec, OperatorOptions, Operators};
+use mimique_solver::{Linking, Method, MethodSpec, OperatorOptions, Operators, SurfaceResponse};
 use serde_json::{Value, json};
 
 use super::cache::{Cache, StoredPack};
@@ -51,19 +51,9 @@ pub(super) fn to_solve(
     cache: &Cache,
     remarks: &mut Remarks,
 ) -> Result<(Option<StoredPack>, StoredPack, StoredPack), PrepareError> {
-    let Wanted { spec, training, performance, avatar, .. } = *wanted;
+    let Wanted { spec, training, performance, .. } = *wanted;
     let joined = performance.joined()?;
-    let said = joined.warnings().iter().cloned();
-    remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
-    if let Some(training) = training {
-        let pointer = format!("{}/training", wanted.method_pointer);
-        let said = training.warnings(&avatar.avatar.shape_names);
-        remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
-    }
-    let unfiltered = joined.unfiltered_head(spec);
-    remarks.warnings.extend(unfiltered.map(|w| (performance.capture_pointer.clone(), w)));
-    let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
-    remarks.warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
+    look_at_joined(wanted, &joined, remarks)?;
     let markers = joined.marker_key();
     let key = operators_key(wanted, &markers);
     // Both packs of a surface need it; made once, and only where one of them is not there.
@@ -86,19 +76,7 @@ pub(super) fn to_solve(
             let surface = ready()?.surface.as_ref().ok_or_else(|| {
                 PrepareError::new(wanted.method_pointer, "the method moves no surface")
             })?;
-            let bank = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
-            let most = MOST_STAGE_SHAPES / 3;
-            if bank.marker_count() > most {
-                let message = format!(
-                    "{} markers: the stage moves a surface by {most} at most; leave some out of \
-                     the map",
-                    bank.marker_count()
-                );
-                return Err(PrepareError::new(wanted.method_pointer, message));
-            }
-            let moved = surface_avatar(&avatar.avatar, avatar.skin()?, surface, &bank)
-                .map_err(|e| PrepareError::new(wanted.method_pointer, e))?;
-            Ok(encode_pack(&moved).bytes)
+            surface_pack(wanted, &joined, surface)
         })?)
     } else {
         None
@@ -113,6 +91,48 @@ pub(super) fn to_solve(
         Ok(encode_take(&take))
     })?;
     Ok((moved, operators, take))
+}
+
+/// What is to be said of capture, map and training before anything is solved.
+fn look_at_joined(
+    wanted: &Wanted<'_>,
+    joined: &JoinedTake<'_>,
+    remarks: &mut Remarks,
+) -> Result<(), PrepareError> {
+    let Wanted { spec, training, performance, avatar, .. } = *wanted;
+    let said = joined.warnings().iter().cloned();
+    remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
+    if let Some(training) = training {
+        let pointer = format!("{}/training", wanted.method_pointer);
+        let said = training.warnings(&avatar.avatar.shape_names);
+        remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
+    }
+    let unfiltered = joined.unfiltered_head(spec);
+    remarks.warnings.extend(unfiltered.map(|w| (performance.capture_pointer.clone(), w)));
+    let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
+    remarks.warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
+    Ok(())
+}
+
+/// The pack of the avatar whose surface the markers move.
+fn surface_pack(
+    wanted: &Wanted<'_>,
+    joined: &JoinedTake<'_>,
+    surface: &SurfaceResponse,
+) -> Result<Vec<u8>, PrepareError> {
+    let Wanted { spec, performance, avatar, .. } = *wanted;
+    let bank = joined.operators(spec).map_err(|e| performance.error(e.into()))?;
+    let most = MOST_STAGE_SHAPES / 3;
+    if bank.marker_count() > most {
+        let message = format!(
+            "{} markers: the stage moves a surface by {most} at most; leave some out of the map",
+            bank.marker_count()
+        );
+        return Err(PrepareError::new(wanted.method_pointer, message));
+    }
+    let moved = surface_avatar(&avatar.avatar, avatar.skin()?, surface, &bank)
+        .map_err(|e| PrepareError::new(wanted.method_pointer, e))?;
+    Ok(encode_pack(&moved).bytes)
 }
 
 /// What the operators follow from.

@@ -50,46 +50,84 @@ pub fn write_segments(segments: &[TakeSegment], rate_hz: f64) -> String {
 /// # Errors
 /// [`SegmentFileError`] with the line.
 pub fn read_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
-    let wrong = |line: usize, what: String, remedy| SegmentFileError { line, what, remedy };
     let mut records = records(text.trim_start_matches('\u{feff}')).into_iter();
     let (_, header) = records.next().unwrap_or_default();
-    let column = |name: &str| header.iter().position(|h| h.trim() == name);
-    let (Some(label), Some(first)) = (column("label"), column("first_frame")) else {
-        let what = format!("columns {}", header.join(","));
-        return Err(wrong(1, what, "open with label,first_frame,last_frame"));
-    };
-    let (last, end) = (column("last_frame"), column("end_frame"));
-    if last.is_none() && end.is_none() {
-        let what = "no column last_frame".to_owned();
-        return Err(wrong(1, what, "open with label,first_frame,last_frame"));
-    }
-    let inner = column("expression_first").zip(column("expression_last"));
+    let columns = Columns::of(header)?;
     let mut segments = Vec::new();
     for (line, row) in records {
         if row.iter().all(|field| field.trim().is_empty()) {
             continue;
         }
-        let number = |column: usize| {
-            let field = row.get(column).map_or("", |f| f.trim());
-            field.parse::<usize>().ok().filter(|n| *n < usize::MAX).ok_or_else(|| {
-                let what = format!("{}: {field:?} is no frame", header[column]);
-                wrong(line, what, "write frames as whole numbers from 0 up")
-            })
-        };
-        let name = row.get(label).map_or("", |f| f.trim());
+        let name = columns.label(&row);
         if name.eq_ignore_ascii_case("n") || name.eq_ignore_ascii_case("neutral") {
             continue;
         }
+        segments.push(columns.segment(line, &row)?);
+    }
+    Ok(segments)
+}
+
+fn wrong(line: usize, what: String, remedy: &'static str) -> SegmentFileError {
+    SegmentFileError { line, what, remedy }
+}
+
+/// Where the columns of a table stand.
+struct Columns {
+    header: Vec<String>,
+    label: usize,
+    first: usize,
+    /// The last frame that is played.
+    last: Option<usize>,
+    /// The frame after it.
+    end: Option<usize>,
+    /// First and last frame of the expression.
+    expression: Option<(usize, usize)>,
+}
+
+impl Columns {
+    fn of(header: Vec<String>) -> Result<Self, SegmentFileError> {
+        let column = |name: &str| header.iter().position(|h| h.trim() == name);
+        let (Some(label), Some(first)) = (column("label"), column("first_frame")) else {
+            let what = format!("columns {}", header.join(","));
+            return Err(wrong(1, what, "open with label,first_frame,last_frame"));
+        };
+        let (last, end) = (column("last_frame"), column("end_frame"));
+        if last.is_none() && end.is_none() {
+            let what = "no column last_frame".to_owned();
+            return Err(wrong(1, what, "open with label,first_frame,last_frame"));
+        }
+        let expression = column("expression_first").zip(column("expression_last"));
+        Ok(Self { header, label, first, last, end, expression })
+    }
+
+    /// The label of a row; empty where it has none.
+    fn label<'a>(&self, row: &'a [String]) -> &'a str {
+        row.get(self.label).map_or("", |f| f.trim())
+    }
+
+    /// The frame that stands in a column.
+    fn frame(&self, line: usize, row: &[String], column: usize) -> Result<usize, SegmentFileError> {
+        let field = row.get(column).map_or("", |f| f.trim());
+        field.parse::<usize>().ok().filter(|n| *n < usize::MAX).ok_or_else(|| {
+            let what = format!("{}: {field:?} is no frame", self.header[column]);
+            wrong(line, what, "write frames as whole numbers from 0 up")
+        })
+    }
+
+    /// The segment of a row, whose frames follow each other.
+    fn segment(&self, line: usize, row: &[String]) -> Result<TakeSegment, SegmentFileError> {
+        let number = |column: usize| self.frame(line, row, column);
+        let name = self.label(row);
         if name.is_empty() {
             return Err(wrong(line, "no label".to_owned(), "name every segment"));
         }
-        let start = number(first)?;
-        let stop = match (last, end) {
+        let start = number(self.first)?;
+        let stop = match (self.last, self.end) {
             (Some(last), _) => number(last)? + 1,
             (None, Some(end)) => number(end)?,
             (None, None) => start,
         };
-        let expression = match inner {
+        let expression = match self.expression {
             Some((a, b)) if row.get(a).is_some_and(|f| !f.trim().is_empty()) => {
                 number(a)?..number(b)? + 1
             }
@@ -112,9 +150,8 @@ pub fn read_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
                 "let the last frame follow the first, the expression within",
             ));
         }
-        segments.push(TakeSegment { label: name.to_owned(), clip: start..stop, expression });
+        Ok(TakeSegment { label: name.to_owned(), clip: start..stop, expression })
     }
-    Ok(segments)
 }
 
 /// The rows of a CSV text with the line that each begins on; quoted fields may hold anything.

@@ -146,34 +146,9 @@ pub fn suggest(take: Channels<'_>, options: &SuggestOptions) -> Result<Suggestio
             channels.map(|(track, rest)| (track[f] - rest).abs()).sum()
         })
         .collect();
-    // At rest: the lower third of the take, or the frames that are named.
-    let mut sorted = level.clone();
-    sorted.sort_by(f64::total_cmp);
-    let strong = quantile(&sorted, 0.95);
-    let rest = match &options.neutral {
-        Some(named) => {
-            let mut own = level[named.clone()].to_vec();
-            own.sort_by(f64::total_cmp);
-            quantile(&own, 0.9)
-        }
-        None => quantile(&sorted, 0.2),
-    };
-    let threshold = (OVER_NOISE * rest).max(rest + WEAKEST * (strong - rest));
-    let mut found = Vec::new();
-    let mut frame = 0;
+    let (rest, threshold) = rest_and_threshold(&level, options.neutral.as_ref());
     let shortest = (SHORTEST_S * take.rate_hz).ceil() as usize;
-    while frame < frames {
-        if level[frame] <= threshold {
-            frame += 1;
-            continue;
-        }
-        let end = (frame..frames).find(|&f| level[f] <= threshold).unwrap_or(frames);
-        if end - frame >= shortest {
-            let last = found.last().map_or(0, |r: &Range<usize>| r.end);
-            found.push(whole_expression(&level, frame..end, rest, last));
-        }
-        frame = end;
-    }
+    let found = expressions_above(&level, rest, threshold, shortest);
     let tracks: Vec<&[f64]> = activity.smooth.chunks_exact(frames).collect();
     let found: Vec<Range<usize>> = found
         .into_iter()
@@ -299,6 +274,48 @@ fn neutral_face(
         .iter()
         .map(|t| near.iter().map(|&g| t[g]).sum::<f64>() / near.len().max(1) as f64)
         .collect()
+}
+
+/// The level at rest (of the named frames, else of the lower part of the take), and the level above
+/// which a face is an expression.
+fn rest_and_threshold(level: &[f64], neutral: Option<&Range<usize>>) -> (f64, f64) {
+    let mut sorted = level.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let strong = quantile(&sorted, 0.95);
+    let rest = match neutral {
+        Some(named) => {
+            let mut own = level[named.clone()].to_vec();
+            own.sort_by(f64::total_cmp);
+            quantile(&own, 0.9)
+        }
+        None => quantile(&sorted, 0.2),
+    };
+    (rest, (OVER_NOISE * rest).max(rest + WEAKEST * (strong - rest)))
+}
+
+/// Expressions whose level is above the threshold for `shortest` frames at least.
+fn expressions_above(
+    level: &[f64],
+    rest: f64,
+    threshold: f64,
+    shortest: usize,
+) -> Vec<Range<usize>> {
+    let frames = level.len();
+    let mut found = Vec::new();
+    let mut frame = 0;
+    while frame < frames {
+        if level[frame] <= threshold {
+            frame += 1;
+            continue;
+        }
+        let end = (frame..frames).find(|&f| level[f] <= threshold).unwrap_or(frames);
+        if end - frame >= shortest {
+            let last = found.last().map_or(0, |r: &Range<usize>| r.end);
+            found.push(whole_expression(level, frame..end, rest, last));
+        }
+        frame = end;
+    }
+    found
 }
 
 /// From where the level is above the threshold outwards to where the expression began and ended:

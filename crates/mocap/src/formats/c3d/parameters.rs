@@ -41,22 +41,9 @@ impl Parameters {
     /// Read the section; empty where the header names none.
     pub(crate) fn read(mut file: Prefix<'_>, header: &Header) -> Result<Self, ReadError> {
         let processor = header.processor;
-        let head = match header.parameters_at {
-            None => None,
-            Some(start) => file.get(start..start + 4)?.map(|head| (start, head[2])),
-        };
-        let Some((start, blocks)) = head else {
+        let Some((start, end)) = section(&mut file, header)? else {
             return Ok(Self { bytes: Vec::new(), processor, by_name: HashMap::new() });
         };
-        // The block count is wrong in some files: the data bound the section too.
-        let counted = start + usize::from(blocks) * BLOCK;
-        let end = match header.data_at {
-            data if data > start => counted.max(data) as u64,
-            _ if counted > start => counted as u64,
-            _ => file.length(),
-        }
-        .min(file.length());
-
         let mut groups: HashMap<u8, String> = HashMap::new();
         let mut found: Vec<(u8, String, Parameter)> = Vec::new();
         let mut at = start + 4;
@@ -170,6 +157,20 @@ impl Parameters {
         }
         all
     }
+}
+
+/// Where the section begins and ends in the file; `None` where there is none.
+fn section(file: &mut Prefix<'_>, header: &Header) -> Result<Option<(usize, u64)>, ReadError> {
+    let Some(start) = header.parameters_at else { return Ok(None) };
+    let Some(head) = file.get(start..start + 4)? else { return Ok(None) };
+    // The block count is wrong in some files: the data bound the section too.
+    let counted = start + usize::from(head[2]) * BLOCK;
+    let end = match header.data_at {
+        data if data > start => counted.max(data) as u64,
+        _ if counted > start => counted as u64,
+        _ => file.length(),
+    };
+    Ok(Some((start, end.min(file.length()))))
 }
 
 /// Decode a parameter's type and dimensions at a byte offset, and find its values.

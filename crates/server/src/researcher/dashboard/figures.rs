@@ -9,7 +9,7 @@ use mimique_session::flow::{Plan, StepKind};
 use mimique_storage::SessionRecord;
 
 use super::session_view::SessionView;
-use crate::export::table::{Version, as_started};
+use crate::export::sources::{Version, as_started};
 
 /// A session and what is said of it.
 pub(crate) type Viewed = (SessionRecord, Arc<SessionView>);

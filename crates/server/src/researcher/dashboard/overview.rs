@@ -11,7 +11,7 @@ use mimique_session::Standing;
 
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::export::table::{Sources, Version};
+use crate::export::sources::{Sources, Version};
 use crate::state::hosted_study::HostedStudy;
 
 /// Views of sessions, made again only when a session has changed.

@@ -8,7 +8,7 @@ use mimique_session::{Record, Standing, rows};
 use mimique_storage::SessionRecord;
 use serde_json::Value;
 
-use crate::export::table::{Version, as_started};
+use crate::export::sources::{Version, as_started};
 
 /// What the researcher's page says of one session.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! The table of a study's responses over all its versions and sessions, and its CSV form.
+//! What an export is made from, and the tables over all versions and sessions of a study.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,11 @@ use mimique_session::wire::SessionStarted;
 use mimique_storage::{SessionRecord, Storage, StorageError, StudyVersion};
 use mimique_study::ClipSource;
 use mimique_study::Study;
-use mimique_study::columns::{ColumnKind, EXCLUSION_COLUMNS};
+use mimique_study::columns::ColumnKind;
 use serde_json::Value;
 
 use super::error::ExportError;
+use super::merged::Merged;
 
 /// What an export is made from: versions, sessions, identifiers. Events are read session by session.
 pub(crate) struct Sources {
@@ -47,16 +48,6 @@ impl Version {
 struct Identifiers {
     names: Vec<String>,
     values: BTreeMap<(u64, String), String>,
-}
-
-/// Rows of all versions under the columns of all versions.
-#[derive(Default)]
-pub(crate) struct Merged {
-    pub columns: Vec<Column>,
-    pub rows: Vec<Vec<Value>>,
-    pub participants: usize,
-    /// Place of the first of the two columns on exclusion.
-    exclusion: Option<usize>,
 }
 
 impl Sources {
@@ -121,7 +112,7 @@ impl Sources {
 
     /// One row a participant x trial x response.
     pub async fn tidy(&self, storage: &Storage) -> Result<Merged, ExportError> {
-        let mut merged = self.merged();
+        let mut merged = Merged::default();
         for version in &self.versions {
             merged.add_columns(&rows::tidy(&version.study, &version.clips, []).columns);
         }
@@ -140,7 +131,7 @@ impl Sources {
 
     /// One row a participant.
     pub async fn wide(&self, storage: &Storage) -> Result<Merged, ExportError> {
-        let mut merged = self.merged();
+        let mut merged = Merged::default();
         let mut tables = Vec::new();
         for version in &self.versions {
             let mut sessions = Vec::new();
@@ -168,16 +159,12 @@ impl Sources {
 
     /// The columns of the tidy form.
     pub fn columns(&self) -> Vec<Column> {
-        let mut merged = self.merged();
+        let mut merged = Merged::default();
         for version in &self.versions {
             merged.add_columns(&rows::tidy(&version.study, &version.clips, []).columns);
         }
         merged.add_exclusion_columns();
         merged.columns
-    }
-
-    fn merged(&self) -> Merged {
-        Merged::default()
     }
 
     fn add_identifier_columns(&self, merged: &mut Merged) {
@@ -226,65 +213,6 @@ impl Sources {
     }
 }
 
-impl Merged {
-    /// A table as it is, with the columns on exclusion and nobody excluded.
-    pub fn of_everybody(table: Table, participants: usize) -> Self {
-        let mut merged = Self { participants, ..Self::default() };
-        merged.columns = table.columns;
-        merged.add_exclusion_columns();
-        for mut row in table.rows {
-            row.resize(merged.columns.len(), Value::Null);
-            merged.write_exclusion(&mut row, None);
-            merged.rows.push(row);
-        }
-        merged
-    }
-
-    /// Adds the two columns that the researcher decides on, at the end.
-    fn add_exclusion_columns(&mut self) {
-        self.exclusion = Some(self.columns.len());
-        self.columns.extend(exclusion_columns());
-    }
-
-    fn write_exclusion(&self, row: &mut [Value], reason: Option<&str>) {
-        let Some(place) = self.exclusion else { return };
-        row[place] = reason.is_some().into();
-        row[place + 1] = reason.map_or(Value::Null, Value::from);
-    }
-
-    /// Adds the columns that are not there yet, at the end.
-    fn add_columns(&mut self, columns: &[Column]) {
-        for column in columns {
-            if !self.columns.iter().any(|known| known.name == column.name) {
-                self.columns.push(column.clone());
-            }
-        }
-    }
-}
-
-/// Whether the researcher excluded the participant, and why.
-pub(super) fn exclusion_columns() -> [Column; 2] {
-    let column = |name: &str, kind, description: &str| Column {
-        name: name.to_owned(),
-        description: description.to_owned(),
-        kind,
-        unit: None,
-        levels: Vec::new(),
-    };
-    [
-        column(
-            EXCLUSION_COLUMNS[0],
-            ColumnKind::Boolean,
-            "Whether the researcher excluded the participant; every answer is kept",
-        ),
-        column(
-            EXCLUSION_COLUMNS[1],
-            ColumnKind::Text,
-            "Why the researcher excluded the participant",
-        ),
-    ]
-}
-
 impl Identifiers {
     async fn load(storage: &Storage, study_id: &str) -> Result<Self, ExportError> {
         let entries = storage.recruitment(study_id).await?;
@@ -308,114 +236,5 @@ pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
         stage: session.stage.clone(),
         config_hash: session.config_hash.clone(),
         withdrawal_code: String::new(),
-    }
-}
-
-/// A table as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.
-pub(super) fn csv(table: &Merged, cells: Cells) -> Result<Vec<u8>, ExportError> {
-    let mut bytes = csv_header(&table.columns)?;
-    let rows = table.rows.iter();
-    bytes.extend(match cells {
-        Cells::AsTheyAre => csv_rows(&table.rows)?,
-        Cells::Neutralised => records(rows.map(|row| row.iter().map(neutral)))?,
-    });
-    Ok(bytes)
-}
-
-/// Columns as rows: name, kind, unit, levels, description.
-pub(super) fn dictionary(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
-    let head = ["name", "kind", "unit", "levels", "description"].map(str::to_owned);
-    let rows = columns.iter().map(|column| {
-        let kind = match column.kind {
-            ColumnKind::Text => "text",
-            ColumnKind::Integer => "integer",
-            ColumnKind::Number => "number",
-            ColumnKind::Boolean => "boolean",
-            ColumnKind::Time => "time",
-            ColumnKind::Any => "any",
-        };
-        let levels =
-            column.levels.iter().map(|(value, meaning)| format!("{}={meaning}", cell(value)));
-        [
-            column.name.clone(),
-            kind.to_owned(),
-            column.unit.clone().unwrap_or_default(),
-            levels.collect::<Vec<_>>().join("|"),
-            column.description.clone(),
-        ]
-    });
-    records([head].into_iter().chain(rows).map(|row| row.into_iter()))
-}
-
-/// The first line of a CSV file.
-pub(super) fn csv_header(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
-    records(std::iter::once(columns.iter().map(|column| column.name.clone())))
-}
-
-/// The lines below it.
-pub(super) fn csv_rows(rows: &[Vec<Value>]) -> Result<Vec<u8>, ExportError> {
-    records(rows.iter().map(|row| row.iter().map(cell)))
-}
-
-fn records(
-    rows: impl Iterator<Item = impl Iterator<Item = String>>,
-) -> Result<Vec<u8>, ExportError> {
-    let form = |error: csv::Error| ExportError::Form(error.to_string());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.write_record(row).map_err(form)?;
-    }
-    writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
-}
-
-/// How cells of a CSV file are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Cells {
-    /// As they were answered: what scripts need.
-    #[default]
-    AsTheyAre,
-    /// Texts that a spreadsheet would take for a formula (they begin with `=`, `+`, `-`, `@`, a
-    /// tabulator or a line break) get an apostrophe before them; numbers stay as they are.
-    Neutralised,
-}
-
-fn neutral(value: &Value) -> String {
-    let text = cell(value);
-    let is_text = value.is_string() && text.parse::<f64>().is_err();
-    if is_text && text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
-        return format!("'{text}");
-    }
-    text
-}
-
-fn cell(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-
-    #[test]
-    fn formulas_are_neutralised_and_numbers_are_not() {
-        for (given, written) in [
-            (json!("=1+1"), "'=1+1"),
-            (json!("+cmd"), "'+cmd"),
-            (json!("-2+3"), "'-2+3"),
-            (json!("@sum"), "'@sum"),
-            (json!("\t=1"), "'\t=1"),
-            (json!("-2.5"), "-2.5"),
-            (json!(-2.5), "-2.5"),
-            (json!("a=1"), "a=1"),
-            (Value::Null, ""),
-        ] {
-            assert_eq!(neutral(&given), written, "{given}");
-        }
     }
 }

@@ -1,0 +1,116 @@
+//! Tables as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.
+
+use mimique_session::rows::Column;
+use mimique_study::columns::ColumnKind;
+use serde_json::Value;
+
+use super::error::ExportError;
+use super::merged::Merged;
+
+/// A table with its header.
+pub(super) fn table(table: &Merged, cells: Cells) -> Result<Vec<u8>, ExportError> {
+    let mut bytes = header(&table.columns)?;
+    bytes.extend(match cells {
+        Cells::AsTheyAre => rows(&table.rows)?,
+        Cells::Neutralised => records(table.rows.iter().map(|row| row.iter().map(neutral)))?,
+    });
+    Ok(bytes)
+}
+
+/// Columns as rows: name, kind, unit, levels, description.
+pub(super) fn dictionary(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
+    let head = ["name", "kind", "unit", "levels", "description"].map(str::to_owned);
+    let rows = columns.iter().map(|column| {
+        let kind = match column.kind {
+            ColumnKind::Text => "text",
+            ColumnKind::Integer => "integer",
+            ColumnKind::Number => "number",
+            ColumnKind::Boolean => "boolean",
+            ColumnKind::Time => "time",
+            ColumnKind::Any => "any",
+        };
+        let levels =
+            column.levels.iter().map(|(value, meaning)| format!("{}={meaning}", cell(value)));
+        [
+            column.name.clone(),
+            kind.to_owned(),
+            column.unit.clone().unwrap_or_default(),
+            levels.collect::<Vec<_>>().join("|"),
+            column.description.clone(),
+        ]
+    });
+    records([head].into_iter().chain(rows).map(|row| row.into_iter()))
+}
+
+/// The first line of a CSV file.
+pub(super) fn header(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
+    records(std::iter::once(columns.iter().map(|column| column.name.clone())))
+}
+
+/// The lines below it.
+pub(super) fn rows(rows: &[Vec<Value>]) -> Result<Vec<u8>, ExportError> {
+    records(rows.iter().map(|row| row.iter().map(cell)))
+}
+
+fn records(
+    rows: impl Iterator<Item = impl Iterator<Item = String>>,
+) -> Result<Vec<u8>, ExportError> {
+    let form = |error: csv::Error| ExportError::Form(error.to_string());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row).map_err(form)?;
+    }
+    writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
+}
+
+/// How cells of a CSV file are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Cells {
+    /// As they were answered: what scripts need.
+    #[default]
+    AsTheyAre,
+    /// Texts that a spreadsheet would take for a formula (they begin with `=`, `+`, `-`, `@`, a
+    /// tabulator or a line break) get an apostrophe before them; numbers stay as they are.
+    Neutralised,
+}
+
+fn neutral(value: &Value) -> String {
+    let text = cell(value);
+    let is_text = value.is_string() && text.parse::<f64>().is_err();
+    if is_text && text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
+        return format!("'{text}");
+    }
+    text
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn formulas_are_neutralised_and_numbers_are_not() {
+        for (given, written) in [
+            (json!("=1+1"), "'=1+1"),
+            (json!("+cmd"), "'+cmd"),
+            (json!("-2+3"), "'-2+3"),
+            (json!("@sum"), "'@sum"),
+            (json!("\t=1"), "'\t=1"),
+            (json!("-2.5"), "-2.5"),
+            (json!(-2.5), "-2.5"),
+            (json!("a=1"), "a=1"),
+            (Value::Null, ""),
+        ] {
+            assert_eq!(neutral(&given), written, "{given}");
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The distributions of the answers, question by question.
+
+use maud::{Markup, html};
+
+use super::bars::{bars_with, round};
+use crate::researcher::dashboard::distribution::{Distribution, Shape};
+use crate::researcher::pages::frame::Frame;
+
+/// The distribution of the answers to each question.
+pub(super) fn answers(frame: &Frame, distributions: &[Distribution], language: &str) -> Markup {
+    html! {
+        div.card {
+            h2 { (frame.say("Answers", "Réponses")) }
+            p.soft {
+                (frame.say(
+                    "Practice and excluded participants left out. Texts are only counted here.",
+                    "Sans l’entraînement ni les participants exclus. Les textes sont seulement comptés ici.",
+                ))
+            }
+            div.distributions lang=(language) {
+                @for distribution in distributions {
+                    (answer(frame, distribution))
+                }
+            }
+        }
+    }
+}
+
+fn answer(frame: &Frame, distribution: &Distribution) -> Markup {
+    let caption = html! {
+        (distribution.prompt) " " code { (distribution.question) }
+    };
+    let count_line = |count: u64| {
+        let words = match count {
+            1 => frame.say("answer", "réponse"),
+            _ => frame.say("answers", "réponses"),
+        };
+        html! { (count) " " (words) }
+    };
+    match &distribution.shape {
+        Shape::Counts(counts) => {
+            bars_with(&caption, counts.iter().map(|(label, count)| (label.as_str(), *count)))
+        }
+        Shape::Numbers { count, least, mean, greatest } => html! {
+            div {
+                p.caption { (caption) }
+                p lang=(frame.language.code()) {
+                    (count_line(*count)) ", " (round(*least)) " – " (round(*greatest)) ", "
+                    (frame.say("mean", "moyenne")) " " (round(*mean))
+                }
+            }
+        },
+        Shape::Texts(count) => html! {
+            div { p.caption { (caption) } p lang=(frame.language.code()) { (count_line(*count)) } }
+        },
+    }
+}

@@ -1,0 +1,49 @@
+//! Counts as bars, and numbers as they are written beside them.
+
+use maud::{Markup, html};
+
+/// Counts under the name of a factor.
+pub(super) fn bars<'a>(caption: &str, counts: impl Iterator<Item = (&'a str, u64)>) -> Markup {
+    bars_with(&html! { code { (caption) } }, counts)
+}
+
+/// Counts under a caption.
+pub(super) fn bars_with<'a>(
+    caption: &Markup,
+    counts: impl Iterator<Item = (&'a str, u64)>,
+) -> Markup {
+    let counts: Vec<_> = counts.collect();
+    let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    html! {
+        table.bars {
+            caption { (caption) }
+            tbody {
+                @for (label, count) in counts {
+                    tr {
+                        th scope="row" { (label) }
+                        td.bar { progress aria-hidden="true" max=(most) value=(count) {} }
+                        td.number { (count) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A number with two decimals at most.
+pub(super) fn round(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round;
+
+    #[test]
+    fn numbers_are_written_without_idle_digits() {
+        assert_eq!(round(2.0), "2");
+        assert_eq!(round(2.126), "2.13");
+        assert_eq!(round(0.5), "0.5");
+    }
+}

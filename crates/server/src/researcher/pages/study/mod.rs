@@ -1,0 +1,96 @@
+//! A study's dashboard as HTML: nothing inline, complete without its script. What the script brings up
+//! to date is marked `data-live`.
+
+mod actions;
+mod answers;
+mod bars;
+mod participants;
+mod progress;
+mod trials;
+
+use axum::response::Response;
+use maud::{Markup, html};
+use mimique_analysis::Language;
+use mimique_storage::Role;
+use mimique_study::Multilingual as _;
+
+use self::actions::{exports, hosting};
+use self::answers::answers;
+use self::participants::participants;
+pub(super) use self::participants::{browser, status};
+use self::progress::{conditions, stops};
+use self::trials::{balance, checks, frames, times};
+use super::frame::Frame;
+use super::standing_words::standing_word;
+use crate::researcher::dashboard::overview::Overview;
+use crate::state::hosted_study::HostedStudy;
+
+/// The dashboard of a study.
+pub(crate) fn study_page(
+    frame: &Frame,
+    study: &HostedStudy,
+    overview: &Overview,
+    is_uploaded: bool,
+) -> Response {
+    let id = study.id();
+    let language = study.study().language_for(frame.language.code());
+    let address = format!("/researcher/studies/{id}");
+    let body = html! {
+        p { a href="/researcher" { "← " (frame.say("Studies", "Études")) } }
+        div.card {
+            h1 lang=(language) { (study.title(language)) }
+            p.soft {
+                code { (id) } " · " (stage_word(frame.language, study.stage().word())) " · version "
+                code { (&study.config_hash()[..12]) } " · "
+                a href={ "/s/" (id) "/" } { (frame.say("participant’s page", "page des participants")) }
+                " · "
+                a href={ "/preview/" (id) } { (frame.say("preview of the stimuli", "aperçu des stimuli")) }
+            }
+            @if frame.may(Role::Analyst) { (exports(frame, id)) }
+            @if frame.may(Role::Owner) && is_uploaded { (hosting(frame, study)) }
+        }
+        p.live-state role="status" data-live-state=""
+            data-on=(frame.say("Live: the page follows what happens.", "En direct : la page suit ce qui se passe."))
+            data-off=(frame.say("Not connected: trying again.", "Non connecté : nouvel essai.")) {}
+        div data-live={ (address) "/live" } {
+            (counts(frame, study, overview))
+            (participants(frame, id, overview))
+            @if !overview.conditions.is_empty() { (conditions(frame, overview)) }
+            (stops(frame, overview))
+            @if !overview.balance.is_empty() { (balance(frame, overview)) }
+            (times(frame, &overview.times))
+            (frames(frame, overview))
+            (checks(frame, overview))
+            @if !overview.distributions.is_empty() {
+                (answers(frame, &overview.distributions, language))
+            }
+        }
+    };
+    frame.page(study.title(language), &address, &body)
+}
+
+/// The word for a stage.
+pub(super) fn stage_word(language: Language, word: &str) -> &str {
+    match word {
+        "pilot" => language.pick("pilot", "pilote"),
+        "live" => language.pick("live", "en cours"),
+        other => other,
+    }
+}
+
+/// How many participants there are of each standing.
+fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
+    html! {
+        dl.counts {
+            @for (standing, count) in &overview.standings {
+                div { dt { (standing_word(*standing, frame.language)) } dd { (count) } }
+            }
+            @if !overview.excluded.is_empty() {
+                div { dt { (frame.say("excluded", "exclus")) } dd { (overview.excluded.len()) } }
+            }
+            @if let Some(wanted) = study.study().recruitment.participants {
+                div { dt { (frame.say("wanted", "prévus")) } dd { (wanted) } }
+            }
+        }
+    }
+}
