@@ -6,7 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::schema::{Schemas, accepts_null, has_one, types_of, words};
+use super::schema::{Schemas, accepts_null, has_one, types_of, whole_range, words};
 use super::values::JsonType;
 
 /// The file with stand-ins where it cannot be read.
@@ -45,21 +45,10 @@ fn fitted<'a>(schemas: &Schemas<'a>, schema: &'a Value, value: &Value) -> Value 
     }
 }
 
-/// Whether a whole number is one that its type holds.
+/// Whether a number is in the range of its type.
 fn is_in_range(part: &Value, value: &Value) -> bool {
-    let whole = part
-        .get("type")
-        .is_some_and(|types| types_of(types).any(|each| each == JsonType::WholeNumber));
-    let most = match part.get("format").and_then(Value::as_str) {
-        Some("uint8") => u64::from(u8::MAX),
-        Some("uint32") => u64::from(u32::MAX),
-        _ => u64::MAX,
-    };
-    let signed = part.get("minimum").is_none();
-    !whole
-        || value.is_null()
-        || value.as_u64().is_some_and(|number| number <= most)
-        || (signed && value.is_i64())
+    let number = value.as_f64().zip(whole_range(part));
+    number.is_none_or(|(number, (least, most))| (least..=most).contains(&number))
 }
 
 /// A list of the length that its schema wants.

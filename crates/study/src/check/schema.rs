@@ -74,6 +74,20 @@ pub(super) fn has_one(types: &Value, value: &Value) -> bool {
     (names_null(types) && value.is_null()) || types_of(types).any(|each| each.has(value))
 }
 
+/// The least and the greatest number of a schema of whole numbers.
+pub(super) fn whole_range(part: &Value) -> Option<(f64, f64)> {
+    if !types_of(part.get("type")?).any(|each| each == JsonType::WholeNumber) {
+        return None;
+    }
+    let (least, most) = match part.get("format").and_then(Value::as_str) {
+        Some("uint8") => (0.0, f64::from(u8::MAX)),
+        Some("uint32") => (0.0, f64::from(u32::MAX)),
+        Some("uint" | "uint64") => (0.0, 9_007_199_254_740_991.0),
+        _ => (-9.1e15, 9.1e15),
+    };
+    Some((part.get("minimum").and_then(Value::as_f64).unwrap_or(least), most))
+}
+
 /// Whether a schema's own `type` allows null.
 pub(super) fn accepts_null(schema: &Value) -> bool {
     schema.get("type").is_some_and(names_null)

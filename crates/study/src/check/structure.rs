@@ -6,7 +6,7 @@ use super::damage::Damage;
 use super::issue::{Issues, below};
 use super::nearest::nearest;
 use super::problem::Problem;
-use super::schema::{Schemas, has_one, types_of, words};
+use super::schema::{Schemas, has_one, types_of, whole_range, words};
 use super::values::{JsonType, Names, Nearest, Shown, Wanted};
 
 /// Examines a file; returns the pointers of all its localised texts, and what cannot be read.
@@ -89,16 +89,8 @@ impl<'a> Walk<'a> {
             return false;
         }
         let Some(number) = value.as_f64() else { return true };
-        let format = part.get("format").and_then(Value::as_str);
-        let (least, most) = match format {
-            Some("uint8") => (0.0, f64::from(u8::MAX)),
-            Some("uint32") => (0.0, f64::from(u32::MAX)),
-            Some("uint" | "uint64") => (0.0, 9_007_199_254_740_991.0),
-            _ => (-9.1e15, 9.1e15),
-        };
-        let least = part.get("minimum").and_then(Value::as_f64).unwrap_or(least);
-        let whole = types_of(types).any(|each| each == JsonType::WholeNumber);
-        if whole && !(least..=most).contains(&number) {
+        let Some((least, most)) = whole_range(part) else { return true };
+        if !(least..=most).contains(&number) {
             self.fault(pointer, Problem::WholeNotInRange { found: value.clone(), least, most });
             return false;
         }
