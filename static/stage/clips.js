@@ -1,7 +1,7 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
 import { sendPanic } from "../panics.js";
 import { loadAhead } from "./backend.js";
-import { filmDuration } from "./video.js";
+import { videoDuration } from "./video.js";
 import { fetchPack } from "./packs.js";
 import { picturesOf } from "./pictures.js";
 
@@ -37,7 +37,7 @@ export function prepareClip(clipId, source, onProgress = () => {}) {
   return entry.summary;
 }
 
-/// A prepared clip with its weights (Float32Array, frames x shapes) or its film (an address), or a
+/// A prepared clip with its weights (Float32Array, frames x shapes) or its video (an address), or a
 /// thrown Error.
 export function preparedClip(clipId) {
   const clip = clips.get(clipId)?.clip;
@@ -50,7 +50,7 @@ export function preparedClip(clipId) {
 export async function putClip(clip) {
   const pictures = await picturesOf(clip.avatarPack);
   const whole = {
-    film: null,
+    video: null,
     look: "stimulus",
     duration_ms: (1000 * Math.max(clip.frames - 1, 0)) / clip.rate_hz,
     weights_hash: "",
@@ -90,16 +90,16 @@ async function prepare(clipId, source, onProgress) {
     if (source.bytes > 0) report(0.9 * Math.min(received / source.bytes, 1));
   };
   report(0);
-  if (source.film) {
+  if (source.video) {
     const bytes = await fetchPack(source.avatar, count);
-    const film = URL.createObjectURL(new Blob([bytes], { type: source.film }));
-    const duration_ms = await filmDuration(film).catch((error) => {
-      URL.revokeObjectURL(film);
+    const video = URL.createObjectURL(new Blob([bytes], { type: source.video }));
+    const duration_ms = await videoDuration(video).catch((error) => {
+      URL.revokeObjectURL(video);
       throw error;
     });
     report(1);
     const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
-    return { clip: clipId, film, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
+    return { clip: clipId, video, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
   }
   // The solver and the canvas come beside the packs.
   worker ??= startWorker();
@@ -114,7 +114,7 @@ async function prepare(clipId, source, onProgress) {
   ]);
   const clip = {
     clip: clipId,
-    film: null,
+    video: null,
     look: source.look ?? "stimulus",
     avatarHash: source.avatar,
     avatarPack: avatar,

@@ -28,7 +28,7 @@ class Stage {
   #look;
   #backend = null;
   #gpu = null;
-  #film;
+  #video;
   #lost = null;
   // Whether the canvas's module has panicked: it is loaded anew then.
   #panicked = false;
@@ -46,7 +46,7 @@ class Stage {
 
   constructor(canvas, look) {
     this.#canvas = canvas;
-    this.#film = new VideoLayer(canvas);
+    this.#video = new VideoLayer(canvas);
     this.#look = { background: "", variant: "stimulus", width: 640, height: 640, ...look };
     const { width, height } = this.#look;
     const frame = canvas.closest(".stage");
@@ -64,9 +64,9 @@ class Stage {
   /// Draws one frame of a prepared clip; resolves when it is drawn. A lost canvas is opened again.
   async show(clipId, timeMs) {
     const clip = preparedClip(clipId);
-    if (clip.film) {
+    if (clip.video) {
       this.#shown = { clipId, timeMs };
-      return this.#film.show(clip, timeMs);
+      return this.#video.show(clip, timeMs);
     }
     if (this.#lost !== null) await this.reopen();
     while (!this.drawNow(clipId, timeMs)) await new Promise(requestAnimationFrame);
@@ -77,8 +77,8 @@ class Stage {
   drawNow(clipId, timeMs) {
     const clip = preparedClip(clipId);
     this.#shown = { clipId, timeMs };
-    if (clip.film) {
-      this.#film.show(clip, timeMs);
+    if (clip.video) {
+      this.#video.show(clip, timeMs);
       return true;
     }
     if (this.#lost !== null) throw new Error(this.#lost);
@@ -121,11 +121,11 @@ class Stage {
 
   // What a play does of this stage's clip.
   #part(clip) {
-    return clip.film ? { clock: this.#film.clock(clip) } : { draw: (timeMs) => this.#draw(clip, timeMs) };
+    return clip.video ? { clock: this.#video.clock(clip) } : { draw: (timeMs) => this.#draw(clip, timeMs) };
   }
 
   async #ready(clip) {
-    if (clip.film) return;
+    if (clip.video) return;
     if (this.#lost !== null) await this.reopen();
     this.#fit();
     if (this.#gpu.hasAvatar(clip.avatarHash)) return;
@@ -144,7 +144,7 @@ class Stage {
     this.stop();
     this.#closed = true;
     this.#canvas.removeEventListener("webglcontextlost", this.#onContextLost);
-    this.#film.close();
+    this.#video.close();
     this.#free();
   }
 
@@ -235,7 +235,7 @@ class Stage {
   }
 
   #load(clip) {
-    this.#film.hide();
+    this.#video.hide();
     if (clip.look !== this.#look.variant) this.setLook({ variant: clip.look });
     if (this.#gpu.hasAvatar(clip.avatarHash)) return;
     const shapes = this.#gpu.loadAvatar(

@@ -3,8 +3,8 @@
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
 // refresh periods after the one before. The first is one that the display began after the play: on a page
-// that was busy, the frame that it is told of may have begun long before. Where one of the two is a film,
-// the film sets the time; of a film alone the log has its own frames.
+// that was busy, the frame that it is told of may have begun long before. Where one of the two is a video,
+// the video sets the time; of a video alone the log has its own frames.
 import { refreshPeriod } from "./clock.js";
 
 const LATE = 1.5;
@@ -24,7 +24,7 @@ export class Playback {
   #finish = null;
 
   /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
-  /// film's}.
+  /// video's}.
   constructor(parts) {
     this.#parts = parts;
     this.#clock = parts.find((part) => part.clock)?.clock ?? null;
@@ -74,7 +74,7 @@ export class Playback {
     };
   }
 
-  // A film's frames come at the film's own rate: they are late by that.
+  // A video's frames come at the video's own rate: they are late by that.
   #judged() {
     const frames = this.#frames;
     if (!this.#clock || this.#parts.length > 1 || frames.length < 3) return frames;
@@ -86,15 +86,15 @@ export class Playback {
   // Shows every part at `ms`; the clip time of the frame that this completes, or null. A part whose
   // adapter is busy is drawn in a later frame of the display, before the other one is drawn again.
   #show(ms) {
-    const film = this.#clock?.takeFrame() ?? null;
-    if (this.#parts.length === 1 && this.#clock) return film;
+    const video = this.#clock?.takeFrame() ?? null;
+    if (this.#parts.length === 1 && this.#clock) return video;
     for (const part of this.#parts) {
       if (!part.clock && !this.#drawn.has(part) && part.draw(ms)) this.#drawn.set(part, ms);
     }
     const times = [...this.#drawn.values()];
     if (times.length < this.#parts.filter((part) => !part.clock).length) return null;
-    // Between two frames of a film the drawn clip goes on.
-    if (film !== null) times.push(film);
+    // Between two frames of a video the drawn clip goes on.
+    if (video !== null) times.push(video);
     this.#drift = Math.max(this.#drift, Math.max(...times) - Math.min(...times));
     this.#drawn.clear();
     return ms;
@@ -129,7 +129,7 @@ export class Playback {
         this.abort(`renderer lost: ${this.#failure}`);
         return;
       }
-      // A film has no frame for the end.
+      // A video has no frame for the end.
       const ended = shown !== null || this.#clock || time >= durationMs + LAST_FRAME_MS;
       if (clipMs >= durationMs && frames.length > 0 && ended) {
         this.#endMs = now;

@@ -1,6 +1,6 @@
-// A film in the place of the canvas, and the clock that it sets while it plays.
+// A video in the place of the canvas, and the clock that it sets while it plays.
 
-/// A video laid over a canvas. It is there only while a film is shown.
+/// A video laid over a canvas. It is there only while a video is shown.
 export class VideoLayer {
   #canvas;
   #video = null;
@@ -9,7 +9,7 @@ export class VideoLayer {
     this.#canvas = canvas;
   }
 
-  /// Stands at `ms` of a clip's film, still.
+  /// Stands at `ms` of a clip's video, still.
   async show(clip, ms) {
     const video = this.#element(clip);
     video.pause();
@@ -23,7 +23,7 @@ export class VideoLayer {
     this.#video.hidden = true;
   }
 
-  /// The clock of one play of a clip's film.
+  /// The clock of one play of a clip's video.
   clock(clip) {
     return new VideoClock(this.#element(clip), clip.duration_ms);
   }
@@ -36,43 +36,43 @@ export class VideoLayer {
   #element(clip) {
     if (!this.#video) {
       this.#video = document.createElement("video");
-      Object.assign(this.#video, { muted: true, playsInline: true, preload: "auto", className: "film", tabIndex: -1 });
+      Object.assign(this.#video, { muted: true, playsInline: true, preload: "auto", className: "video", tabIndex: -1 });
       this.#video.setAttribute("aria-hidden", "true");
       this.#canvas.after(this.#video);
     }
     if (this.#video.dataset.clip !== clip.clip) {
       this.#video.dataset.clip = clip.clip;
-      this.#video.src = clip.film;
+      this.#video.src = clip.video;
     }
     this.#video.hidden = false;
     return this.#video;
   }
 }
 
-/// What a browser can play of a film: its duration in ms, or a thrown Error.
-export async function filmDuration(address) {
+/// What a browser can play of a video: its duration in ms, or a thrown Error.
+export async function videoDuration(address) {
   const video = document.createElement("video");
   video.preload = "auto";
   video.muted = true;
   const loaded = new Promise((resolve, reject) => {
     video.onloadeddata = resolve;
-    video.onerror = () => reject(new Error(`film: this browser cannot play it (${video.error?.message || "unknown format"})`));
+    video.onerror = () => reject(new Error(`video: this browser cannot play it (${video.error?.message || "unknown format"})`));
   });
   video.src = address;
   await loaded;
   if (video.duration === Infinity) {
-    // Films that a browser recorded do not say how long they are: their end does.
+    // Videos that a browser recorded do not say how long they are: their end does.
     const known = new Promise((resolve) => video.addEventListener("seeked", resolve, { once: true }));
     video.currentTime = 1e6;
     await known;
   }
   const ms = (Number.isFinite(video.duration) ? video.duration : video.currentTime) * 1000;
   video.removeAttribute("src");
-  if (!(Number.isFinite(ms) && ms > 0)) throw new Error("film: its duration is not known; export it anew");
+  if (!(Number.isFinite(ms) && ms > 0)) throw new Error("video: its duration is not known; export it anew");
   return ms;
 }
 
-// Frames as they are presented (requestVideoFrameCallback), and the film's time between them.
+// Frames as they are presented (requestVideoFrameCallback), and the video's time between them.
 class VideoClock {
   #video;
   #durationMs;
@@ -97,8 +97,8 @@ class VideoClock {
     this.#video.pause();
   }
 
-  /// Film time (ms) of what is on the display at `now`; null before the first frame. What stands
-  /// beside it may last longer: the time goes on after the film's end.
+  /// Video time (ms) of what is on the display at `now`; null before the first frame. What stands
+  /// beside it may last longer: the time goes on after the video's end.
   at(now) {
     const video = this.#video;
     // The last frame may come together with the end: it is what is on the display now.
@@ -111,12 +111,12 @@ class VideoClock {
       return video.currentTime * 1000;
     }
     if (this.#presented === null) return null;
-    // A film that stalls does not run on.
+    // A video that stalls does not run on.
     const since = Math.min(Math.max(now - this.#presented.at, 0), 100);
     return this.#presented.media + since;
   }
 
-  /// The time of a film frame that came with this frame of the display; null if none came.
+  /// The time of a video frame that came with this frame of the display; null if none came.
   takeFrame() {
     if (!this.#fresh) return null;
     this.#fresh = false;

@@ -1,6 +1,6 @@
-// What leaves the studio: tables, animations, pictures, films. All of it is made in the browser.
+// What leaves the studio: tables, animations, pictures, videos. All of it is made in the browser.
 import { callWorker } from "./worker-calls.js";
-import { filmed } from "./webm.js";
+import { encodedVideo } from "./webm.js";
 import { Zip } from "./zip.js";
 
 const $ = (id) => document.getElementById(id);
@@ -49,7 +49,7 @@ export function wireExports(page) {
   on("export-weights", async (panel) => save(`${page.name()}-${panel.slot}.csv`, await callWorker("weightsCsv", panel.slot)));
   on("export-glb", async (panel) => save(`${page.name()}-${panel.slot}.glb`, await callWorker("animatedGlb", panel.slot, ...frames(panel))));
   on("export-png", (panel) => pictures(panel, page));
-  on("export-webm", (panel) => film(panel, page));
+  on("export-webm", (panel) => saveVideo(panel, page));
   on("export-sheet", () => sheet(page));
 }
 
@@ -119,9 +119,9 @@ async function sheet(page) {
   for (const bitmap of bitmaps) bitmap.close();
 }
 
-async function film(panel, page) {
+async function saveVideo(panel, page) {
   const at = times(page);
-  const bytes = await filmed({
+  const bytes = await encodedVideo({
     count: at.length,
     rate: Number($("export-rate").value),
     picture: (i) => picture(panel, at[i]),

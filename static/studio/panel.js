@@ -158,7 +158,7 @@ export class MethodPanel {
   // The method as it was solved last, for a study file and `mimique solve --settings`.
   async #settings() {
     if (this.#timer !== null) await this.solve();
-    if (!this.facts) throw new Error(`method ${this.#slot.toUpperCase()}: nothing is solved; mend its parameters first`);
+    if (!this.facts) throw new Error(`method ${this.#slot.toUpperCase()}: nothing is solved; correct its parameters first`);
     const text = `${JSON.stringify(this.facts.settings, null, 2)}\n`;
     this.#page.save(`${this.#page.name()}-${this.#slot}-settings.json`, text);
   }

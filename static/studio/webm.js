@@ -1,4 +1,4 @@
-// A film of pictures with the browser's encoder (WebCodecs), in a WebM file with each picture at its
+// A video of pictures with the browser's encoder (WebCodecs), in a WebM file with each picture at its
 // exact time: how long drawing takes, and how busy the machine is, leaves no trace in it.
 
 const CODECS = [["vp09.00.51.08", "V_VP9"], ["vp8", "V_VP8"]];
@@ -8,17 +8,17 @@ const KEY_EVERY = 30;
 /// So many pictures may wait for the encoder.
 const WAITING = 4;
 
-/// Films what `picture(i)` (an ImageBitmap) shows for i in 0..count, `rate` pictures a second; the file's
+/// Videos what `picture(i)` (an ImageBitmap) shows for i in 0..count, `rate` pictures a second; the file's
 /// bytes. `done(i)` is told of each picture.
-export async function filmed({ count, rate, picture, done }) {
+export async function encodedVideo({ count, rate, picture, done }) {
   if (!globalThis.VideoEncoder) {
-    throw new Error("film: this browser has no encoder on this page; open it by https or on this machine's own address (127.0.0.1), or export pictures");
+    throw new Error("video: this browser has no encoder on this page; open it by https or on this machine's own address (127.0.0.1), or export pictures");
   }
   const first = await picture(0);
   const { width, height } = first;
   const config = { width, height, bitrate: BITS_PER_SECOND, framerate: rate, latencyMode: "quality" };
   const codec = await supported(config);
-  if (!codec) throw new Error(`film: this browser encodes no WebM of ${width} x ${height}; export pictures instead`);
+  if (!codec) throw new Error(`video: this browser encodes no WebM of ${width} x ${height}; export pictures instead`);
   const chunks = [];
   let failed = null;
   const encoder = new VideoEncoder({
@@ -27,7 +27,7 @@ export async function filmed({ count, rate, picture, done }) {
       chunk.copyTo(bytes);
       chunks.push({ ms: Math.round(chunk.timestamp / 1000), isKey: chunk.type === "key", bytes });
     },
-    error: (error) => (failed = new Error(`film: ${error.message}; export pictures instead`)),
+    error: (error) => (failed = new Error(`video: ${error.message}; export pictures instead`)),
   });
   try {
     encoder.configure({ ...config, codec: codec[0] });

@@ -152,7 +152,7 @@ for (const [scheme, width, hands, locale] of [["light", 1280, "mouse", "en-GB"],
   });
 }
 
-test("conduct: who cannot mend the device, and who is too young, is told why and goes back with a code", { skip: unable, timeout: 120_000 }, async () => {
+test("conduct: who cannot put the device right, and who is too young, is told why and goes back with a code", { skip: unable, timeout: 120_000 }, async () => {
   const server = await host({ device: { minimumWidth: 4000 } });
   const browser = await open("webgl2", { viewport: { width: 800, height: 900 } });
   const { page } = browser;

@@ -1,11 +1,11 @@
-// Two clips in step: a drawn clip beside the actor's own head, and beside a film; screenshots kept.
+// Two clips in step: a drawn clip beside the actor's own head, and beside a video; screenshots kept.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { film } from "./lib/film.mjs";
+import { recordVideo } from "./lib/record_video.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
@@ -18,15 +18,15 @@ const pair = (avatar, side) => ({
   ...trials(["joy2.box.head"], ["nearer"]),
   beside: { avatar, method: "real", side, caption: text("The person"), clipCaption: text("The animated face") },
 });
-const study = (film) => small("pairs", {
+const study = (video) => small("pairs", {
   questions: [{ id: "nearer", type: "comparison", prompt: text("Which is more natural?"), allowSame: true }],
-  components: { heads: pair("actor", "right"), films: pair("person", "left") },
-  sequence: { order: "fixed", components: ["heads", "films"] },
+  components: { heads: pair("actor", "right"), videos: pair("person", "left") },
+  sequence: { order: "fixed", components: ["heads", "videos"] },
   stimuli: stimuli(
     {
       head: { builtin: { seed: 1 } },
       actor: { builtin: { actor: 7 }, look: "reference" },
-      person: { videos: { joy2: film } },
+      person: { videos: { joy2: video } },
     },
     { box: { method: "box" }, real: { method: "recorded" } },
     [["head", "box"], ["actor", "real"], ["person", "real"]],
@@ -34,14 +34,14 @@ const study = (film) => small("pairs", {
 });
 
 for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
-  test(`pairs: in step beside a head and beside a film, ${backend}`, { skip: unable, timeout: 400_000 }, async () => {
+  test(`pairs: in step beside a head and beside a video, ${backend}`, { skip: unable, timeout: 400_000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), "mimique-pairs-"));
     const browser = await open(backend, { viewport: { width, height: 900 } });
     const shots = screenshotFolder(`pairs-${backend}`);
     const { page } = browser;
     let server;
     try {
-      writeFileSync(join(folder, "joy2.webm"), await film(page));
+      writeFileSync(join(folder, "joy2.webm"), await recordVideo(page));
       writeFileSync(join(folder, "pairs.json"), JSON.stringify(study("joy2.webm")));
       server = await serve([join(folder, "pairs.json")]);
       await page.goto(`${server.url}/s/pairs/?backend=${backend}`);
@@ -89,7 +89,7 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
       }
       const [drift, longest] = [Number(rows[0].beside_drift_ms), Number(rows[0].frame_longest_ms)];
       assert.ok(drift <= longest, `two drawn clips ${drift} ms apart, with frames of at most ${longest} ms`);
-      assert.ok(Number(rows[1].beside_drift_ms) < 40, `drift of ${rows[1].beside_drift_ms} ms: less than a frame of the film`);
+      assert.ok(Number(rows[1].beside_drift_ms) < 40, `drift of ${rows[1].beside_drift_ms} ms: less than a frame of the video`);
     } finally {
       await browser.close();
       await server?.stop();

@@ -1,4 +1,4 @@
-// What the studio exports, opened again: pictures, film and contact sheet show the face of their moment;
+// What the studio exports, opened again: pictures, recording and contact sheet show the face of their moment;
 // the animation holds the weights of the table, and its head can be opened and solved.
 
 import assert from "node:assert/strict";
@@ -75,11 +75,11 @@ function table(csv) {
 }
 
 /** Pictures decoded and compared in a page of their own. Differences are means of 0..255 over all pixels. */
-async function looked(context, { pictures, film, sheet, cell, rows }) {
+async function looked(context, { pictures, recording, sheet, cell, rows }) {
   const page = await context.newPage();
   const base64 = (bytes) => Buffer.from(bytes).toString("base64");
   const found = await page.evaluate(
-    async ({ pictures, film, sheet, cell, rows }) => {
+    async ({ pictures, recording, sheet, cell, rows }) => {
       const SIZE = 120;
       const blob = (text, type) => new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], { type });
       const pixels = (source, [x, y, w, h]) => {
@@ -99,7 +99,7 @@ async function looked(context, { pictures, film, sheet, cell, rows }) {
       const differences = (data) => shots.map((shot) => apart(shot, data));
       const video = document.createElement("video");
       video.muted = true;
-      video.src = URL.createObjectURL(blob(film, "video/webm"));
+      video.src = URL.createObjectURL(blob(recording, "video/webm"));
       const until = (name) => new Promise((resolve, reject) => ((video[`on${name}`] = resolve), (video.onerror = () => reject(video.error))));
       await until("loadeddata");
       const { duration, videoWidth, videoHeight } = video;
@@ -118,11 +118,11 @@ async function looked(context, { pictures, film, sheet, cell, rows }) {
         sizes: [...sizes],
         colours: shots.map(colours),
         fromFirst: shots.map((shot) => apart(shots[0], shot)),
-        film: { duration, size: `${videoWidth}x${videoHeight}`, moments },
+        recording: { duration, size: `${videoWidth}x${videoHeight}`, moments },
         sheet: { size: `${whole.width}x${whole.height}`, cells: cells.map(differences), colours: cells.map(colours) },
       };
     },
-    { pictures: pictures.map(base64), film: base64(film), sheet: base64(sheet), cell, rows },
+    { pictures: pictures.map(base64), recording: base64(recording), sheet: base64(sheet), cell, rows },
   );
   await page.close();
   return found;
@@ -152,7 +152,7 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
     const rows = table(String(await saved("weights")));
     const glb = await saved("glb");
     const pictures = unzipped(await saved("png"));
-    const film = await saved("webm");
+    const recording = await saved("webm");
     const sheet = await saved("sheet");
     writeFileSync(join(shots, "sheet.png"), sheet);
 
@@ -179,7 +179,7 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
     // Pictures: one a twenty-fifth of a second, each a face, another one as the expression comes.
     const count = Math.floor((to - from) * RATE + 1e-6) + 1;
     assert.deepEqual(pictures.map(([name]) => name), Array.from({ length: count }, (_, i) => `built-in-actor-a-${String(i).padStart(5, "0")}.png`));
-    const seen = await looked(context, { pictures: pictures.map(([, bytes]) => bytes), film, sheet, cell: CELL, rows: 2 });
+    const seen = await looked(context, { pictures: pictures.map(([, bytes]) => bytes), recording, sheet, cell: CELL, rows: 2 });
     assert.equal(seen.sizes.length, 1);
     const [width, height] = seen.sizes[0].split("x").map(Number);
     assert.ok(width >= 480 && width === height, seen.sizes[0]);
@@ -187,13 +187,13 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
     const middle = Math.floor(count / 2);
     assert.ok(seen.fromFirst[middle] > 0.3, `the face changes: ${seen.fromFirst[middle]}`);
 
-    // Film: as long as its part; while the expression comes, each moment is like its own picture.
+    // Recording: as long as its part; while the expression comes, each moment is like its own picture.
     const nearest = (from) => from.indexOf(Math.min(...from));
-    assert.equal(seen.film.size, seen.sizes[0]);
-    assert.ok(Math.abs(seen.film.duration - count / RATE) < 0.002, `${seen.film.duration} s of ${count / RATE}`);
-    for (const { part, from } of seen.film.moments) {
-      const at = Math.floor(part * seen.film.duration * RATE);
-      assert.ok(Math.abs(nearest(from) - at) <= 1 && from[at] < 4, `film at ${part}: like picture ${nearest(from)}, ${from[at]} from its own, ${at}`);
+    assert.equal(seen.recording.size, seen.sizes[0]);
+    assert.ok(Math.abs(seen.recording.duration - count / RATE) < 0.002, `${seen.recording.duration} s of ${count / RATE}`);
+    for (const { part, from } of seen.recording.moments) {
+      const at = Math.floor(part * seen.recording.duration * RATE);
+      assert.ok(Math.abs(nearest(from) - at) <= 1 && from[at] < 4, `recording at ${part}: like picture ${nearest(from)}, ${from[at]} from its own, ${at}`);
     }
 
     // Contact sheet: a row of eight a method, from the start of the part to its end.

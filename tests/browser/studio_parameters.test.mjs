@@ -71,7 +71,7 @@ test("studio: blendshapes locked and bounded, markers weighed; `mimique solve` t
     assert.ok(Math.max(...opened) === 0.2 && Math.min(...opened) === 0, `${Math.min(...opened)} ${Math.max(...opened)}`);
     assert.match(await shapes.locator("summary").textContent(), /2 of 53 changed/);
 
-    // What is wrong stands beside its control, and goes when it is mended.
+    // What is wrong stands beside its control, and goes when it is corrected.
     await typed(page, "lower bound of jawOpen", "0.5");
     const problem = shapes.locator('tr[data-name="jawOpen"] .problem');
     await problem.waitFor();

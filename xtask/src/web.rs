@@ -213,7 +213,8 @@ impl Module {
         command.arg("rustc").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
         match self.example {
             true => command.args(["--example", self.library]),
-            false => command.arg("--lib"),
+            // cargo leaves link-time optimisation out where an rlib is built along.
+            false => command.args(["--lib", "--crate-type", "cdylib"]),
         };
         command.args(["--package", self.package, "--profile", self.profile]);
         if let Some(features) = self.features {

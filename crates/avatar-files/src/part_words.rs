@@ -6,9 +6,9 @@
 
 use mimique_avatar::Part;
 
-/// What a name says.
+/// The part that a mesh's name names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Said {
+pub(crate) enum NamedPart {
     /// It is this part.
     Part(Part),
     /// It is an eyeball, of the person's left or right where the name says so.
@@ -50,29 +50,29 @@ const BESIDE: [&str; 27] = [
 const LONGEST_CUT: usize = 32;
 
 /// What a name says, if anything; the order matters (an eyelash is no eye).
-pub(crate) fn said(name: &str) -> Option<Said> {
+pub(crate) fn named_part(name: &str) -> Option<NamedPart> {
     let words = words(name);
     let any = |list: &[&str]| words.iter().any(|w| list.iter().any(|known| is(w, known)));
     if any(&WORN) {
         None
     } else if any(&LASHES) {
-        Some(Said::Part(Part::Lashes))
+        Some(NamedPart::Part(Part::Lashes))
     } else if any(&OVERLAY) || (any(&["eye"]) && any(&OVER_EYE)) {
-        Some(Said::Part(Part::EyeOverlay))
+        Some(NamedPart::Part(Part::EyeOverlay))
     } else if any(&HAIR) {
-        Some(Said::Part(Part::Hair))
+        Some(NamedPart::Part(Part::Hair))
     } else if any(&SOCKET) || (any(&["mouth"]) && any(&["bag"])) {
-        Some(Said::Part(Part::Socket))
+        Some(NamedPart::Part(Part::Socket))
     } else if any(&TONGUE) {
-        Some(Said::Part(Part::Tongue))
+        Some(NamedPart::Part(Part::Tongue))
     } else if any(&TEETH) {
-        Some(Said::Part(Part::Teeth))
+        Some(NamedPart::Part(Part::Teeth))
     } else if any(&SKIN) {
-        Some(Said::Part(Part::Skin))
+        Some(NamedPart::Part(Part::Skin))
     } else if any(&EYE) {
-        Some(Said::Eye(side(&words)))
+        Some(NamedPart::Eye(side(&words)))
     } else if any(&FACE) {
-        Some(Said::Part(Part::Skin))
+        Some(NamedPart::Part(Part::Skin))
     } else {
         None
     }
@@ -138,16 +138,16 @@ mod tests {
 
     #[test]
     fn parts_are_told_from_the_names_that_rigs_use() {
-        let (left, right) = (Said::Eye(Some(Side::Left)), Said::Eye(Some(Side::Right)));
+        let (left, right) = (NamedPart::Eye(Some(Side::Left)), NamedPart::Eye(Some(Side::Right)));
         for (name, expected) in [
-            ("MouthSocketEyeSockets", Said::Part(Part::Socket)),
-            ("mouthbag", Said::Part(Part::Socket)),
-            ("oral_cavity", Said::Part(Part::Socket)),
-            ("OralCavity", Said::Part(Part::Socket)),
-            ("GumsTongue", Said::Part(Part::Tongue)),
-            ("Teeth", Said::Part(Part::Teeth)),
-            ("upperteeth", Said::Part(Part::Teeth)),
-            ("teeth_lod0_mesh", Said::Part(Part::Teeth)),
+            ("MouthSocketEyeSockets", NamedPart::Part(Part::Socket)),
+            ("mouthbag", NamedPart::Part(Part::Socket)),
+            ("oral_cavity", NamedPart::Part(Part::Socket)),
+            ("OralCavity", NamedPart::Part(Part::Socket)),
+            ("GumsTongue", NamedPart::Part(Part::Tongue)),
+            ("Teeth", NamedPart::Part(Part::Teeth)),
+            ("upperteeth", NamedPart::Part(Part::Teeth)),
+            ("teeth_lod0_mesh", NamedPart::Part(Part::Teeth)),
             ("EyeLeft", left),
             ("EyeRight", right),
             ("eye_R", right),
@@ -157,29 +157,29 @@ mod tests {
             ("lefteye", left),
             ("eyeballsright", right),
             ("EYERight01", right),
-            ("Eyes", Said::Eye(None)),
-            ("Eyeball", Said::Eye(None)),
+            ("Eyes", NamedPart::Eye(None)),
+            ("Eyeball", NamedPart::Eye(None)),
             ("Std_Eye_L", left),
             ("LeftIris", left),
-            ("LacrimalBlendOcclusion", Said::Part(Part::EyeOverlay)),
-            ("CC_Base_EyeOcclusion", Said::Part(Part::EyeOverlay)),
-            ("CC_Base_TearLine", Said::Part(Part::EyeOverlay)),
-            ("eyeshell_lod0_mesh", Said::Part(Part::EyeOverlay)),
-            ("eyeEdge_lod0_mesh", Said::Part(Part::EyeOverlay)),
-            ("Std_Cornea_L", Said::Part(Part::EyeOverlay)),
-            ("eye_wet", Said::Part(Part::EyeOverlay)),
-            ("Lashes", Said::Part(Part::Lashes)),
-            ("Std_Eyelash", Said::Part(Part::Lashes)),
-            ("eyelashes_lod0_mesh", Said::Part(Part::Lashes)),
-            ("Wolf3D_Head", Said::Part(Part::Skin)),
-            ("ict_skin", Said::Part(Part::Skin)),
-            ("headmesh", Said::Part(Part::Skin)),
-            ("FACE", Said::Part(Part::Skin)),
-            ("EyeLids", Said::Part(Part::Skin)),
-            ("Eyebrows", Said::Part(Part::Hair)),
-            ("Wolf3D_Hair", Said::Part(Part::Hair)),
+            ("LacrimalBlendOcclusion", NamedPart::Part(Part::EyeOverlay)),
+            ("CC_Base_EyeOcclusion", NamedPart::Part(Part::EyeOverlay)),
+            ("CC_Base_TearLine", NamedPart::Part(Part::EyeOverlay)),
+            ("eyeshell_lod0_mesh", NamedPart::Part(Part::EyeOverlay)),
+            ("eyeEdge_lod0_mesh", NamedPart::Part(Part::EyeOverlay)),
+            ("Std_Cornea_L", NamedPart::Part(Part::EyeOverlay)),
+            ("eye_wet", NamedPart::Part(Part::EyeOverlay)),
+            ("Lashes", NamedPart::Part(Part::Lashes)),
+            ("Std_Eyelash", NamedPart::Part(Part::Lashes)),
+            ("eyelashes_lod0_mesh", NamedPart::Part(Part::Lashes)),
+            ("Wolf3D_Head", NamedPart::Part(Part::Skin)),
+            ("ict_skin", NamedPart::Part(Part::Skin)),
+            ("headmesh", NamedPart::Part(Part::Skin)),
+            ("FACE", NamedPart::Part(Part::Skin)),
+            ("EyeLids", NamedPart::Part(Part::Skin)),
+            ("Eyebrows", NamedPart::Part(Part::Hair)),
+            ("Wolf3D_Hair", NamedPart::Part(Part::Hair)),
         ] {
-            assert_eq!(said(name), Some(expected), "{name}");
+            assert_eq!(named_part(name), Some(expected), "{name}");
         }
     }
 
@@ -204,7 +204,7 @@ mod tests {
             "Body",
             "",
         ] {
-            assert_eq!(said(name), None, "{name}");
+            assert_eq!(named_part(name), None, "{name}");
         }
     }
 }

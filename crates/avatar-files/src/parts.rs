@@ -1,7 +1,7 @@
 //! What each mesh is of a face, told from its names; and how eyeballs turn.
 
 use crate::ReadError;
-use crate::part_words::{Said, Side, said};
+use crate::part_words::{NamedPart, Side, named_part};
 use crate::settings::{AvatarSettings, fits};
 use mimique_avatar::{Avatar, Eyeball, Look, Part, arkit_shapes};
 
@@ -66,12 +66,12 @@ pub(crate) fn assign_parts(
 /// the person's left).
 fn part_of_name(name: &str, positions: &[[f32; 3]]) -> Option<Part> {
     let on_the_left = || positions.iter().map(|p| f64::from(p[0])).sum::<f64>() >= 0.0;
-    Some(match said(name)? {
-        Said::Part(part) => part,
-        Said::Eye(Some(Side::Left)) => Part::EyeLeft,
-        Said::Eye(Some(Side::Right)) => Part::EyeRight,
-        Said::Eye(None) if on_the_left() => Part::EyeLeft,
-        Said::Eye(None) => Part::EyeRight,
+    Some(match named_part(name)? {
+        NamedPart::Part(part) => part,
+        NamedPart::Eye(Some(Side::Left)) => Part::EyeLeft,
+        NamedPart::Eye(Some(Side::Right)) => Part::EyeRight,
+        NamedPart::Eye(None) if on_the_left() => Part::EyeLeft,
+        NamedPart::Eye(None) => Part::EyeRight,
     })
 }
 

@@ -66,7 +66,7 @@ impl AvatarSettings {
     /// [`ReadError`] with the JSON pointer, the value and what to write instead.
     pub fn from_json(file: &str, bytes: &[u8]) -> Result<Self, ReadError> {
         let value: Value = serde_json::from_slice(bytes).map_err(|e| {
-            ReadError::broken(file, format!("no JSON: {e}"), "mend it in an editor")
+            ReadError::broken(file, format!("no JSON: {e}"), "correct it in an editor")
         })?;
         let at = Place { file, pointer: String::new() };
         let object = at.object(&value)?;

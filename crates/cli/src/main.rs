@@ -59,7 +59,7 @@ enum Command {
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
-    /// Mend a capture: swaps, spikes, gaps; filter, resample, hold the head still
+    /// Repair a capture: swaps, spikes, gaps; filter, resample, hold the head still
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
     Segment(Box<segment::Args>),

@@ -22,7 +22,7 @@ pub fn add(
         let place =
             resolve_path(path, folder, data.as_deref()).map_err(|error| error.to_string())?;
         let at = |error: std::io::Error| {
-            format!("{}: cannot be read ({error}); mend the path", place.display())
+            format!("{}: cannot be read ({error}); correct the path", place.display())
         };
         let bytes = std::fs::read(&place).map_err(at)?;
         let hash = hex::encode(Sha256::digest(&bytes));
@@ -34,7 +34,7 @@ pub fn add(
         let source = json!({
             "avatar": hash, "operators": "", "take": "", "method": { "method": "recorded" },
             "duration_ms": 0.0, "bytes": bytes.len(), "provenance": hash, "weights_hash": "",
-            "film": media_type(path),
+            "video": media_type(path),
         });
         let source = serde_json::from_value(source).map_err(|error| error.to_string())?;
         clips.insert(format!("{MEDIA_PREFIX}{path}"), source);

@@ -1,4 +1,4 @@
-//! `mimique repair`: a capture in; the mended capture and a sidecar that says what was changed out.
+//! `mimique repair`: a capture in; the repaired capture and a sidecar that says what was changed out.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::output;
 pub struct Args {
     /// Capture: C3D, TRC, CSV...
     capture: PathBuf,
-    /// Where the mended capture goes: .c3d, .trc or .csv; FILE.repair.json beside it says what was
+    /// Where the repaired capture goes: .c3d, .trc or .csv; FILE.repair.json beside it says what was
     /// changed, frame by frame
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -101,7 +101,7 @@ fn print(
     )?;
     writeln!(out, "{}", record.summary())?;
     for swap in &record.swaps {
-        let verb = if swap.mended { "put back" } else { "look swapped, left as they are" };
+        let verb = if swap.repaired { "put back" } else { "look swapped, left as they are" };
         let last = swap.end - 1;
         writeln!(out, "swap: {} {verb}, frames {} to {last}", swap.labels.join(", "), swap.first)?;
     }
@@ -146,8 +146,8 @@ fn plan(args: &Args) -> anyhow::Result<RepairPlan> {
         other => bail!("--filter: {other:?}; use butterworth or raised-cosine"),
     });
     Ok(RepairPlan {
-        mend_swaps: !args.keep_swaps,
-        mend_spikes: !args.keep_spikes,
+        repair_swaps: !args.keep_swaps,
+        repair_spikes: !args.keep_spikes,
         gaps: GapFill { spline_s: args.max_gap, rigid_s: args.max_rigid_gap },
         low_pass: low_pass.transpose()?,
         resample_hz: args.resample,

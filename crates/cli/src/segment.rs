@@ -27,7 +27,7 @@ pub struct Args {
     /// Where the segments go: .csv, or .eaf (a document that is there keeps its other tiers)
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Take the segments from this CSV or .eaf, as mended by hand, instead of suggesting them
+    /// Take the segments from this CSV or .eaf, as corrected by hand, instead of suggesting them
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
     /// Seconds of neutral before each expression, as far as there are
@@ -45,7 +45,7 @@ pub struct Args {
     /// Tier of the .eaf
     #[arg(long, value_name = "NAME", default_value = "expressions")]
     tier: String,
-    /// Film that a new .eaf belongs to
+    /// Video that a new .eaf belongs to
     #[arg(long, value_name = "FILE")]
     media: Option<String>,
     /// Print the segments of a study file instead, as cuts of its capture of this identifier

@@ -1,4 +1,4 @@
-//! Captures as a researcher mends, cuts and solves them: repair, segment, the bank's diagnosis, and
+//! Captures as a researcher repairs, cuts and solves them: repair, segment, the bank's diagnosis, and
 //! the two methods that need more than a bank.
 
 mod common;
@@ -55,7 +55,7 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| text(&folder.path().join(name));
     damaged(&data, &folder.path().join("raw.csv"));
-    let said = ok(&["repair", &at("raw.csv"), "--out", &at("mended.csv"), "--json"]);
+    let said = ok(&["repair", &at("raw.csv"), "--out", &at("repaired.csv"), "--json"]);
     let said: Value = serde_json::from_str(&said).expect("JSON");
     let list = said["record"].to_string();
     for label in ["M10", "M20", "M05", "M30"] {
@@ -63,7 +63,7 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
     }
     // The gap is filled, the others are where they were before the damage, to a tenth of a millimetre.
     let (before, after) =
-        (rows(&data.join("take_n01.csv")), rows(&folder.path().join("mended.csv")));
+        (rows(&data.join("take_n01.csv")), rows(&folder.path().join("repaired.csv")));
     let place = |rows: &[Vec<String>], frame: usize, name: &str| -> f64 {
         let column = rows[0].iter().position(|cell| cell == name).expect("a column");
         rows[frame + 1][column].parse().expect("a number")
@@ -83,11 +83,11 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
         let all: Vec<&str> = args.into_iter().chain(more).chain(["--json"]).collect();
         serde_json::from_str::<Value>(&ok(&all)).expect("JSON")
     };
-    let with = solve(&at("mended.csv"));
-    let sidecar = folder.path().join("mended.csv.repair.json");
+    let with = solve(&at("repaired.csv"));
+    let sidecar = folder.path().join("repaired.csv.repair.json");
     let record = std::fs::read(&sidecar).expect("the sidecar");
     std::fs::remove_file(&sidecar).expect("removed");
-    let without = solve(&at("mended.csv"));
+    let without = solve(&at("repaired.csv"));
     let field = |said: &Value, key: &str| {
         let found = said.pointer(&format!("/{key}")).or(said.pointer(&format!("/report/{key}")));
         found.and_then(Value::as_str).expect("a hash").to_owned()
@@ -97,16 +97,16 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
 
     // A sidecar of another capture is refused.
     std::fs::write(&sidecar, record).expect("written");
-    let mut changed = std::fs::read(folder.path().join("mended.csv")).expect("the capture");
+    let mut changed = std::fs::read(folder.path().join("repaired.csv")).expect("the capture");
     changed.truncate(changed.len() / 2);
     let cut = changed.iter().rposition(|b| *b == b'\n').expect("a line");
-    std::fs::write(folder.path().join("mended.csv"), &changed[..=cut]).expect("written");
+    std::fs::write(folder.path().join("repaired.csv"), &changed[..=cut]).expect("written");
     let error = refused(&[
         "solve",
         "--avatar",
         &text(&data.join("avatar_skin.glb")),
         "--mocap",
-        &at("mended.csv"),
+        &at("repaired.csv"),
         "--markers",
         &text(&data.join("mapping.csv")),
         "--method",
@@ -114,7 +114,7 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
         "--out",
         &at("none.csv"),
     ]);
-    assert!(error.contains("mended.csv"), "{error}");
+    assert!(error.contains("repaired.csv"), "{error}");
     assert!(!folder.path().join("none.csv").exists());
 }
 

@@ -26,7 +26,7 @@
 //!     vertex_count: 4,
 //!     marker_deltas,
 //!     shell_gram: vec![1e-4],
-//!     linked: None,
+//!     associated: None,
 //!     regression: None,
 //! })?;
 //!

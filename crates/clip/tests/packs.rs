@@ -7,22 +7,22 @@ use mimique_clip::{
 };
 use mimique_geometry::{DVec3, Point, coordinates};
 use mimique_solver::{
-    LinkedRows, Linking, MarkerScales, Method, MethodSpec, OperatorOptions, OperatorParts,
-    Operators,
+    AssociatedRows, MarkerScales, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
+    VertexAssociation,
 };
 use proptest::prelude::*;
 
 /// Operators of 3 shapes and 5 markers, the numbers all different.
-fn operators(linked: bool) -> Operators {
+fn operators(associated: bool) -> Operators {
     let (n, p) = (3, 5);
     let numbers = |count: usize, phase: f64| -> Vec<f64> {
         (0..count).map(|i| 0.01 * (i as f64 * 1.7 + phase).sin()).collect()
     };
     let mut shell_gram = vec![0.0; n * n];
     (0..n).for_each(|i| shell_gram[i * n + i] = 0.1 + i as f64);
-    let linking = linked.then_some(Linking::Zones { sigma: 0.012 });
+    let association = associated.then_some(VertexAssociation::Zones { sigma: 0.012 });
     Operators::from_parts(OperatorParts {
-        options: OperatorOptions { linking, ..OperatorOptions::default() },
+        options: OperatorOptions { association, ..OperatorOptions::default() },
         shape_names: ["jawOpen", "smile, left", "\u{e9}"].map(str::to_owned).to_vec(),
         marker_labels: (0..p).map(|m| format!("M{m}")).collect(),
         marker_positions: (0..p)
@@ -31,8 +31,8 @@ fn operators(linked: bool) -> Operators {
         vertex_count: 77,
         marker_deltas: numbers(3 * p * n, 0.3),
         shell_gram,
-        linked: linked.then(|| LinkedRows {
-            linking: Linking::Zones { sigma: 0.012 },
+        associated: associated.then(|| AssociatedRows {
+            association: VertexAssociation::Zones { sigma: 0.012 },
             vertex_count: 40,
             grams: numbers(p * n * (n + 1) / 2, 1.0),
             sums: numbers(3 * p * n, 2.0),
@@ -86,8 +86,8 @@ fn take_with_noise(noise_m: f64) -> TakePack {
 
 #[test]
 fn operators_keep_every_bit() {
-    for linked in [false, true] {
-        let operators = operators(linked);
+    for associated in [false, true] {
+        let operators = operators(associated);
         let bytes = encode_operators(&operators);
         assert_eq!(decode_operators(&bytes).unwrap(), operators);
         assert_eq!(encode_operators(&operators), bytes);
@@ -189,9 +189,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn damage_is_refused_or_harmless(at in 0usize..5000, value: u8, cut: bool, linked: bool) {
-        let spec = MethodSpec::new(if linked { Method::Kouadio } else { Method::Lsts });
-        let packs = [("MMOP", encode_operators(&operators(linked))), ("MMTK", encode_take(&take()))];
+    fn damage_is_refused_or_harmless(at in 0usize..5000, value: u8, cut: bool, associated: bool) {
+        let spec = MethodSpec::new(if associated { Method::Kouadio } else { Method::Lsts });
+        let packs = [("MMOP", encode_operators(&operators(associated))), ("MMTK", encode_take(&take()))];
         for (kind, whole) in &packs {
             let operators = *kind == "MMOP";
             let body = match operators {

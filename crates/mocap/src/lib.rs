@@ -42,8 +42,8 @@ pub use read::{
     recognise,
 };
 pub use repair::{
-    ChangedFrame, FilledGap, FilterError, Gap, GapFill, GapRepair, LowPass, MendedSwap,
-    RepairError, RepairPlan, RepairRecord, Repaired, RepairedGap, ResampleError, Spike,
+    ChangedFrame, FilledGap, FilterError, Gap, GapFill, GapRepair, LowPass, RepairError,
+    RepairPlan, RepairRecord, Repaired, RepairedGap, RepairedSwap, ResampleError, Spike,
     Stabilisation, StabiliseError, Swap, fill_gaps, gaps, repair, resample, stabilise,
 };
 pub use write::{capture_file, weights_files};

@@ -1,9 +1,9 @@
-//! Faults planted in a smooth take are found where they are, and mended to what was there before.
+//! Faults planted in a smooth take are found where they are, and repaired to what was there before.
 
 use mimique_geometry::{Point, coordinates};
 use mimique_mocap::{
-    Capture, CaptureFacts, Format, GapFill, GapRepair, LengthUnit, LowPass, MendedSwap, Recording,
-    RepairPlan, repair, stillest,
+    Capture, CaptureFacts, Format, GapFill, GapRepair, LengthUnit, LowPass, Recording, RepairPlan,
+    RepairedSwap, repair, stillest,
 };
 
 const RATE: f64 = 200.0;
@@ -106,11 +106,11 @@ fn planted_swaps_are_put_back() {
     assert_eq!(facts(&faulty).swaps.len(), 7);
     let done = repair(faulty, &RepairPlan::default()).unwrap();
     assert_eq!(largest_error(&done.capture, &clean), 0.0);
-    let stretch = |labels: &[&str], first, end| MendedSwap {
+    let stretch = |labels: &[&str], first, end| RepairedSwap {
         labels: labels.iter().map(|l| format!("face {l}")).collect(),
         first,
         end,
-        mended: true,
+        repaired: true,
     };
     assert_eq!(
         done.record.swaps,

@@ -29,7 +29,7 @@ fn sources(study: &Study) -> BTreeMap<String, ClipSource> {
             provenance: format!("provenance of {}", clip.id),
             weights_hash: "w".into(),
             look: "stimulus".into(),
-            film: None,
+            video: None,
         };
         (clip.id, source)
     };

@@ -81,7 +81,7 @@ fn a_pair_is_played_when_both_are_ready_and_fails_with_either() {
     let View::Trial(trial) = page.view() else { panic!() };
     assert_eq!(trial.phase, Phase::Loading { fraction: 0.5 });
     assert!(!trial.can_play);
-    let message = "its film is damaged".to_owned();
+    let message = "its video is damaged".to_owned();
     page.send(Input::ClipFailed { clip: beside.clone(), message: message.clone() });
     let View::Trial(trial) = page.view() else { panic!() };
     assert!(matches!(&trial.phase, Phase::Failed { reason, .. } if *reason == message));

@@ -45,7 +45,7 @@
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
 //! | K of eq. 2.16, its P x P for the whole surface | [`SurfaceResponse`] | S x S, P x P | 1 |
 //! | X, Y, K(X, X') (eq. 3.2-3.4) | [`Regression`], [`Kernel`] | m x 3P, m x N | |
-//! | w_i, N_i, sigma (Kouadio 4.4-4.7); r, u, v (4.8-4.11) | [`LinkedRows`], [`MarkerSite`] | P x N(N+1)/2 | m^2 |
+//! | w_i, N_i, sigma (Kouadio 4.4-4.7); r, u, v (4.8-4.11) | [`AssociatedRows`], [`MarkerSite`] | P x N(N+1)/2 | m^2 |
 //!
 //! The same input gives the same bits natively and in WebAssembly: every sum runs in an order that
 //! is written down, nothing is fused, `tan` is that of `libm` and `exp` our own.
@@ -96,8 +96,8 @@ pub use gaussian_process::regression::{
     LEAST_TRAINING_FRAMES, MOST_EXACT_FRAMES, Regression, TrainingError, TrainingOptions,
 };
 pub use gaussian_process::sparse::SparseProcess;
+pub use kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 pub use kouadio::bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
-pub use kouadio::linked::{LinkedRows, Linking};
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};
 pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};

@@ -4,8 +4,8 @@ mod common;
 
 use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
-    Fit, Laplacian, LaplacianKind, Linking, Method, MethodSpec, OperatorOptions, OperatorParts,
-    Operators, SkinMesh, SparseDeltas, Unit, apply_shell, mixed_voronoi_areas, shell_gram,
+    Fit, Laplacian, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
+    SkinMesh, SparseDeltas, Unit, VertexAssociation, apply_shell, mixed_voronoi_areas, shell_gram,
 };
 use mimique_test_support::real_data;
 
@@ -235,12 +235,13 @@ fn stored_operators_of_a_real_head() {
     }
     close("AB", &ab, &common::numbers(&stored["ABrows_uniform"]));
     let kouadio = OperatorOptions {
-        linking: Some(Linking::Zones { sigma: 0.012 }),
+        association: Some(VertexAssociation::Zones { sigma: 0.012 }),
         ..OperatorOptions::default()
     };
-    let linked = common::operators(&data, &kouadio).parts().linked.as_ref().unwrap().vertex_count;
+    let associated =
+        common::operators(&data, &kouadio).parts().associated.as_ref().unwrap().vertex_count;
     let expected = &constants["variants"]["kouadio_box_sigma12mm"]["linked_vertices"];
-    assert_eq!(linked as u64, expected.as_u64().unwrap());
+    assert_eq!(associated as u64, expected.as_u64().unwrap());
 }
 
 #[test]
@@ -347,7 +348,7 @@ fn wrong_meshes_and_parts_are_refused_in_words() {
 fn parts_restore_the_same_bits() {
     let Some(data) = real_data("parts_restore_the_same_bits") else { return };
     let options = OperatorOptions {
-        linking: Some(Linking::Zones { sigma: 0.012 }),
+        association: Some(VertexAssociation::Zones { sigma: 0.012 }),
         ..OperatorOptions::default()
     };
     let built = common::operators(&data, &options);

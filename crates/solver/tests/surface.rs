@@ -52,7 +52,7 @@ fn response(mesh: &SkinMesh, markers: &[usize], options: &OperatorOptions) -> Su
 }
 
 fn options(laplacian: LaplacianKind) -> OperatorOptions {
-    OperatorOptions { laplacian, k_s: 0.7, k_b: 1.6, linking: None }
+    OperatorOptions { laplacian, k_s: 0.7, k_b: 1.6, association: None }
 }
 
 fn spec(options: &OperatorOptions, stiffness: f64) -> MethodSpec {

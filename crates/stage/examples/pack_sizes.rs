@@ -27,7 +27,7 @@ const RATE_HZ: f64 = 60.0;
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (study_file, films) =
+    let (study_file, videos) =
         arguments.split_first().ok_or("usage: pack_sizes STUDY.json|ict [CLIP ...]")?;
     let folder = tempfile::tempdir()?;
     let (study, places) = study(study_file, folder.path())?;
@@ -76,12 +76,12 @@ fn main() -> Result<()> {
         all_weights + avatars
     )?;
 
-    if !films.is_empty() {
+    if !videos.is_empty() {
         let mut bytes = 0.0;
         let mut seconds = 0.0;
-        let chosen: Vec<_> = clips.iter().filter(|(id, ..)| films.contains(id)).collect();
-        if chosen.len() < films.len() {
-            return Err(format!("{films:?}: not all of them are clips").into());
+        let chosen: Vec<_> = clips.iter().filter(|(id, ..)| videos.contains(id)).collect();
+        if chosen.len() < videos.len() {
+            return Err(format!("{videos:?}: not all of them are clips").into());
         }
         for (id, avatar, weights) in &chosen {
             let size = video(avatar, weights, &folder.path().join("clip.mp4"))?;

@@ -57,17 +57,17 @@ fn a_tier_is_added_and_everything_else_stays() {
     let marked = EafDocument::parse(&format!("\u{feff}{DOCUMENT}")).unwrap();
     let with_mark = marked.with_tier("clips", &clips).unwrap();
     assert_eq!(with_mark.text(), format!("\u{feff}{}", with.text()));
-    // Written again, mended: the tier is replaced and its old time slots are gone.
-    let mended = [annotation(510, 1700, "joy2")];
-    let again = with.with_tier("clips", &mended).unwrap();
-    assert_eq!(again.tier("clips").unwrap().annotations, mended);
+    // Written again, repaired: the tier is replaced and its old time slots are gone.
+    let repaired = [annotation(510, 1700, "joy2")];
+    let again = with.with_tier("clips", &repaired).unwrap();
+    assert_eq!(again.tier("clips").unwrap().annotations, repaired);
     assert_eq!(&again.tiers()[..3], document.tiers());
     assert_eq!(again.text().matches("<TIME_SLOT ").count(), 7);
     let removed = again.with_tier("clips", &[]).unwrap();
     assert_eq!(removed.text().matches("<TIME_SLOT ").count(), 5);
     // A tier that was closed in one tag.
-    let filled = document.with_tier("empty", &mended).unwrap();
-    assert_eq!(filled.tier("empty").unwrap().annotations, mended);
+    let filled = document.with_tier("empty", &repaired).unwrap();
+    assert_eq!(filled.tier("empty").unwrap().annotations, repaired);
     assert_eq!(filled.tiers().len(), 3);
 }
 

@@ -511,10 +511,10 @@ fn swapped_labels_of_a_capture_are_said_once_at_their_capture() {
 }
 
 #[test]
-fn a_film_is_served_as_it_is() {
+fn a_video_is_served_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
-    let film = b"not looked into: browsers judge films".to_vec();
-    std::fs::write(folder.path().join("joy2.webm"), &film).unwrap();
+    let video = b"not looked into: browsers judge videos".to_vec();
+    std::fs::write(folder.path().join("joy2.webm"), &video).unwrap();
     let mut stimuli = builtin();
     stimuli["avatars"]["person"] = json!({"videos": {"joy2": "joy2.webm"}});
     stimuli["methods"]["real"] = json!({"method": "recorded"});
@@ -526,8 +526,8 @@ fn a_film_is_served_as_it_is() {
     let here = Places { study: folder.path().to_owned(), data: None, packs: packs.clone() };
     let prepared = prepare(&study(stimuli.clone()), &here, &mut |_| {}).unwrap();
     let source = &prepared.clips["joy2.real.person"];
-    assert_eq!(source.film.as_deref(), Some("video/webm"));
-    assert_eq!(std::fs::read(packs.join(&source.avatar)).unwrap(), film);
+    assert_eq!(source.video.as_deref(), Some("video/webm"));
+    assert_eq!(std::fs::read(packs.join(&source.avatar)).unwrap(), video);
     assert_eq!(source.packs().collect::<Vec<_>>(), [source.avatar.as_str()]);
     assert_eq!(prepared.clips["joy2.box.ada"].packs().count(), 3);
 

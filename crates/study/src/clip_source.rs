@@ -8,7 +8,7 @@ use serde_json::Value;
 /// Where a clip's parts are, and how it is solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClipSource {
-    /// Hash of the avatar pack (what the stage draws); of a film, the film itself.
+    /// Hash of the avatar pack (what the stage draws); of a video, the video itself.
     pub avatar: String,
     /// Hash of the operators pack (what the solver needs of avatar and marker map).
     pub operators: String,
@@ -24,15 +24,15 @@ pub struct ClipSource {
     /// Provenance: SHA-256 over avatar, capture, map, method, parameters and solver version.
     pub provenance: String,
     /// SHA-256 of the weights as the server solved them (f64, little-endian, frame-major); empty for
-    /// a film.
+    /// a video.
     pub weights_hash: String,
     /// How the stage draws it: `stimulus` or `reference`.
     #[serde(default = "stimulus")]
     pub look: String,
-    /// Media type of a film (`video/mp4`, `video/webm`); none for a clip that is drawn. A film has
+    /// Media type of a video (`video/mp4`, `video/webm`); none for a clip that is drawn. A video has
     /// neither operators nor take, and its duration is known to the browser alone (0 here).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub film: Option<String>,
+    pub video: Option<String>,
 }
 
 fn stimulus() -> String {

@@ -3,7 +3,7 @@
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { film } from "./film.mjs";
+import { recordVideo } from "./record_video.mjs";
 import { small, stimuli, text, trials } from "./small_study.mjs";
 
 const option = (value) => ({ value, label: text(value) });
@@ -37,11 +37,11 @@ export const study = small("access", {
   ),
 });
 
-/** Writes a study and the files that it shows into a new folder; its path. `page` makes the film. */
+/** Writes a study and the files that it shows into a new folder; its path. `page` makes the video. */
 export async function written(page, study) {
   const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
   writeFileSync(join(folder, "access.json"), JSON.stringify(study));
   writeFileSync(join(folder, "dot.svg"), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="15"/></svg>');
-  writeFileSync(join(folder, "sign.webm"), await film(page));
+  writeFileSync(join(folder, "sign.webm"), await recordVideo(page));
   return join(folder, "access.json");
 }

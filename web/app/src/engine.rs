@@ -374,7 +374,7 @@ impl Engine {
     /// Fetches a picture or a sign-language video, from the bundle's `source`.
     async fn load_media(&self, path: &str, source: &Value) -> Result<(), JsValue> {
         let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default();
-        let address = host::media_address(text("avatar"), text("film")).await?;
+        let address = host::media_address(text("avatar"), text("video")).await?;
         let address = address.as_string().unwrap_or_default();
         self.media.borrow_mut().insert(path.to_owned(), address);
         Ok(())

@@ -1,4 +1,4 @@
-//! The expressions of a take: suggested, mended on the timeline, carried to CSV and ELAN and back.
+//! The expressions of a take: suggested, corrected on the timeline, carried to CSV and ELAN and back.
 
 use mimique_geometry::coordinates;
 use mimique_mocap::stabilise;
@@ -57,7 +57,7 @@ impl Workspace {
         Ok(json!(found.timeline()))
     }
 
-    /// Takes segments as mended on the timeline: `[{label, expression: [first, end]}, ...]`.
+    /// Takes segments as corrected on the timeline: `[{label, expression: [first, end]}, ...]`.
     ///
     /// # Errors
     /// [`Problem`]: not segments of the take.

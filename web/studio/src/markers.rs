@@ -1,4 +1,4 @@
-//! Which marker sits where: suggested, read from a file, mended by a click.
+//! Which marker sits where: suggested, read from a file, corrected by a click.
 
 use mimique_stimulus::{MappedMarker, MarkerMap, MarkerPlace, suggest_map};
 use serde_json::{Value, json};

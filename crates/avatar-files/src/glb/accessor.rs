@@ -1,9 +1,9 @@
 //! Numbers out of a glTF accessor: any component type, normalised integers, strides, sparse parts.
 
-use gltf::json::accessor::sparse::Sparse;
-use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::validation::Checked;
-use gltf::json::{Accessor, Index};
+use gltf_json::accessor::sparse::Sparse;
+use gltf_json::accessor::{ComponentType, Type};
+use gltf_json::validation::Checked;
+use gltf_json::{Accessor, Index};
 
 use super::container::Container;
 use crate::ReadError;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Component, Path};
 
 use base64::Engine as _;
-use gltf::json::Root;
+use gltf_json::Root;
 
 use super::meshopt;
 use crate::ReadError;
@@ -130,7 +130,7 @@ fn split_chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
 
 /// JSON to a document that asks for no extension. References are checked where they are followed.
 fn parse(json: &[u8]) -> Result<Root, ReadError> {
-    let root: Root = gltf::json::deserialize::from_slice(json)
+    let root: Root = serde_json::from_slice(json)
         .map_err(|e| ReadError::damaged("JSON chunk", e.to_string()))?;
     let known = |e: &str| KNOWN_EXTENSIONS.contains(&e) || e.starts_with("KHR_materials_");
     if let Some(extension) = root.extensions_required.iter().find(|e| !known(e)) {

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use gltf::json::Material;
-use gltf::json::material::AlphaMode;
-use gltf::json::mesh::{Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf_json::Material;
+use gltf_json::material::AlphaMode;
+use gltf_json::mesh::{Primitive, Semantic};
+use gltf_json::validation::Checked;
 
 use super::container::{Container, load_uri};
 use crate::ReadError;
@@ -64,7 +64,7 @@ impl Paint {
 }
 
 /// KHR_texture_transform: scaled, turned, shifted.
-fn transformed(uv: [f32; 2], t: &gltf::json::extensions::texture::TextureTransform) -> [f32; 2] {
+fn transformed(uv: [f32; 2], t: &gltf_json::extensions::texture::TextureTransform) -> [f32; 2] {
     let ([x, y], [sx, sy], [ox, oy]) = (uv, t.scale.0, t.offset.0);
     let (sin, cos) = t.rotation.0.sin_cos();
     let (x, y) = (x * sx, y * sy);

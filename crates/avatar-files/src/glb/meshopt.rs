@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use gltf::json::Buffer;
-use gltf::json::buffer::View;
+use gltf_json::Buffer;
+use gltf_json::buffer::View;
 use serde_json::Value;
 
 use super::container::{Container, Unpacked};

@@ -21,7 +21,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 
-use gltf::json::Node;
+use gltf_json::Node;
 
 use self::container::Container;
 use self::material::Pictures;

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
-use gltf::json::{Accessor, Index};
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+use gltf_json::{Accessor, Index};
 use serde::Deserialize;
 
 use super::container::Container;
@@ -203,7 +203,7 @@ fn colours(
 
 /// The names of a mesh's morph targets: `extras.targetNames`, or `shape_0`, `shape_1`...
 fn target_names(
-    mesh: &gltf::json::Mesh,
+    mesh: &gltf_json::Mesh,
     count: usize,
     place: &str,
 ) -> Result<Vec<String>, ReadError> {

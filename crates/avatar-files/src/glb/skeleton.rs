@@ -1,8 +1,8 @@
 //! Where vertices stand: with their node, or with the joints of a skeleton (linear blend skinning
 //! at the pose that the file has its nodes in, which is the bind pose as exporters write it).
 
-use gltf::json::mesh::{Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf_json::mesh::{Primitive, Semantic};
+use gltf_json::validation::Checked;
 
 use super::container::Container;
 use super::transform::Transform;

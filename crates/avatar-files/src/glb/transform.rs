@@ -1,6 +1,6 @@
 //! Where nodes put their meshes: 4 x 4 matrices in f64, column-major like glTF's.
 
-use gltf::json::Node;
+use gltf_json::Node;
 
 /// An affine map, as columns x, y, z and translation.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use mimique_avatar::Avatar;
 use mimique_clip::{TakeContent, decode_operators, decode_take, sha256_hex};
 use mimique_mocap::WeightsTable;
-use mimique_solver::Linking;
+use mimique_solver::VertexAssociation;
 use mimique_stimulus::{AvatarSkin, MarkerMap};
 use mimique_study::Multilingual as _;
 use serde_json::{Value, json};
@@ -177,10 +177,10 @@ pub(super) fn operators_facts(bytes: &[u8]) -> anyhow::Result<Value> {
         "laplacian": parts.options.laplacian,
         "k_s": parts.options.k_s,
         "k_b": parts.options.k_b,
-        "association": parts.options.linking.map(|l| match l {
-            Linking::Points => "points".to_owned(),
-            Linking::Zones { sigma } => format!("zones of {:.1} mm", 1e3 * sigma),
-            Linking::Triangles => "triangles".to_owned(),
+        "association": parts.options.association.map(|l| match l {
+            VertexAssociation::Points => "points".to_owned(),
+            VertexAssociation::Zones { sigma } => format!("zones of {:.1} mm", 1e3 * sigma),
+            VertexAssociation::Triangles => "triangles".to_owned(),
         }),
         "l_mm": 1e3 * operators.data_scale().sqrt(),
         "tau_m2": operators.shell_scale(),

@@ -1,15 +1,15 @@
 //! The operators pack (`MMOP`): what the solver needs of avatar and marker map, and no mesh.
 //!
 //! Body: options (Laplacian, k_s, k_b, association, sigma), shape names, marker labels, S, marker
-//! positions, D, H as f64, then Kouadio's linked rows where they were asked for, then what
+//! positions, D, H as f64, then Kouadio's associated rows where they were asked for, then what
 //! `regression` has learnt where it has. l^2 and tau follow from D and H. A surface's operators are
 //! of the same form. It is deflated; a browser inflates it before its solver reads it.
 
 use mimique_avatar::pack::{PackError, PackReader, PackWriter, open_pack, open_plain, seal_pack};
 use mimique_geometry::{Point, coordinates};
 use mimique_solver::{
-    Kernel, LaplacianKind, LinkedRows, Linking, OperatorOptions, OperatorParts, Operators,
-    Regression,
+    AssociatedRows, Kernel, LaplacianKind, OperatorOptions, OperatorParts, Operators, Regression,
+    VertexAssociation,
 };
 
 const KIND: &str = "MMOP";
@@ -30,13 +30,13 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     w.u8(kind.unwrap_or(0) as u8);
     w.f64(parts.options.k_s);
     w.f64(parts.options.k_b);
-    let (linking, sigma) = match parts.options.linking {
+    let (association, sigma) = match parts.options.association {
         None => (0, 0.0),
-        Some(Linking::Points) => (1, 0.0),
-        Some(Linking::Zones { sigma }) => (2, sigma),
-        Some(Linking::Triangles) => (3, 0.0),
+        Some(VertexAssociation::Points) => (1, 0.0),
+        Some(VertexAssociation::Zones { sigma }) => (2, sigma),
+        Some(VertexAssociation::Triangles) => (3, 0.0),
     };
-    w.u8(linking);
+    w.u8(association);
     w.f64(sigma);
     w.texts(&parts.shape_names);
     w.texts(&parts.marker_labels);
@@ -45,10 +45,10 @@ pub fn encode_operators(operators: &Operators) -> Vec<u8> {
     all(coordinates(&parts.marker_positions));
     all(&parts.marker_deltas);
     all(&parts.shell_gram);
-    w.u8(u8::from(parts.linked.is_some()) | u8::from(parts.regression.is_some()) << 1);
-    if let Some(linked) = &parts.linked {
-        w.u64(linked.vertex_count as u64);
-        linked.grams.iter().chain(&linked.sums).for_each(|&x| w.f64(x));
+    w.u8(u8::from(parts.associated.is_some()) | u8::from(parts.regression.is_some()) << 1);
+    if let Some(associated) = &parts.associated {
+        w.u64(associated.vertex_count as u64);
+        associated.grams.iter().chain(&associated.sums).for_each(|&x| w.f64(x));
     }
     if let Some(model) = &parts.regression {
         w.u64(model.training_frames as u64);
@@ -84,14 +84,14 @@ fn operators_in(body: &[u8]) -> Result<Operators, PackError> {
         return r.refuse(format!("Laplacian {kind}"));
     };
     let (k_s, k_b) = (r.f64()?, r.f64()?);
-    let linking = match (r.u8()?, r.f64()?) {
+    let association = match (r.u8()?, r.f64()?) {
         (0, _) => None,
-        (1, _) => Some(Linking::Points),
-        (2, sigma) => Some(Linking::Zones { sigma }),
-        (3, _) => Some(Linking::Triangles),
+        (1, _) => Some(VertexAssociation::Points),
+        (2, sigma) => Some(VertexAssociation::Zones { sigma }),
+        (3, _) => Some(VertexAssociation::Triangles),
         (other, _) => return r.refuse(format!("association {other}")),
     };
-    let options = OperatorOptions { laplacian, k_s, k_b, linking };
+    let options = OperatorOptions { laplacian, k_s, k_b, association };
     let shape_names = r.texts()?;
     let marker_labels = r.texts()?;
     let (n, p) = (shape_names.len(), marker_labels.len());
@@ -103,15 +103,15 @@ fn operators_in(body: &[u8]) -> Result<Operators, PackError> {
     if more > 3 {
         return r.refuse(format!("flags {more}"));
     }
-    let linked = match (more & 1, linking) {
+    let associated = match (more & 1, association) {
         (0, _) => None,
-        (_, Some(linking)) => Some(LinkedRows {
-            linking,
+        (_, Some(association)) => Some(AssociatedRows {
+            association,
             vertex_count: r.u64()? as usize,
             grams: numbers(&mut r, p, n.saturating_mul(n + 1) / 2)?,
             sums: numbers(&mut r, 3 * p, n)?,
         }),
-        (_, None) => return r.refuse("linked rows without an association".to_owned()),
+        (_, None) => return r.refuse("associated rows without an association".to_owned()),
     };
     let regression = if more & 2 == 0 { None } else { Some(regression(&mut r, 3 * p, n)?) };
     let left = r.left();
@@ -128,7 +128,7 @@ fn operators_in(body: &[u8]) -> Result<Operators, PackError> {
         vertex_count,
         marker_deltas,
         shell_gram,
-        linked,
+        associated,
         regression,
     })
     .or_else(|e| r.refuse(e.to_string()))

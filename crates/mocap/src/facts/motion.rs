@@ -3,7 +3,7 @@
 use crate::Capture;
 use crate::repair::{Swap, swaps_and_others};
 
-/// A marker that is suddenly elsewhere.
+/// A marker that is elsewhere from one frame to the next.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Jump {
     /// Label of the marker.

@@ -1,13 +1,13 @@
-//! A capture mended: swaps, spikes, gaps; then filtered, resampled, its head held still. What was
+//! A capture repaired: swaps, spikes, gaps; then filtered, resampled, its head held still. What was
 //! changed is recorded frame by frame.
 
+pub(crate) mod abrupt_steps;
 pub(crate) mod gaps;
 mod low_pass;
 mod record;
 mod resample;
 mod spikes;
 mod stabilise;
-pub(crate) mod sudden;
 mod swaps;
 
 use crate::Capture;
@@ -20,15 +20,15 @@ pub use resample::{ResampleError, resample};
 pub use spikes::Spike;
 pub use stabilise::{Stabilisation, StabiliseError, stabilise};
 pub(crate) use swaps::swaps_and_others;
-pub use swaps::{MendedSwap, Swap};
+pub use swaps::{RepairedSwap, Swap};
 
 /// What is done to a capture, in this order.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RepairPlan {
     /// Put labels that changed places back.
-    pub mend_swaps: bool,
+    pub repair_swaps: bool,
     /// Take spikes out; what they leave is filled as a gap.
-    pub mend_spikes: bool,
+    pub repair_spikes: bool,
     /// How far gaps are filled.
     pub gaps: GapFill,
     /// Low-pass of every coordinate.
@@ -43,8 +43,8 @@ impl Default for RepairPlan {
     /// Swaps, spikes and gaps; no filter, no resampling, the head left alone.
     fn default() -> Self {
         Self {
-            mend_swaps: true,
-            mend_spikes: true,
+            repair_swaps: true,
+            repair_spikes: true,
             gaps: GapFill::default(),
             low_pass: None,
             resample_hz: None,
@@ -85,8 +85,8 @@ pub fn repair(mut capture: Capture, plan: &RepairPlan) -> Result<Repaired, Repai
         low_pass.check(capture.rate_hz)?;
     }
     let (frames, rate_hz) = (capture.frames(), capture.rate_hz);
-    let swaps = if plan.mend_swaps { swaps::mend_swaps(&mut capture) } else { Vec::new() };
-    let spikes = if plan.mend_spikes { spikes::find_spikes(&capture) } else { Vec::new() };
+    let swaps = if plan.repair_swaps { swaps::repair_swaps(&mut capture) } else { Vec::new() };
+    let spikes = if plan.repair_spikes { spikes::find_spikes(&capture) } else { Vec::new() };
     let markers = capture.labels.len();
     for (marker, spike) in &spikes {
         for frame in spike.first..spike.end {

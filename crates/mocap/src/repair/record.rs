@@ -1,6 +1,6 @@
 //! What a repair changed, as a whole and frame by frame.
 
-use super::{MendedSwap, RepairPlan, Spike};
+use super::{RepairPlan, RepairedSwap, Spike};
 use crate::{GapRepair, Stabilisation};
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ pub struct RepairRecord {
     /// Frames per second that came out.
     pub rate_hz_out: f64,
     /// Swaps.
-    pub swaps: Vec<MendedSwap>,
+    pub swaps: Vec<RepairedSwap>,
     /// Spikes.
     pub spikes: Vec<Spike>,
     /// Gaps, those that spikes left included.
@@ -70,7 +70,7 @@ impl RepairRecord {
         let mut text = format!(
             "{} swapped stretches, {} spikes, {} gaps ({} by spline, {} by neighbours, {} left \
              missing), {} of {} frames changed",
-            self.swaps.iter().filter(|s| s.mended).count(),
+            self.swaps.iter().filter(|s| s.repaired).count(),
             self.spikes.len(),
             self.gaps.len(),
             of(GapRepair::Spline),
@@ -105,7 +105,7 @@ impl RepairRecord {
 
 /// The changes gathered by frame.
 pub(super) fn changed_frames(
-    swaps: &[MendedSwap],
+    swaps: &[RepairedSwap],
     spikes: &[Spike],
     gaps: &[RepairedGap],
 ) -> Vec<ChangedFrame> {
@@ -114,7 +114,7 @@ pub(super) fn changed_frames(
         let changed = frames.entry(frame);
         add(changed.or_insert_with(|| ChangedFrame { frame, ..ChangedFrame::default() }));
     };
-    for swap in swaps.iter().filter(|s| s.mended) {
+    for swap in swaps.iter().filter(|s| s.repaired) {
         for frame in swap.first..swap.end {
             of(frame, &|c| c.swapped.extend(swap.labels.iter().cloned()));
         }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::sudden::{MEMORY_S, SUDDEN_M, distance, step_around, usual_step};
+use super::abrupt_steps::{ABRUPT_STEP_M, MEMORY_S, distance, step_around, usual_step};
 use crate::Capture;
 
 /// A marker that leaves its place for an instant.
@@ -81,7 +81,7 @@ fn excursion(
     steps: &mut Vec<f64>,
 ) -> Option<Excursion> {
     let frames = capture.frames();
-    let least = SUDDEN_M / capture.unit.metres();
+    let least = ABRUPT_STEP_M / capture.unit.metres();
     let at = |frame: usize| capture.frame(frame)[marker];
     let entry = distance(at(from), at(first));
     // Cheap first: nearly every frame ends here.

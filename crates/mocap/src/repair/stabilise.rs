@@ -138,7 +138,7 @@ fn reference(capture: &Capture, markers: &[usize]) -> Option<Vec<Point>> {
 mod tests {
     use super::*;
     use crate::LengthUnit;
-    use crate::repair::sudden::distance;
+    use crate::repair::abrupt_steps::distance;
 
     /// A head of five markers that turns and shifts, and a jaw that drops; millimetres.
     fn planted(noise: f64) -> (Capture, Vec<f64>) {

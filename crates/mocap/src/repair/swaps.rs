@@ -1,10 +1,10 @@
 //! Labels that change places: found, and put back where they belong.
 //!
 //! A marker's track is followed through every change of labels. The label that a track has had in
-//! most of its frames is its own; where it had another one, that stretch is mended, unless its
+//! most of its frames is its own; where it had another one, that stretch is repaired, unless its
 //! markers then lie worse among the others than they do as labelled.
 
-use super::sudden::{Sudden, distance, each_sudden};
+use super::abrupt_steps::{AbruptStep, distance, each_abrupt_step};
 use crate::Capture;
 use mimique_geometry::Point;
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub struct Swap {
 
 /// A stretch of frames in which labels stood on each other's markers.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct MendedSwap {
+pub struct RepairedSwap {
     /// Labels whose positions were exchanged.
     pub labels: Vec<String>,
     /// First frame of the stretch, 0 = the first of the capture.
@@ -28,7 +28,7 @@ pub struct MendedSwap {
     /// First frame after it.
     pub end: usize,
     /// Whether the labels were put back; if not, the markers lay better as they are labelled.
-    pub mended: bool,
+    pub repaired: bool,
 }
 
 /// One change: the marker under label `cycle[i]` goes on under label `cycle[i + 1]`.
@@ -40,19 +40,19 @@ pub(crate) struct Change {
 }
 
 /// Moves that are swaps, and those that are none, in order of time.
-pub(crate) fn swaps_and_others(capture: &Capture) -> (Vec<Change>, Vec<(usize, Sudden)>) {
+pub(crate) fn swaps_and_others(capture: &Capture) -> (Vec<Change>, Vec<(usize, AbruptStep)>) {
     let (mut swaps, mut others) = (Vec::new(), Vec::new());
-    each_sudden(capture, |frame, sudden| {
-        let cycles = cycles(sudden);
+    each_abrupt_step(capture, |frame, abrupt| {
+        let cycles = cycles(abrupt);
         let swapped = |marker: usize| cycles.iter().any(|c| c.contains(&marker));
-        others.extend(sudden.iter().filter(|s| !swapped(s.marker)).map(|s| (frame, *s)));
+        others.extend(abrupt.iter().filter(|s| !swapped(s.marker)).map(|s| (frame, *s)));
         swaps.extend(cycles.into_iter().map(|cycle| Change { frame, cycle }));
     });
     (swaps, others)
 }
 
-/// Mend every swap in place. Returns the stretches that were found.
-pub(crate) fn mend_swaps(capture: &mut Capture) -> Vec<MendedSwap> {
+/// Repair every swap in place. Returns the stretches that were found.
+pub(crate) fn repair_swaps(capture: &mut Capture) -> Vec<RepairedSwap> {
     let (changes, _) = swaps_and_others(capture);
     if changes.is_empty() {
         return Vec::new();
@@ -71,8 +71,8 @@ pub(crate) fn mend_swaps(capture: &mut Capture) -> Vec<MendedSwap> {
             .filter(|(own, label)| own != label)
             .collect();
         for group in groups(&moved) {
-            let mended = places.fit_better_moved(capture, piece.frames.clone(), &group);
-            if mended {
+            let repaired = places.fit_better_moved(capture, piece.frames.clone(), &group);
+            if repaired {
                 for frame in piece.frames.clone() {
                     let row = &mut capture.positions[frame * markers..(frame + 1) * markers];
                     let old: Vec<Point> = group.iter().map(|(_, label)| row[*label]).collect();
@@ -83,26 +83,26 @@ pub(crate) fn mend_swaps(capture: &mut Capture) -> Vec<MendedSwap> {
             }
             let labels = group.iter().map(|(own, _)| capture.labels[*own].clone()).collect();
             let Range { start, end } = piece.frames;
-            found.push(MendedSwap { labels, first: start, end, mended });
+            found.push(RepairedSwap { labels, first: start, end, repaired });
         }
     }
     joined(found)
 }
 
 /// Closed chains of markers that each take the place of the next.
-fn cycles(sudden: &[Sudden]) -> Vec<Vec<usize>> {
-    let next: Vec<Option<usize>> = sudden
+fn cycles(abrupt: &[AbruptStep]) -> Vec<Vec<usize>> {
+    let next: Vec<Option<usize>> = abrupt
         .iter()
         .map(|a| {
-            let nearest = (0..sudden.len()).min_by(|&i, &j| {
-                distance(a.from, sudden[i].to).total_cmp(&distance(a.from, sudden[j].to))
+            let nearest = (0..abrupt.len()).min_by(|&i, &j| {
+                distance(a.from, abrupt[i].to).total_cmp(&distance(a.from, abrupt[j].to))
             })?;
-            (sudden[nearest].marker != a.marker).then_some(nearest)
+            (abrupt[nearest].marker != a.marker).then_some(nearest)
         })
         .collect();
-    let mut taken = vec![false; sudden.len()];
+    let mut taken = vec![false; abrupt.len()];
     let mut found = Vec::new();
-    for start in 0..sudden.len() {
+    for start in 0..abrupt.len() {
         let mut chain = vec![start];
         let mut at = start;
         while let Some(to) = next[at].filter(|to| !taken[*to] && !chain[1..].contains(to)) {
@@ -116,12 +116,12 @@ fn cycles(sudden: &[Sudden]) -> Vec<Vec<usize>> {
             continue;
         }
         // Together they land on each other's places, much nearer than on their own.
-        let steps: f64 = chain.iter().map(|&i| sudden[i].step).sum();
+        let steps: f64 = chain.iter().map(|&i| abrupt[i].step).sum();
         let crossed: f64 =
-            chain.iter().filter_map(|&i| Some(distance(sudden[i].from, sudden[next[i]?].to))).sum();
+            chain.iter().filter_map(|&i| Some(distance(abrupt[i].from, abrupt[next[i]?].to))).sum();
         if crossed < 0.25 * steps {
             chain.iter().for_each(|&i| taken[i] = true);
-            found.push(chain.iter().map(|&i| sudden[i].marker).collect());
+            found.push(chain.iter().map(|&i| abrupt[i].marker).collect());
         }
     }
     found
@@ -201,13 +201,12 @@ fn groups(moved: &[(usize, usize)]) -> Vec<Vec<(usize, usize)>> {
 }
 
 /// Stretches that follow each other with the same labels become one.
-fn joined(found: Vec<MendedSwap>) -> Vec<MendedSwap> {
-    let mut all: Vec<MendedSwap> = Vec::new();
+fn joined(found: Vec<RepairedSwap>) -> Vec<RepairedSwap> {
+    let mut all: Vec<RepairedSwap> = Vec::new();
     for swap in found {
-        let before = all
-            .iter_mut()
-            .rev()
-            .find(|b| b.end == swap.first && b.labels == swap.labels && b.mended == swap.mended);
+        let before = all.iter_mut().rev().find(|b| {
+            b.end == swap.first && b.labels == swap.labels && b.repaired == swap.repaired
+        });
         match before {
             Some(before) => before.end = swap.end,
             None => all.push(swap),

@@ -209,7 +209,7 @@ refusals! {
         en "the name typed is not the participant’s"; "type {participant} to delete",
         fr "le nom saisi n’est pas celui de la personne, rien n’est supprimé"; "saisissez {participant} pour supprimer";
     NoReport { problem: String } = CONFLICT "no-report",
-        en "there is no report: {problem}"; "mend what is named, or wait for more answers",
+        en "there is no report: {problem}"; "correct what is named, or wait for more answers",
         fr "il n’y a pas de rapport : {problem}"; "corrigez ce qui est nommé, ou attendez d’autres réponses";
 
     // Of uploads.

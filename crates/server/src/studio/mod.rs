@@ -22,7 +22,7 @@ use crate::http::headers::security_headers;
 use crate::serve::ServeError;
 
 #[derive(Clone)]
-struct Desk {
+struct StudioState {
     assets: Arc<Assets>,
     files: Arc<StudioFiles>,
 }
@@ -36,7 +36,7 @@ pub fn studio_router(assets: Assets, files: StudioFiles) -> Router {
         .route("/assets/{hash}/{*name}", get(asset))
         .fallback(|| async { Error::NotFound })
         .layer(middleware::from_fn(security_headers))
-        .with_state(Desk { assets: Arc::new(assets), files: Arc::new(files) })
+        .with_state(StudioState { assets: Arc::new(assets), files: Arc::new(files) })
 }
 
 /// Serves the studio until `stop` resolves.
@@ -51,20 +51,23 @@ pub async fn serve_studio(
     Ok(axum::serve(listener, router).with_graceful_shutdown(stop).await?)
 }
 
-async fn show(State(desk): State<Desk>) -> Result<Response, Error> {
-    studio_page(&desk.assets, &desk.files)
+async fn show(State(studio): State<StudioState>) -> Result<Response, Error> {
+    studio_page(&studio.assets, &studio.files)
 }
 
-async fn file(State(desk): State<Desk>, Path(role): Path<String>) -> Result<Response, Error> {
-    let found = desk.files.iter().find(|(known, _)| known.word() == role);
+async fn file(
+    State(studio): State<StudioState>,
+    Path(role): Path<String>,
+) -> Result<Response, Error> {
+    let found = studio.files.iter().find(|(known, _)| known.word() == role);
     let (_, file) = found.ok_or(Error::NotFound)?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], file.bytes.clone()).into_response())
 }
 
 async fn asset(
-    State(desk): State<Desk>,
+    State(studio): State<StudioState>,
     Path((hash, name)): Path<(String, String)>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    desk.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers)
+    studio.assets.get(&hash, &name).ok_or(Error::NotFound)?.respond(&headers)
 }

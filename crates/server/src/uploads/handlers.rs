@@ -70,7 +70,7 @@ fn answer(app: &App, who: &Researcher, taken: Result<Taken, Error>) -> Result<Re
     match taken {
         Ok(Taken::Refused(issues)) => {
             let problem = frame.say(
-                "The study has errors: mend them and upload it again.",
+                "The study has errors: correct them and upload it again.",
                 "L’étude contient des erreurs : corrigez-les et déposez-la à nouveau.",
             );
             Ok(refused(problem, &issues))

@@ -44,7 +44,7 @@ pub async fn browsers_are_told_what_they_may_do(server: &TestServer) {
     assert!(server.get("/s/faces/").await.text().contains("packs=/packs"));
 }
 
-pub async fn a_part_of_a_film_is_sent(server: &TestServer) {
+pub async fn a_part_of_a_video_is_sent(server: &TestServer) {
     let whole = study::pack();
     let path = format!("/packs/{}", study::sha256(&whole));
     let all = server.get(&path).await;
@@ -63,7 +63,7 @@ pub async fn a_part_of_a_film_is_sent(server: &TestServer) {
     assert_eq!(part("bytes=-7").await.text(), whole[whole.len() - 7..]);
     let beyond = part("bytes=999999-").await;
     beyond.refused(StatusCode::RANGE_NOT_SATISFIABLE, "no-such-range");
-    // Several parts at once are more than a film needs: the whole is the answer.
+    // Several parts at once are more than a video needs: the whole is the answer.
     assert_eq!(part("bytes=0-1,4-5").await.status, StatusCode::OK);
 }
 

@@ -81,7 +81,7 @@ topics! {
     backups::a_backup_fills_only_what_is_empty,
     backups::deletions_reach_the_backups,
     defences::browsers_are_told_what_they_may_do,
-    defences::a_part_of_a_film_is_sent,
+    defences::a_part_of_a_video_is_sent,
     defences::one_address_cannot_ask_without_end,
     defences::metrics_are_the_operators,
     defences::logs_hold_no_answers,

@@ -84,7 +84,7 @@ impl Transition<'_> {
         true
     }
 
-    /// The participant cannot mend what is missing.
+    /// The participant cannot put right what is missing.
     pub(super) fn give_up(&mut self) -> bool {
         let unmet = device_problems(self.plan, &self.state).unwrap_or_default();
         if !self.is_at_device() || unmet.is_empty() {

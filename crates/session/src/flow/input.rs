@@ -70,7 +70,7 @@ pub enum Input {
     Measured(Display),
     /// The button of the device gate that measures again.
     MeasureAgain,
-    /// The button of the device gate for those who cannot mend what is missing.
+    /// The button of the device gate for those who cannot put right what is missing.
     GiveUp,
     /// The button of the device gate that goes on without a full screen.
     WithoutFullscreen,

@@ -21,7 +21,7 @@ pub struct DeviceView {
     pub without: Option<String>,
     /// The button that measures again, where something is missing.
     pub again: Option<String>,
-    /// The button for those who cannot mend what is missing.
+    /// The button for those who cannot put right what is missing.
     pub give_up: Option<String>,
     /// How far the session is.
     pub progress: ProgressView,
@@ -63,7 +63,7 @@ pub struct CardView {
     pub set: bool,
     /// The button for those who have no card, where that is allowed; whether it was pressed.
     pub no_card: Option<(String, bool)>,
-    /// What to mend; only after the button was pressed.
+    /// What to correct; only after the button was pressed.
     pub problem: Option<String>,
 }
 
@@ -76,7 +76,7 @@ pub struct DistanceView {
     pub unit: String,
     /// What was written.
     pub value: Option<f64>,
-    /// What to mend; only after the button was pressed.
+    /// What to correct; only after the button was pressed.
     pub problem: Option<String>,
 }
 

@@ -24,6 +24,6 @@ pub struct QuestionView {
     pub kind: QuestionKindView,
     /// The answer so far; nothing is pre-selected.
     pub value: Option<Value>,
-    /// What to mend; only after the button was pressed.
+    /// What to correct; only after the button was pressed.
     pub problem: Option<String>,
 }

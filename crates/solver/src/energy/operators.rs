@@ -4,7 +4,7 @@ use mimique_geometry::{Point, coordinates};
 
 use crate::energy::thin_shell::shell_gram;
 use crate::gaussian_process::regression::{Regression, TrainingError};
-use crate::kouadio::linked::{LinkedRows, Linking};
+use crate::kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 use crate::linear_algebra::dense::packed_len;
 use crate::mesh::laplacian::Laplacian;
 use crate::mesh::marker_site::MarkerSite;
@@ -23,7 +23,7 @@ pub struct OperatorOptions {
     /// Resistance to bending.
     pub k_b: f64,
     /// Kouadio's association of the face's points with the markers; none leaves his rows out.
-    pub linking: Option<Linking>,
+    pub association: Option<VertexAssociation>,
 }
 
 /// D, H and the names, as plain data: what is stored and sent.
@@ -44,8 +44,8 @@ pub struct OperatorParts {
     pub marker_deltas: Vec<f64>,
     /// H: N x N row-major, m^2.
     pub shell_gram: Vec<f64>,
-    /// Kouadio's linked rows, when asked for.
-    pub linked: Option<LinkedRows>,
+    /// Kouadio's associated rows, when asked for.
+    pub associated: Option<AssociatedRows>,
     /// What `regression` has learnt, when it has.
     pub regression: Option<Regression>,
 }
@@ -112,19 +112,19 @@ impl OperatorOptions {
             laplacian: spec.laplacian(),
             k_s: spec.k_s(),
             k_b: spec.k_b(),
-            linking: spec.method.uses(Group::Association).then(|| spec.linking()),
+            association: spec.method.uses(Group::Association).then(|| spec.vertex_association()),
         }
     }
 }
 
 impl Default for OperatorOptions {
     fn default() -> OperatorOptions {
-        OperatorOptions { laplacian: LaplacianKind::Uniform, k_s: 1.0, k_b: 1.0, linking: None }
+        OperatorOptions { laplacian: LaplacianKind::Uniform, k_s: 1.0, k_b: 1.0, association: None }
     }
 }
 
 impl Operators {
-    /// Compute D, H and the linked rows of a welded mesh ([`SkinMesh::weld`]) with markers at
+    /// Compute D, H and the associated rows of a welded mesh ([`SkinMesh::weld`]) with markers at
     /// vertices: label and vertex of the welded mesh. O(S) time and memory.
     ///
     /// # Errors
@@ -170,7 +170,9 @@ impl Operators {
             vertex_count: count,
             marker_deltas: marker_deltas(mesh, sites),
             shell_gram: shell_gram(mesh, &laplacian, options.k_s, options.k_b, &vertices),
-            linked: options.linking.map(|linking| LinkedRows::build(mesh, sites, linking)),
+            associated: options
+                .association
+                .map(|association| AssociatedRows::build(mesh, sites, association)),
             regression: None,
         })
     }
@@ -186,10 +188,15 @@ impl Operators {
         expect_count("marker positions", parts.marker_positions.len(), p, again)?;
         expect_count("numbers of D", parts.marker_deltas.len(), 3 * p * n, again)?;
         expect_count("numbers of H", parts.shell_gram.len(), n * n, again)?;
-        if let Some(linked) = &parts.linked {
-            expect_count("linked Gram matrices", linked.grams.len(), p * packed_len(n), again)?;
-            expect_count("linked sums", linked.sums.len(), 3 * p * n, again)?;
-            finite("linked rows", linked.grams.iter().chain(&linked.sums))?;
+        if let Some(associated) = &parts.associated {
+            expect_count(
+                "associated Gram matrices",
+                associated.grams.len(),
+                p * packed_len(n),
+                again,
+            )?;
+            expect_count("associated sums", associated.sums.len(), 3 * p * n, again)?;
+            finite("associated rows", associated.grams.iter().chain(&associated.sums))?;
         }
         if let Some(model) = &parts.regression {
             expect_count("inputs of the regression", model.width(), 3 * p, again)?;

@@ -149,8 +149,8 @@ impl<'a> FrameSolver<'a> {
             }
             Engine::Linked { bounds } => {
                 // The displacements carry the root of the importance, the sums need all of it.
-                if let Some(linked) = &problem.linked {
-                    for (row, (sum, &d)) in linked.sums.chunks_exact(n).zip(d).enumerate() {
+                if let Some(associated) = &problem.associated {
+                    for (row, (sum, &d)) in associated.sums.chunks_exact(n).zip(d).enumerate() {
                         let root = problem.importance[row / 3].sqrt();
                         axpy(root * d, sum, &mut self.right);
                     }

@@ -3,7 +3,7 @@
 
 use crate::energy::operators::{OperatorOptions, Operators};
 use crate::fit::setup::{Engine, Setup};
-use crate::kouadio::linked::{LinkedRows, Linking};
+use crate::kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 use crate::method::definition::Needs;
 use crate::parameters::group::Group;
 use crate::parameters::kind::NamesOf;
@@ -69,7 +69,7 @@ pub(crate) struct Problem {
     /// Importance of each marker.
     pub(crate) importance: Vec<f64>,
     /// Kouadio's rows over the free shapes.
-    pub(crate) linked: Option<LinkedRows>,
+    pub(crate) associated: Option<AssociatedRows>,
     pub(crate) engine: Engine,
     /// Factor of the solved weights.
     pub(crate) gain: f64,
@@ -113,13 +113,13 @@ impl Problem {
             shell_scale: operators.shell_scale(),
         };
         let engine = (definition.engine)(&setup)?;
-        let linked = parts.linked.as_ref().filter(|_| spec.method.uses(Group::Association));
+        let associated = parts.associated.as_ref().filter(|_| spec.method.uses(Group::Association));
         Ok(Problem {
             shape_count: n_all,
             marker_count: operators.marker_count(),
             engine,
             gain: spec.gain(),
-            linked: linked.map(|l| l.restricted(&free, n_all)),
+            associated: associated.map(|l| l.restricted(&free, n_all)),
             free,
             deltas,
             shell,
@@ -132,19 +132,19 @@ fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitEr
     let asked = OperatorOptions::of(spec);
     let shell = !spec.method.uses(Group::ThinShell)
         || (built.laplacian, built.k_s, built.k_b) == (asked.laplacian, asked.k_s, asked.k_b);
-    let linked = asked.linking.is_none() || built.linking == asked.linking;
-    if shell && linked {
+    let associated = asked.association.is_none() || built.association == asked.association;
+    if shell && associated {
         return Ok(());
     }
     let words = |o: &OperatorOptions| {
-        let linking = match o.linking {
+        let association = match o.association {
             None => "none".to_owned(),
-            Some(Linking::Points) => "points".to_owned(),
-            Some(Linking::Zones { sigma }) => format!("zones of {sigma} m"),
-            Some(Linking::Triangles) => "triangles".to_owned(),
+            Some(VertexAssociation::Points) => "points".to_owned(),
+            Some(VertexAssociation::Zones { sigma }) => format!("zones of {sigma} m"),
+            Some(VertexAssociation::Triangles) => "triangles".to_owned(),
         };
         let (laplacian, k_s, k_b) = (o.laplacian.word(), o.k_s, o.k_b);
-        format!("laplacian {laplacian}, kS {k_s}, kB {k_b}, association {linking}")
+        format!("laplacian {laplacian}, kS {k_s}, kB {k_b}, association {association}")
     };
     Err(FitError::OtherOperators { built: words(built), asked: words(&asked) })
 }

@@ -35,7 +35,7 @@ pub(crate) struct Setup<'a> {
 pub(crate) enum Engine {
     /// Minimise data_weight |Dc - d|^2 + c^T M c in a box; `prior` is M, n x n.
     Quadratic { data_weight: f64, prior: Vec<f64>, bounds: Vec<[f64; 2]> },
-    /// The same in a box over linked rows, D^T D and D^T d replaced by theirs.
+    /// The same in a box over associated rows, D^T D and D^T d replaced by theirs.
     Linked { bounds: Vec<[f64; 2]> },
     /// Newton; `fallback_eps` smooths the data norm where it vanishes.
     Smooth { objective: Objective, fallback_eps: f64 },

@@ -58,9 +58,9 @@ impl VisibleMarkers {
 fn linked_system(problem: &Problem, missing: &[bool]) -> Vec<f64> {
     let n = problem.free.len();
     let mut packed = vec![0.0; packed_len(n)];
-    if let Some(linked) = &problem.linked {
+    if let Some(associated) = &problem.associated {
         for ((gram, &gone), &importance) in
-            linked.grams.chunks_exact(packed.len()).zip(missing).zip(&problem.importance)
+            associated.grams.chunks_exact(packed.len()).zip(missing).zip(&problem.importance)
         {
             if !gone {
                 axpy(importance, gram, &mut packed);

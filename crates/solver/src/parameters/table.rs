@@ -6,7 +6,7 @@
 
 use serde_json::Value;
 
-use crate::kouadio::linked::Linking;
+use crate::kouadio::associated_rows::VertexAssociation;
 use crate::method::names::Method;
 use crate::parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
 use crate::parameters::group::Group;
@@ -302,11 +302,11 @@ parameters! {
 
 impl MethodSpec {
     /// The association with its radius, for [`crate::OperatorOptions`].
-    pub fn linking(&self) -> Linking {
+    pub fn vertex_association(&self) -> VertexAssociation {
         match self.association() {
-            Association::Points => Linking::Points,
-            Association::Zones => Linking::Zones { sigma: self.sigma() },
-            Association::Triangles => Linking::Triangles,
+            Association::Points => VertexAssociation::Points,
+            Association::Zones => VertexAssociation::Zones { sigma: self.sigma() },
+            Association::Triangles => VertexAssociation::Triangles,
         }
     }
 

@@ -59,7 +59,7 @@ pub enum SurfaceError {
     /// The matrix of eq. 2.17 is not positive definite.
     #[error(
         "thin shell: its matrix is not positive definite (vertex {0}); take the uniform, \
-         umbrella or cotan-clamped Laplacian, or mend the mesh's degenerate triangles"
+         umbrella or cotan-clamped Laplacian, or repair the mesh's degenerate triangles"
     )]
     NotDefinite(usize),
     /// The factor does not fit into memory.
@@ -168,14 +168,14 @@ impl SurfaceResponse {
             }
         }
         Operators::from_parts(OperatorParts {
-            options: OperatorOptions { linking: None, ..*options },
+            options: OperatorOptions { association: None, ..*options },
             shape_names: surface_shape_names(markers.iter().map(|site| site.label.as_str())),
             marker_labels: markers.iter().map(|site| site.label.clone()).collect(),
             marker_positions: markers.iter().map(|site| mesh.positions[site.vertex()]).collect(),
             vertex_count: mesh.positions.len(),
             marker_deltas,
             shell_gram,
-            linked: None,
+            associated: None,
             regression: None,
         })
     }

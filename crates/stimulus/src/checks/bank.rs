@@ -2,7 +2,7 @@
 //! others, which do nothing, which no marker sees, which markers nothing moves, and whether there
 //! are more unknowns than equations.
 
-use mimique_solver::{LinkedRows, Linking, MarkerSite, bank_columns, dead_rows};
+use mimique_solver::{AssociatedRows, MarkerSite, VertexAssociation, bank_columns, dead_rows};
 use serde::Serialize;
 
 use crate::AvatarSkin;
@@ -204,7 +204,8 @@ impl MarkerDiagnosis {
         let unseen: Vec<usize> =
             columns.zero.iter().copied().filter(|k| !neutral.contains(k)).collect();
         let hardly = (0..n).filter(|k| at_marker[*k] < SEEN_M && !columns.zero.contains(k));
-        let points = |linking| 3 * LinkedRows::build(&skin.mesh, sites, linking).vertex_count;
+        let points =
+            |association| 3 * AssociatedRows::build(&skin.mesh, sites, association).vertex_count;
         MarkerDiagnosis {
             markers: sites.len(),
             rank: columns.rank,
@@ -215,8 +216,8 @@ impl MarkerDiagnosis {
                 .collect(),
             unknowns: n - columns.zero.len(),
             equations: 3 * sites.len() - rows.len(),
-            equations_of_zones: points(Linking::Zones { sigma: ZONE_M }),
-            equations_of_triangles: points(Linking::Triangles),
+            equations_of_zones: points(VertexAssociation::Zones { sigma: ZONE_M }),
+            equations_of_triangles: points(VertexAssociation::Triangles),
             unseen: unseen.iter().map(|&k| skin.shape_names[k].clone()).collect(),
         }
     }

@@ -138,9 +138,9 @@ impl LabelCheck<'_> {
             let Some((_, a, b)) = best else { break };
             at.swap(a, b);
             let frames = self.some_frames(0..self.frames());
-            let Some(mended) = (self.exchanged)(a, b, &frames) else { continue };
+            let Some(repaired) = (self.exchanged)(a, b, &frames) else { continue };
             let before = self.residual(&self.rows(&frames));
-            let after = self.residual(&mended);
+            let after = self.residual(&repaired);
             if after < 0.95 * before {
                 found.push(self.problem(LabelFault::Swapped, [a, b], None, [before, after]));
             }

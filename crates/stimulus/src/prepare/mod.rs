@@ -22,7 +22,7 @@ use mimique_study::{AvatarLook, Clip, Study};
 
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
-use self::source_files::{AvatarFile, Film, Performance, Recording};
+use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
 use crate::RecordedWeights;
 use crate::provenance::Provenance;
@@ -142,8 +142,8 @@ fn prepare_clip(
     cache: &Cache,
     remarks: &mut Remarks,
 ) -> Result<ClipSource, PrepareError> {
-    if let Some(film) = sources.film(clip)? {
-        return prepare_film(study, clip, &film, cache);
+    if let Some(video) = sources.video(clip)? {
+        return prepare_video(study, clip, &video, cache);
     }
     let entry = study.stimuli.methods.get(&clip.method).ok_or_else(|| {
         PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
@@ -176,7 +176,7 @@ fn prepare_clip(
         provenance: provenance.hash(),
         weights_hash: solved.weights_hash,
         look: study.stimuli.avatars[&clip.avatar].look.word().to_owned(),
-        film: None,
+        video: None,
     })
 }
 
@@ -247,26 +247,26 @@ fn method_pointer(clip: &Clip) -> String {
     pointer(&["stimuli", "methods", &clip.method])
 }
 
-/// A film is served as it is.
-fn prepare_film(
+/// A video is served as it is.
+fn prepare_video(
     study: &Study,
     clip: &Clip,
-    film: &Film,
+    video: &Video,
     cache: &Cache,
 ) -> Result<ClipSource, PrepareError> {
-    let pack = cache.store(film.bytes.clone())?;
+    let pack = cache.store(video.bytes.clone())?;
     let method = study.stimuli.methods.get(&clip.method).map(|entry| entry.spec.clone());
     Ok(ClipSource {
         bytes: pack.bytes.len() as u64,
         duration_ms: 0.0,
-        provenance: Provenance::new().json("film", pack.hash.as_str()).hash(),
+        provenance: Provenance::new().json("video", pack.hash.as_str()).hash(),
         avatar: pack.hash,
         operators: String::new(),
         take: String::new(),
         method: method.unwrap_or_else(|| MethodSpec::new(Method::Recorded)),
         weights_hash: String::new(),
         look: AvatarLook::Stimulus.word().to_owned(),
-        film: Some(film.media_type.to_owned()),
+        video: Some(video.media_type.to_owned()),
     })
 }
 

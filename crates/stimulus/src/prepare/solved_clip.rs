@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_avatar::pack::encode_pack;
 use mimique_clip::{decode_operators, encode_operators, encode_take};
-use mimique_solver::{Linking, Method, MethodSpec, OperatorOptions, Operators, SurfaceResponse};
+use mimique_solver::{
+    Method, MethodSpec, OperatorOptions, Operators, SurfaceResponse, VertexAssociation,
+};
 use serde_json::{Value, json};
 
 use super::cache::{Cache, StoredPack};
@@ -139,11 +141,11 @@ fn surface_pack(
 fn operators_key(wanted: &Wanted<'_>, markers: &str) -> Provenance {
     let Wanted { spec, training, avatar, .. } = *wanted;
     let options = OperatorOptions::of(spec);
-    let association = match options.linking {
+    let association = match options.association {
         None => Value::Null,
-        Some(Linking::Points) => json!("points"),
-        Some(Linking::Zones { sigma }) => json!({ "zones": sigma }),
-        Some(Linking::Triangles) => json!("triangles"),
+        Some(VertexAssociation::Points) => json!("points"),
+        Some(VertexAssociation::Zones { sigma }) => json!({ "zones": sigma }),
+        Some(VertexAssociation::Triangles) => json!("triangles"),
     };
     let key = Provenance::default()
         .json("avatar", avatar.key.as_str())

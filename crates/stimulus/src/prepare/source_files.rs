@@ -1,4 +1,4 @@
-//! What a study file's stimuli are read into: avatars, captures, performances, films, recordings.
+//! What a study file's stimuli are read into: avatars, captures, performances, videos, recordings.
 
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -66,8 +66,8 @@ pub(super) struct Performance {
     pub options: TakeOptions,
 }
 
-/// A film of a segment.
-pub(super) struct Film {
+/// A video of a segment.
+pub(super) struct Video {
     pub bytes: Vec<u8>,
     pub media_type: &'static str,
 }

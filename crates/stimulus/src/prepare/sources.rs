@@ -8,12 +8,12 @@ use std::rc::Rc;
 use mimique_clip::sha256_hex;
 use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, read_weights_file};
 use mimique_study::{
-    AvatarSource, CaptureSource, Clip, Segment, Span, Study, film_type, resolve_path,
+    AvatarSource, CaptureSource, Clip, Segment, Span, Study, resolve_path, video_type,
 };
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
-use super::source_files::{AvatarFile, CaptureFile, Film, Performance, Recording};
+use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
 use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
@@ -73,22 +73,22 @@ impl<'a> Sources<'a> {
         Ok(file)
     }
 
-    /// The film that a clip shows; `None` for a clip of a head.
-    pub fn film(&self, clip: &Clip) -> Result<Option<Film>, PrepareError> {
+    /// The video that a clip shows; `None` for a clip of a head.
+    pub fn video(&self, clip: &Clip) -> Result<Option<Video>, PrepareError> {
         let avatar = self.study.stimuli.avatars.get(&clip.avatar);
         let Some(AvatarSource::Videos(videos)) = avatar.and_then(|a| a.source()) else {
             return Ok(None);
         };
         let at = pointer(&["stimuli", "avatars", &clip.avatar, "videos"]);
         let path = videos.get(&clip.segment).ok_or_else(|| {
-            PrepareError::new(&at, format!("no film of segment {:?}; name its file", clip.segment))
+            PrepareError::new(&at, format!("no video of segment {:?}; name its file", clip.segment))
         })?;
         let at = pointer(&["stimuli", "avatars", &clip.avatar, "videos", &clip.segment]);
-        let media_type = film_type(path).ok_or_else(|| {
+        let media_type = video_type(path).ok_or_else(|| {
             PrepareError::new(&at, format!("{path:?} is neither MP4 nor WebM; convert it"))
         })?;
         let (_, bytes) = self.read(path, &at)?;
-        Ok(Some(Film { bytes, media_type }))
+        Ok(Some(Video { bytes, media_type }))
     }
 
     /// The segment of that identifier, with the marker map for an avatar.

@@ -149,7 +149,7 @@ mod tests {
             notes: Vec::new(),
         };
         let folder = tempfile::tempdir().unwrap();
-        let (source, result) = (folder.path().join("raw.csv"), folder.path().join("mended.csv"));
+        let (source, result) = (folder.path().join("raw.csv"), folder.path().join("repaired.csv"));
         std::fs::write(&source, write_csv(&raw).unwrap()).unwrap();
         let done = repair(raw, &RepairPlan::default()).unwrap();
         assert_eq!(done.record.gaps.len(), 1, "the record is not empty");
@@ -173,13 +173,13 @@ mod tests {
     fn what_is_written_beside_a_capture_is_read_again() {
         let (_folder, result, sidecar) = repaired();
         let name = sidecar_path(&result);
-        assert_eq!(name.file_name().unwrap(), "mended.csv.repair.json");
+        assert_eq!(name.file_name().unwrap(), "repaired.csv.repair.json");
         let read = beside(&result).unwrap().unwrap();
         assert_eq!(read, sidecar);
         assert_eq!(read.hash(), sidecar.hash());
         assert_eq!(
             (read.source.file.as_str(), read.result.file.as_str()),
-            ("raw.csv", "mended.csv")
+            ("raw.csv", "repaired.csv")
         );
         assert_ne!(read.source.sha256, read.result.sha256);
     }
@@ -214,12 +214,12 @@ mod tests {
         assert!(matches!(&error, SidecarError::OtherCapture { expected, .. }
             if *expected == sidecar.result.sha256));
         let text = error.to_string();
-        assert!(text.contains("mended.csv.repair.json: of a capture with SHA-256"), "{text}");
+        assert!(text.contains("repaired.csv.repair.json: of a capture with SHA-256"), "{text}");
         assert!(text.ends_with("; repair the capture again, or remove the file"), "{text}");
 
         std::fs::write(sidecar_path(&result), "{\"program\": 3}").unwrap();
         let text = beside(&result).unwrap_err().to_string();
-        assert!(text.contains("mended.csv.repair.json: invalid type"), "{text}");
+        assert!(text.contains("repaired.csv.repair.json: invalid type"), "{text}");
 
         std::fs::write(sidecar_path(&result), sidecar.to_json()).unwrap();
         std::fs::remove_file(&result).unwrap();

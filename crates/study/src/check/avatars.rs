@@ -1,9 +1,9 @@
-//! Avatars: one source each, files that are there, films of every segment they are shown in.
+//! Avatars: one source each, files that are there, videos of every segment they are shown in.
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::{FileLookup, Subject};
-use crate::study_file::{Avatar, AvatarLook, AvatarSource, Clip, film_type};
+use crate::study_file::{Avatar, AvatarLook, AvatarSource, Clip, video_type};
 
 /// Where an avatar comes from.
 pub(super) fn examine(
@@ -30,13 +30,13 @@ pub(super) fn examine(
     }
     for (segment, path) in &avatar.videos {
         let place = below(&below(pointer, "videos"), segment);
-        if film_type(path).is_none() {
-            issues.error(&place, Problem::BadFilm { path: path.clone() });
+        if video_type(path).is_none() {
+            issues.error(&place, Problem::BadVideo { path: path.clone() });
         }
         missing(path, &place, lookup, issues);
     }
     if !avatar.videos.is_empty() && avatar.look == AvatarLook::Reference {
-        issues.error(below(pointer, "look"), Problem::FilmHasNoLook);
+        issues.error(below(pointer, "look"), Problem::VideoHasNoLook);
     }
     if let Some(builtin) = &avatar.builtin
         && builtin.actor.is_some()
@@ -46,8 +46,8 @@ pub(super) fn examine(
     }
 }
 
-/// Films are not solved, and every segment that is shown as a film needs one.
-pub(super) fn films(subject: &Subject<'_>, issues: &mut Issues) {
+/// Videos are not solved, and every segment that is shown as a video needs one.
+pub(super) fn videos(subject: &Subject<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
     let segments: Vec<&str> = stimuli.segments.iter().map(|each| each.id.as_str()).collect();
     for (name, avatar) in &stimuli.avatars {
@@ -58,13 +58,13 @@ pub(super) fn films(subject: &Subject<'_>, issues: &mut Issues) {
         }
         let shown = || subject.clips.iter().filter(|clip| clip.avatar == *name);
         for clip in shown().filter(|clip| !videos.contains_key(&clip.segment)) {
-            issues.error(&pointer, Problem::MissingFilm { segment: clip.segment.clone() });
+            issues.error(&pointer, Problem::MissingVideo { segment: clip.segment.clone() });
         }
         let solved = |clip: &&Clip| {
             stimuli.methods.get(&clip.method).is_some_and(|method| method.word() != "recorded")
         };
         if let Some(clip) = shown().find(solved) {
-            issues.error(&pointer, Problem::MethodOnFilm { method: clip.method.clone() });
+            issues.error(&pointer, Problem::MethodOnVideo { method: clip.method.clone() });
         }
     }
 }

@@ -47,7 +47,7 @@ macro_rules! problems {
 problems! {
 // The text, its keys and its types.
 Syntax { place: String, what: String, remedy: &'static str }: "syntax", "{place}: {what}", "{remedy}";
-Shape { what: String }: "shape", "study file: {what}", "mend what the message names";
+Shape { what: String }: "shape", "study file: {what}", "correct what the message names";
 UnknownKey { key: String, known: Nearest }: "unknown-key", "unknown key \"{key}\"", "{known}";
 MissingKey { key: String }: "missing-key", "\"{key}\" is missing", "add \"{key}\"";
 MissingType { words: Names }: "missing-key", "\"type\" is missing", "add \"type\": {words}";
@@ -71,7 +71,7 @@ NotSecure { address: String }: "bad-address",
     "\"{address}\" is not a secure address", "begin it with https://";
 NoClipWith { factor: String, level: String, known: Nearest }: "unknown-reference",
     "no clip has {factor} \"{level}\"", "{known}";
-NoFile { path: String }: "missing-file", "no file {path}", "put the file there, or mend the path";
+NoFile { path: String }: "missing-file", "no file {path}", "put the file there, or correct the path";
 Variable { path: String, why: WrongVariable, remedy: &'static str }: "missing-file",
     "{path:?}: {why}", "{remedy}";
 
@@ -81,7 +81,7 @@ NoFileInArchive { path: String }: "missing-file",
 OutsideArchive { path: String }: "missing-file",
     "{path:?} is not in the archive", "put the file into the archive and name it from the study file's folder";
 LeadsOut { path: String }: "upload",
-    "{path:?} leads out of the archive", "put the file into the archive and mend the path";
+    "{path:?} leads out of the archive", "put the file into the archive and correct the path";
 NotUtf8 { byte: usize }: "upload", "byte {byte}: not UTF-8", "save the file as UTF-8";
 Unreadable { reason: String }: "upload", "it cannot be read ({reason})", "pack it anew";
 
@@ -194,9 +194,9 @@ QuestionId { id: String }: "bad-id",
 NameTaken { id: String, by: &'static str }: "name-taken",
     "\"{id}\" is the name of {by} already", "call it \"perceived_{id}\", say";
 ChoiceCount { least: usize, most: usize, options: usize }: "bad-range",
-    "{least} to {most} of {options} options cannot be chosen", "mend minimum and maximum";
+    "{least} to {most} of {options} options cannot be chosen", "correct minimum and maximum";
 LabelCount { labels: usize, points: u32 }: "wrong-length",
-    "{labels} labels for {points} points", "write one label a point, or leave labels out";
+    "{labels} labels for {points} points", "write one label per point, or leave labels out";
 Step { step: f64 }: "out-of-range", "a step of {step} leads nowhere",
     "take a step above 0 and no longer than the line";
 NoTextAllowed: "out-of-range", "no text can be written", "take a maxLength above 0";
@@ -217,8 +217,6 @@ NoTruth { clip: String, factor: String }: "no-truth", "clip \"{clip}\" has no fa
     "give its segment that factor, or leave the clip out of the block";
 TruthNoOption { clip: String, truth: String, options: Names }: "no-truth",
     "the truth of clip \"{clip}\" is \"{truth}\", no option", "add that option; there is {options}";
-BadVideo { path: String }: "bad-file",
-    "\"{path}\" is no video that every browser shows", "take an MP4 or WebM file";
 BadImage { path: String }: "bad-file",
     "\"{path}\" is no image that every browser shows", "take a PNG, JPEG, WebP or SVG file";
 
@@ -253,7 +251,7 @@ BoundsCross { least: f64, most: f64 }: "never-holds",
     "no number is at least {least} and at most {most}", "make atLeast the smaller one";
 NeverReached { question: String, end: f64, bound: f64 }: "never-holds",
     "the answers to \"{question}\" end at {end}; {bound} never comes",
-    "mend the bound, or the question's own";
+    "correct the bound, or the question's own";
 NeverSaid { question: String, end: f64, bound: f64 }: "never-holds",
     "the answers to \"{question}\" end at {end}; {bound} never comes",
     "widen the question's minimum and maximum, so that people can say the truth";
@@ -263,13 +261,13 @@ NoAvatarSource: "one-source", "neither builtin, file nor videos",
     "give one: \"builtin\": {{}}, \"file\": \"...\" or \"videos\": {{\"segment\": \"...\"}}";
 AvatarSources { given: String }: "one-source", "several sources: {given}",
     "give one: \"builtin\": {{}}, \"file\": \"...\" or \"videos\": {{\"segment\": \"...\"}}";
-BadFilm { path: String }: "bad-film",
-    "\"{path}\" is no film that every browser plays", "take an MP4 (H.264) or a WebM file";
-FilmHasNoLook: "not-needed", "a film is shown as it is", "remove look";
+BadVideo { path: String }: "bad-file",
+    "\"{path}\" is no video that every browser plays", "take an MP4 (H.264) or a WebM file";
+VideoHasNoLook: "not-needed", "a video is shown as it is", "remove look";
 SeedAndActor: "one-source", "both seed and actor say who it is", "remove one of them";
-MissingFilm { segment: String }: "missing-film", "no film of segment \"{segment}\", which a clip shows",
+MissingVideo { segment: String }: "missing-video", "no video of segment \"{segment}\", which a clip shows",
     "name its file, or leave the clip out in /stimuli/clips";
-MethodOnFilm { method: String }: "bad-film", "method \"{method}\" cannot animate films",
+MethodOnVideo { method: String }: "bad-video", "method \"{method}\" cannot animate videos",
     "show them with a method {{\"method\": \"recorded\"}}: choose in /stimuli/clips";
 PartOfClipId { name: String }: "bad-id",
     "\"{name}\" cannot be part of a clip's identifier", "use letters, digits, _ and -";

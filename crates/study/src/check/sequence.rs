@@ -330,7 +330,7 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
     sequence.components.iter().map(count).fold(0, usize::saturating_add)
 }
 
-/// Whether to mend what is wrong at this place changes what is shown, or the constraints on it.
+/// Whether to correct what is wrong at this place changes what is shown, or the constraints on it.
 fn changes_order(pointer: &str) -> bool {
     let is_in = |part: &str| pointer.starts_with(part);
     // Without a factor that is not there a constraint asks for less, not for more.

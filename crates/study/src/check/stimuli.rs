@@ -19,7 +19,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         identifier(name, &pointer, issues);
         avatars::examine(avatar, &pointer, lookup, issues);
     }
-    avatars::films(subject, issues);
+    avatars::videos(subject, issues);
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
         identifier(name, &pointer, issues);

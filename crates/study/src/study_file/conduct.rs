@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::LocalText;
 use crate::question::Condition;
 
-/// What a device must have. It is looked at right after consent; whoever cannot mend what is missing
+/// What a device must have. It is looked at right after consent; whoever cannot put right what is missing
 /// is screened out with the reason.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{LocalText, Study};
 use crate::question::{Choice, KindOfQuestion as _, Question};
 
-/// What the key of such a file in a study's clips as the page gets them begins with: it is served like a film.
+/// What the key of such a file in a study's clips as the page gets them begins with: it is served like a video.
 pub const MEDIA_PREFIX: &str = "media:";
 
 /// The media type of a picture or a video, by the ending of its name; `None` for what browsers do not

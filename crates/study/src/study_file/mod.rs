@@ -47,7 +47,7 @@ pub use sequence::{
 pub use stimuli::{
     Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource,
     ClipCross, ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
-    film_type,
+    video_type,
 };
 pub use tables::{Layout, TableLayout};
 

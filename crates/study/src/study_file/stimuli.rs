@@ -42,7 +42,7 @@ pub struct Avatar {
     /// A GLB file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// Films of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
+    /// Videos of a real person: segment -> an MP4 or WebM file, shown as it is. Its clips are made
     /// with the method `recorded`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub videos: BTreeMap<String, String>,
@@ -110,7 +110,7 @@ pub enum AvatarSource<'a> {
     Builtin(&'a BuiltinAvatar),
     /// A GLB file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
-    /// Films: segment -> a file, its path as above.
+    /// Videos: segment -> a file, its path as above.
     Videos(&'a BTreeMap<String, String>),
 }
 
@@ -126,8 +126,8 @@ impl Avatar {
     }
 }
 
-/// The media type of a film, by the ending of its name; `None` for what browsers do not all play.
-pub fn film_type(path: &str) -> Option<&'static str> {
+/// The media type of a video, by the ending of its name; `None` for what browsers do not all play.
+pub fn video_type(path: &str) -> Option<&'static str> {
     let (_, ending) = path.rsplit_once('.')?;
     match ending.to_ascii_lowercase().as_str() {
         "mp4" | "m4v" => Some("video/mp4"),

@@ -42,7 +42,7 @@ pub fn primary_language(code: &str) -> &str {
 
 impl Words {
     /// The texts that a study file brings for a language, by name; what it leaves out is in English
-    /// (or French, where it mends those).
+    /// (or French, where it corrects those).
     pub fn translated(language: &str, own: &BTreeMap<String, String>) -> Words {
         let built_in = words(language).built_in;
         Words { language: Cow::Owned(language.to_owned()), own: own.clone(), built_in }

@@ -37,7 +37,7 @@ impl Words {
         self.fill(Place::distance_stated, &[("centimetres", &centimetres)])
     }
 
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     pub fn problem(&self, problem: &AnswerProblem) -> String {
         match problem {
             AnswerProblem::Missing => self.at(Place::answer_missing).to_owned(),

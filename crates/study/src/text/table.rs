@@ -213,7 +213,7 @@ fixed {
     back_to_fullscreen: "Back to full screen", "Revenir en plein écran";
     /// Button: measure again.
     device_again: "Look again", "Examiner à nouveau";
-    /// Button: what is missing cannot be mended.
+    /// Button: what is missing cannot be put right.
     device_give_up: "I cannot change this: end here", "Je ne peux pas changer cela\u{a0}: terminer ici";
     /// Heading of the calibration.
     calibration_heading: "The size of your screen", "La taille de votre écran";
@@ -287,27 +287,27 @@ made {
         "Il faut avoir au moins {years} ans pour participer.";
     /// A break lasts so long.
     wait_seconds: "You can go on in {seconds} s.", "Vous pourrez continuer dans {seconds} s.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_missing: "Please answer this question.", "Veuillez répondre à cette question.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_not_an_option: "Please choose an answer.", "Veuillez choisir une réponse.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_not_a_number: "Please write a number.", "Veuillez écrire un nombre.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_not_whole: "Please write a whole number.", "Veuillez écrire un nombre entier.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_too_low: "The lowest number is {least}.", "Le minimum est {least}.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_too_high: "The highest number is {most}.", "Le maximum est {most}.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_too_long:
         "Please write at most {most} characters.",
         "Veuillez ne pas dépasser {most} caractères.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_too_few: "Please choose at least {least}.", "Veuillez en choisir au moins {least}.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_too_many: "Please choose at most {most}.", "Veuillez en choisir au plus {most}.";
-    /// What to mend in an answer.
+    /// What to correct in an answer.
     answer_incomplete: "Please complete this answer.", "Veuillez compléter cette réponse.";
     /// What the device lacks, or what to do about it.
     lacks_width:

@@ -17,6 +17,6 @@ pub fn clock(clock: &ClockView) -> Element {
         // A timer is announced only when its reader asks for it.
         .with(words("span", "number", &clock.text).key("timer").set("role", "timer"))
         .option(extend)
-        // Mended only when the words change: not heard with every second.
+        // Changed only when the words change: not heard with every second.
         .with(words("span", "visually-hidden", warning.unwrap_or_default()).set("role", "status"))
 }

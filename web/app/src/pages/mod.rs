@@ -109,7 +109,7 @@ fn next(label: &str) -> Element {
     button("primary", "next", label).on("click", sends(|| Input::Next))
 }
 
-/// A form that leads on when it is sent; what has to be mended then gets the focus.
+/// A form that leads on when it is sent; what has to be corrected then gets the focus.
 fn form() -> Element {
     el("form", "card").set("novalidate", "").on("submit", |_| {
         focus::focus_later(&[
@@ -126,7 +126,7 @@ fn submit(label: &str) -> Element {
     el("div", "actions").with(button.set("data-action", "next"))
 }
 
-/// What has to be mended, below a field.
+/// What has to be corrected, below a field.
 fn problem(text: Option<&str>, id: &str) -> Option<Element> {
     text.map(|text| words("p", "problem", text).key("problem").set("id", id))
 }

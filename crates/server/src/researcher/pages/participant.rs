@@ -133,7 +133,7 @@ fn deletion(frame: &Frame, name: &str, address: &str) -> Markup {
                 (frame.say("Backups still hold them until the next ", "Les sauvegardes les contiennent jusqu’au prochain "))
                 code { "mimique backup --folder" }
                 (frame.say(
-                    ", which takes them out of every backup of its folder; a backup restored before that has them deleted again from its list of deletions, if that was written since. Copies kept elsewhere are yours to mend.",
+                    ", which takes them out of every backup of its folder; a backup restored before that has them deleted again from its list of deletions, if that was written since. Copies kept elsewhere you must correct yourself.",
                     ", qui les retire de toutes les sauvegardes de son dossier ; une sauvegarde restaurée avant cela les perd à nouveau d’après sa liste de suppressions, si elle a été écrite depuis. Les copies gardées ailleurs restent à votre charge.",
                 ))
             }

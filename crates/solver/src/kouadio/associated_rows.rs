@@ -3,9 +3,9 @@
 //!
 //! A vertex v is pulled by some markers with weights w_vm that add up to 1:
 //!
-//! - [`Linking::Points`], eq. 4.3: the vertex of a marker follows it, no other does;
-//! - [`Linking::Zones`], eq. 4.4-4.7: every marker within sigma, exp(-r^2 / sigma^2) normalised;
-//! - [`Linking::Triangles`], eq. 4.8-4.11: the corners of the nearest triangle of the mask, by the
+//! - [`VertexAssociation::Points`], eq. 4.3: the vertex of a marker follows it, no other does;
+//! - [`VertexAssociation::Zones`], eq. 4.4-4.7: every marker within sigma, exp(-r^2 / sigma^2) normalised;
+//! - [`VertexAssociation::Triangles`], eq. 4.8-4.11: the corners of the nearest triangle of the mask, by the
 //!   barycentric coordinates of the vertex's projection.
 //!
 //! The bank is fitted to the mean of those pulls: minimise sum over v of |B_v c - sum over m of
@@ -23,7 +23,7 @@ use crate::mesh::skin_mesh::SkinMesh;
 
 /// Which points of the face a marker moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Linking {
+pub enum VertexAssociation {
     /// Its own alone.
     Points,
     /// All within a radius, by a Gaussian of their distance.
@@ -35,12 +35,12 @@ pub enum Linking {
     Triangles,
 }
 
-/// The linked rows of the bank, summed by marker.
+/// The associated rows of the bank, summed by marker.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LinkedRows {
-    /// How they are linked.
-    pub linking: Linking,
-    /// How many vertices (for [`Linking::Points`] markers) are linked to at least one marker.
+pub struct AssociatedRows {
+    /// How they are associated.
+    pub association: VertexAssociation,
+    /// How many vertices (for [`VertexAssociation::Points`] markers) are associated to at least one marker.
     pub vertex_count: usize,
     /// For each marker the upper triangle of sum over v of w_vm B_v^T B_v, row by row:
     /// P x N(N+1)/2, m^2.
@@ -49,32 +49,36 @@ pub struct LinkedRows {
     pub sums: Vec<f64>,
 }
 
-impl LinkedRows {
+impl AssociatedRows {
     /// Link the vertices of a mesh to markers; distances are Euclidean, on the neutral.
-    pub fn build(mesh: &SkinMesh, sites: &[MarkerSite], linking: Linking) -> LinkedRows {
+    pub fn build(
+        mesh: &SkinMesh,
+        sites: &[MarkerSite],
+        association: VertexAssociation,
+    ) -> AssociatedRows {
         let n = mesh.shapes.len();
-        let mut rows = LinkedRows {
-            linking,
+        let mut rows = AssociatedRows {
+            association,
             vertex_count: 0,
             grams: vec![0.0; sites.len() * packed_len(n)],
             sums: vec![0.0; 3 * sites.len() * n],
         };
         let markers: Vec<Point> = sites.iter().map(|s| s.position(mesh)).collect();
         let deltas = deltas_by_vertex(mesh);
-        match linking {
-            Linking::Points => {
+        match association {
+            VertexAssociation::Points => {
                 for (m, site) in sites.iter().enumerate() {
                     let moves: Vec<(usize, Displacement)> =
                         (0..n).map(|k| (k, site.delta(mesh, k))).collect();
                     rows.add(&moves, &[(m, 1.0)], n);
                 }
             }
-            Linking::Zones { sigma } => {
+            VertexAssociation::Zones { sigma } => {
                 for (p, moves) in mesh.positions.iter().zip(&deltas) {
                     rows.add(moves, &zones(*p, &markers, sigma), n);
                 }
             }
-            Linking::Triangles => {
+            VertexAssociation::Triangles => {
                 let triangles = triangulate_markers(&markers);
                 for (p, moves) in mesh.positions.iter().zip(&deltas) {
                     rows.add(moves, &corners(*p, &markers, &triangles), n);
@@ -107,7 +111,7 @@ impl LinkedRows {
     }
 
     /// The same over some of the n shapes.
-    pub(crate) fn restricted(&self, shapes: &[usize], n: usize) -> LinkedRows {
+    pub(crate) fn restricted(&self, shapes: &[usize], n: usize) -> AssociatedRows {
         let mut grams = Vec::new();
         for gram in self.grams.chunks_exact(packed_len(n)) {
             for (at, &i) in shapes.iter().enumerate() {
@@ -116,7 +120,7 @@ impl LinkedRows {
         }
         let sums =
             (self.sums.chunks_exact(n)).flat_map(|row| shapes.iter().map(|&k| row[k])).collect();
-        LinkedRows { sums, grams, ..*self }
+        AssociatedRows { sums, grams, ..*self }
     }
 }
 

@@ -1,7 +1,7 @@
-// A film for tests, made by the browser itself.
+// A video for tests, made by the browser itself.
 
-/** A film of two seconds, a frame every 30 ms: a disc that crosses the picture. */
-export async function film(page) {
+/** A video of two seconds, a frame every 30 ms: a disc that crosses the picture. */
+export async function recordVideo(page) {
   const base64 = await page.evaluate(async () => {
     const canvas = Object.assign(document.createElement("canvas"), { width: 240, height: 240 });
     const brush = canvas.getContext("2d");

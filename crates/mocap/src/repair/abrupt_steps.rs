@@ -6,16 +6,16 @@ use crate::Capture;
 
 /// Step that may be half of a swap or the edge of a spike, metres: markers stand hardly closer than
 /// 3 mm, and sensors are ten times more exact.
-pub(crate) const SUDDEN_M: f64 = 0.003;
+pub(crate) const ABRUPT_STEP_M: f64 = 0.003;
 /// How many times larger than the marker's steps around it, and than the other markers' step in
-/// the same frame, a sudden step is.
+/// the same frame, an abrupt step is.
 const TIMES: f64 = 5.0;
 /// Seconds over which a marker that was missing is still compared with where it was.
 pub(crate) const MEMORY_S: f64 = 0.25;
 
-/// A marker that is suddenly elsewhere.
+/// A marker that is elsewhere from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sudden {
+pub(crate) struct AbruptStep {
     /// Index of the marker.
     pub(crate) marker: usize,
     /// Where it was last.
@@ -26,35 +26,35 @@ pub(crate) struct Sudden {
     pub(crate) step: f64,
 }
 
-/// Calls `found` with every frame that has sudden moves, and with them, in order of time.
-pub(crate) fn each_sudden(capture: &Capture, mut found: impl FnMut(usize, &[Sudden])) {
+/// Calls `found` with every frame that has abrupt steps, and with them, in order of time.
+pub(crate) fn each_abrupt_step(capture: &Capture, mut found: impl FnMut(usize, &[AbruptStep])) {
     let (frames, markers) = (capture.frames(), capture.labels.len());
-    let least = SUDDEN_M / capture.unit.metres();
+    let least = ABRUPT_STEP_M / capture.unit.metres();
     let memory = ((MEMORY_S * capture.rate_hz) as usize).max(1);
     // The frame in which each marker was seen last, before the present one.
     let mut last: Vec<Option<usize>> = vec![None; markers];
-    let mut sudden = Vec::new();
+    let mut abrupt = Vec::new();
     let mut steps = Vec::with_capacity(markers);
     for frame in 0..frames {
         let now = capture.frame(frame);
-        sudden.clear();
+        abrupt.clear();
         for (marker, &to) in now.iter().enumerate() {
             let Some(before) = last[marker].filter(|l| frame - l <= memory) else { continue };
             let from = capture.frame(before)[marker];
             let step = distance(from, to);
             if step >= least {
-                sudden.push(Sudden { marker, from, to, step });
+                abrupt.push(AbruptStep { marker, from, to, step });
             }
         }
-        if !sudden.is_empty() {
+        if !abrupt.is_empty() {
             let usual = usual_step(capture, frame, &mut steps);
-            sudden.retain(|s| {
+            abrupt.retain(|s| {
                 let elapsed = last[s.marker].map_or(1, |l| frame - l) as f64;
                 let around = step_around(capture, s.marker, last[s.marker].unwrap_or(0), frame);
                 s.step > TIMES * elapsed * usual.max(around)
             });
-            if !sudden.is_empty() {
-                found(frame, &sudden);
+            if !abrupt.is_empty() {
+                found(frame, &abrupt);
             }
         }
         for (last, p) in last.iter_mut().zip(now) {
