@@ -20,8 +20,8 @@ pub struct FrameStatistics {
     pub kkt_worst: f64,
     /// Markers not seen, over all frames.
     pub missing_markers: u64,
-    /// Frames that did not reach the tolerance; the first of them.
-    pub not_converged: Option<(usize, usize)>,
+    /// Frames that were not solved and are held from those around them; the first of them.
+    pub held: Option<(usize, usize)>,
     /// Frames in which no marker is seen; the first of them.
     pub without_markers: Option<(usize, usize)>,
     /// Frames whose norm had to be smoothed.
@@ -54,7 +54,7 @@ impl FrameStatistics {
             iterations_most: reports.iter().map(|r| r.iterations).max().unwrap_or(0),
             kkt_worst: most(|r| r.kkt_error),
             missing_markers: reports.iter().map(|r| u64::from(r.missing_markers)).sum(),
-            not_converged: with(FrameWarning::NotConverged),
+            held: with(FrameWarning::Held),
             without_markers: with(FrameWarning::NoMarkers),
             smoothed: with(FrameWarning::Smoothed).map_or(0, |(count, _)| count),
             far_from_training: with(FrameWarning::FarFromTraining),
@@ -67,12 +67,11 @@ impl FrameStatistics {
         let mut out = Vec::new();
         let frames =
             |count: usize| if count == 1 { "1 frame".into() } else { format!("{count} frames") };
-        if let Some((count, first)) = self.not_converged {
+        if let Some((count, first)) = self.held {
             out.push(format!(
-                "{} did not reach the tolerance (the first is {}; KKT error up to {:.1e})",
+                "{} not solved (the first is {}): held from the solved frames around",
                 frames(count),
                 first as u64 + first_frame,
-                self.kkt_worst
             ));
         }
         if let Some((count, first)) = self.without_markers {
@@ -109,17 +108,16 @@ mod tests {
         let mut reports = vec![FrameReport::default(); 12];
         assert_eq!(FrameStatistics::of(&reports).warnings(700), Vec::<String>::new());
         for frame in [4, 9] {
-            reports[frame].warning = Some(FrameWarning::NotConverged);
-            reports[frame].kkt_error = 0.25;
+            reports[frame].warning = Some(FrameWarning::Held);
         }
         reports[2].warning = Some(FrameWarning::NoMarkers);
         let statistics = FrameStatistics::of(&reports);
-        assert_eq!(statistics.not_converged, Some((2, 4)));
+        assert_eq!(statistics.held, Some((2, 4)));
         let said = statistics.warnings(700);
         assert_eq!(said.len(), 2, "{said:?}");
         assert_eq!(
             said[0],
-            "2 frames did not reach the tolerance (the first is 704; KKT error up to 2.5e-1)"
+            "2 frames not solved (the first is 704): held from the solved frames around"
         );
         assert!(said[1].starts_with("1 frame without any marker (the first is 702)"), "{said:?}");
     }

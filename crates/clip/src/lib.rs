@@ -64,6 +64,7 @@ mod hashes;
 mod packs;
 mod pipeline;
 mod solve_packs;
+mod unsolved;
 
 pub use frame_statistics::FrameStatistics;
 pub use gaze::with_gaze_at_rest;
@@ -77,3 +78,4 @@ pub use pipeline::{
     solve_markers,
 };
 pub use solve_packs::{SolvePacksError, SolvedTake, solve_inflated, solve_packs, solve_segment};
+pub use unsolved::UnsolvedFrames;

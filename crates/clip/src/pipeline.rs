@@ -12,6 +12,7 @@ use mimique_solver::{
 
 use crate::gaze::{gaze_at_rest, with_gaze_at_rest};
 use crate::packs::SegmentMarkers;
+use crate::unsolved::{UnsolvedFrames, settle};
 
 /// The markers that are solved: stored frames, and which of them are played.
 #[derive(Debug, Clone)]
@@ -76,6 +77,9 @@ pub enum PipelineError {
     /// Head, neutral or alignment fail.
     #[error(transparent)]
     FrontEnd(#[from] FrontEndError),
+    /// Frames are not solved.
+    #[error("{}", .0.sentence(0))]
+    Unsolved(UnsolvedFrames),
     /// The method and the operators do not fit.
     #[error(transparent)]
     Fit(#[from] FitError),
@@ -88,7 +92,7 @@ pub enum PipelineError {
 ///
 /// # Errors
 /// [`PipelineError`]: operators of other markers or another method, a head or neutral that cannot be
-/// found.
+/// found, frames that are not solved where the method does not say to hold them.
 pub fn solve_markers(
     operators: &Operators,
     take: &MarkerTake<'_>,
@@ -103,6 +107,11 @@ pub fn solve_markers(
     let motion = marker_motion(operators, take, &spec)?;
     let front_end = clock();
     let mut solution = fit.solve_take(&motion.displacements)?;
+    let width = 3 * fit.marker_count();
+    settle(&mut solution, spec.unsolved.unwrap_or_default(), |frame, weights| {
+        fit.residual(&motion.displacements[frame * width..(frame + 1) * width], weights)
+    })
+    .map_err(PipelineError::Unsolved)?;
     put_driven(&mut solution.weights, shape_names, take);
     let seconds = PipelineSeconds {
         set_up: set_up - start,

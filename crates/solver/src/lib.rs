@@ -78,7 +78,9 @@ pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Opera
 pub use energy::thin_shell::{apply_shell, shell_gram};
 pub use fit::frame::FrameSolver;
 pub use fit::problem::FitError;
-pub use fit::report::{FrameReport, FrameSolution, FrameWarning, TakeSolution};
+pub use fit::report::{
+    FrameReport, FrameSolution, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT, TakeSolution,
+};
 pub use fit::{CHUNK_FRAMES, Fit};
 pub use front_end::error::FrontEndError;
 pub use front_end::head_lowpass::{HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE};
@@ -105,7 +107,7 @@ pub use mesh::symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
 pub use mesh::synthesis::Synthesis;
 pub use method::definition::Needs;
 pub use method::names::Method;
-pub use parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
+pub use parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved};
 pub use parameters::group::Group;
 pub use parameters::kind::{Kind, NamesOf, Quantity, Range};
 pub use parameters::problem::{SpecError, SpecFault};

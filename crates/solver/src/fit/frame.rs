@@ -2,7 +2,7 @@
 
 use crate::fit::Fit;
 use crate::fit::problem::FitError;
-use crate::fit::report::{FrameReport, FrameWarning};
+use crate::fit::report::{FrameReport, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT};
 use crate::fit::setup::{Engine, FREE};
 use crate::fit::visible_markers::VisibleMarkers;
 use crate::gaussian_process::regression::{Regression, RegressionScratch};
@@ -107,6 +107,9 @@ impl<'a> FrameSolver<'a> {
             // The next frame is better off with a fresh start.
             self.reset();
             Some(FrameWarning::NotConverged)
+        } else if self.is_beyond_sense() {
+            self.reset();
+            Some(FrameWarning::BeyondSense)
         } else if no_markers {
             Some(FrameWarning::NoMarkers)
         } else if answer.is_far {
@@ -227,6 +230,34 @@ impl<'a> FrameSolver<'a> {
             let [low, high] = bounds.map_or(FREE, |bounds| bounds[i]);
             *c = (gain * *c).max(low.min(*c)).min(high.max(*c));
         }
+    }
+
+    /// Whether the weights are none of a face: [`LARGEST_WEIGHT`], [`LARGEST_DISPLACEMENT`].
+    fn is_beyond_sense(&mut self) -> bool {
+        let problem = &self.fit.problem;
+        // A surface's weights are where its markers go; that of the pseudo-inverse are compared with the
+        // others' because nothing bounds them.
+        if matches!(problem.engine, Engine::Surface(_) | Engine::PseudoInverse) {
+            return false;
+        }
+        let (mut largest, mut furthest) = (0.0_f64, 0.0);
+        for (&c, &reach) in self.amplified.iter().zip(&problem.reach) {
+            largest = largest.max(c.abs());
+            furthest += c.abs() * reach;
+        }
+        if largest > LARGEST_WEIGHT {
+            return true;
+        }
+        // The sum of all shapes is as far as any marker can be.
+        if furthest <= LARGEST_DISPLACEMENT {
+            return false;
+        }
+        let deltas = &self.fit.all_visible.deltas;
+        self.scratch.resize(self.displacements.len(), 0.0);
+        mul(deltas, &self.amplified, &mut self.scratch);
+        self.scratch.chunks_exact(3).zip(&problem.importance).any(|(moved, &importance)| {
+            dot(moved, moved) > LARGEST_DISPLACEMENT * LARGEST_DISPLACEMENT * importance
+        })
     }
 
     /// The squared distance, each row by its importance, from where the weights put the markers to where

@@ -11,6 +11,7 @@ use crate::fit::frame::FrameSolver;
 use crate::fit::problem::{FitError, Problem};
 use crate::fit::report::{FrameReport, FrameSolution, TakeSolution};
 use crate::fit::visible_markers::VisibleMarkers;
+use crate::linear_algebra::dense::dot;
 use crate::parameters::table::MethodSpec;
 
 /// Frames that are solved one after the other, each from the last one's answer; the next chunk
@@ -45,6 +46,12 @@ impl Fit {
     /// P: a frame of displacements has 3P numbers.
     pub fn marker_count(&self) -> usize {
         self.problem.marker_count
+    }
+
+    /// Whether the shapes depend on each other at the markers, so that of the weights that fit equally
+    /// well the least are chosen.
+    pub fn chooses_least_norm(&self) -> bool {
+        self.all_visible.least_norm
     }
 
     /// A solver of consecutive frames.
@@ -102,6 +109,31 @@ impl Fit {
             .zip(reports.chunks_mut(CHUNK_FRAMES))
             .for_each(one);
         Ok(TakeSolution { weights, reports })
+    }
+
+    /// Root mean square distance of the markers of a frame (by importance, those that are seen) to where
+    /// `weights`, N of them, put them, metres; 0 where none is seen.
+    ///
+    /// # Panics
+    /// If `d` does not have 3P numbers, or `weights` N.
+    pub fn residual(&self, d: &[f64], weights: &[f64]) -> f64 {
+        let problem = &self.problem;
+        assert_eq!((d.len(), weights.len()), (3 * problem.marker_count, problem.shape_count));
+        let free: Vec<f64> = problem.free.iter().map(|&k| weights[k]).collect();
+        let rows = self.all_visible.deltas.chunks_exact(3 * free.len());
+        let (mut squares, mut total) = (0.0, 0.0);
+        for ((d, rows), &importance) in d.chunks_exact(3).zip(rows).zip(&problem.importance) {
+            if !d.iter().all(|x| x.is_finite()) {
+                continue;
+            }
+            total += importance;
+            for (d, row) in d.iter().zip(rows.chunks_exact(free.len())) {
+                // The rows carry the root of the importance.
+                let off = dot(row, &free) - importance.sqrt() * d;
+                squares += off * off;
+            }
+        }
+        if total > 0.0 { (squares / total).sqrt() } else { 0.0 }
     }
 
     pub(crate) fn wrong_size(&self, found: usize) -> FitError {

@@ -64,6 +64,8 @@ pub(crate) struct Problem {
     pub(crate) free: Vec<usize>,
     /// D, 3P x n, each row times the root of its marker's importance.
     pub(crate) deltas: Vec<f64>,
+    /// How far each free shape moves a marker at most, at weight 1, metres.
+    pub(crate) reach: Vec<f64>,
     /// H, n x n.
     pub(crate) shell: Vec<f64>,
     /// Importance of each marker.
@@ -112,6 +114,8 @@ impl Problem {
             data_scale: squares / n_all as f64,
             shell_scale: operators.shell_scale(),
         };
+        let reach = operators.marker_reach();
+        let reach = free.iter().map(|&k| reach[k]).collect();
         let engine = (definition.engine)(&setup)?;
         let associated = parts.associated.as_ref().filter(|_| spec.method.uses(Group::Association));
         Ok(Problem {
@@ -121,6 +125,7 @@ impl Problem {
             gain: spec.gain(),
             associated: associated.map(|l| l.restricted(&free, n_all)),
             free,
+            reach,
             deltas,
             shell,
             importance,

@@ -22,12 +22,30 @@ pub struct FrameReport {
     pub warning: Option<FrameWarning>,
 }
 
+/// The largest weight that a face has any use for.
+pub const LARGEST_WEIGHT: f64 = 10.0;
+/// The largest displacement of a point of the face, metres.
+pub const LARGEST_DISPLACEMENT: f64 = 0.2;
+
+impl FrameWarning {
+    /// Whether the frame's weights are no answer.
+    pub fn is_unsolved(self) -> bool {
+        matches!(self, FrameWarning::NotConverged | FrameWarning::BeyondSense)
+    }
+}
+
 /// A frame that needs saying.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FrameWarning {
     /// The tolerance was not reached.
     #[error("the solver did not reach its tolerance; the weights are its best")]
     NotConverged,
+    /// A weight beyond [`LARGEST_WEIGHT`], or a marker's point moved beyond [`LARGEST_DISPLACEMENT`].
+    #[error("no face does this: a weight is over 10, or the face is moved by over 20 cm")]
+    BeyondSense,
+    /// The frame was not solved; its weights are interpolated between the solved frames around it.
+    #[error("not solved; held from the solved frames around it")]
+    Held,
     /// No marker was seen: the weights are those of the priors alone.
     #[error("no marker is seen; the weights follow from the priors alone")]
     NoMarkers,

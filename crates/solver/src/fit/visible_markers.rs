@@ -5,6 +5,7 @@ use mimique_geometry::{orthogonal_triangular, pseudo_inverse};
 use crate::fit::problem::Problem;
 use crate::fit::setup::Engine;
 use crate::linear_algebra::dense::{axpy, gram, packed_len};
+use crate::quadratic::least_norm::choose_least_norm;
 
 /// What is computed once for a set of visible markers.
 #[derive(Debug, Clone)]
@@ -21,6 +22,8 @@ pub(crate) struct VisibleMarkers {
     /// Q of the quadratic programme (empty for the smooth methods), or D^+, or what takes a surface's
     /// markers from where they are seen, or fills lost ones in for the regression.
     pub(crate) system: Vec<f64>,
+    /// Whether the shapes depend on each other, so that the least weights are chosen.
+    pub(crate) least_norm: bool,
     /// Sum of the importances.
     pub(crate) importance: f64,
 }
@@ -35,7 +38,7 @@ impl VisibleMarkers {
             }
         }
         let gram = gram(&deltas, n);
-        let system = match &problem.engine {
+        let mut system = match &problem.engine {
             Engine::Quadratic { data_weight, prior, .. } => {
                 gram.iter().zip(prior).map(|(g, m)| data_weight * g + m).collect()
             }
@@ -45,13 +48,24 @@ impl VisibleMarkers {
             Engine::Learnt { model, .. } => model.fill(&missing),
             Engine::Smooth { .. } => Vec::new(),
         };
+        let least_norm = matches!(problem.engine, Engine::Quadratic { .. } | Engine::Linked { .. })
+            && choose_least_norm(&mut system, n);
         let (orthogonal, triangle) = match &problem.engine {
             Engine::Smooth { .. } => orthogonal_triangular(&deltas, 3 * problem.marker_count, n),
             _ => (Vec::new(), Vec::new()),
         };
         let importance = (problem.importance.iter().zip(&missing))
             .fold(0.0, |s, (w, &gone)| if gone { s } else { s + w });
-        VisibleMarkers { missing, deltas, gram, orthogonal, triangle, system, importance }
+        VisibleMarkers {
+            missing,
+            deltas,
+            gram,
+            orthogonal,
+            triangle,
+            system,
+            least_norm,
+            importance,
+        }
     }
 }
 

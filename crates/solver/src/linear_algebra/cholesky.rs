@@ -42,6 +42,16 @@ impl Cholesky {
         factor_upper(&mut self.u, &mut self.inverse_diagonal, self.stride)
     }
 
+    /// The smallest part of a variable that those before it leave, as a share of its size: near 0 where
+    /// it nearly depends on them, 0 where it was taken out. `diagonal` is that of A.
+    pub(crate) fn least_share(&self, diagonal: impl Iterator<Item = f64>) -> f64 {
+        let pivots = self.inverse_diagonal.iter().zip(diagonal);
+        pivots.fold(1.0, |least: f64, (&inverse, own)| {
+            let share = if inverse > 0.0 { 1.0 / (inverse * own.sqrt()) } else { 0.0 };
+            least.min(share)
+        })
+    }
+
     /// ln det A, of the variables that were not taken out.
     pub(crate) fn log_determinant(&self) -> f64 {
         let kept = self.inverse_diagonal.iter().filter(|x| **x > 0.0);

@@ -9,7 +9,14 @@ use crate::parameters::group::Group;
 pub(crate) const KOUADIO: Definition = Definition {
     summary: "squared error of the points that the markers move, weights within 0 and 1",
     needs: Needs::Shapes,
-    uses: &[Group::Association, Group::Bounds, Group::Shapes, Group::Markers, Group::Head],
+    uses: &[
+        Group::Association,
+        Group::Bounds,
+        Group::Shapes,
+        Group::Markers,
+        Group::Head,
+        Group::Frames,
+    ],
     defaults: Defaults::USUAL,
     engine: |setup| Ok(Engine::Linked { bounds: setup.bounds(UNIT_INTERVAL) }),
 };

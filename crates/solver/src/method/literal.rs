@@ -15,6 +15,7 @@ const USES: &[Group] = &[
     Group::Shapes,
     Group::Markers,
     Group::Head,
+    Group::Frames,
 ];
 
 /// Eq. 5.30: E_b counts once for each of the 3S coordinates.

@@ -14,6 +14,7 @@ const USES: &[Group] = &[
     Group::Shapes,
     Group::Markers,
     Group::Head,
+    Group::Frames,
 ];
 
 /// Eq. 5.30 of the thesis: the thin shell squared.

@@ -19,6 +19,7 @@ pub(crate) const LSTS_SOFT: Definition = Definition {
         Group::Shapes,
         Group::Markers,
         Group::Head,
+        Group::Frames,
     ],
     defaults: Defaults::USUAL,
     engine: |setup| {
@@ -39,6 +40,7 @@ pub(crate) const BOUNDS_ONLY: Definition = Definition {
         Group::Shapes,
         Group::Markers,
         Group::Head,
+        Group::Frames,
     ],
     defaults: Defaults::USUAL,
     engine: |setup| Ok(setup.smooth(squared(setup), Term::Absent, setup.spec.bounds_weight())),

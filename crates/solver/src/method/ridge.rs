@@ -21,6 +21,7 @@ pub(crate) const RIDGE: Definition = Definition {
         Group::Shapes,
         Group::Markers,
         Group::Head,
+        Group::Frames,
     ],
     defaults: Defaults { alpha: 0.3, ..Defaults::USUAL },
     engine: ridge,

@@ -72,6 +72,17 @@ choice! {
 }
 
 choice! {
+    /// What becomes of a take with frames that are not solved.
+    Unsolved {
+        /// It is refused, the first of them named.
+        #[default]
+        Refuse = "refuse",
+        /// Their weights are interpolated between the solved frames around them, and each is marked.
+        Hold = "hold",
+    }
+}
+
+choice! {
     /// How a Gaussian process learns.
     Inference {
         /// On a set of basis vectors, frame by frame (Csató & Opper 2002).

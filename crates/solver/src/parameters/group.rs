@@ -31,6 +31,8 @@ pub enum Group {
     Markers,
     /// The head that the face sits on.
     Head,
+    /// The frames of a take.
+    Frames,
 }
 
 impl Group {
@@ -49,6 +51,7 @@ impl Group {
             Group::GaussianProcess => "Gaussian process (regression)",
             Group::Shapes | Group::Markers => "Shapes and markers",
             Group::Head => "Head",
+            Group::Frames => "Frames",
         }
     }
 }

@@ -8,7 +8,9 @@ use serde_json::Value;
 
 use crate::kouadio::associated_rows::VertexAssociation;
 use crate::method::names::Method;
-use crate::parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
+use crate::parameters::choices::{
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved,
+};
 use crate::parameters::group::Group;
 use crate::parameters::kind::{Kind, NamesOf, Quantity, Range};
 use crate::parameters::value::{ByName, Field, Limits, Note, Scalar, Stored};
@@ -298,6 +300,11 @@ parameters! {
         quantity: Quantity::Hertz, zero: Some("no filter"), zero_word: Some("none"),
         step: Some(0.1), option: Some("head-lowpass"), found_by: Some("10 from 25 frames per second on, else none"),
     }
+
+    /// What becomes of a take with frames that are not solved: it is refused, or their weights are
+    /// interpolated between the solved frames around them and marked in the report.
+    unsolved: Option<Unsolved> as "unsolved",
+    { group: Group::Frames, label: "Frames not solved", found_by: Some("refuse"), }
 }
 
 impl MethodSpec {

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit};
+use crate::parameters::choices::{
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved,
+};
 use crate::parameters::kind::{Kind, Range};
 use crate::parameters::problem::SpecFault;
 
@@ -149,7 +151,7 @@ macro_rules! words {
     )+};
 }
 
-words! { Association Gaze Hold Inference LaplacianKind Unit }
+words! { Association Gaze Hold Inference LaplacianKind Unit Unsolved }
 
 impl<T: Scalar> Stored for Option<T> {
     const KIND: Kind = T::KIND;

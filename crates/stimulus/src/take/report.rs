@@ -1,7 +1,9 @@
 //! The report of a solve: per frame, over all frames, in words.
 
 use mimique_clip::FrameStatistics;
-use mimique_solver::{FrameReport, Kernel, Method, MethodSpec, Operators, Regression};
+use mimique_solver::{
+    Fit, FrameReport, Kernel, Method, MethodSpec, Operators, Regression, bank_columns,
+};
 use serde::Serialize;
 
 use crate::checks::{HeadMarker, LabelProblem};
@@ -158,4 +160,38 @@ pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<
             names.join(", ")
         )
     })
+}
+
+/// That the least of many weights was chosen, and between which shapes.
+pub(crate) fn dependent_shapes(
+    operators: &Operators,
+    spec: &MethodSpec,
+    fit: &Fit,
+) -> Option<String> {
+    if !fit.chooses_least_norm() {
+        return None;
+    }
+    let parts = operators.parts();
+    let free: Vec<usize> = (0..parts.shape_names.len())
+        .filter(|&k| !spec.locked.contains(&parts.shape_names[k]))
+        .collect();
+    let rows = parts.marker_deltas.chunks_exact(parts.shape_names.len());
+    let bank: Vec<f64> = rows.flat_map(|row| free.iter().map(|&k| row[k])).collect();
+    let name = |k: usize| parts.shape_names[free[k]].as_str();
+    let combinations: Vec<String> = bank_columns(&bank, free.len(), 0.0)
+        .dependent
+        .iter()
+        .map(|combination| {
+            let of: Vec<&str> = combination.of.iter().map(|&(k, _)| name(k)).collect();
+            format!("{} (of {})", name(combination.shape), of.join(", "))
+        })
+        .collect();
+    let which = match combinations.is_empty() {
+        true => "shapes that nearly depend on each other".to_owned(),
+        false => combinations.join("; "),
+    };
+    Some(format!(
+        "the markers cannot tell these shapes from combinations of others: {which}; of the weights \
+         that fit equally well the least are taken; lock the shapes that the take does not need"
+    ))
 }

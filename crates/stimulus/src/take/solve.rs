@@ -6,7 +6,9 @@ use mimique_clip::{FrameStatistics, MarkerSolution, solve_markers, weights_hash}
 use mimique_mocap::{Capture, WeightsTable};
 use mimique_solver::{FitError, MarkerSite, Method, MethodSpec, Operators, SurfaceResponse};
 
-use super::report::{FrameRow, RegressionSummary, SolveReport, StageSeconds, unseen_shapes};
+use super::report::{
+    FrameRow, RegressionSummary, SolveReport, StageSeconds, dependent_shapes, unseen_shapes,
+};
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
 use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
@@ -71,7 +73,8 @@ pub fn solve_take(
     let markers = joined.markers_of(&operators, spec, 0..joined.frame_count())?;
     let fitted = clock();
     let take = joined.whole(&markers);
-    let solution = solve_markers(&operators, &take, spec, clock)?;
+    let solution = solve_markers(&operators, &take, spec, clock)
+        .map_err(|e| SolveError::from(e).counted_from(joined.first_frame))?;
     let solved = clock();
     let checks = Checks::of(&joined, spec, &operators, &solution)?;
     let stages = solution.seconds;
@@ -85,6 +88,7 @@ pub fn solve_take(
     let mut report = report(&joined, spec, &operators, &solution, checks);
     report.seconds = seconds;
     report.warnings.extend(joined.unfiltered_head(&asked));
+    report.warnings.extend(dependent_shapes(&operators, spec, &solution.fit));
     report.warnings.extend(surface.as_ref().and_then(adrift));
     let mut provenance = joined.provenance(spec).json("weights", report.weights_hash.as_str());
     if let Some(training) = &options.training {

@@ -1,6 +1,6 @@
 //! Why a take cannot be solved.
 
-use mimique_clip::PipelineError;
+use mimique_clip::{PipelineError, UnsolvedFrames};
 use mimique_solver::{
     FitError, FrontEndError, MeshError, OperatorError, SurfaceError, TrainingError,
 };
@@ -104,6 +104,14 @@ pub enum SolveError {
     /// The method does not solve.
     #[error(transparent)]
     Fit(#[from] FitError),
+    /// Frames are not solved.
+    #[error("{}", frames.sentence(*first_frame))]
+    Unsolved {
+        /// Which, and why.
+        frames: UnsolvedFrames,
+        /// The number of the first frame in the capture.
+        first_frame: u64,
+    },
     /// The operators are of other markers.
     #[error(transparent)]
     Markers(PipelineError),
@@ -140,7 +148,18 @@ impl From<PipelineError> for SolveError {
         match error {
             PipelineError::FrontEnd(error) => error.into(),
             PipelineError::Fit(error) => error.into(),
+            PipelineError::Unsolved(frames) => Self::Unsolved { frames, first_frame: 0 },
             other @ PipelineError::NoMarker(_) => Self::Markers(other),
+        }
+    }
+}
+
+impl SolveError {
+    /// The same with frames numbered as the capture numbers them.
+    pub(super) fn counted_from(self, first_frame: u64) -> Self {
+        match self {
+            Self::Unsolved { frames, .. } => Self::Unsolved { frames, first_frame },
+            other => other,
         }
     }
 }
