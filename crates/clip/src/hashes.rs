@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 
 /// Changes with every change of the solver or of the way to it that moves a bit of any weight.
 pub const SOLVER_VERSION: &str =
-    concat!("mimique-solver ", env!("CARGO_PKG_VERSION"), ", arithmetic 6");
+    concat!("mimique-solver ", env!("CARGO_PKG_VERSION"), ", arithmetic 7");
 
 /// SHA-256, lower-case hexadecimal.
 pub fn sha256_hex(bytes: &[u8]) -> String {

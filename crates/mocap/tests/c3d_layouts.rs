@@ -169,6 +169,45 @@ fn analog_samples_are_read_past_and_counted() {
     }
 }
 
+/// The same file whose parameter ANALOG:USED says so many channels, without a rate of theirs.
+fn with_analog_used(file: &[u8], processor: Processor, channels: u16) -> Vec<u8> {
+    let group = 2;
+    let mut parts: Vec<Entry> =
+        entries(file, processor).into_iter().filter(|e| e.id != group).collect();
+    // Integers of two bytes, no dimension, no description.
+    let mut content = vec![2, 0];
+    content.extend(word_bytes(processor, channels));
+    content.push(0);
+    parts.push(Entry { id: group, name: b"USED".to_vec(), content });
+    with_entries(file, processor, &parts)
+}
+
+#[test]
+fn of_two_analog_counts_the_one_is_taken_that_the_length_of_the_file_fits() {
+    let capture = capture(5, 90);
+    for processor in PROCESSORS {
+        for (storage, bytes) in [(C3dStorage::Float, 4), (C3dStorage::Integer { scale: 0.5 }, 2)] {
+            let file = write_c3d(&capture, &C3dOptions { processor, storage }).unwrap();
+            let file = with_analog(&file, processor, 5, bytes);
+            // 24 numbers per frame, 6 channels of 4 samples.
+            for (in_header, channels) in [(24, 6), (12, 6), (24, 3), (0, 6)] {
+                let mut file = with_analog_used(&file, processor, channels);
+                file[4..6].copy_from_slice(&word_bytes(processor, in_header));
+                let read = read_recording(&file, &ReadOptions::default()).unwrap();
+                assert_eq!(
+                    read.capture.positions, capture.positions,
+                    "{processor:?}, {in_header} numbers, {channels} channels"
+                );
+                let said = read.capture.notes.iter().any(|note| {
+                    note.contains("analog numbers per frame")
+                        && note.ends_with("24 taken, which the file's length fits")
+                });
+                assert_eq!(said, (in_header, channels) != (24, 6), "{:?}", read.capture.notes);
+            }
+        }
+    }
+}
+
 #[test]
 fn residual_and_camera_mask_do_not_make_a_marker_missing_but_a_sign_does() {
     let capture = capture(2, 3);

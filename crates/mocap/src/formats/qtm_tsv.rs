@@ -44,6 +44,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         let mut fields = split_fields(text, Delimiter::Tab);
         header.over |= coordinate(&fields[0], Delimiter::Tab).is_some() && !fields[0].is_empty();
         if !header.over {
+            header.has_keys = true;
             let values: Vec<&str> = fields[1..].iter().map(AsRef::as_ref).collect();
             header.take(&mut table, line, &fields[0], &values)?;
             continue;
@@ -54,6 +55,14 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
             fields.pop();
         }
         if leading.is_none() {
+            if header.has_keys && table.labels.is_empty() {
+                return Err(ReadError::at_line(
+                    line,
+                    "header",
+                    "no MARKER_NAMES, so that nothing says what the columns are",
+                    "export the 3D data from QTM with its header, or without any",
+                ));
+            }
             leading = leading_columns(&mut table, &mut fields);
         }
         let Some(leading) = leading.filter(|l| fields.len() >= l + 3 * table.labels.len()) else {
@@ -89,6 +98,8 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
 struct Header {
     /// Whether the rows have begun.
     over: bool,
+    /// Whether there is a header at all.
+    has_keys: bool,
     /// Frames that the file says to have.
     frames: Option<usize>,
     events: Vec<Event>,
@@ -112,11 +123,12 @@ impl Header {
                 }
             }
             "EVENT" => self.events.extend(event(values)),
-            "DATA_INCLUDED" if values.first().is_some_and(|v| v.contains("6D")) => {
+            "DATA_INCLUDED" if !values.iter().any(|value| names_trajectories(value)) => {
+                let named = values.join(" ");
                 return Err(ReadError::at_line(
                     line,
                     "DATA_INCLUDED",
-                    "6D: poses of bodies, no markers",
+                    format!("{:?}, which holds no trajectories", named.trim()),
                     "export the 3D data from QTM",
                 ));
             }
@@ -124,6 +136,12 @@ impl Header {
         }
         Ok(())
     }
+}
+
+/// Whether a value of `DATA_INCLUDED` names the trajectories of markers: `3D` among its words. `2D` are
+/// camera images, `6D` poses of bodies; angles, forces and analog signals are named in words.
+fn names_trajectories(value: &str) -> bool {
+    value.split(|c: char| !c.is_alphanumeric()).any(|word| word.eq_ignore_ascii_case("3D"))
 }
 
 /// Columns before the coordinates, from the first row: none, or frame and time. Without a header the
@@ -193,6 +211,28 @@ mod tests {
             assert!(capture.frame(2)[1][0].is_nan(), "blanks are a gap");
             assert_eq!((got.events[0].label.as_str(), got.events[0].time_s), ("smile", 0.005));
         }
+    }
+
+    #[test]
+    fn what_holds_no_trajectories_is_refused_by_name() {
+        for named in ["6D", "Analog", "Angles", "2D", "Force\tEMG"] {
+            let head = HEAD.replace("DATA_INCLUDED\t3D", &format!("DATA_INCLUDED\t{named}"));
+            let text = format!("{head}{}\n", ROWS[0]);
+            let error = read_bytes(text.as_bytes()).unwrap_err().to_string();
+            let named = named.replace('\t', " ");
+            assert!(
+                error.starts_with(&format!("line 7, DATA_INCLUDED: {named:?}, which holds no")),
+                "{error}"
+            );
+        }
+        for named in ["3D", "3D Analog", "2D/3D", "3d"] {
+            let head = HEAD.replace("DATA_INCLUDED\t3D", &format!("DATA_INCLUDED\t{named}"));
+            assert!(read_bytes(format!("{head}{}\n", ROWS[0]).as_bytes()).is_ok(), "{named}");
+        }
+        // Analog samples whose header does not say what is included.
+        let text = "NO_OF_FRAMES\t1\nFREQUENCY\t200\n0\t0.000\t1.5\t2\t3\t4\n";
+        let error = read_bytes(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with("line 3, header: no MARKER_NAMES"), "{error}");
     }
 
     #[test]

@@ -13,12 +13,35 @@ pub(super) static FORMAT: Format = Format {
     extensions: &["csv"],
     recognised_by: "`frame,` and columns that are no coordinates",
     reads: "what `solve` writes; `time` in seconds, or the rate that is asked for",
-    recognise: Recognise::FirstLine(|line| line.starts_with("frame,")),
+    recognise: Recognise::FirstLine(is_header),
     read: Read::TextWeights(read),
     write: Some(Write::Weights(|table: &WeightsTable, path: &Path| {
         vec![(path.to_owned(), table.to_csv().into_bytes())]
     })),
 };
+
+/// Whether a line is the header of weights: `frame,` and columns most of which are no coordinates, as
+/// those of a landmark tracker are.
+fn is_header(line: &str) -> bool {
+    let columns = split_fields(line, Delimiter::Comma);
+    let coordinates = columns.iter().filter(|name| is_coordinate(name.trim())).count();
+    line.starts_with("frame,") && 2 * coordinates < columns.len()
+}
+
+/// Whether a column is named as a coordinate of something: `x_12`, `Z7`, `nose_x`, `nose.Y`.
+fn is_coordinate(name: &str) -> bool {
+    let is_axis = |c: char| matches!(c.to_ascii_lowercase(), 'x' | 'y' | 'z');
+    let mut letters = name.chars();
+    let numbered = letters.next().is_some_and(is_axis) && {
+        let rest = letters.as_str();
+        let number = rest.strip_prefix(['_', '.', '-']).unwrap_or(rest);
+        number.chars().all(|c| c.is_ascii_digit())
+    };
+    let mut letters = name.chars().rev();
+    let ends = letters.next().is_some_and(is_axis)
+        && letters.next().is_some_and(|c| matches!(c, '_' | '.' | ':' | '-' | ' '));
+    numbered || ends
+}
 
 /// Read the document.
 fn read(lines: &mut Lines<'_>, options: &WeightOptions<'_>) -> Result<WeightsTable, ReadError> {
@@ -142,6 +165,22 @@ mod tests {
 
     fn read(text: &str, rate_hz: Option<f64>) -> Result<WeightsTable, ReadError> {
         read_weights(text.as_bytes(), &WeightOptions { rate_hz, ..WeightOptions::default() })
+    }
+
+    #[test]
+    fn landmarks_are_no_weights() {
+        for header in [
+            "frame,x_0,x_1,x_2,y_0,y_1,y_2",
+            "frame,time,X0,Y0,Z0,X1,Y1,Z1",
+            "frame,nose_x,nose_y,chin_x,chin_y",
+            "frame,face_id,timestamp,x_0,y_0,x_1,y_1,x_2,y_2",
+        ] {
+            let row = vec!["1"; header.split(',').count()].join(",");
+            let error = read(&format!("{header}\n{row}\n"), None).unwrap_err().to_string();
+            assert!(error.starts_with("byte 0: no weights in a known format"), "{header}: {error}");
+        }
+        // Shapes may be called as an axis, as long as most are not.
+        assert!(read("frame,time,jawOpen,jaw_x\n0,0,0.5,0.25\n", None).is_ok());
     }
 
     #[test]

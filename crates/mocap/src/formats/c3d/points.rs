@@ -42,6 +42,12 @@ impl Layout {
         file_length.saturating_sub(self.start) / self.stride()
     }
 
+    /// Bytes of the file after `frames` frames; `None` where it does not hold them.
+    pub(crate) fn bytes_after(&self, frames: u64, file_length: u64) -> Option<u64> {
+        let bytes = frames.checked_mul(self.stride())?;
+        file_length.checked_sub(self.start)?.checked_sub(bytes)
+    }
+
     /// Read `frames` frames of the points where `kept` is true; a missing marker is NaN. The
     /// frames must be present.
     pub(crate) fn positions(

@@ -20,7 +20,7 @@ pub(crate) fn read(file: &mut dyn Source, options: &ReadOptions) -> Result<Recor
         notes.push("no parameters: labels are made up, the rest is the header's".to_owned());
     }
     let rate_hz = rate(&header, &parameters, options)?;
-    let layout = layout(&header, &parameters, length)?;
+    let layout = layout(&header, &parameters, length, &mut notes)?;
     let (first_frame, frames) = frames(&header, &parameters, &layout, length, &mut notes)?;
 
     let labels = point_labels(&parameters, layout.points, &mut notes);
@@ -66,7 +66,12 @@ fn rate(header: &Header, parameters: &Parameters, options: &ReadOptions) -> Resu
 }
 
 /// Where the data are and how a frame is stored.
-fn layout(header: &Header, parameters: &Parameters, file_length: u64) -> Result<Layout, ReadError> {
+fn layout(
+    header: &Header,
+    parameters: &Parameters,
+    file_length: u64,
+    notes: &mut Vec<String>,
+) -> Result<Layout, ReadError> {
     let points = parameters.count("POINT", "USED").map_or(header.points, |n| n as usize);
     if points == 0 {
         return Err(ReadError::at_byte(
@@ -100,14 +105,84 @@ fn layout(header: &Header, parameters: &Parameters, file_length: u64) -> Result<
             "copy or export the file again, it is cut short",
         ));
     };
-    Ok(Layout { start, points, analog: header.analog_per_frame, storage })
+    let by_header = Layout { start, points, analog: header.analog_per_frame, storage };
+    let Some(by_parameters) = analog_numbers(header, parameters)
+        .filter(|&analog| analog != header.analog_per_frame)
+        .map(|analog| Layout { analog, ..by_header })
+    else {
+        return Ok(by_header);
+    };
+    let declared = declared_frames(header, parameters);
+    let fits = |layout: &Layout| {
+        let rest = |frames: u64| layout.bytes_after(frames, file_length);
+        // Sections are padded to whole blocks.
+        declared.counts().any(|frames| rest(frames).is_some_and(|bytes| bytes < block))
+    };
+    let taken = if fits(&by_parameters) && !fits(&by_header) { by_parameters } else { by_header };
+    notes.push(format!(
+        "the header has {} analog numbers per frame, the parameters {}: {} taken{}",
+        by_header.analog,
+        by_parameters.analog,
+        taken.analog,
+        if fits(&taken) { ", which the file's length fits" } else { "" },
+    ));
+    Ok(taken)
 }
 
-/// Number of the first frame and how many there are.
-///
+/// Analog numbers per frame by the parameters: ANALOG:USED channels, each as many samples as
+/// ANALOG:RATE is larger than POINT:RATE (the header's samples where there is no rate).
+fn analog_numbers(header: &Header, parameters: &Parameters) -> Option<usize> {
+    let channels = parameters.count("ANALOG", "USED")? as usize;
+    let rates = (parameters.number("ANALOG", "RATE"), parameters.number("POINT", "RATE"));
+    let samples = match rates {
+        (Some(analog), Some(point)) if analog >= point && point > 0.0 => {
+            (analog / point).round() as usize
+        }
+        _ => header.analog_samples.max(1),
+    };
+    channels.checked_mul(samples)
+}
+
+/// The frames that a file says to have.
+struct DeclaredFrames {
+    /// Number of the first frame.
+    first: u64,
+    /// How many there are, by each place that says it.
+    counts: [Option<u64>; 4],
+}
+
+impl DeclaredFrames {
+    /// The counts above 0, the most trusted first.
+    fn counts(&self) -> impl Iterator<Item = u64> {
+        self.counts.into_iter().flatten().filter(|&n| n > 0)
+    }
+}
+
 /// The header and POINT:FRAMES count in 16 bits; longer takes say their length in
 /// TRIAL:ACTUAL_START_FIELD / ACTUAL_END_FIELD (two words, the lower first) or POINT:LONG_FRAMES.
-/// A count that saturated (65,535) gives way to what the file holds.
+fn declared_frames(header: &Header, parameters: &Parameters) -> DeclaredFrames {
+    let field = |name: &str| match parameters.numbers("TRIAL", name)[..] {
+        [low, high, ..] => Some((low + 65_536.0 * high) as u64),
+        _ => None,
+    };
+    let (start, end) = (field("ACTUAL_START_FIELD"), field("ACTUAL_END_FIELD"));
+    let trial = match (start, end) {
+        (Some(start), Some(end)) if end >= start && end > 0 => Some((start, end - start + 1)),
+        _ => None,
+    };
+    DeclaredFrames {
+        first: trial.map_or(header.first_frame, |(start, _)| start),
+        counts: [
+            trial.map(|(_, count)| count),
+            parameters.count("POINT", "LONG_FRAMES"),
+            parameters.count("POINT", "FRAMES"),
+            (header.last_frame + 1).checked_sub(header.first_frame),
+        ],
+    }
+}
+
+/// Number of the first frame and how many there are. A count that saturated (65,535) gives way to what
+/// the file holds.
 fn frames(
     header: &Header,
     parameters: &Parameters,
@@ -115,28 +190,11 @@ fn frames(
     file_length: u64,
     notes: &mut Vec<String>,
 ) -> Result<(u64, usize), ReadError> {
-    let field = |name: &str| match parameters.numbers("TRIAL", name)[..] {
-        [low, high, ..] => Some((low + 65_536.0 * high) as u64),
-        _ => None,
-    };
-    let (start, end) = (field("ACTUAL_START_FIELD"), field("ACTUAL_END_FIELD"));
     let present = layout.frames_present(file_length);
-    let trial = match (start, end) {
-        (Some(start), Some(end)) if end >= start && end > 0 => Some(end - start + 1),
-        _ => None,
-    };
-    let candidates = [
-        trial,
-        parameters.count("POINT", "LONG_FRAMES"),
-        parameters.count("POINT", "FRAMES"),
-        (header.last_frame + 1).checked_sub(header.first_frame),
-    ];
-    let first_frame = match (start, trial) {
-        (Some(start), Some(_)) => start,
-        _ => header.first_frame,
-    };
+    let frames = declared_frames(header, parameters);
+    let first_frame = frames.first;
     // The first count that the file can hold; blocks are padded, so it may hold a few more.
-    let named: Vec<u64> = candidates.into_iter().flatten().filter(|&n| n > 0).collect();
+    let named: Vec<u64> = frames.counts().collect();
     let saturated = named.iter().all(|&n| n >= 65_535);
     let Some(&declared) = named.iter().find(|&&n| n <= present).or(named.first()) else {
         return Err(ReadError::at_byte(
