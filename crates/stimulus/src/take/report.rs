@@ -178,8 +178,13 @@ pub(crate) fn dependent_shapes(
     let rows = parts.marker_deltas.chunks_exact(parts.shape_names.len());
     let bank: Vec<f64> = rows.flat_map(|row| free.iter().map(|&k| row[k])).collect();
     let name = |k: usize| parts.shape_names[free[k]].as_str();
-    let combinations: Vec<String> = bank_columns(&bank, free.len(), 0.0)
-        .dependent
+    let mut dependent = bank_columns(&bank, free.len(), 0.0).dependent;
+    // Of two opposite shapes the least weights leave one at rest: the same face, and nothing to say.
+    let opposites = dependent.extract_if(.., |c| c.of.iter().all(|&(_, weight)| weight < 0.0));
+    if opposites.count() > 0 && dependent.is_empty() {
+        return None;
+    }
+    let combinations: Vec<String> = dependent
         .iter()
         .map(|combination| {
             let of: Vec<&str> = combination.of.iter().map(|&(k, _)| name(k)).collect();
