@@ -2,7 +2,12 @@
 // are loaded when the first clip is asked for, so that the first page comes without them.
 
 let host;
-const stageHost = () => (host ??= import("../stage/host.js"));
+// What did not arrive is asked for again the next time.
+const stageHost = () =>
+  (host ??= import("../stage/host.js").catch((error) => {
+    host = undefined;
+    throw Object.assign(new Error(error.message), { code: "module", values: {} });
+  }));
 
 const held = new Set();
 const media = {};
@@ -12,11 +17,13 @@ export async function holdSession(name) {
   // Plain HTTP on another machine has no locks.
   if (!navigator.locks || held.has(name)) return true;
   return new Promise((answer) => {
-    navigator.locks.request(`mimique/${name}`, { ifAvailable: true }, (lock) => {
+    const request = navigator.locks.request(`mimique/${name}`, { ifAvailable: true }, (lock) => {
       if (lock !== null) held.add(name);
       answer(lock !== null);
       return lock === null ? undefined : new Promise(() => {});
     });
+    // Where all cookies are blocked there are no locks either; nothing is kept that two tabs could share.
+    request.catch(() => answer(true));
   });
 }
 
@@ -31,18 +38,50 @@ export function about() {
   return JSON.stringify({ browser, version, platform });
 }
 
-/** What browser and display can do, as the JSON of `study::Display`. */
-export async function measure() {
+/** What browser and display can do, as the JSON of `study::Display`. An idle page says nothing of a slow device:
+    where a clip is given, it is drawn as the study shows it while the frames are counted. */
+export async function measure(clip, source, look) {
   const { backend, refreshPeriod } = await stageHost();
   const period = document.hidden ? null : await refreshPeriod(true);
+  const found = await backend().catch(() => null);
+  const drawn = clip && source && found && !document.hidden ? await drawnRate(clip, JSON.parse(source), JSON.parse(look)) : null;
+  const rate = period === null ? null : Math.min(1000 / period, drawn ?? Infinity);
   return JSON.stringify({
     viewport: [innerWidth, innerHeight],
     device_pixel_ratio: devicePixelRatio,
-    refresh_hz: period === null ? null : thousandth(1000 / period),
-    backend: await backend().catch(() => null),
+    refresh_hz: rate === null ? null : thousandth(rate),
+    backend: found,
     desktop: matchMedia("(any-pointer: fine)").matches && matchMedia("(any-hover: hover)").matches,
     fullscreen: document.fullscreenEnabled ?? false,
   });
+}
+
+// So long the head is drawn, and so many frames must come in that time; else it is drawn for as long as the clip lasts.
+const LOAD_MS = 1500;
+const ENOUGH_FRAMES = 8;
+
+// Frames a second of the study's own head; null where a video is shown.
+async function drawnRate(clip, source, look) {
+  if (source.video) return null;
+  const { prepareClip, openStage } = await stageHost();
+  await prepareClip(clip, source);
+  const canvas = document.createElement("canvas");
+  canvas.className = "measured";
+  canvas.setAttribute("aria-hidden", "true");
+  document.body.append(canvas);
+  const stage = await openStage(canvas, look);
+  try {
+    await stage.show(clip, 0);
+    const timer = setTimeout(() => stage.stop(), LOAD_MS);
+    let { frames } = await stage.play(clip);
+    clearTimeout(timer);
+    if (frames.length < ENOUGH_FRAMES) ({ frames } = await stage.play(clip));
+    const [first, last] = [frames[0], frames[frames.length - 1]];
+    return frames.length > 1 ? ((frames.length - 1) * 1000) / (last[0] - first[0]) : 0;
+  } finally {
+    stage.close();
+    canvas.remove();
+  }
 }
 
 /** The address of a picture or a sign-language video of the study, fetched by its hash. */
@@ -51,6 +90,18 @@ export async function mediaAddress(hash, type) {
   const bytes = await fetchPack(hash);
   media[hash] ??= URL.createObjectURL(new Blob([bytes], { type }));
   return media[hash];
+}
+
+/** Copies a text; resolves with whether that was possible. */
+export async function copy(text) {
+  if (navigator.clipboard) return navigator.clipboard.writeText(text).then(() => true, () => false);
+  // Plain HTTP has no clipboard but by hand.
+  const field = Object.assign(document.createElement("textarea"), { value: text, className: "visually-hidden" });
+  document.body.append(field);
+  field.select();
+  const copied = document.execCommand("copy");
+  field.remove();
+  return copied;
 }
 
 /** Gives the participant a text as a file. */
@@ -129,7 +180,26 @@ export async function showClip(clip, beside) {
 export async function playClip(clip, beside) {
   const here = await stage("clip");
   const there = beside ? { stage: await stage("beside"), clipId: beside } : null;
-  return JSON.stringify(onPageClock(await here.play(clip, there)));
+  const seen = watchView(() => here.stop("out of view"));
+  try {
+    return JSON.stringify(onPageClock(await here.play(clip, there)));
+  } finally {
+    seen.disconnect();
+  }
+}
+
+// The share of a picture that is in view when all of it is: layouts round to parts of a pixel.
+const WHOLE = 0.98;
+
+// Brings the pictures into view, and calls back once a part of one is not.
+function watchView(left) {
+  const pictures = [...places.values()].map(({ canvas }) => canvas.closest(".stage") ?? canvas);
+  pictures[0]?.closest(".stage-frame")?.scrollIntoView({ block: "nearest" });
+  const parts = new IntersectionObserver((seen) => {
+    if (seen.some(({ intersectionRatio }) => intersectionRatio < WHOLE)) left();
+  }, { threshold: [0, 0.25, 0.5, 0.75, 0.9, WHOLE, 1] });
+  for (const picture of pictures) parts.observe(picture);
+  return parts;
 }
 
 // The stage's times are requestAnimationFrame's: ms since the page was opened. Onset and end become

@@ -1,4 +1,5 @@
 // Which back end this browser can run, and the module built for it.
+import { failureOf, StageFailure } from "./failure.js";
 
 const MODULES = { webgpu: "../stage_webgpu.js", webgl2: "../stage_webgl.js" };
 
@@ -19,7 +20,9 @@ export function loadModule(name, fresh = false) {
   if (restarts > 0) url.searchParams.set("restart", restarts);
   let module = modules.get(url.href);
   if (!module) {
-    module = open(url.href);
+    module = open(url.href).catch((error) => {
+      throw failureOf(error, "module", `${name}: `);
+    });
     modules.set(url.href, module);
     // What did not arrive is asked for again the next time.
     module.catch(() => modules.delete(url.href));
@@ -50,7 +53,8 @@ async function detect() {
     if (reason === null) return name;
     reasons.push(`${name}: ${reason}`);
   }
-  throw new Error(
+  throw new StageFailure(
+    "no_graphics",
     `This browser cannot draw the stimuli (${reasons.join("; ")}). ` +
       "Use a current Chrome, Edge, Firefox or Safari with hardware acceleration switched on.",
   );

@@ -1,6 +1,7 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
 import { sendPanic } from "../panics.js";
 import { loadAhead } from "./backend.js";
+import { StageFailure } from "./failure.js";
 import { videoDuration } from "./video.js";
 import { fetchPack } from "./packs.js";
 import { picturesOf } from "./pictures.js";
@@ -166,7 +167,8 @@ function solve(operators, take, method) {
   return new Promise((resolve, reject) => {
     jobs.set(id, { resolve, reject });
     asked.postMessage({ id, operators, take, method });
-    timer = setTimeout(() => discard(asked, `solver: no answer for ${SOLVE_MS / 1000} s; try again`), SOLVE_MS);
+    const silent = { seconds: String(SOLVE_MS / 1000) };
+    timer = setTimeout(() => discard(asked, "solver_silent", `solver: no answer for ${silent.seconds} s`, silent), SOLVE_MS);
   }).finally(() => clearTimeout(timer));
 }
 
@@ -178,21 +180,21 @@ function startWorker() {
     jobs.delete(data.id);
     if (data.error !== undefined) {
       // A module that panicked cannot go on: the next solve gets a fresh worker.
-      if (data.panicked) discard(started, `solver: ${data.error}`);
-      job?.reject(new Error(`solver: ${data.error}`));
+      if (data.panicked) discard(started, "solver", `solver: ${data.error}`);
+      job?.reject(new StageFailure("solver", `solver: ${data.error}`));
     } else {
       job?.resolve(data);
     }
   };
   started.onerror = (event) => {
-    discard(started, `solver: ${event.message || "its worker could not be loaded"}; reload the page`);
+    discard(started, "module", `solver: ${event.message || "its worker could not be loaded"}`);
   };
   return started;
 }
 
-function discard(broken, why) {
+function discard(broken, code, why, values) {
   broken.terminate();
   if (worker === broken) worker = null;
-  for (const { reject } of jobs.values()) reject(new Error(why));
+  for (const { reject } of jobs.values()) reject(new StageFailure(code, why, values));
   jobs.clear();
 }

@@ -3,6 +3,7 @@
 import { backend, loadModule } from "./backend.js";
 import { prepareClip, preparedClip, putClip, weightsAt } from "./clips.js";
 import { refreshPeriod } from "./clock.js";
+import { StageFailure } from "./failure.js";
 import { VideoLayer } from "./video.js";
 import { fetchPack } from "./packs.js";
 import { Playback } from "./playback.js";
@@ -50,8 +51,9 @@ class Stage {
     this.#look = { background: "", variant: "stimulus", width: 640, height: 640, ...look };
     const { width, height } = this.#look;
     const frame = canvas.closest(".stage");
-    if (frame) {
-      // style.css lays the canvas out in its frame.
+    if (canvas.closest(".stage-frame")) {
+      // style.css lays the canvas out in its frame, whose page gives the size.
+    } else if (frame) {
       frame.style.setProperty("--stage-width", `${width}px`);
       frame.style.setProperty("--stage-aspect", `${width} / ${height}`);
     } else {
@@ -81,7 +83,7 @@ class Stage {
       this.#video.show(clip, timeMs);
       return true;
     }
-    if (this.#lost !== null) throw new Error(this.#lost);
+    if (this.#lost !== null) throw new StageFailure("graphics_lost", this.#lost);
     try {
       this.#fit();
       return this.#draw(clip, timeMs);
@@ -134,9 +136,9 @@ class Stage {
     while (!this.#draw(clip, 0)) await new Promise(requestAnimationFrame);
   }
 
-  /// Aborts the play in progress.
-  stop() {
-    this.#playback?.abort("stopped");
+  /// Aborts the play in progress; the log keeps why.
+  stop(why = "stopped") {
+    this.#playback?.abort(why);
   }
 
   /// Gives everything back.
@@ -284,7 +286,7 @@ async function restored(canvas) {
   const context = canvas.getContext("webgl2");
   if (!context?.isContextLost()) return;
   await new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error("graphics context: not given back within 10 s")), 10_000);
+    const timer = setTimeout(() => reject(new StageFailure("graphics_lost", "graphics context: not given back within 10 s")), 10_000);
     canvas.addEventListener("webglcontextrestored", () => (clearTimeout(timer), resolve()), { once: true });
   });
 }

@@ -1,4 +1,5 @@
 // Packs by hash: fetched once, checked, kept. Lost connections are tried again.
+import { failureOf, StageFailure } from "./failure.js";
 
 const TRIES = 5;
 // A connection that brings nothing for so long is given up and tried anew.
@@ -47,7 +48,7 @@ async function fetchWithRetry(hash, tell) {
       if (error.final && elsewhere === "/packs") break;
     }
   }
-  throw new Error(`pack ${hash.slice(0, 12)}: ${reason.message}; check the connection and try again`);
+  throw failureOf(reason, "connection", `pack ${hash.slice(0, 12)}: `);
 }
 
 async function fetchOnce(address, hash, tell) {
@@ -60,7 +61,7 @@ async function fetchOnce(address, hash, tell) {
   try {
     const answer = await fetch(address, { signal: stalled.signal });
     if (!answer.ok) {
-      const refused = new Error(`the server answered ${answer.status}`);
+      const refused = new StageFailure("refused", `the server answered ${answer.status}`, { status: String(answer.status) });
       // This server refuses in JSON and means it; what somebody on the way says may be over soon.
       const own = /json/.test(answer.headers.get("content-type"));
       refused.final = own && answer.status >= 400 && answer.status < 500 && answer.status !== 408 && answer.status !== 429;
@@ -85,7 +86,8 @@ async function fetchOnce(address, hash, tell) {
     await check(hash, bytes);
     return bytes;
   } catch (error) {
-    throw stalled.signal.aborted ? new Error(`nothing arrived for ${STALL_MS / 1000} s`) : error;
+    if (!stalled.signal.aborted) throw error;
+    throw new StageFailure("stalled", `nothing arrived for ${STALL_MS / 1000} s`, { seconds: String(STALL_MS / 1000) });
   } finally {
     clearTimeout(timer);
   }
@@ -96,7 +98,7 @@ async function check(hash, bytes) {
   if (!globalThis.crypto?.subtle) return;
   const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
   const found = Array.from(digest, (b) => b.toString(16).padStart(2, "0")).join("");
-  if (found !== hash) throw new Error(`arrived damaged (SHA-256 ${found.slice(0, 12)})`);
+  if (found !== hash) throw new StageFailure("damaged", `arrived damaged (SHA-256 ${found.slice(0, 12)})`);
 }
 
 function pause(ms) {

@@ -1,6 +1,8 @@
 // The pictures on an avatar's surfaces: JPEG files at the end of its pack, decoded by the browser.
 // `crates/avatar/src/pack/mod.rs` describes the pack.
 
+import { StageFailure } from "./failure.js";
+
 const AS_STORED = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
 const kept = new WeakMap();
 
@@ -23,7 +25,7 @@ async function decodeAll(pack) {
     if (mask.length > 0) {
       const open = await decode(mask);
       if (open.width !== picture.width || open.height !== picture.height) {
-        throw new Error("avatar: a mask of another size than its picture; prepare the avatar again");
+        throw new StageFailure("picture", "avatar: a mask of another size than its picture; prepare the avatar again");
       }
       for (let at = 0; at < picture.data.length; at += 4) picture.data[at + 3] = open.data[at];
     }
@@ -49,7 +51,7 @@ function files(pack) {
 
 async function decode(file) {
   const bitmap = await createImageBitmap(new Blob([file], { type: "image/jpeg" }), AS_STORED).catch(() => {
-    throw new Error("avatar: a picture that this browser cannot decode; export it again");
+    throw new StageFailure("picture", "avatar: a picture that this browser cannot decode; export it again");
   });
   try {
     const context = surface(bitmap.width, bitmap.height);
@@ -67,7 +69,7 @@ function surface(width, height) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });
   const context = canvas.getContext("2d", { willReadFrequently: true });
-  if (!context) throw new Error(`avatar: no room for a picture of ${width} x ${height}; close other pages`);
+  if (!context) throw new StageFailure("memory", `avatar: no room for a picture of ${width} x ${height}; close other pages`);
   return context;
 }
 
@@ -79,7 +81,8 @@ function probe() {
   for (let at = 0; at < data.length; at += 4) {
     const off = Math.max(Math.abs(data[at] - 40), Math.abs(data[at + 1] - 120), Math.abs(data[at + 2] - 200));
     if (off > 4) {
-      throw new Error(
+      throw new StageFailure(
+        "picture_hidden",
         "avatar: this browser hides pictures from pages (its protection against fingerprinting); " +
           "allow this page to read canvases, or use another browser",
       );

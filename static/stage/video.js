@@ -1,9 +1,11 @@
 // A video in the place of the canvas, and the clock that it sets while it plays.
+import { StageFailure } from "./failure.js";
 
 /// A video laid over a canvas. It is there only while a video is shown.
 export class VideoLayer {
   #canvas;
   #video = null;
+  #address = null;
 
   constructor(canvas) {
     this.#canvas = canvas;
@@ -40,8 +42,8 @@ export class VideoLayer {
       this.#video.setAttribute("aria-hidden", "true");
       this.#canvas.after(this.#video);
     }
-    if (this.#video.dataset.clip !== clip.clip) {
-      this.#video.dataset.clip = clip.clip;
+    if (this.#address !== clip.video) {
+      this.#address = clip.video;
       this.#video.src = clip.video;
     }
     this.#video.hidden = false;
@@ -56,7 +58,7 @@ export async function videoDuration(address) {
   video.muted = true;
   const loaded = new Promise((resolve, reject) => {
     video.onloadeddata = resolve;
-    video.onerror = () => reject(new Error(`video: this browser cannot play it (${video.error?.message || "unknown format"})`));
+    video.onerror = () => reject(new StageFailure("video", `video: this browser cannot play it (${video.error?.message || "unknown format"})`));
   });
   video.src = address;
   await loaded;
@@ -68,7 +70,7 @@ export async function videoDuration(address) {
   }
   const ms = (Number.isFinite(video.duration) ? video.duration : video.currentTime) * 1000;
   video.removeAttribute("src");
-  if (!(Number.isFinite(ms) && ms > 0)) throw new Error("video: its duration is not known; export it anew");
+  if (!(Number.isFinite(ms) && ms > 0)) throw new StageFailure("video", "video: its duration is not known; export it anew");
   return ms;
 }
 

@@ -32,6 +32,7 @@ export class Timeline {
   reset(frames, rate) {
     [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
     this.#curve = null;
+    $("expressions-note").textContent = "";
     this.#put([]);
   }
 
@@ -48,7 +49,10 @@ export class Timeline {
   async #open(input) {
     const file = input.files[0];
     input.value = "";
-    if (file) this.#put((await callWorker("expressionsFile", file.name, await file.text())).segments);
+    if (!file) return;
+    const found = await callWorker("expressionsFile", file.name, await file.text());
+    this.#put(found.segments);
+    $("expressions-note").textContent = found.leftOut ? `${file.name}: ${found.leftOut}` : "";
   }
 
   async #add() {

@@ -38,13 +38,13 @@ async function begin(page, address) {
   await page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });
   const here = await place(page);
   await go(page, "mouse");
-  return (await leave(page, here)).step;
+  return (await leave(page, here)).view;
 }
 
 async function here(page, address) {
   await (address ? page.goto(address) : page.reload());
   await page.waitForSelector("main[data-step]", { timeout: 30_000 });
-  return (await place(page)).step;
+  return (await place(page)).view;
 }
 
 /** Goes on to the end. */
@@ -77,7 +77,7 @@ async function refused(base) {
       const said = (await words(browser.page)).replaceAll(/[\u{a0}\u{202f}]/gu, "\u{a0}");
       assert.ok(said.includes(sentence), said);
     }
-    assert.equal(await begin(browser.page, `${base}?backend=webgl2&condition=plain`), "faces/joy2.box");
+    assert.equal(await begin(browser.page, `${base}?backend=webgl2&condition=plain`), "trial");
   } finally {
     await browser.close();
   }
@@ -86,8 +86,8 @@ async function refused(base) {
 /** Somebody in each condition; nothing that the address says later changes it. */
 async function both(base) {
   for (const [name, other, step] of [
-    ["hinted", "plain", "hint"],
-    ["plain", "hinted", "faces/joy2.box"],
+    ["hinted", "plain", "page"],
+    ["plain", "hinted", "trial"],
   ]) {
     const browser = await open("webgl2", {});
     const { page } = browser;
@@ -122,7 +122,7 @@ test("conditions: two links, two conditions, each for good", { skip: unable, tim
     // Two are in "plain" (one on the way), one in "hinted": who comes by no condition's link goes there.
     const browser = await open("webgl2", {});
     try {
-      assert.equal(await begin(browser.page, `${base}?backend=webgl2`), "hint");
+      assert.equal(await begin(browser.page, `${base}?backend=webgl2`), "page");
     } finally {
       await browser.close();
     }
@@ -151,7 +151,7 @@ test("conditions: the same on a plain web host", { skip: unable, timeout: 240_00
     const browser = await open("webgl2", {});
     try {
       const step = await begin(browser.page, `${base}?backend=webgl2`);
-      assert.ok(["hint", "faces/joy2.box"].includes(step), step);
+      assert.ok(["page", "trial"].includes(step), step);
       assert.equal(await here(browser.page), step);
     } finally {
       await browser.close();

@@ -30,14 +30,14 @@ const study = small("loading", {
 const dot = (radius) => `<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="${radius}"/></svg>`;
 
 /** Server, proxy and page of the study; the hashes of its packs. */
-async function loading() {
+async function loading(locale = "en-GB") {
   const folder = mkdtempSync(join(tmpdir(), "mimique-loading-"));
   writeFileSync(join(folder, "loading.json"), JSON.stringify(study));
   writeFileSync(join(folder, "who.svg"), dot(9));
   writeFileSync(join(folder, "which.svg"), dot(15));
   const server = await serve([join(folder, "loading.json")]);
   const proxy = await badProxy(server.url);
-  const browser = await open("webgl2", { viewport: { width: 600, height: 800 } });
+  const browser = await open("webgl2", { viewport: { width: 600, height: 800 }, locale });
   const { clips } = await (await fetch(`${server.url}/api/studies/loading`)).json();
   const begin = async () => {
     await browser.page.goto(`${proxy.url}/s/loading/?backend=webgl2`);
@@ -51,7 +51,7 @@ async function loading() {
     await proxy.close();
     await server.stop();
   };
-  return { proxy, page: browser.page, clips, begin, close };
+  return { proxy, page: browser.page, context: browser.context, clips, begin, close };
 }
 
 const choose = (page) => page.locator("fieldset[data-question] label").first().click();
@@ -155,6 +155,30 @@ test("loading: a pack that the server itself refuses is asked for once, until so
     await page.locator("[data-action=retry]").click();
     await phase(page, "ready", 60_000);
     assert.equal(here.view, "trial");
+  } finally {
+    await close();
+  }
+});
+
+test("loading: without a connection the reason is in the participant's language, and the clip comes by itself when it is back", { skip: unable, timeout: 240_000 }, async () => {
+  const { page, context, clips, begin, close } = await loading("fr-FR");
+  const take = `**/packs/${clips["joy2.box"].take}`;
+  try {
+    await page.route(take, (route) => route.abort("internetdisconnected"));
+    let here = await begin();
+    await choose(page);
+    await go(page, "mouse");
+    here = await leave(page, here);
+    assert.equal(here.view, "trial");
+    await phase(page, "failed", 60_000);
+    const said = await page.locator(".notice.bad").innerText();
+    assert.match(said, /La connexion s’est interrompue/);
+    assert.doesNotMatch(said, /pack|fetch|[0-9a-f]{8}/);
+    await page.unroute(take);
+    await context.setOffline(true);
+    await context.setOffline(false);
+    // Nobody presses anything.
+    await phase(page, "ready", 60_000);
   } finally {
     await close();
   }

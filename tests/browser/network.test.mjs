@@ -38,7 +38,7 @@ async function agree(page) {
   await page.waitForSelector("main[data-view=consent]", { timeout: 60_000 });
   const here = await place(page);
   await go(page, "mouse");
-  return leave(page, here);
+  return leave(page, here, 60_000);
 }
 
 test("network: a start and an append that nobody answers are asked again", { skip: unable, timeout: 240_000 }, async () => {
@@ -50,9 +50,10 @@ test("network: a start and an append that nobody answers are asked again", { ski
   try {
     silentOnce("/sessions");
     await page.goto(`${proxy.url}/s/demo/?backend=webgl2`);
+    const agreed = agree(page);
     await until("the start is swallowed", () => proxy.counts.silent === 1);
     assert.equal((await place(page)).view, "opening");
-    await agree(page);
+    await agreed;
     assert.equal((await session()).participant, 1, "the same session, asked for twice");
     await until("the agreement is stored", async () => (await stored()).events.some(({ body }) => body.type === "consented"));
 

@@ -61,7 +61,8 @@ for (const [scheme, width, locale] of [["light", 1280, "en-GB"], ["dark", 320, "
       await page.locator("[data-action=decline]").click();
       await at("declined");
       await look("declined");
-      await page.locator("[data-action=another-person]").click();
+      // Who has pressed the wrong button goes back.
+      await page.locator("[data-action=back-to-consent]").click();
       await at("consent");
       await go(page, "mouse");
 

@@ -35,7 +35,7 @@ for (const backend of ["webgl2", "webgpu"]) {
           await phase(page, "playing");
           for (const at of [800, 1600, 2400]) {
             await page.waitForTimeout(800);
-            await page.locator(".stage canvas").screenshot({ path: join(shots, `${trials}-${here.clip}-${at}.png`) });
+            await page.locator(".stage canvas").screenshot({ path: join(shots, `${trials}-${at}.png`) });
           }
           await phase(page, "answering", 120_000);
           here = await place(page);

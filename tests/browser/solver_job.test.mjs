@@ -1,4 +1,4 @@
-// The worker that solves clips says nothing for minutes: the clip fails with words, and the next try gets
+// The worker that solves clips says nothing for minutes: the clip fails with a code that the page words, and the next try gets
 // another worker. Without a browser: `static/stage/clips.js` itself, with a worker of the test's own.
 
 import assert from "node:assert/strict";
@@ -39,7 +39,8 @@ test("solver job: a silent worker is given up, and the next one solves", async (
     mock.timers.tick(179_000);
     assert.equal(silent.ended, false);
     mock.timers.tick(1_000);
-    await assert.rejects(first, /solver: no answer for 180 s; try again/);
+    // A code with its value, which the page words.
+    await assert.rejects(first, { code: "solver_silent", values: { seconds: "180" }, message: "solver: no answer for 180 s" });
     assert.equal(silent.ended, true);
 
     const second = prepareClip("joy", source);

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { answer, clipOf, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 
 const study = "study-config/demo.json";
@@ -71,12 +71,14 @@ async function takePart(server, { backend, hands, locale, colorScheme, viewport 
           await go(page, hands);
         }
         await page.waitForTimeout(1_500);
-        if (trials <= 2) await page.screenshot({ path: join(shots, `clip-${here.clip}.png`) });
+        if (trials <= 2) await page.screenshot({ path: join(shots, `clip-${trials}.png`) });
         await phase(page, "answering");
         here = await place(page);
       }
       if (here.view === "trial" || here.view === "questions") {
-        for (const one of await answer(page, hands, here.step)) given.push({ ...one, step: here.step, clip: here.clip });
+        const clip = here.view === "trial" ? await clipOf(page, server, "demo", trials) : undefined;
+        if (clip) assert.ok(!(await page.content()).includes(clip), `the page does not say that it is ${clip}`);
+        for (const one of await answer(page, hands, here.step)) given.push({ ...one, step: here.step, clip });
         if (trials === 1) await page.screenshot({ path: join(shots, "answered.png"), fullPage: true });
       }
       if (["consent", "questions", "page", "trial"].includes(here.view)) await go(page, hands);

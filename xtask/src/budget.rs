@@ -31,8 +31,9 @@ const BUDGETS: [Budget; 4] = [
             "app_bg.wasm",
         ],
         // The goal is 220. serde's readers of the study's projection and of events are what stands between;
-        // docs/measured/page-speed.md says what the goal would cost.
-        kilobytes: 320.0,
+        // docs/measured/page-speed.md says what the goal would cost. 12 of them are the reasons of failures in
+        // both languages, what happens before the session, and what is said when the first page does not come.
+        kilobytes: 336.0,
     },
     Budget {
         name: "the solver and the scripts of the stage",

@@ -133,6 +133,30 @@ fn an_export_without_trials_or_columns_is_refused() {
     assert!(refusal.contains("column \"participant_id\": there is no such column"), "{refusal}");
 }
 
+/// One row that cannot be read does not take the report away from everybody.
+#[test]
+fn rows_that_name_no_trial_or_response_are_skipped_and_counted() {
+    let study = demo_study();
+    let text = export(&study, &Raters { people: 9, effect: 0.5, seed: 4 });
+    let whole = analyze(&Table::parse(text.as_bytes()).unwrap(), &study, Language::English);
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let row: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+    let blank = |name: &str| {
+        let place = names.iter().position(|known| *known == name).unwrap();
+        let mut cells = row.clone();
+        cells[place] = "";
+        cells.join(",")
+    };
+    let spoilt = format!("{text}{}\n{}\n", blank("trial_id"), blank("response_id"));
+    let report = analyze(&Table::parse(spoilt.as_bytes()).unwrap(), &study, Language::English);
+    let (whole, report) = (whole.unwrap(), report.unwrap());
+    assert_eq!(results(&report)["flow"]["rows_unread"], 2);
+    assert_eq!(results(&whole)["flow"].get("rows_unread"), None);
+    assert_eq!(report.readings, whole.readings, "what can be read is read as ever");
+    let page = &report.files[0].text;
+    assert!(page.contains("rows that name no trial or no response: 2"), "the chart says so");
+}
+
 /// Numbers of a table's row as its CSV has them.
 fn row<'t>(report: &'t mimique_analysis::Report, path: &str, start: &str) -> Vec<&'t str> {
     let file = report.files.iter().find(|file| file.path == path).unwrap();

@@ -31,6 +31,7 @@ mod settings;
 
 pub use driven::{Driven, DrivenError};
 pub use glb::{GlbWriteError, read_gltf, write_glb};
+pub use obj::is_folder_of_poses;
 pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar, read_avatar_bytes};
 pub use read_error::ReadError;

@@ -321,6 +321,35 @@ fn png_textures_travel_through_the_pack() {
     assert!((i32::from(image.rgba[4 * 30 + 3]) - 128).abs() < 6, "{}", image.rgba[4 * 30 + 3]);
 }
 
+/// What does not change the face's shape may be required: the picture is passed over, and named.
+#[test]
+fn pictures_in_other_formats_and_lights_are_passed_over() {
+    let mut b = textured(b"RIFF....WEBPVP8 ");
+    b.document["extensionsRequired"] = json!(["EXT_texture_webp", "KHR_lights_punctual"]);
+    b.document["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+    b.document["textures"][0] = json!({"extensions": {"EXT_texture_webp": {"source": 0}}});
+    let read = b.read();
+    assert_eq!(read.avatar.meshes[0].base_colour, [1.0, 0.5, 1.0]);
+    assert!(read.avatar.textures.is_empty());
+    let note = "textures[0] has its picture by EXT_texture_webp alone, which is not read: its surface keeps its \
+                plain colour";
+    assert!(read.notes.iter().any(|n| n == note), "{:?}", read.notes);
+    b.document["textures"][0] = json!({"extensions": {"KHR_texture_basisu": {"source": 0}}});
+    b.document["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+    assert!(b.read().notes.iter().any(|n| n.contains("by KHR_texture_basisu alone")));
+    // A source beside the extension's is read.
+    let mut both = textured(&halves(32));
+    both.document["textures"][0]["extensions"] = json!({"EXT_texture_webp": {"source": 9}});
+    assert_eq!(both.read().avatar.textures.len(), 1);
+    let mut missing = textured(&halves(32));
+    missing.document["textures"][0]["source"] = json!(7);
+    assert!(
+        missing.refusal().contains("images[7]: the image does not exist"),
+        "{}",
+        missing.refusal()
+    );
+}
+
 #[test]
 fn jpeg_textures_travel_as_they_are() {
     let mut jpeg = Vec::new();

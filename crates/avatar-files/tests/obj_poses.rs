@@ -6,7 +6,9 @@ use std::path::Path;
 
 use mimique_avatar::pack::encode_pack;
 use mimique_avatar::{Avatar, Part};
-use mimique_avatar_files::{AvatarSettings, ReadAvatar, ReadError, read_avatar};
+use mimique_avatar_files::{
+    AvatarSettings, ReadAvatar, ReadError, is_folder_of_poses, read_avatar,
+};
 use mimique_test_support::real_data;
 
 /// A folded sheet of quads, two teeth and a pose `smile` that lifts its corner.
@@ -41,6 +43,10 @@ fn read(files: &[(&str, String)]) -> Result<ReadAvatar, ReadError> {
 
 #[test]
 fn a_folder_of_poses_is_a_head() {
+    let there = folder(&files());
+    assert!(is_folder_of_poses(there.path()));
+    assert!(!is_folder_of_poses(&there.path().join("smile.obj")));
+    assert!(!is_folder_of_poses(folder(&[("notes.txt", String::new())]).path()));
     let read = read(&files()).unwrap();
     let avatar = &read.avatar;
     assert_eq!(avatar.shape_names, ["AU26", "smile"]);

@@ -80,7 +80,7 @@ pub fn check_file(file: &Path) -> anyhow::Result<Report> {
     let data = std::env::var_os("MIMIQUE_DATA").map(PathBuf::from);
     Ok(check(&text, &|path| {
         let found = resolve_path(path, folder, data.as_deref())?;
-        if found.is_file() {
+        if mimique_stimulus::is_source(&found) {
             return Ok(());
         }
         Err(Problem::NoFile { path: found.display().to_string() })

@@ -4,8 +4,12 @@ use std::io::Write as _;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::Context as _;
-use mimique_server::erase_overdue;
+use mimique_server::{ClockDoubt, Sweep, confirm_clock, sweep_overdue, withdrawal_hash};
 use mimique_storage::Storage;
+use mimique_study::iso_time;
+
+/// Whoever types commands, in the server's log.
+const COMMAND: &str = "(server)";
 
 /// Options.
 #[derive(clap::Args)]
@@ -14,18 +18,26 @@ pub struct Args {
     #[arg(long, default_value = "sqlite:mimique-data/answers.sqlite")]
     database: String,
     /// Study
-    #[arg(long, required_unless_present = "overdue")]
+    #[arg(long, required_unless_present_any = ["overdue", "code"])]
     study: Option<String>,
     /// Participant number: delete everything of this participant, as if they had withdrawn
-    #[arg(long, short = 'k', requires = "study", required_unless_present_any = ["overdue", "identifiers"])]
+    #[arg(long, short = 'k', requires = "study", required_unless_present_any = ["overdue", "identifiers", "code"])]
     participant: Option<u64>,
+    /// Withdrawal code that a participant has sent: delete everything of theirs, in whatever study or in
+    /// --study
+    #[arg(long, conflicts_with_all = ["participant", "identifiers", "overdue"])]
+    code: Option<String>,
     /// Delete the recruitment identifiers alone (of all participants if no number is given); repeats
     /// by them are then not recognised any more
     #[arg(long, requires = "study")]
     identifiers: bool,
-    /// Delete what is older than its study's retentionDays; the server does so every hour
+    /// Mark what is older than its study's retentionDays, and delete what has been marked for a week; the
+    /// server does so every hour
     #[arg(long, conflicts_with_all = ["study", "participant", "identifiers"])]
     overdue: bool,
+    /// With --overdue: the clock is right, though it has gone on by days since it was last seen
+    #[arg(long, requires = "overdue")]
+    clock_is_right: bool,
 }
 
 /// Runs the command.
@@ -37,18 +49,25 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .block_on(async {
             let storage = Storage::open_existing(&args.database).await?;
             let outcome = match (&args.study, args.participant) {
+                (study, _) if let Some(code) = &args.code => {
+                    let hash = withdrawal_hash(code);
+                    let done = storage
+                        .withdraw_by_code(study.as_deref(), &hash, COMMAND, now_ms)
+                        .await
+                        .with_context(|| format!("--code: {code}"))?;
+                    ("events", done.deleted)
+                }
                 (Some(study), participant) if args.identifiers => {
-                    let number = storage.erase_identifiers(study, participant, now_ms).await?;
+                    let number =
+                        storage.erase_identifiers(study, participant, COMMAND, now_ms).await?;
                     ("identifiers and marks", number)
                 }
                 (Some(study), Some(participant)) => {
-                    let number = storage.erase_participant(study, participant, now_ms).await;
+                    let number =
+                        storage.erase_participant(study, participant, COMMAND, now_ms).await;
                     ("events", number.with_context(|| format!("{study}: {participant}"))?)
                 }
-                _ => {
-                    let erased = erase_overdue(&storage, now_ms).await?;
-                    ("sessions' answers", erased.iter().map(|(_, sessions)| sessions).sum())
-                }
+                _ => ("sessions' answers", overdue(&storage, args.clock_is_right, now_ms).await?),
             };
             storage.close().await;
             anyhow::Ok(outcome)
@@ -64,4 +83,25 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// Deletes what has been marked for long enough; says what waits.
+async fn overdue(storage: &Storage, clock_is_right: bool, now_ms: i64) -> anyhow::Result<u64> {
+    if clock_is_right {
+        confirm_clock(storage, now_ms).await?;
+    }
+    let swept = match sweep_overdue(storage, now_ms).await? {
+        Sweep::Done(swept) => swept,
+        Sweep::Doubted(ClockDoubt { seen_ms, now_ms }) => anyhow::bail!(
+            "the clock shows {}, and {} was seen before; nothing is deleted: set the clock, or say \
+             --clock-is-right",
+            iso_time(now_ms as f64),
+            iso_time(seen_ms as f64),
+        ),
+    };
+    let marked: u64 = swept.iter().map(|study| study.marked).sum();
+    if marked > 0 {
+        eprintln!("{marked} sessions are over their time: their answers are deleted in a week");
+    }
+    Ok(swept.iter().map(|study| study.erased).sum())
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use mimique_avatar::pack::{decode_pack, pack_kind};
-use mimique_mocap::{CaptureFacts, ReadOptions, WeightOptions};
+use mimique_mocap::{CaptureFacts, ReadError, ReadOptions, WeightOptions, formats};
 use mimique_stimulus::{AvatarSkin, BankDiagnosis, MarkerMap};
 use serde_json::{Value, json};
 
@@ -126,10 +126,21 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
         }
         Ok(value) if value.get("markers").is_some_and(Value::is_object) => map_facts(text),
         Ok(value) if value.get("stimuli").is_some() => study_facts(&value),
-        // What is neither is best explained by the reader of captures, which names what it reads.
-        _ => match capture.recording(&ReadOptions::default()) {
-            Err(error) => Err(error.into()),
-            Ok(_) => Err(anyhow!("byte 0: not a file that Mimique knows")),
-        },
+        _ => Err(unknown(capture.recording(&ReadOptions::default()).err())),
     }
+}
+
+/// What to say of a file of no known kind: what it starts with, and everything that is told of.
+fn unknown(error: Option<ReadError>) -> anyhow::Error {
+    let found = match error {
+        Some(ReadError::Unrecognised { found, .. }) => format!(", {found}"),
+        Some(other) => return other.into(),
+        None => String::new(),
+    };
+    let formats: Vec<&str> = formats().iter().map(|format| format.name).collect();
+    anyhow!(
+        "byte 0: not a file that Mimique knows{found}; give an avatar (.glb, .gltf, a folder or an archive of OBJ \
+         poses), a capture or weights ({}), a marker map (CSV with a column marker, or JSON), a study file or a pack",
+        formats.join(", ")
+    )
 }

@@ -13,7 +13,6 @@ mod export;
 mod export_site;
 mod import;
 mod inspect;
-mod media;
 mod order;
 mod output;
 mod power;

@@ -7,10 +7,10 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{anyhow, bail};
 use mimique_geometry::coordinates;
-use mimique_mocap::{CaptureFile, WeightOptions, stabilise};
+use mimique_mocap::{CaptureFile, Format, WeightOptions, stabilise};
 use mimique_stimulus::{
-    Channels, EafAnnotation, EafDocument, SuggestOptions, TakeSegment, cut, read_segments,
-    study_segments, suggest, write_segments,
+    Channels, EafAnnotation, EafDocument, EafSegments, LeftOut, SuggestOptions, TakeSegment, cut,
+    read_segments, study_segments, suggest, write_segments,
 };
 use mimique_study::iso_time;
 use serde_json::json;
@@ -85,9 +85,11 @@ fn check(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The segments of a file, all of which lie in the take.
-fn read_of(file: &Path, tier: &str, take: &Take) -> anyhow::Result<Vec<TakeSegment>> {
-    let segments = read(file, tier, take.rate_hz)?;
+/// The segments of a file, all of which lie in the take; what of the file is none is noted.
+fn read_of(file: &Path, tier: &str, take: &mut Take) -> anyhow::Result<Vec<TakeSegment>> {
+    let EafSegments { segments, left_out } = read(file, tier, take.rate_hz)?;
+    let said = left_out.sentence().map(|left_out| format!("{}: {left_out}", file.display()));
+    take.notes.extend(said);
     if let Some(out) = segments.iter().find(|s| s.clip.end > take.frames()) {
         bail!(
             "{}: {}: ends at frame {} of {}; give the segments of this take",
@@ -104,7 +106,7 @@ fn read_of(file: &Path, tier: &str, take: &Take) -> anyhow::Result<Vec<TakeSegme
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     check(&args)?;
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
-    let take = take(&args)?;
+    let mut take = take(&args)?;
     let channels = Channels { values: &take.values, count: take.count, rate_hz: take.rate_hz };
     let options = SuggestOptions {
         neutral: args.neutral.as_ref().map(|n| n.0.clone()),
@@ -113,7 +115,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     };
     let mut found = suggest(channels, &options).map_err(|e| blame(e.to_string()))?;
     if let Some(file) = &args.from {
-        found.segments = read_of(file, &args.tier, &take)?;
+        found.segments = read_of(file, &args.tier, &mut take)?;
     }
     found.segments = cut(&found.segments, take.frames(), take.rate_hz, args.lead_in, args.lead_out);
     if let Some(out) = &args.out {
@@ -187,12 +189,14 @@ fn take(args: &Args) -> anyhow::Result<Take> {
                 blame("column time: no rate; give it with --mocap-rate".to_owned())
             })?;
             let count = table.shape_names.len();
-            Ok(Take { values: table.weights, count, rate_hz, notes: Vec::new() })
+            let notes = file.format().map(Format::taken_for).into_iter().collect();
+            Ok(Take { values: table.weights, count, rate_hz, notes })
         }
         _ => {
-            let mut capture = args.read.recording(&args.take, &mut file)?.capture;
-            let head = args.read.head()?;
-            let mut notes = std::mem::take(&mut capture.notes);
+            let recording = args.read.recording(&args.take, &mut file)?;
+            let (mut capture, head) = (recording.capture, args.read.head()?);
+            let mut notes = vec![recording.format.taken_for()];
+            notes.append(&mut capture.notes);
             if head.is_empty() {
                 notes.push(
                     "no head markers are named: head motion is taken for expression; use --head"
@@ -209,7 +213,7 @@ fn take(args: &Args) -> anyhow::Result<Take> {
 }
 
 /// Segments from a CSV or an ELAN document.
-fn read(file: &Path, tier: &str, rate_hz: f64) -> anyhow::Result<Vec<TakeSegment>> {
+fn read(file: &Path, tier: &str, rate_hz: f64) -> anyhow::Result<EafSegments> {
     let blame = |e: String| anyhow!("{}: {e}", file.display());
     let text =
         std::fs::read_to_string(file).map_err(|e| blame(format!("open: {e}; check the path")))?;
@@ -217,7 +221,8 @@ fn read(file: &Path, tier: &str, rate_hz: f64) -> anyhow::Result<Vec<TakeSegment
         let document = EafDocument::parse(&text).map_err(|e| blame(e.to_string()))?;
         document.segments(tier, rate_hz).map_err(|e| blame(e.to_string()))
     } else {
-        read_segments(&text).map_err(|e| blame(e.to_string()))
+        let segments = read_segments(&text).map_err(|e| blame(e.to_string()))?;
+        Ok(EafSegments { segments, left_out: LeftOut::default() })
     }
 }
 

@@ -9,9 +9,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
-use mimique_server::{Access, App, Assets, HostedStudy, PackStore, Settings, Stage};
-use mimique_stimulus::{Places, prepare};
-use mimique_storage::Storage;
+use mimique_server::{
+    Access, App, Assets, HostedStudy, Network, PackStore, Settings, Stage, prepare_hosting,
+};
+use mimique_stimulus::Places;
+use mimique_storage::{Storage, durable_file};
 use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;
@@ -55,6 +57,10 @@ pub struct Args {
     /// never stored)
     #[arg(long)]
     behind_proxy: bool,
+    /// With --behind-proxy: address or network of a proxy on another machine (10.0.0.0/8); X-Real-IP of
+    /// others is not believed. May be given several times
+    #[arg(long, requires = "behind_proxy")]
+    proxy: Vec<Network>,
     /// Address under which browsers find packs by their hash, instead of here:
     /// `https://cdn.example.org/packs`
     #[arg(long)]
@@ -66,6 +72,9 @@ pub struct Args {
     /// Connections at once; further ones wait
     #[arg(long, default_value_t = Settings::default().most_connections)]
     most_connections: usize,
+    /// Connections of one address at once; further ones are closed
+    #[arg(long, default_value_t = Settings::default().connections_per_address)]
+    connections_per_address: usize,
     /// Requests a second from one address in the long run; ten times as many at once
     #[arg(long, default_value_t = Settings::default().requests_per_second)]
     requests_per_second: u32,
@@ -96,9 +105,11 @@ impl Args {
         Ok(Settings {
             behind_tls: self.behind_tls,
             behind_proxy: self.behind_proxy,
+            proxies: self.proxy.clone(),
             packs_address,
             metrics_token: self.metrics_token.clone().or_else(from_environment),
             most_connections: self.most_connections,
+            connections_per_address: self.connections_per_address,
             requests_per_second: self.requests_per_second,
             ..Settings::default()
         })
@@ -121,7 +132,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         || format!("{}: cannot listen there; choose another address by --listen", args.listen);
     // A port that is taken is said before the stimuli are prepared.
     drop(std::net::TcpListener::bind(args.listen).with_context(cannot_listen)?);
-    std::fs::create_dir_all(&args.data_dir).with_context(|| {
+    durable_file::private_folder(&args.data_dir).with_context(|| {
         format!("{}: cannot be made; choose another folder by --data-dir", args.data_dir.display())
     })?;
     let packs_folder = args.data_dir.join("packs");
@@ -275,7 +286,7 @@ pub fn prepare_study(
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
         bar.set_style(style);
     }
-    let prepared = prepare(study, &Places::of(file, packs), &mut |progress| {
+    let prepared = prepare_hosting(study, &Places::of(file, packs), &mut |progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
         bar.set_message(format!("preparing {}", progress.what));
@@ -285,10 +296,7 @@ pub fn prepare_study(
     for (pointer, text) in &prepared.warnings {
         eprintln!("warning: {}: {pointer}: {text}", file.display());
     }
-    let mut clips = prepared.clips;
-    crate::media::add(study, file, packs, &mut clips)
-        .map_err(|error| format!("{}: {error}", file.display()))?;
-    Ok(clips)
+    Ok(prepared.clips)
 }
 
 /// An address that a browser on this machine can open.

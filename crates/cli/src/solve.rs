@@ -122,8 +122,10 @@ fn read(args: &Args, markers: &Path, spec: &mut MethodSpec) -> anyhow::Result<In
         training: training(args, &avatar.avatar.shape_names)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
+    let taken_for = recording.format.taken_for();
     let of_avatar = avatar.notes.iter().map(|n| (&args.avatar, n));
-    let of_both = of_avatar.chain(recording.capture.notes.iter().map(|n| (&args.mocap, n)));
+    let of_capture = std::iter::once(&taken_for).chain(&recording.capture.notes);
+    let of_both = of_avatar.chain(of_capture.map(|n| (&args.mocap, n)));
     let mut notes: Vec<String> =
         of_both.map(|(file, n)| format!("{}: {n}", file.display())).collect();
     notes.extend(sidecar.map(|s| {

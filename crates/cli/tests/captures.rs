@@ -118,6 +118,102 @@ fn repair_lists_what_it_mends_and_solve_knows_of_it() {
     assert!(!folder.path().join("none.csv").exists());
 }
 
+/// A frame that no face makes: nothing is written and the frame is named, or it is held and marked.
+#[test]
+fn a_frame_that_is_not_solved_refuses_the_take_or_is_held() {
+    let Some(data) = planted("a_frame_that_is_not_solved_refuses_the_take_or_is_held") else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    let mut take = rows(&data.join("take_n01.csv"));
+    take.truncate(121);
+    let column = take[0].iter().position(|cell| cell == "M05_y").expect("a column");
+    let value: f64 = take[81][column].parse().expect("a number");
+    take[81][column] = (value + 5000.0).to_string();
+    let number: u64 = take[81][0].parse().expect("the frame's number");
+    write(&folder.path().join("take.csv"), &take);
+    let (avatar, map) = (text(&data.join("avatar_skin.glb")), text(&data.join("mapping.csv")));
+    let (take, out, report) = (at("take.csv"), at("out.csv"), at("report.json"));
+    let mut args = vec!["solve", "--avatar", &avatar, "--mocap", &take, "--markers", &map];
+    args.extend(["--method", "nnls", "--neutral", "0:40", "--out", &out, "--report", &report]);
+    let said = refused(&args);
+    assert!(
+        said.contains(&format!("frame {number}: ")) && said.contains("--unsolved hold"),
+        "{said}"
+    );
+    assert!(!Path::new(&out).exists() && !Path::new(&report).exists(), "nothing is written");
+    // A method within bounds solves the frame, but not without a word.
+    let bounded: Vec<&str> = args.iter().map(|a| if *a == "nnls" { "box" } else { a }).collect();
+    let said = ok(&bounded);
+    assert!(said.contains(&format!("the worst is {number}, 7")), "{said}");
+    args.extend(["--unsolved", "hold"]);
+    let said = ok(&args);
+    assert!(said.contains("note: ") && said.contains("take.csv: read as "), "{said}");
+    let report = std::fs::read_to_string(report).expect("a report");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    assert_eq!(report["summary"]["held"], serde_json::json!([1, 80]), "{}", report["summary"]);
+    let weights = rows(Path::new(&out));
+    let row = |frame: usize| -> Vec<f64> {
+        weights[frame + 1][2..].iter().map(|cell| cell.parse().expect("a weight")).collect()
+    };
+    for ((held, before), after) in row(80).iter().zip(row(79)).zip(row(81)) {
+        assert!(
+            (held - (before + after) / 2.0).abs() < 1e-12,
+            "{held} between {before} and {after}"
+        );
+    }
+}
+
+/// A folder of poses is an avatar like any other: for recorded weights, and in a study file.
+#[test]
+fn a_folder_of_poses_takes_recorded_weights_and_stands_in_a_study() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| text(&folder.path().join(name));
+    let head = folder.path().join("head");
+    std::fs::create_dir(&head).expect("a folder");
+    for (name, lift) in [("neutral", 0.0), ("smile", 3.0), ("jawOpen", -5.0)] {
+        let pose = format!("o Head\nv 0 0 0\nv 10 {lift} 0\nv 10 10 1\nv 0 10 0\nf 1 2 3 4\n");
+        std::fs::write(head.join(format!("{name}.obj")), pose).expect("a pose");
+    }
+    let weights = "frame,time,jawOpen,smile\n0,0,0,0\n1,0.01,0.5,1\n";
+    std::fs::write(folder.path().join("weights.csv"), weights).expect("weights");
+    let solve = |head: &str| {
+        let said = ok(&[
+            "solve",
+            "--method",
+            "recorded",
+            "--avatar",
+            head,
+            "--mocap",
+            &at("weights.csv"),
+            "--out",
+            &at("out.csv"),
+            "--json",
+        ]);
+        serde_json::from_str::<Value>(&said).expect("JSON")["provenance"].clone()
+    };
+    let before = solve(&at("head"));
+    assert_eq!(rows(&folder.path().join("out.csv"))[2][2..], ["0.5", "1"]);
+    // What the avatar is known by is what it holds.
+    let pose = head.join("smile.obj");
+    let other = std::fs::read_to_string(&pose).expect("a pose").replace("10 3 0", "10 4 0");
+    std::fs::write(&pose, other).expect("a pose");
+    assert_ne!(solve(&at("head")), before);
+
+    let study = serde_json::json!({
+        "id": "s", "studyMetadata": {"title": "t", "version": "1"}, "languages": ["en"],
+        "components": {"i": {"type": "instructions", "text": {"en": "x"}}},
+        "sequence": {"order": "fixed", "components": ["i"]},
+        "stimuli": {"avatars": {"mine": {"file": "head"}, "none": {"file": "nothing"}}},
+    });
+    std::fs::write(folder.path().join("study.json"), study.to_string()).expect("a study");
+    let said = common::mimique(&["check", &at("study.json")]);
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(said.contains("/stimuli/avatars/none"), "{said}");
+    assert!(!said.contains("/stimuli/avatars/mine/file"), "{said}");
+}
+
 #[test]
 fn segments_go_to_csv_and_elan_and_back() {
     let Some(data) = planted("segments_go_to_csv_and_elan_and_back") else { return };

@@ -6,6 +6,7 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{ok, refused, text};
+use mimique_server::withdrawal_hash;
 use mimique_session::wire::Event;
 use mimique_storage::{NewSession, Storage, StudyVersion};
 use serde_json::{Value, json};
@@ -36,7 +37,7 @@ impl Kept {
             for person in ["a", "b"] {
                 let session = NewSession {
                     token_hash: person.repeat(64),
-                    withdrawal_hash: "w".repeat(64),
+                    withdrawal_hash: withdrawal_hash(&person.repeat(16)),
                     study_id: "faces".into(),
                     config_hash: "c".repeat(64),
                     seed: 1,
@@ -223,4 +224,26 @@ fn erase_refuses_and_deletes_nothing() {
     let error = refused(&["erase", "--database", &kept.database, "--study", "other", "-k", "1"]);
     assert!(error.contains("other: 1"), "{error}");
     assert_eq!(stored(&kept.database), [(1, 3), (2, 3)]);
+}
+
+#[test]
+fn a_withdrawal_code_is_redeemed_by_the_code_alone() {
+    let kept = Kept::new();
+    let erase = |code: &str, more: &[&str]| {
+        let mut words = vec!["erase", "--database", &kept.database, "--code", code];
+        words.extend(more);
+        words.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    for (code, more) in [("cccc-cccc-cccc-cccc", &[][..]), ("b", &[]), ("", &[])] {
+        let said = erase(code, more);
+        let error = refused(&said.iter().map(String::as_str).collect::<Vec<_>>());
+        assert!(error.contains("answers.sqlite") && error.contains("--code"), "{error}");
+    }
+    let elsewhere = erase("bbbb-bbbb-bbbb-bbbb", &["--study", "other"]);
+    refused(&elsewhere.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(stored(&kept.database), [(1, 3), (2, 3)]);
+    let done = erase("BBBB bbbb-bbbb-bbbb", &[]);
+    let said = ok(&done.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(said.starts_with("3 events deleted"), "{said}");
+    assert_eq!(stored(&kept.database), [(1, 3), (2, 0)]);
 }

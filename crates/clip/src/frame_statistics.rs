@@ -22,6 +22,9 @@ pub struct FrameStatistics {
     pub missing_markers: u64,
     /// Frames that were not solved and are held from those around them; the first of them.
     pub held: Option<(usize, usize)>,
+    /// Frames whose residual stands out of the take's; the worst of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_outliers: Option<(usize, usize)>,
     /// Frames in which no marker is seen; the first of them.
     pub without_markers: Option<(usize, usize)>,
     /// Frames whose norm had to be smoothed.
@@ -32,6 +35,23 @@ pub struct FrameStatistics {
     /// Largest predictive standard deviation of a regression.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deviation_worst: Option<f64>,
+}
+
+/// How many times the median of a take a residual is that stands out.
+const OUTLIER_RATIO: f64 = 5.0;
+
+/// Below this residual none stands out, metres: a clean take has frames of almost none.
+const OUTLIER_LEAST: f64 = 5e-3;
+
+/// How many frames' residuals stand out of the take's, and the worst of them.
+fn residual_outliers(reports: &[FrameReport]) -> Option<(usize, usize)> {
+    let mut sorted: Vec<f64> = reports.iter().map(|r| r.residual).collect();
+    sorted.sort_by(f64::total_cmp);
+    let most = (OUTLIER_RATIO * sorted.get(sorted.len() / 2)?).max(OUTLIER_LEAST);
+    let count = sorted.iter().filter(|residual| **residual > most).count();
+    let worst =
+        (0..reports.len()).max_by(|&a, &b| reports[a].residual.total_cmp(&reports[b].residual))?;
+    (count > 0).then_some((count, worst))
 }
 
 impl FrameStatistics {
@@ -55,6 +75,7 @@ impl FrameStatistics {
             kkt_worst: most(|r| r.kkt_error),
             missing_markers: reports.iter().map(|r| u64::from(r.missing_markers)).sum(),
             held: with(FrameWarning::Held),
+            residual_outliers: residual_outliers(reports),
             without_markers: with(FrameWarning::NoMarkers),
             smoothed: with(FrameWarning::Smoothed).map_or(0, |(count, _)| count),
             far_from_training: with(FrameWarning::FarFromTraining),
@@ -72,6 +93,15 @@ impl FrameStatistics {
                 "{} not solved (the first is {}): held from the solved frames around",
                 frames(count),
                 first as u64 + first_frame,
+            ));
+        }
+        if let Some((count, worst)) = self.residual_outliers {
+            out.push(format!(
+                "{} with a residual over {OUTLIER_RATIO} times the take's median (the worst is {}, {:.1} mm): \
+                 a marker may jump or change its label there; look at it, or repair the capture",
+                frames(count),
+                worst as u64 + first_frame,
+                self.residual_worst_mm,
             ));
         }
         if let Some((count, first)) = self.without_markers {
@@ -102,6 +132,21 @@ impl FrameStatistics {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_residual_that_stands_out_is_told_with_its_frame() {
+        let mut reports = vec![FrameReport { residual: 0.002, ..FrameReport::default() }; 20];
+        reports[7].residual = 0.0049;
+        assert_eq!(FrameStatistics::of(&reports).residual_outliers, None, "less than 5 mm");
+        reports[7].residual = 0.011;
+        reports[9].residual = 0.7375;
+        let statistics = FrameStatistics::of(&reports);
+        assert_eq!(statistics.residual_outliers, Some((2, 9)));
+        let said = statistics.warnings(100);
+        assert!(said[0].starts_with("2 frames with a residual over 5 times"), "{said:?}");
+        assert!(said[0].contains("the worst is 109, 737.5 mm"), "{said:?}");
+        assert_eq!(FrameStatistics::of(&[]).residual_outliers, None);
+    }
 
     #[test]
     fn frames_that_fail_are_counted_and_named() {

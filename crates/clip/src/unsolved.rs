@@ -49,15 +49,14 @@ pub(crate) fn settle(
         return Err(UnsolvedFrames { count: unsolved.len(), frames: reports.len(), first, why });
     }
     let n = weights.len() / reports.len();
+    let solved: Vec<usize> = (0..reports.len()).filter(|&f| !is_unsolved(&reports[f])).collect();
     for &frame in &unsolved {
-        let before = (0..frame).rev().find(|&f| !is_unsolved(&reports[f]));
-        let after = (frame + 1..reports.len()).find(|&f| !is_unsolved(&reports[f]));
-        let (from, to) = match (before, after) {
-            (Some(before), Some(after)) => (before, after),
-            (Some(only), None) | (None, Some(only)) => (only, only),
-            (None, None) => continue,
-        };
-        let share = if from == to { 0.0 } else { (frame - from) as f64 / (to - from) as f64 };
+        // The solved frames on both sides; at an end of the take the only one there is.
+        let after = solved.partition_point(|&f| f < frame);
+        let from = solved[after.saturating_sub(1)];
+        let to = solved[after.min(solved.len() - 1)];
+        let inside = from < frame && frame < to;
+        let share = if inside { (frame - from) as f64 / (to - from) as f64 } else { 0.0 };
         for k in 0..n {
             let (a, b) = (weights[from * n + k], weights[to * n + k]);
             weights[frame * n + k] = a + share * (b - a);

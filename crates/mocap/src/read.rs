@@ -93,7 +93,7 @@ impl<'a> CaptureFile<'a> {
         }
     }
 
-    /// Its format; `None` when no reader knows it.
+    /// What it is taken for; `None` when no reader knows it.
     pub fn format(&self) -> Option<&'static Format> {
         self.format
     }
@@ -115,7 +115,7 @@ impl<'a> CaptureFile<'a> {
     }
 
     /// The weights of a performance recorded as such. A table whose columns look like coordinates
-    /// is read as weights here, too.
+    /// is read as weights here, too; [`Self::format`] then says so.
     ///
     /// # Errors
     /// [`ReadError`] with place, value and remedy.
@@ -126,6 +126,7 @@ impl<'a> CaptureFile<'a> {
             }
             format => format,
         };
+        self.format = format.or(self.format);
         match format.map(|format| &format.read) {
             Some(Read::TextWeights(read)) => read(&mut self.lines()?, options),
             Some(Read::BinaryWeights(read)) => {

@@ -1,8 +1,8 @@
 //! Runs the server until it is told to stop; then lets requests in progress end.
 //!
-//! Connections are counted, and a request's head has to arrive within its time, so that slow callers
-//! hold no more than a place. An idle connection is closed after the same time; browsers open
-//! another one when they need it.
+//! Connections are counted, in all and from each address; a request's head has to arrive within its time,
+//! and an answer has to be taken at some rate, so that slow callers hold no more than a place, and not for
+//! ever. An idle connection is closed after the same time; browsers open another one when they need it.
 
 use std::future::Future;
 use std::io;
@@ -19,17 +19,19 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::Semaphore;
 
+use crate::connections::{Paced, Places};
 use crate::http::router;
 use crate::retention;
 use crate::state::App;
-use crate::state::rate_limit::Peer;
+use crate::state::rate_limit::{Peer, Reserve};
 
 /// Requests in progress have this long to end after the signal.
 const LONGEST_FAREWELL: Duration = Duration::from_secs(10);
 /// A request's head in bytes at most; more is refused with 431.
 const LARGEST_HEAD: usize = 32 * 1024;
+/// A place that is kept for questions about health is not held for longer.
+const RESERVE_TIMEOUT: Duration = Duration::from_secs(2);
 /// Headers in a request at most.
 const MOST_HEADERS: usize = 64;
 
@@ -55,11 +57,12 @@ pub async fn serve(
     let watching = tokio::spawn(retention::watch(app.clone()));
     let router = router(app.clone());
     let graceful = GracefulShutdown::new();
-    let places = Arc::new(Semaphore::new(app.settings.most_connections.max(1)));
+    let settings = Arc::clone(&app.settings);
+    let places = Places::new(settings.most_connections, settings.connections_per_address);
     let mut stop = std::pin::pin!(stop);
     let outcome = loop {
         let next = async {
-            let place = Arc::clone(&places).acquire_owned().await;
+            let place = places.next().await;
             (place, listener.accept().await)
         };
         let (place, accepted) = tokio::select! {
@@ -69,7 +72,13 @@ pub async fn serve(
         match accepted {
             Ok((stream, address)) => {
                 let peer = Peer(address.ip().to_canonical());
-                let connection = connection(&app, &router, stream, peer);
+                let place = place.and_then(|place| match settings.is_own(peer.0) {
+                    true => Some(place),
+                    false => places.of(place, peer.0),
+                });
+                // Whoever has more than anybody needs gets no more.
+                let Some(place) = place else { continue };
+                let connection = connection(&app, &router, stream, peer, place.is_reserve);
                 let connection = graceful.watch(connection);
                 let metrics = Arc::clone(&app.metrics);
                 metrics.connections.inc();
@@ -120,22 +129,31 @@ fn connection(
     router: &Router,
     stream: TcpStream,
     peer: Peer,
-) -> http1::Connection<TokioIo<TcpStream>, Caller> {
+    is_reserve: bool,
+) -> http1::Connection<TokioIo<Paced<TcpStream>>, Caller> {
     // Answers are short: they should not wait for more to send.
     let _ = stream.set_nodelay(true);
     let service = TowerToHyperService::new(router.clone());
+    let stream = Paced::new(stream, app.settings.reader_patience);
+    let header_timeout = match is_reserve {
+        true => app.settings.header_timeout.min(RESERVE_TIMEOUT),
+        false => app.settings.header_timeout,
+    };
     http1::Builder::new()
         .timer(TokioTimer::new())
-        .header_read_timeout(app.settings.header_timeout)
+        .header_read_timeout(header_timeout)
+        .keep_alive(!is_reserve)
         .max_buf_size(LARGEST_HEAD)
         .max_headers(MOST_HEADERS)
-        .serve_connection(TokioIo::new(stream), Caller { service, peer })
+        .serve_connection(TokioIo::new(stream), Caller { service, peer, is_reserve })
 }
 
 /// The router, told who is at the other end.
 struct Caller {
     service: TowerToHyperService<Router>,
     peer: Peer,
+    /// All places are taken: only questions about health are answered.
+    is_reserve: bool,
 }
 
 impl Service<Request<Incoming>> for Caller {
@@ -145,6 +163,9 @@ impl Service<Request<Incoming>> for Caller {
 
     fn call(&self, mut request: Request<Incoming>) -> Self::Future {
         request.extensions_mut().insert(self.peer);
+        if self.is_reserve {
+            request.extensions_mut().insert(Reserve);
+        }
         self.service.call(request)
     }
 }

@@ -66,7 +66,7 @@ pub enum EventKind {
     ScreenedOut {
         /// Identifier of the step that stood on the screen.
         step: String,
-        /// `device`, `screening` or `training`.
+        /// `device`, `frames`, `screening` or `training`.
         reason: String,
         /// What was missing: the rules' keys, or the question.
         details: Vec<String>,
@@ -124,8 +124,11 @@ pub enum EventKind {
     ClipFailed {
         /// Which clip.
         clip: String,
-        /// What the stage says.
+        /// What the stage says, in English, for those who look for the cause.
         message: String,
+        /// The code of what went wrong ([`StageFailure::code`]); empty in events of earlier versions.
+        #[serde(default, skip_serializing_if = "String::is_empty")]
+        code: String,
     },
     /// The page lost the focus or was hidden.
     FocusLost,
@@ -167,6 +170,20 @@ impl EventKind {
         body.get("type").and_then(Value::as_str).is_some_and(|kind| ENDS.contains(&kind))
     }
 
+    /// The step that it belongs to, if it is one of a page or a trial.
+    pub fn step(&self) -> Option<&str> {
+        match self {
+            Self::PageShown { step }
+            | Self::Answered { step, .. }
+            | Self::TimeExtended { step }
+            | Self::PageFinished { step, .. }
+            | Self::TrialStarted { step, .. }
+            | Self::TrialPlayed { step, .. }
+            | Self::TrialFinished { step, .. } => Some(step),
+            _ => None,
+        }
+    }
+
     /// Reads the body of a [`crate::wire::Event`]; `None` if this version does not know it.
     pub fn from_body(body: &Value) -> Option<Self> {
         Self::deserialize(body).ok()
@@ -176,6 +193,17 @@ impl EventKind {
     pub fn to_body(&self) -> Value {
         serde_json::to_value(self).unwrap_or(Value::Null)
     }
+}
+
+/// Why something could not be loaded, solved or shown (`static/stage/failure.js`).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StageFailure {
+    /// A code of [`mimique_study::text::Words::stage_failure`].
+    pub code: String,
+    /// The values that the code's words name.
+    pub values: BTreeMap<String, String>,
+    /// What the stage says, in English, for those who look for the cause.
+    pub message: String,
 }
 
 /// What is played in step beside a clip.
@@ -261,6 +289,11 @@ pub struct PlayLog {
 }
 
 impl PlayLog {
+    /// What the page notes of a play that showed fewer frames than the study wants.
+    pub const TOO_FEW_FRAMES: &str = "too few frames";
+    /// Why a play ended early that was not wholly in view (`static/participant/bridge.js`).
+    pub const OUT_OF_VIEW: &str = "out of view";
+
     /// Whether the clip was shown to its end.
     pub fn is_whole(&self) -> bool {
         self.aborted.is_none()

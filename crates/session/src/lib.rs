@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod admission;
 mod event;
 pub mod flow;
 mod plan;
@@ -10,8 +11,9 @@ mod site_file;
 mod standing;
 pub mod wire;
 
-pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside};
-pub use record::{Attempt, EarlyEnd, EndReason, FinishedStep, Record};
+pub use admission::{Admission, Misfit, SessionLimits};
+pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside, StageFailure};
+pub use record::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep, Record};
 pub use session_file::{SessionFile, SessionFileError, WrongLine};
 pub use site_file::SiteFile;
 pub use standing::Standing;

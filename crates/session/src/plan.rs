@@ -141,6 +141,13 @@ impl Plan {
         self.steps.get(index)
     }
 
+    /// Whether a step stands before the session: agreement and device. Until they are passed nobody holds a
+    /// place, and nothing is kept.
+    pub fn is_before_session(&self, index: usize) -> bool {
+        self.step(index)
+            .is_some_and(|step| matches!(step.kind, StepKind::Consent | StepKind::Device))
+    }
+
     /// How many trials there are, or practice trials in a round.
     pub fn trial_count(&self, training: bool) -> usize {
         if let (true, Some(training)) = (training, &self.study.training) {
@@ -171,7 +178,7 @@ fn before_training(study: &StudyProjection) -> Vec<Step> {
     if study.consent.is_some() {
         push("consent", StepKind::Consent);
     }
-    if study.device.is_some() {
+    if study.device.is_some() || study.draws_clips {
         push("device", StepKind::Device);
     }
     if let Some(page) = study.demographics.clone().filter(|page| !page.questions.is_empty()) {

@@ -129,6 +129,7 @@ impl Standing {
         let code = match self {
             Self::Completed => &recruitment.completion_code,
             Self::ChecksFailed => &recruitment.failed_checks_code,
+            Self::DeviceRefused if recruitment.device_code.is_some() => &recruitment.device_code,
             screened_out if screened_out.is_screened_out() => &recruitment.screened_out_code,
             _ => &None,
         };

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `GET  /api/studies` | | list of [`StudySummary`] |
 //! | `GET  /api/studies/{study}` | | [`Bundle`]; with `?config_hash=` that of an earlier version |
+//! | `POST /api/studies/{study}/arrivals` | [`StartSession`] | `null`, or why this participant cannot begin |
 //! | `POST /api/studies/{study}/sessions` | [`StartSession`] | [`SessionStarted`] |
 //! | `GET  /api/sessions/{session}` | | [`Resume`] |
 //! | `POST /api/sessions/{session}/events` | [`AppendEvents`] | [`Acknowledged`] |
@@ -49,7 +50,8 @@ pub struct Bundle<Clip = ClipSource> {
     pub clips: BTreeMap<String, Clip>,
 }
 
-/// A participant arrives.
+/// A participant begins: has agreed, on a device that may take part. From then on a place is held, and the
+/// identifier is used. Sent to `arrivals` before that it asks whether there is a place, and changes nothing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartSession {
     /// Made by the page (128 random bits, hexadecimal), so that a repeated request starts one session.
@@ -65,6 +67,10 @@ pub struct StartSession {
     /// Browser name, its major version, platform class: nothing finer.
     #[serde(default)]
     pub client: BTreeMap<String, String>,
+    /// Whether the participant does not take part: has declined, or has a device that cannot. Such a session
+    /// is counted, holds no place, uses no identifier, and has no completion code.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub turned_away: bool,
 }
 
 /// The server's answer to [`StartSession`].

@@ -3,9 +3,9 @@
 
 mod support;
 
-use mimique_session::Standing;
 use mimique_session::flow::{Effect, Input, Phase, QuestionKindView, View, update};
 use mimique_session::rows::{SessionRecord, Table, tidy};
+use mimique_session::{PlayLog, Standing};
 use serde_json::{Value, json};
 use support::{Page, display, first_answer, status, study_text, whole_play};
 
@@ -37,6 +37,56 @@ fn go_to(page: &mut Page, wanted: &str) {
     while !step(page).starts_with(wanted) {
         assert!(page.act(&mut first_answer), "no step {wanted}");
     }
+}
+
+#[test]
+fn a_play_of_too_few_frames_is_told_repeated_once_and_then_ends_the_session_with_its_code() {
+    let mut text = mimique_study::parse(&study_text("demo.json")).unwrap();
+    text["device"] = json!({ "minimumFrameShare": 0.5 });
+    text["recruitment"]["deviceCode"] = json!("SLOW");
+    let play = |page: &mut Page, shown: usize| {
+        let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
+        page.state = state;
+        page.stored.extend(effects.into_iter().filter_map(|effect| match effect {
+            Effect::Store(event) => Some(event),
+            _ => None,
+        }));
+        let frames = (0..shown).map(|n| (n as f64 * 16.7, n as f64 * 16.7, 0.0)).collect();
+        page.send(Input::Played(PlayLog { frames, ..whole_play(page.now_ms) }));
+    };
+    let at_trial = || {
+        let mut page = Page::open(&text.to_string(), 1);
+        while !matches!(page.view(), View::Trial(_)) {
+            page.act(&mut first_answer);
+        }
+        page
+    };
+    // Of 1.95 s at 60 Hz: 117 frames, 59 are half of them.
+    let mut page = at_trial();
+    play(&mut page, 17);
+    let View::Trial(trial) = page.view() else { panic!("{:?}", page.view()) };
+    assert!(trial.can_play && !trial.can_answer, "{trial:?}");
+    assert!(trial.message.contains("did not run smoothly"), "{}", trial.message);
+    play(&mut page, 59);
+    let View::Trial(trial) = page.view() else { panic!("{:?}", page.view()) };
+    assert!(trial.can_answer, "a play that shows enough counts");
+
+    let mut page = at_trial();
+    play(&mut page, 2);
+    // A reload is no further chance.
+    page.reload();
+    play(&mut page, 58);
+    assert_eq!(page.state.record.standing, Standing::DeviceRefused);
+    let code = Standing::DeviceRefused.completion_code(&page.study.recruitment);
+    assert_eq!(code, Some("SLOW"));
+    let View::End(end) = page.view() else { panic!("{:?}", page.view()) };
+    assert!(end.text[0].contains("do not run smoothly enough"), "{:?}", end.text);
+    // Whose device draws the study's own head too slowly learns so at the gate.
+    let mut page = Page::open(&text.to_string(), 1);
+    page.display.refresh_hz = Some(20.0);
+    page.send(Input::Consent);
+    let View::Device(gate) = page.view() else { panic!("{:?}", page.view()) };
+    assert!(gate.problems[0].0.contains("20 frames a second; the study needs 30"), "{gate:?}");
 }
 
 #[test]

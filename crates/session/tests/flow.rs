@@ -5,7 +5,7 @@ mod support;
 use mimique_session::flow::{Effect, Input, Phase, Plan, State, View, update};
 use mimique_session::{Record, Standing};
 use serde_json::json;
-use support::{Page, client, first_answer, started, study_text, whole_play};
+use support::{Page, client, failure, first_answer, started, study_text, whole_play};
 
 #[test]
 fn demo_goes_from_consent_to_the_completion_code() {
@@ -13,7 +13,7 @@ fn demo_goes_from_consent_to_the_completion_code() {
     assert!(matches!(page.view(), View::Consent { .. }));
     page.finish();
     let View::End(end) = page.view() else { panic!("{:?}", page.view()) };
-    assert_eq!(end.completion_code.unwrap().1, "MIMIQUE-DEMO");
+    assert_eq!(end.completion_code.unwrap().code, "MIMIQUE-DEMO");
     assert_eq!(page.played.len(), 12);
     let mut clips = page.played.clone();
     clips.sort();
@@ -269,12 +269,115 @@ fn a_failed_clip_can_be_tried_again() {
         page.act(&mut first_answer);
     }
     let View::Trial(trial) = page.view() else { panic!() };
-    page.send(Input::ClipFailed { clip: trial.clip.clone(), message: "no network".into() });
+    page.send(Input::ClipFailed { clip: trial.clip.clone(), failure: failure("connection") });
     let View::Trial(failed) = page.view() else { panic!() };
     assert!(matches!(failed.phase, Phase::Failed { .. }) && !failed.can_play);
     page.send(Input::Retry);
     page.finish();
     assert!(matches!(page.view(), View::End(_)));
+}
+
+#[test]
+fn why_a_clip_failed_is_said_in_the_participants_language_and_goes_on_by_itself_when_the_line_is_back()
+ {
+    let mut page = Page::open(&study_text("demo.json"), 13);
+    page.send(Input::ChooseLanguage("fr".into()));
+    while !matches!(page.view(), View::Trial(_)) {
+        page.act(&mut first_answer);
+    }
+    let View::Trial(trial) = page.view() else { panic!() };
+    let shown = |page: &Page| match page.view() {
+        View::Trial(trial) => match trial.phase {
+            Phase::Failed { reason, .. } => reason,
+            other => format!("{other:?}"),
+        },
+        other => format!("{other:?}"),
+    };
+    let codes = [
+        ("connection", "La connexion"),
+        ("stalled", "Rien n’est arrivé pendant 15 s."),
+        ("damaged", "Il est arrivé endommagé."),
+        ("graphics_lost", "L’affichage graphique"),
+        ("a code of a later version", "Une erreur inattendue"),
+    ];
+    for (code, words) in codes {
+        page.send(Input::ClipFailed { clip: trial.clip.clone(), failure: failure(code) });
+        assert!(shown(&page).starts_with(words), "{code}: {}", shown(&page));
+        assert!(!shown(&page).contains("pack"), "{code}: {}", shown(&page));
+    }
+    assert_eq!(page.stored.last().unwrap().body["code"], "a code of a later version");
+    page.send(Input::Online);
+    let View::Trial(trial) = page.view() else { panic!() };
+    assert!(trial.can_play, "{:?}", trial.phase);
+}
+
+#[test]
+fn the_last_page_says_what_to_do_now_and_goes_back_by_itself_only_where_the_study_says_so() {
+    let mut text = mimique_study::parse(&study_text("demo.json")).unwrap();
+    let end = |page: &Page| match page.view() {
+        View::End(end) => *end,
+        other => panic!("{other:?}"),
+    };
+    let with_way_back = |page: &mut Page| {
+        let mut receipt = support::receipt(page.stored.len() as u64);
+        receipt.redirect = Some("https://recruit.example/done".to_owned());
+        page.send(Input::ReceiptArrived(receipt));
+    };
+    let mut page = Page::open(&text.to_string(), 3);
+    page.finish();
+    let shown = end(&page);
+    assert!(shown.text.iter().all(|text| !text.contains("close this page")), "{:?}", shown.text);
+    assert_eq!(shown.records.participant.1, "p0003");
+    page.send(Input::Copied);
+    assert_eq!(end(&page).completion_code.unwrap().copied.as_deref(), Some("Copied"));
+    with_way_back(&mut page);
+    assert_eq!(end(&page).returning, None);
+
+    text["recruitment"]["returnAfterSeconds"] = json!(30);
+    text["recruitment"]["redirect"] = json!("https://recruit.example/done");
+    let mut page = Page::open(&text.to_string(), 3);
+    page.finish();
+    with_way_back(&mut page);
+    assert_eq!(end(&page).returning.unwrap().0, "You go back by itself in 30 s.");
+    let tick = |page: &mut Page, seconds: f64| {
+        let (state, effects) =
+            update(&page.plan, page.state.clone(), Input::Tick, page.now_ms + seconds * 1000.0);
+        page.state = state;
+        effects
+    };
+    assert_eq!(tick(&mut page, 29.0), []);
+    let mut stays = Page { state: page.state.clone(), ..Page::open(&text.to_string(), 3) };
+    assert_eq!(tick(&mut page, 31.0), [Effect::GoBack("https://recruit.example/done".to_owned())]);
+    assert_eq!(tick(&mut page, 40.0), [], "once");
+    stays.now_ms = page.now_ms;
+    stays.send(Input::Stay);
+    assert_eq!(tick(&mut stays, 60.0), []);
+}
+
+#[test]
+fn every_code_that_the_stage_gives_has_its_words() {
+    let folder = mimique_test_support::repository().join("static");
+    let scripts =
+        ["stage", "participant"].map(|name| std::fs::read_dir(folder.join(name)).unwrap());
+    let mut codes = Vec::new();
+    for file in scripts.into_iter().flatten() {
+        let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+        for made in ["new StageFailure(", "failureOf(", "discard(started, ", "discard(asked, "] {
+            let quoted = text.split(made).skip(1).filter_map(|rest| rest.split('"').nth(1));
+            codes.extend(
+                quoted
+                    .filter(|code| {
+                        !code.is_empty() && code.chars().all(|c| c.is_ascii_lowercase() || c == '_')
+                    })
+                    .map(str::to_owned),
+            );
+        }
+    }
+    assert!(codes.len() >= 12, "{codes:?}");
+    for code in codes {
+        let name = format!("failed_{code}");
+        assert!(mimique_study::text::names().contains(&name.as_str()), "{name}");
+    }
 }
 
 /// A page of questions and a trial, each with a picture.
@@ -298,18 +401,20 @@ fn pictures_are_loaded_before_their_page_and_no_trial_starts_without_them() {
     let turn = |state: State, input: Input| update(&plan, state, input, 1e12);
     let prepared = |state, name: &str| turn(state, Input::ClipPrepared { clip: name.into() }).0;
     let failed = |state, name: &str| {
-        let message = "no network".to_owned();
-        turn(state, Input::ClipFailed { clip: name.into(), message }).0
+        turn(state, Input::ClipFailed { clip: name.into(), failure: failure("missing") }).0
     };
     let all = ["media:who.png", "p.box", "media:sign.webm", "media:eye.png"].map(str::to_owned);
     let (state, effects) = turn(State::new(&plan, "en"), Input::Opened(client()));
     assert!(effects.contains(&Effect::PrepareClips(all.to_vec())), "{effects:?}");
 
+    let (state, _) = turn(state, Input::Measured(support::display()));
+
     // A page of questions stands there at once; it says what could not be had, and tries again.
     let View::Questions { failed: None, .. } = shown(&state) else { panic!() };
     let state = failed(state, "media:who.png");
     let View::Questions { failed: Some(trouble), .. } = shown(&state) else { panic!() };
-    assert_eq!((trouble.reason.as_str(), trouble.retry.as_str()), ("no network", "Try again"));
+    let words = "The server does not have it. Please write to the investigator.";
+    assert_eq!((trouble.reason.as_str(), trouble.retry.as_str()), (words, "Try again"));
     let (state, effects) = turn(state, Input::Retry);
     assert_eq!(effects, vec![Effect::PrepareClips(all.to_vec())]);
     let View::Questions { failed: None, .. } = shown(&state) else { panic!() };
@@ -380,7 +485,68 @@ fn unknown_events_of_another_version_are_counted_and_skipped() {
     let state = State::replay(&page.plan, &page.stored);
     assert_eq!(state.record.events, sequence + 1);
     assert_eq!(state.record.unexpected, 1);
-    assert_eq!(state.record.step, 1);
+    assert_eq!(state.record.step, 2);
+}
+
+/// Where a study asks nothing of devices, they are looked at all the same before the first question: whoever
+/// cannot see the clips is told so there, in the participant's language.
+#[test]
+fn without_rules_a_device_that_cannot_draw_is_turned_away_at_the_gate() {
+    let mut page = Page::open(&study_text("demo.json"), 4);
+    assert!(page.study.device.is_none(), "the demo asks nothing of devices");
+    page.display.backend = None;
+    page.send(Input::ChooseLanguage("fr".into()));
+    page.send(Input::Consent);
+    let View::Device(gate) = page.view() else { panic!("{:?}", page.view()) };
+    assert_eq!(gate.problems[0].0, "Ce navigateur ne peut pas dessiner les animations.");
+    assert!(page.plan.is_before_session(page.state.record.step), "no place is held yet");
+    page.send(Input::GiveUp);
+    assert_eq!(page.state.record.standing, Standing::DeviceRefused);
+
+    // One that can is not shown the gate, and no page is counted for it.
+    let mut page = Page::open(&study_text("demo.json"), 4);
+    page.send(Input::Consent);
+    assert!(matches!(page.view(), View::Questions { .. }), "{:?}", page.view());
+    assert!(page.state.record.finished.is_empty());
+    assert!(!page.plan.is_before_session(page.state.record.step));
+    // Who was measured before the agreement goes through at once when measured again.
+    page.reload();
+    assert!(matches!(page.view(), View::Questions { .. }), "{:?}", page.view());
+}
+
+#[test]
+fn a_session_of_before_there_was_a_gate_goes_on_behind_it() {
+    let mut page = Page::open(&study_text("demo.json"), 5);
+    while !matches!(page.view(), View::Trial(_)) {
+        page.act(&mut first_answer);
+    }
+    let (here, finished) = (page.state.record.step, page.state.record.finished.len());
+    // Its events as they were: without a measurement.
+    page.stored.retain(|event| event.body["type"] != "device_measured");
+    for (sequence, event) in (0..).zip(&mut page.stored) {
+        event.sequence = sequence;
+    }
+    let state = State::replay(&page.plan, &page.stored);
+    assert_eq!((state.record.step, state.record.finished.len()), (here, finished));
+    assert_eq!(state.record.unexpected, 0);
+}
+
+/// What happens before the session is its beginning, once it is begun under its own plan.
+#[test]
+fn what_happened_before_the_session_is_replayed_under_its_plan() {
+    let mut lobby = Page::open(&study_text("demo.json"), 1);
+    lobby.send(Input::ChooseLanguage("fr".into()));
+    assert!(lobby.plan.is_before_session(lobby.state.record.step));
+    lobby.send(Input::Consent);
+    let (study, session) = started(&study_text("demo.json"), 40);
+    let plan = Plan::new(study.projection(), session).unwrap();
+    let state = State::replay(&plan, &lobby.stored);
+    let (state, effects) = update(&plan, state, Input::Begun, lobby.now_ms);
+    assert_eq!(state.record.language, "fr");
+    assert_eq!(state.record.events, lobby.stored.len() as u64, "beginning is no event");
+    assert!(matches!(mimique_session::flow::view(&plan, &state), View::Questions { .. }));
+    let prepares = |effect: &Effect| matches!(effect, Effect::PrepareClips(_));
+    assert!(effects.iter().any(prepares), "{effects:?}");
 }
 
 #[test]
@@ -518,6 +684,7 @@ fn a_slow_network_holds_nobody_up_and_the_code_back() {
                     }),
                 View::Trial(trial) if trial.can_play => Input::Play,
                 View::Page { .. } => Input::Next,
+                View::Device(_) => Input::Measured(support::display()),
                 _ => Input::Tick,
             }
         });

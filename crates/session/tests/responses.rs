@@ -4,7 +4,7 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use mimique_session::flow::Input;
+use mimique_session::flow::{Input, View};
 use mimique_session::rows::{SessionRecord, Table, psych_ds_description, tidy, wide};
 use mimique_session::wire::SessionStarted;
 use mimique_study::ClipSource;
@@ -176,7 +176,7 @@ fn trial_order_is_the_order_played() {
 }
 
 #[test]
-fn reloaded_trial_has_one_set_of_rows_and_says_that_it_was_interrupted() {
+fn reloaded_trial_has_one_set_of_rows_and_says_what_was_seen_before() {
     let mut page = Page::open(&study_text("demo.json"), 4);
     while page.played.is_empty() {
         page.act(&mut first_answer);
@@ -186,13 +186,30 @@ fn reloaded_trial_has_one_set_of_rows_and_says_that_it_was_interrupted() {
     page.finish();
     let table = tidy(&page.study, &BTreeMap::new(), [record(&page)]);
     assert_eq!(table.rows.len(), 2 + 12 * 3);
-    let interrupted: Vec<usize> = (0..table.rows.len())
-        .filter(|&row| table.cell(row, "interruptions") == &json!(1))
-        .collect();
-    assert_eq!(interrupted.len(), 3, "the three answers of the first trial");
+    let rows = |column: &str, value: u64| -> Vec<usize> {
+        (0..table.rows.len()).filter(|&row| table.cell(row, column) == &json!(value)).collect()
+    };
+    // The clip was seen whole before: the play after the reload is another one, and no interruption.
+    let again = rows("replays", 1);
+    assert_eq!(again.len(), 3, "the three answers of the first trial");
+    assert!(rows("interruptions", 1).is_empty());
     // The answer before the reload is gone; its time must not stay.
-    let rt = table.cell(interrupted[0], "rt").as_f64().unwrap();
+    let rt = table.cell(again[0], "rt").as_f64().unwrap();
     assert!(rt > 0.0 && rt < 4_000.0, "{rt}");
+
+    // A reload before the clip was seen whole is one.
+    let mut page = Page::open(&study_text("demo.json"), 4);
+    while !matches!(page.view(), View::Trial(_)) {
+        page.act(&mut first_answer);
+    }
+    page.reload();
+    page.finish();
+    let table = tidy(&page.study, &BTreeMap::new(), [record(&page)]);
+    let cell = |row: usize, column: &str| table.cell(row, column).clone();
+    let interrupted: Vec<usize> =
+        (0..table.rows.len()).filter(|&row| cell(row, "interruptions") == json!(1)).collect();
+    assert_eq!(interrupted.len(), 3);
+    assert!(interrupted.iter().all(|&row| cell(row, "replays") == json!(0)));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use mimique_session::flow::{Effect, Input, Phase, TrialStep, View, update, view}
 use mimique_session::rows::{SessionRecord, Table, tidy};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text};
+use support::{Page, failure, first_answer, study_text};
 
 /// Study 2b with the companion's side drawn, and a comparison after each pair.
 fn compared() -> String {
@@ -81,10 +81,11 @@ fn a_pair_is_played_when_both_are_ready_and_fails_with_either() {
     let View::Trial(trial) = page.view() else { panic!() };
     assert_eq!(trial.phase, Phase::Loading { fraction: 0.5 });
     assert!(!trial.can_play);
-    let message = "its video is damaged".to_owned();
-    page.send(Input::ClipFailed { clip: beside.clone(), message: message.clone() });
+    page.send(Input::ClipFailed { clip: beside.clone(), failure: failure("video") });
     let View::Trial(trial) = page.view() else { panic!() };
-    assert!(matches!(&trial.phase, Phase::Failed { reason, .. } if *reason == message));
+    assert!(
+        matches!(&trial.phase, Phase::Failed { reason, .. } if reason.contains("play the video"))
+    );
     // The support's page prepares at once what a retry asks for.
     page.send(Input::Retry);
     let View::Trial(trial) = view(&page.plan, &page.state) else { panic!() };

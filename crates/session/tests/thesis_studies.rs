@@ -62,7 +62,7 @@ fn questions(trial: &TrialStep) -> Vec<&str> {
     trial.questions.iter().map(|question| question.id.as_str()).collect()
 }
 
-const BEFORE: [&str; 3] = ["consent", "demographics", "instructions"];
+const BEFORE: [&str; 4] = ["consent", "device", "demographics", "instructions"];
 
 fn around(middle: &[&str]) -> Vec<String> {
     let all = BEFORE.iter().chain(middle).chain(&["debriefing"]);

@@ -64,12 +64,13 @@ pub use marker_map::{
     Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
     REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use prepare::{Places, PrepareError, Prepared, Progress, prepare};
+pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
-    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafTier,
-    SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment, Timeline,
-    TimelineSegment, cut, read_segments, study_segments, suggest, write_segments,
+    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafSegments,
+    EafTier, LeftOut, SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment,
+    Timeline, TimelineSegment, bridge, cut, nearest_quantile, peaks, read_segments, study_segments,
+    suggest, write_segments,
 };
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,

@@ -1,25 +1,14 @@
 //! What researchers decide: exclusions and uploaded studies, and the log of who did what.
 
 use crate::accounts::records::{AuditEntry, Exclusion, UploadedStudy};
-use crate::database::query;
+use crate::database::{Place, query};
 use crate::error::StorageError;
 use crate::handle::Storage;
 
 impl Storage {
     /// Adds a line to the log; its key is given by the database.
     pub async fn add_audit_entry(&self, entry: &AuditEntry) -> Result<(), StorageError> {
-        query(
-            "INSERT INTO audit_log (at_ms, who, action, study_id, subject) \
-             VALUES ($1, $2, $3, $4, $5)",
-        )
-        .bind(entry.at_ms)
-        .bind(&entry.who)
-        .bind(&entry.action)
-        .bind(&entry.study_id)
-        .bind(&entry.subject)
-        .execute(&self.writers)
-        .await?;
-        Ok(())
+        insert_entry(&self.writers, entry).await
     }
 
     /// The log's lines with keys below `before`, the newest first.
@@ -132,4 +121,23 @@ impl Storage {
             .await?;
         Ok(())
     }
+}
+
+/// Adds a line to the log, perhaps in the transaction of what it tells.
+pub(crate) async fn insert_entry(
+    place: impl Into<Place<'_>>,
+    entry: &AuditEntry,
+) -> Result<(), StorageError> {
+    query(
+        "INSERT INTO audit_log (at_ms, who, action, study_id, subject) \
+         VALUES ($1, $2, $3, $4, $5)",
+    )
+    .bind(entry.at_ms)
+    .bind(&entry.who)
+    .bind(&entry.action)
+    .bind(&entry.study_id)
+    .bind(&entry.subject)
+    .execute(place)
+    .await?;
+    Ok(())
 }

@@ -65,6 +65,43 @@ pub fn write_folder<T, E: From<io::Error>>(
     Ok(done)
 }
 
+/// Sees that a file is there which others on the machine can neither read nor write: a new one is its
+/// owner's alone; one of before keeps what its group may.
+///
+/// # Errors
+/// The file cannot be made.
+pub fn keep_private(path: &Path) -> io::Result<()> {
+    let mut options = File::options();
+    options.append(true).create(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    if !path.exists() {
+        options.open(path)?;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let mode = std::fs::metadata(path)?.permissions().mode();
+        if mode & 0o007 != 0 {
+            // Whose it is not cannot close it: it stays as the owner has it.
+            let _ = std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode & 0o770));
+        }
+    }
+    Ok(())
+}
+
+/// A folder that its owner alone can open, made with those around it.
+///
+/// # Errors
+/// It cannot be made.
+pub fn private_folder(path: &Path) -> io::Result<()> {
+    let mut builder = std::fs::DirBuilder::new();
+    builder.recursive(true);
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder.create(path)
+}
+
 /// Begins a file that is to stand at `path`, readable for its owner alone. Without [`finish`] it is
 /// removed again.
 pub(crate) fn begin(path: &Path) -> io::Result<NamedTempFile> {
@@ -144,6 +181,25 @@ mod tests {
         };
         assert_eq!(names(&path), ["two"]);
         assert_eq!(names(folder.path()), ["report"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn private_files_are_their_owners_alone() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        let (new, old) = (folder.path().join("new"), folder.path().join("old"));
+        keep_private(&new).unwrap();
+        assert_eq!(mode(&new), 0o600);
+        std::fs::write(&old, "kept").unwrap();
+        std::fs::set_permissions(&old, std::fs::Permissions::from_mode(0o664)).unwrap();
+        keep_private(&old).unwrap();
+        assert_eq!((mode(&old), std::fs::read(&old).unwrap()), (0o660, b"kept".to_vec()));
+        let inside = folder.path().join("a/b");
+        private_folder(&inside).unwrap();
+        private_folder(&inside).unwrap();
+        assert_eq!(mode(&inside), 0o700);
     }
 
     #[test]

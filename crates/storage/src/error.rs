@@ -27,6 +27,12 @@ pub enum StorageError {
     /// The withdrawal code is not this session's.
     #[error("the withdrawal code is not the one of this session; copy it as it was shown")]
     WrongWithdrawalCode,
+    /// The session has as many events, or as much in them, as its study can give.
+    #[error("the session has more events than its study can give; start the study again")]
+    SessionFull,
+    /// No session has this withdrawal code.
+    #[error("no participant has this withdrawal code; copy it as it was shown")]
+    UnknownWithdrawalCode,
     /// The database's address cannot be read.
     #[error("{url}: {problem}; use sqlite:FILE or postgres://USER@HOST/NAME")]
     Address {

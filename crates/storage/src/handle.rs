@@ -1,10 +1,11 @@
 //! The handle of a database: opened, asked whether it answers, closed.
 
 use crate::address::{Address, without_password};
-use crate::database::{self, Pool, query};
+use crate::database::{self, Opened, Pool, query};
 use crate::error::StorageError;
 use crate::schema::{self, LATEST};
 use crate::sessions::writer::Writer;
+use crate::wiper::Wiper;
 
 /// Handle of the database; cheap to clone.
 #[derive(Clone)]
@@ -12,6 +13,7 @@ pub struct Storage {
     pub(crate) readers: Pool,
     pub(crate) writers: Pool,
     pub(crate) writer: Writer,
+    pub(crate) wiper: Wiper,
 }
 
 impl Storage {
@@ -38,13 +40,15 @@ impl Storage {
     }
 
     async fn connect(url: &str) -> Result<Self, StorageError> {
-        let [writers, readers] = match Address::read(url)? {
+        let Opened { writers, readers, wiper } = match Address::read(url)? {
             Address::Postgres(url) => database::postgres::open(url).await?,
             Address::Sqlite(path) => database::sqlite::open(&path).await?,
         };
         schema::migrate(&writers).await?;
         let writer = Writer::spawn(&writers);
-        Ok(Self { readers, writers, writer })
+        let wiper = Wiper::new(wiper);
+        wiper.go_on().await?;
+        Ok(Self { readers, writers, writer, wiper })
     }
 
     /// A database's address fit for a message.
@@ -60,6 +64,7 @@ impl Storage {
     /// Waits until every change accepted so far is committed, then closes.
     pub async fn close(&self) {
         self.writer.finish().await;
+        self.wiper.close().await;
         self.readers.close().await;
         self.writers.close().await;
     }
@@ -75,6 +80,18 @@ impl Storage {
     /// Asks the database whether it answers.
     pub async fn ping(&self) -> Result<(), StorageError> {
         query("SELECT 1").execute(&self.readers).await?;
+        Ok(())
+    }
+
+    /// Writes the time into the database, as an answer is written: only so is it known that it can be.
+    pub async fn try_writing(&self, now_ms: i64) -> Result<(), StorageError> {
+        query(
+            "INSERT INTO clock_marks (name, at_ms) VALUES ('tried', $1) \
+             ON CONFLICT (name) DO UPDATE SET at_ms = excluded.at_ms",
+        )
+        .bind(now_ms)
+        .execute(&self.writers)
+        .await?;
         Ok(())
     }
 

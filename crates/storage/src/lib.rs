@@ -35,10 +35,12 @@ mod decisions;
 pub mod durable_file;
 mod error;
 mod handle;
+mod preparations;
 mod records;
 mod schema;
 mod sessions;
 mod studies;
+mod wiper;
 
 pub use accounts::records::{
     Account, AccountLink, ApiToken, AuditEntry, Exclusion, LinkPurpose, Role, UploadedStudy,
@@ -51,6 +53,6 @@ pub use backup::scrub::scrub_backup;
 pub use error::{MOST_SEQUENCES_REPORTED, StorageError};
 pub use handle::Storage;
 pub use records::{
-    Appended, Completed, Deletion, NewSession, RecruitmentEntry, Registered, SessionRecord,
-    StudyVersion, WrittenEvent,
+    Appended, Completed, Deletion, NewSession, Overdue, RecruitmentEntry, Registered,
+    SessionRecord, StoredEvent, StudyVersion, TimesSeen, Withdrawal, WrittenEvent, participant_id,
 };

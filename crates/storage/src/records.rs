@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use mimique_session::wire::{Acknowledged, Event};
-use mimique_session::{EventKind, Standing};
+use mimique_session::{EventKind, Misfit, Standing};
 
 /// A version of a study as served.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,6 +98,10 @@ pub struct SessionRecord {
     pub event_count: u64,
     /// One more than the highest stored sequence.
     pub next_sequence: u64,
+    /// The lowest sequence that is not stored.
+    pub first_gap: u64,
+    /// Bytes of the events' bodies that are kept.
+    pub stored_bytes: u64,
     /// Its receipt and how many events that covers, when completed.
     pub receipt: Option<(String, u64)>,
 }
@@ -126,6 +130,25 @@ pub struct WrittenEvent {
     pub body: String,
     /// Whether it can end the session.
     pub may_end: bool,
+    /// Why it cannot be one of the session's, if it cannot: it is kept and counts for nothing.
+    pub misfit: Option<Misfit>,
+}
+
+impl WrittenEvent {
+    /// The same as one that was found to be so.
+    #[must_use]
+    pub fn found(self, misfit: Option<Misfit>) -> Self {
+        Self { may_end: self.may_end && misfit.is_none(), misfit, ..self }
+    }
+}
+
+/// An event as it lies in the database.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredEvent {
+    /// The event as it came.
+    pub event: Event,
+    /// The word for why it cannot be one of the session's (`Misfit::word`).
+    pub misfit: Option<String>,
 }
 
 impl From<Event> for WrittenEvent {
@@ -135,6 +158,7 @@ impl From<Event> for WrittenEvent {
             at_ms: event.at_ms,
             body: event.body.to_string(),
             may_end: EventKind::may_end(&event.body),
+            misfit: None,
         }
     }
 }
@@ -196,6 +220,42 @@ pub struct RecruitmentEntry {
     pub value: String,
 }
 
+/// Sessions whose answers are over their time and not deleted yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Overdue {
+    /// How many.
+    pub sessions: u64,
+    /// When the first of them was marked, milliseconds since 1970.
+    pub first_marked_ms: i64,
+}
+
+/// What a database knows of the time, milliseconds since 1970: the witnesses against a wrong clock.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TimesSeen {
+    /// The newest start, event or end of a session.
+    pub newest_ms: Option<i64>,
+    /// The latest time of the server's clock that was believed.
+    pub believed_ms: Option<i64>,
+    /// The newest event that an owner has said not to go by.
+    pub passed_over_ms: Option<i64>,
+}
+
+/// A participant whose answers are deleted at their own wish.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Withdrawal {
+    /// The study.
+    pub study_id: String,
+    /// Participant number within it.
+    pub participant: u64,
+    /// How many events were deleted now; none where they were gone already.
+    pub deleted: u64,
+}
+
+/// The public name of a participant: `p0007`.
+pub fn participant_id(number: u64) -> String {
+    format!("p{number:04}")
+}
+
 /// Tables with rows of a session (`session_key`) that are deleted with its answers.
-pub(crate) const PERSONAL_TABLES: [&str; 4] =
-    ["events", "event_conflicts", "recruitment", "repeat_marks"];
+pub(crate) const PERSONAL_TABLES: [&str; 5] =
+    ["events", "event_conflicts", "recruitment", "repeat_marks", "exclusions"];

@@ -39,6 +39,11 @@ pub(crate) const MIGRATIONS: &[Migration] = &[
         sqlite: include_str!("migrations/sqlite/0005_standing.sql"),
         postgres: include_str!("migrations/postgres/0005_standing.sql"),
     },
+    Migration {
+        version: 6,
+        sqlite: include_str!("migrations/sqlite/0006_keeping.sql"),
+        postgres: include_str!("migrations/postgres/0006_keeping.sql"),
+    },
 ];
 
 /// The version of today's schema.

@@ -2,7 +2,7 @@
 
 use sqlx::AssertSqlSafe;
 
-use crate::database::{Transaction, query};
+use crate::database::{Row, Transaction, query};
 use crate::error::StorageError;
 use crate::handle::Storage;
 use crate::records::{Registered, StudyVersion};
@@ -61,6 +61,32 @@ impl Storage {
         })
     }
 
+    /// Whether a study of this identifier was ever served.
+    pub async fn has_study(&self, study_id: &str) -> Result<bool, StorageError> {
+        let row = query("SELECT 1 FROM studies WHERE study_id = $1")
+            .bind(study_id)
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(row.is_some())
+    }
+
+    /// One version of a study, if it was ever served.
+    pub async fn study_version(
+        &self,
+        study_id: &str,
+        config_hash: &str,
+    ) -> Result<Option<StudyVersion>, StorageError> {
+        let row = query(
+            "SELECT study_id, config_hash, file, clips FROM study_versions \
+             WHERE study_id = $1 AND config_hash = $2",
+        )
+        .bind(study_id)
+        .bind(config_hash)
+        .fetch_optional(&self.readers)
+        .await?;
+        row.as_ref().map(study_version).transpose()
+    }
+
     /// Every version of every study ever served, in order of study and first service.
     pub async fn study_versions(&self) -> Result<Vec<StudyVersion>, StorageError> {
         let rows = query(
@@ -69,17 +95,17 @@ impl Storage {
         )
         .fetch_all(&self.readers)
         .await?;
-        rows.iter()
-            .map(|row| {
-                Ok(StudyVersion {
-                    study_id: row.get("study_id")?,
-                    config_hash: row.get("config_hash")?,
-                    file: row.get("file")?,
-                    clips: row.get("clips")?,
-                })
-            })
-            .collect()
+        rows.iter().map(study_version).collect()
     }
+}
+
+fn study_version(row: &Row) -> Result<StudyVersion, StorageError> {
+    Ok(StudyVersion {
+        study_id: row.get("study_id")?,
+        config_hash: row.get("config_hash")?,
+        file: row.get("file")?,
+        clips: row.get("clips")?,
+    })
 }
 
 /// Which version of its study this is, counted from 1 in the order of first service.

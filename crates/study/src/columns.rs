@@ -35,7 +35,7 @@ pub fn is_reserved_column(name: &str) -> bool {
 
 /// Columns that every study has, in order; the factors stand after `stimulus`, the answers about
 /// the participant at the end.
-pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 52] = {
+pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 53] = {
     use ColumnKind::{Any, Boolean, Integer, Number, Text, Time};
     [
         ("participant_id", Text, "", "Public identifier of the participant"),
@@ -84,6 +84,12 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 52] = {
             "ms",
             "From the first frame of the first whole play (of a page: from its showing) to the last change of this answer",
         ),
+        (
+            "rt_open",
+            Number,
+            "ms",
+            "From when answers could first be given (a trial's clip was seen whole) to the last change of this answer",
+        ),
         ("duration", Number, "ms", "From the start of the trial or page to its end"),
         (
             "time_elapsed",
@@ -91,8 +97,13 @@ pub const FIXED_COLUMNS: [(&str, ColumnKind, &str, &str); 52] = {
             "ms",
             "From the opening of the session to the end of the trial or page",
         ),
-        ("replays", Integer, "", "Whole plays after the first"),
-        ("interruptions", Integer, "", "Reloads and plays cut short within the trial or page"),
+        ("replays", Integer, "", "Whole plays beside the first; those before a reload count"),
+        (
+            "interruptions",
+            Integer,
+            "",
+            "Plays cut short, and reloads of the page, of a trial before its clip was seen whole",
+        ),
         ("focus_losses", Integer, "", "Times the page lost the focus or was hidden"),
         ("timed_out", Boolean, "", "Whether the time limit ended it"),
         ("fullscreen", Boolean, "", "Whether the page filled the screen"),

@@ -58,6 +58,24 @@ pub enum Unmet {
 /// estimate from two dozen frames wavers by a few per cent.
 const RATE_TOLERANCE: f64 = 0.95;
 
+/// Frames a second of which a share is asked at most: a faster display need not show more of a clip.
+const MOST_FRAMES_HZ: f64 = 60.0;
+
+impl DeviceRules {
+    /// Whether a play showed enough frames: `shown` of a clip of that many milliseconds, on a display of that
+    /// rate (Hz).
+    pub fn shows_enough(&self, shown: usize, clip_ms: f64, refresh_hz: f64) -> bool {
+        let Some(least) = self.minimum_frame_share else { return true };
+        let hz = if refresh_hz > 0.0 { refresh_hz.min(MOST_FRAMES_HZ) } else { MOST_FRAMES_HZ };
+        shown as f64 >= least * (clip_ms.max(0.0) / 1000.0 * hz).floor()
+    }
+
+    /// Whether the display is measured while it draws the study's own head.
+    pub fn measures_load(&self) -> bool {
+        self.minimum_refresh_hz.is_some() || self.minimum_frame_share.is_some()
+    }
+}
+
 impl Unmet {
     /// The rule's key in the study file, for events and export.
     pub fn key(&self) -> &'static str {
@@ -91,7 +109,10 @@ impl DeviceRules {
             unmet.push(Unmet::Height { least, found: height });
         }
         let rate = display.refresh_hz.unwrap_or(0.0);
-        if let Some(least) = self.minimum_refresh_hz.filter(|hz| rate < hz * RATE_TOLERANCE) {
+        // Who cannot show the share of frames that a play needs learns it before the first clip.
+        let share_hz = self.minimum_frame_share.map(|share| share * MOST_FRAMES_HZ);
+        let wanted = self.minimum_refresh_hz.into_iter().chain(share_hz).reduce(f64::max);
+        if let Some(least) = wanted.filter(|hz| rate < hz * RATE_TOLERANCE) {
             unmet.push(Unmet::Refresh { least, found: rate });
         }
         if self.fullscreen == FullscreenRule::Required && !display.fullscreen {

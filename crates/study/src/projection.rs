@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::question::Question;
 use crate::study_file::{
-    AttentionRule, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText, Look,
-    Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section, Sequence,
-    Study, Training, Translations, questions_among,
+    AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText,
+    Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section,
+    Sequence, Study, Training, Translations, questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -38,10 +38,16 @@ pub struct StudyProjection {
     pub url_parameters: Vec<String>,
     /// How a second participation of one person is recognised.
     pub repeat_prevention: RepeatPrevention,
+    /// Seconds after which the last page goes back by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub return_after_seconds: Option<u32>,
     /// What a participant agrees to.
     pub consent: Option<Consent>,
     /// What a device must have.
     pub device: Option<DeviceRules>,
+    /// Whether a clip is drawn by the browser, for which the device is looked at whatever the study asks.
+    #[serde(default)]
+    pub draws_clips: bool,
     /// Questions about the participant.
     pub demographics: Option<Questionnaire>,
     /// Whom the study does not take.
@@ -71,7 +77,8 @@ pub struct StudyProjection {
 impl Study {
     /// The study as the participant's page needs it.
     pub fn projection(&self) -> StudyProjection {
-        let Recruitment { url_parameters, repeat_prevention, .. } = &self.recruitment;
+        let Recruitment { url_parameters, repeat_prevention, return_after_seconds, .. } =
+            &self.recruitment;
         StudyProjection {
             id: self.id.clone(),
             title: self.study_metadata.title.clone(),
@@ -81,8 +88,10 @@ impl Study {
             contact: self.contact.clone(),
             url_parameters: url_parameters.clone(),
             repeat_prevention: *repeat_prevention,
+            return_after_seconds: *return_after_seconds,
             consent: self.consent.clone(),
             device: self.device.clone(),
+            draws_clips: self.draws_clips(),
             demographics: self.demographics.clone(),
             screening: self.screening.clone(),
             attention_checks: self.attention_checks.clone(),
@@ -96,6 +105,15 @@ impl Study {
             clips: self.clips(),
             look: self.stimuli.look.clone(),
         }
+    }
+}
+
+impl Study {
+    /// Whether a clip is drawn by the browser: not every one is a video.
+    fn draws_clips(&self) -> bool {
+        let is_drawn = |avatar: &Avatar| avatar.videos.is_empty();
+        let avatars = &self.stimuli.avatars;
+        self.clips().iter().any(|clip| avatars.get(&clip.avatar).is_some_and(is_drawn))
     }
 }
 

@@ -25,10 +25,10 @@ async function display() {
 }
 
 /** A Firefox with a fresh profile: `{evaluate(code), goto(url), screenshot(path), errors, close()}`. */
-export async function openFirefox({ width = 1000, height = 900 } = {}) {
+export async function openFirefox({ width = 1000, height = 900, preferences: own = {} } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "mimique-firefox-"));
   // Graphics in software, as far as this machine has a driver for it.
-  const preferences = { "webgl.force-enabled": true, "webgl.disable-fail-if-major-performance-caveat": true, "gfx.webrender.software": true };
+  const preferences = { "webgl.force-enabled": true, "webgl.disable-fail-if-major-performance-caveat": true, "gfx.webrender.software": true, ...own };
   const lines = Object.entries(preferences).map(([name, value]) => `user_pref("${name}", ${value});`);
   writeFileSync(join(profile, "user.js"), lines.join("\n"));
   const screen = await display();

@@ -2,23 +2,25 @@
 
 import assert from "node:assert/strict";
 
-/** Where the page stands: step, view, and on a trial phase and clip. */
+/** Where the page stands: its place among the steps, view, and on a trial the phase. Which clip it is, the page
+    does not show; `storedEvents` tell. */
 export async function place(page) {
   return page.locator("main[data-view]").evaluate((main) => ({
     step: main.dataset.step,
     view: main.dataset.view,
     phase: main.dataset.phase,
-    clip: main.dataset.clip,
     heading: main.querySelector("h1")?.textContent,
   }));
 }
 
-/** Waits until the page stands elsewhere than `from`. */
+/** Waits until the page stands elsewhere than `from`; a session that is being begun, or a device that is being
+    looked at, is nowhere. */
 export async function leave(page, from, timeout = 30_000) {
   await page.waitForFunction(
     ([step, view]) => {
       const main = document.querySelector("main[data-view]");
-      return main && (main.dataset.step !== step || main.dataset.view !== view);
+      const passing = !main || main.dataset.view === "opening" || main.dataset.measuring === "true";
+      return !passing && (main.dataset.step !== step || main.dataset.view !== view);
     },
     [from.step, from.view],
     { timeout },
@@ -101,6 +103,14 @@ export async function phase(page, wanted, timeout = 90_000) {
     [wanted].flat(),
     { timeout },
   );
+}
+
+/** The clip of the `number`-th trial (from 1) that this page's session has begun. */
+export async function clipOf(page, server, study, number) {
+  const begun = async () => (await storedEvents(page, server, study)).filter(({ type }) => type === "trial_started").map(({ step, clip }) => [step, clip]);
+  const trials = async () => [...new Map(await begun()).values()];
+  await until(`trial ${number} is stored`, async () => (await trials()).length >= number);
+  return (await trials())[number - 1];
 }
 
 /** Waits until it holds. */

@@ -22,6 +22,8 @@ pub enum Act {
     BeginAgain,
     /// A session of its own for the next person at this browser.
     AnotherPerson,
+    /// A text, to be pasted elsewhere.
+    Copy(String),
     /// The answers as a file, where no server has them.
     Download,
 }

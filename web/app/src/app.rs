@@ -26,6 +26,8 @@ enum Status {
     Opening,
     /// It cannot begin.
     Failed(Trouble, Words),
+    /// Agreement and device are passed: the session is being begun.
+    Entering(Words),
     /// A session runs.
     Running(Rc<Engine>),
 }
@@ -48,8 +50,14 @@ struct App {
     mount: RefCell<Mount>,
     shown: RefCell<Shown>,
     watched: RefCell<WatchedClip>,
+    /// Who has passed agreement and device, and could not begin yet.
+    lobby: RefCell<Option<Rc<Engine>>>,
+    /// Whether a declining was counted.
+    declined: Cell<bool>,
     /// Whether it is drawn at the end of this turn.
     due: Cell<bool>,
+    /// Whether something is pressed: what stands under the pointer stays there until it is let go.
+    pressed: Cell<bool>,
 }
 
 /// The module's entry.
@@ -69,7 +77,10 @@ pub fn start() {
             mount: RefCell::new(Mount::new(document::root(), dispatch)),
             shown: RefCell::default(),
             watched: RefCell::default(),
+            lobby: RefCell::default(),
+            declined: Cell::new(false),
             due: Cell::new(false),
+            pressed: Cell::new(false),
         }
     });
     app.begin();
@@ -91,6 +102,31 @@ impl App {
             };
             app.is_now(status);
         });
+    }
+
+    /// Begins the session of somebody who has passed agreement and device.
+    fn enter(&self, lobby: Rc<Engine>) {
+        let fixed = lobby.words().clone();
+        self.is_now(Status::Entering(fixed.clone()));
+        let Some(app) = self.here.upgrade() else { return };
+        spawn_local(async move {
+            let here = Rc::clone(&app);
+            let status = match start::enter(&lobby, Rc::new(move || here.changed())).await {
+                Ok(engine) => Status::Running(engine),
+                Err(trouble) => {
+                    *app.lobby.borrow_mut() = Some(lobby);
+                    Status::Failed(trouble, fixed)
+                }
+            };
+            app.is_now(status);
+        });
+    }
+
+    /// Counts a declining, once.
+    fn count_declined(&self, lobby: Rc<Engine>) {
+        if !self.declined.replace(true) {
+            spawn_local(async move { start::count_declined(&lobby).await });
+        }
     }
 
     fn is_now(&self, status: Status) {
@@ -116,7 +152,13 @@ impl App {
     /// Does what a page asks for.
     fn act(&self, act: Act) {
         match (act, self.engine()) {
-            (Act::BeginAgain, _) => self.begin(),
+            (Act::BeginAgain, _) => {
+                let lobby = self.lobby.take();
+                match lobby {
+                    Some(lobby) => self.enter(lobby),
+                    None => self.begin(),
+                }
+            }
             (Act::Input(input), Some(engine)) => engine.dispatch(input),
             (Act::Change { question, change }, Some(engine)) => {
                 let value = change(engine.state().record.draft(&question));
@@ -126,6 +168,11 @@ impl App {
                 Identity::forget(&engine.plan.study.id);
                 document::reload();
             }
+            (Act::Copy(text), Some(engine)) => spawn_local(async move {
+                if host::copy(&text).await.is_ok_and(|copied| copied.as_bool() == Some(true)) {
+                    engine.dispatch(Input::Copied);
+                }
+            }),
             (Act::Download, Some(engine)) => {
                 let file = engine.service.site().and_then(|site| site.session_file());
                 if let Some((name, text, _)) = file {
@@ -139,6 +186,11 @@ impl App {
 
     /// What the window reports: focus, visibility, connection, time.
     fn window(&self, event: WindowEvent) {
+        match event {
+            WindowEvent::Pressed => return self.pressed.set(true),
+            WindowEvent::LetGo => return self.let_go(),
+            _ => {}
+        }
         let Some(engine) = self.engine() else { return };
         match event {
             WindowEvent::Blurred => engine.dispatch(Input::FocusLost),
@@ -147,17 +199,33 @@ impl App {
             WindowEvent::FullscreenChanged => {
                 engine.dispatch(Input::Fullscreen(host::is_fullscreen()));
             }
+            WindowEvent::Online => {
+                engine.flush();
+                engine.dispatch(Input::Online);
+            }
             WindowEvent::SendNow => engine.flush(),
             WindowEvent::Second => engine.dispatch(Input::Tick),
+            WindowEvent::Pressed | WindowEvent::LetGo => {}
         }
     }
 
-    /// Something changed that the screen shows: it is drawn again at the end of this turn.
+    /// Something changed that the screen shows: it is drawn again at the end of this turn, or once what is
+    /// pressed is let go. A page that moved in between would take the button from under the pointer.
     fn changed(&self) {
-        if !self.due.replace(true)
-            && let Some(app) = self.here.upgrade()
-        {
+        if !self.due.replace(true) && !self.pressed.get() {
+            self.draw_soon();
+        }
+    }
+
+    fn draw_soon(&self) {
+        if let Some(app) = self.here.upgrade() {
             spawn_local(async move { app.draw() });
+        }
+    }
+
+    fn let_go(&self) {
+        if self.pressed.replace(false) && self.due.get() {
+            self.draw_soon();
         }
     }
 
@@ -166,10 +234,17 @@ impl App {
         let Some(engine) = self.engine() else {
             let element = match &*self.status.borrow() {
                 Status::Failed(trouble, words) => failure::trouble(trouble, words),
+                Status::Entering(words) => pages::entering(words),
                 _ => pages::opening(),
             };
             return self.show(vec![element]);
         };
+        if engine.leaves_lobby() {
+            return self.enter(engine);
+        }
+        if engine.is_declined_lobby() {
+            self.count_declined(Rc::clone(&engine));
+        }
         let view = view(&engine.plan, &engine.state());
         let language = engine.language();
         let shape = pages::shape(&view, &language);
@@ -224,6 +299,12 @@ impl App {
                 "main fieldset[data-question] input",
                 "main h1",
             ]);
+        }
+        match trial.phase {
+            // To the stage when its trial begins, to the questions when they are asked.
+            Phase::Loading { .. } | Phase::Ready => focus::bring_into_view(".clip-card"),
+            Phase::Answering => focus::bring_into_view(".answers > form"),
+            _ => {}
         }
         if matches!(trial.phase, Phase::Ready) {
             engine.show(trial.clip, companion);

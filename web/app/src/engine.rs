@@ -8,18 +8,18 @@ use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 use std::time::Duration;
 
-use mimique_session::PlayLog;
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, Refusal};
+use mimique_session::{PlayLog, StageFailure, Standing};
 use mimique_study::text::Words;
-use mimique_study::{Display, MEDIA_PREFIX};
-use serde_json::Value;
+use mimique_study::{DeviceRules, Display, MEDIA_PREFIX};
+use serde_json::{Value, json};
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 
 use crate::answer::{Failure, is_gone};
-use crate::browser::{clock, focus, host, random, reason};
+use crate::browser::{clock, document, focus, host, random, stage_failure};
 use crate::client::client;
 use crate::event_store::{EventStore, Identity};
 use crate::outbox::{Outbox, back_off};
@@ -44,12 +44,16 @@ pub struct Engine {
     state: RefCell<State>,
     /// What the header says.
     connection: RefCell<Connection>,
-    clips: BTreeMap<String, Value>,
+    /// `wire::ClipSource` of every clip.
+    pub clips: BTreeMap<String, Value>,
     /// Path of a picture or a sign-language video -> address of what has been fetched.
     media: RefCell<BTreeMap<String, String>>,
     /// Who answers.
-    pub service: Service,
-    store: EventStore,
+    pub service: Rc<Service>,
+    /// Where events are kept; nowhere before the session.
+    store: Option<EventStore>,
+    /// What happened before the session, in memory alone.
+    before: RefCell<Vec<Event>>,
     to_store: RefCell<VecDeque<Event>>,
     writing: Cell<bool>,
     outbox: RefCell<Outbox>,
@@ -75,9 +79,9 @@ pub struct Beginning {
     /// `wire::ClipSource` of every clip.
     pub clips: BTreeMap<String, Value>,
     /// Who answers.
-    pub service: Service,
-    /// Where events are kept until they are acknowledged.
-    pub store: EventStore,
+    pub service: Rc<Service>,
+    /// Where events are kept until they are acknowledged; none before the session.
+    pub store: Option<EventStore>,
     /// Number of events that the server has without a gap.
     pub stored: u64,
     /// What the server has not acknowledged yet.
@@ -90,7 +94,8 @@ impl Engine {
         let Beginning { plan, state, clips, service, store, stored, unsent } = beginning;
         let mut outbox = Outbox::new(stored);
         unsent.into_iter().for_each(|event| outbox.push(event));
-        let connection = Connection { fleeting: !store.is_lasting(), ..Connection::default() };
+        let fleeting = store.as_ref().is_some_and(|store| !store.is_lasting());
+        let connection = Connection { fleeting, ..Connection::default() };
         Rc::new(Self {
             plan,
             state: RefCell::new(state),
@@ -99,6 +104,7 @@ impl Engine {
             media: RefCell::default(),
             service,
             store,
+            before: RefCell::default(),
             to_store: RefCell::default(),
             writing: Cell::new(false),
             outbox: RefCell::new(outbox),
@@ -156,10 +162,8 @@ impl Engine {
 
     fn carry_out(self: &Rc<Self>, effect: Effect) {
         match effect {
-            Effect::Store(event) => {
-                self.to_store.borrow_mut().push_back(event);
-                self.write();
-            }
+            Effect::Store(event) if self.store.is_none() => self.before.borrow_mut().push(event),
+            Effect::Store(event) => self.keep(vec![event]),
             Effect::Flush => self.flush(),
             Effect::PrepareClips(clips) => {
                 let mut queue = self.to_prepare.borrow_mut();
@@ -179,6 +183,7 @@ impl Engine {
             Effect::RequestFullscreen => host::request_fullscreen(),
             Effect::LeaveFullscreen => host::leave_fullscreen(),
             Effect::Complete { events } => self.complete(events),
+            Effect::GoBack(address) => document::go(&address),
             Effect::Withdraw => self.withdraw(),
             Effect::FocusHeading if self.open.get() => focus::focus_heading(),
             Effect::FocusHeading => {}
@@ -187,11 +192,46 @@ impl Engine {
         }
     }
 
+    /// Keeps events, then sends them.
+    pub fn keep(self: &Rc<Self>, events: Vec<Event>) {
+        self.to_store.borrow_mut().extend(events);
+        self.write();
+    }
+
+    /// What happened before the session.
+    pub fn unkept(&self) -> Vec<Event> {
+        self.before.borrow().clone()
+    }
+
+    /// Whether agreement and device were passed, or the device cannot take part: the session begins.
+    pub fn leaves_lobby(&self) -> bool {
+        let state = self.state();
+        let is_over = match state.record.standing {
+            Standing::InProgress => !self.plan.is_before_session(state.record.step),
+            standing => standing.is_screened_out(),
+        };
+        self.store.is_none() && is_over
+    }
+
+    /// Whether somebody has declined before the session.
+    pub fn is_declined_lobby(&self) -> bool {
+        self.store.is_none() && self.state().record.standing == Standing::Declined
+    }
+
     /// What browser and display can do.
     fn measure(self: &Rc<Self>) {
         let engine = Rc::clone(self);
+        let rules = self.plan.study.device.as_ref();
+        let trials = self.plan.steps.iter().filter_map(|step| step.trial());
+        let mut clips = trials.map(|trial| trial.clip.as_str());
+        let loads = rules.is_some_and(DeviceRules::measures_load);
+        let clip = clips.next().filter(|_| loads).map(str::to_owned);
+        let source = clip.as_ref().and_then(|clip| self.clips.get(clip)).map(Value::to_string);
+        let look = json!(self.plan.study.look).to_string();
         spawn_local(async move {
-            let measured = host::measure().await.ok().and_then(|text| text.as_string());
+            let source = source.unwrap_or_default();
+            let measured = host::measure(clip, &source, &look).await;
+            let measured = measured.ok().and_then(|text| text.as_string());
             let display = measured.and_then(|text| serde_json::from_str(&text).ok());
             engine.dispatch(Input::Measured(display.unwrap_or_default()));
         });
@@ -233,7 +273,9 @@ impl Engine {
             loop {
                 let next = engine.to_store.borrow_mut().pop_front();
                 let Some(event) = next else { break };
-                if engine.store.put(&event).await.is_err() {
+                if let Some(store) = &engine.store
+                    && store.put(&event).await.is_err()
+                {
                     engine.connection_is(|connection| connection.fleeting = true);
                 }
                 engine.outbox.borrow_mut().push(event);
@@ -262,7 +304,9 @@ impl Engine {
                         let gone = engine.outbox.borrow_mut().acknowledge(&batch, &answer);
                         // What cannot be forgotten here is sent again after a reload, and refused
                         // as known: no harm.
-                        let _ = engine.store.forget(&gone).await;
+                        if let Some(store) = &engine.store {
+                            let _ = store.forget(&gone).await;
+                        }
                         engine.connected();
                         let stored = engine.outbox.borrow().stored();
                         engine.dispatch(Input::Acknowledged { stored });
@@ -303,11 +347,14 @@ impl Engine {
         });
     }
 
-    fn connected(&self) {
-        let troubled = {
+    fn connected(self: &Rc<Self>) {
+        let (offline, troubled) = {
             let connection = self.connection();
-            connection.offline || connection.refused.is_some()
+            (connection.offline, connection.offline || connection.refused.is_some())
         };
+        if offline {
+            self.dispatch(Input::Online);
+        }
         if troubled {
             self.connection_is(|connection| {
                 connection.offline = false;
@@ -353,7 +400,9 @@ impl Engine {
         }
         let Some(source) = self.clips.get(&clip) else {
             let message = ["the server has no ", &clip].concat();
-            return self.dispatch(Input::ClipFailed { clip, message });
+            let failure =
+                StageFailure { code: "missing".to_owned(), message, ..Default::default() };
+            return self.dispatch(Input::ClipFailed { clip, failure });
         };
         let loaded = match clip.strip_prefix(MEDIA_PREFIX) {
             Some(path) => self.load_media(path, source).await,
@@ -365,8 +414,8 @@ impl Engine {
                 self.dispatch(Input::ClipPrepared { clip });
             }
             Err(thrown) => {
-                let message = reason(&thrown);
-                self.dispatch(Input::ClipFailed { clip, message });
+                let failure = stage_failure(&thrown);
+                self.dispatch(Input::ClipFailed { clip, failure });
             }
         }
     }
@@ -396,8 +445,8 @@ impl Engine {
         spawn_local(async move {
             if let Err(thrown) = host::show_clip(&clip, beside).await {
                 engine.prepared.borrow_mut().remove(&clip);
-                let message = reason(&thrown);
-                engine.dispatch(Input::ClipFailed { clip, message });
+                let failure = stage_failure(&thrown);
+                engine.dispatch(Input::ClipFailed { clip, failure });
             }
         });
     }
@@ -407,14 +456,17 @@ impl Engine {
         spawn_local(async move {
             let input = match host::play_clip(&clip, beside).await.map(|log| play_log(&log)) {
                 Ok(Ok(log)) => Input::Played(log),
-                Ok(Err(message)) => Input::ClipFailed { clip, message },
-                Err(thrown) => Input::ClipFailed { clip, message: reason(&thrown) },
+                Ok(Err(failure)) => Input::ClipFailed { clip, failure },
+                Err(thrown) => Input::ClipFailed { clip, failure: stage_failure(&thrown) },
             };
             engine.dispatch(input);
         });
     }
 
     fn complete(self: &Rc<Self>, events: u64) {
+        if self.store.is_none() {
+            return;
+        }
         let engine = Rc::clone(self);
         spawn_local(async move {
             let mut failures = 0;
@@ -444,6 +496,10 @@ impl Engine {
     }
 
     fn withdraw(self: &Rc<Self>) {
+        if self.store.is_none() {
+            // Nothing was kept.
+            return self.dispatch(Input::WithdrawalConfirmed);
+        }
         let engine = Rc::clone(self);
         spawn_local(async move {
             let started = &engine.plan.started;
@@ -462,7 +518,9 @@ impl Engine {
                 }
             }
             *engine.outbox.borrow_mut() = Outbox::new(u64::MAX);
-            let _ = engine.store.clear().await;
+            if let Some(store) = &engine.store {
+                let _ = store.clear().await;
+            }
             Identity::forget(&engine.plan.study.id);
             engine.connected();
             engine.dispatch(Input::WithdrawalConfirmed);
@@ -470,7 +528,8 @@ impl Engine {
     }
 }
 
-fn play_log(log: &JsValue) -> Result<PlayLog, String> {
-    let text = log.as_string().ok_or("the stage gave no log")?;
-    serde_json::from_str(&text).map_err(|error| format!("the stage's log: {error}"))
+fn play_log(log: &JsValue) -> Result<PlayLog, StageFailure> {
+    let failure = |message: String| StageFailure { message, ..StageFailure::default() };
+    let text = log.as_string().ok_or_else(|| failure("the stage gave no log".to_owned()))?;
+    serde_json::from_str(&text).map_err(|error| failure(format!("the stage's log: {error}")))
 }

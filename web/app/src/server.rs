@@ -25,6 +25,11 @@ impl Server {
         self.requests.get(&format!("/api/studies/{study}{version}")).await
     }
 
+    /// `POST /api/studies/{study}/arrivals`
+    pub async fn ask(&self, study: &str, body: &StartSession) -> Result<(), Failure> {
+        self.requests.post(&format!("/api/studies/{study}/arrivals"), body).await
+    }
+
     /// `POST /api/studies/{study}/sessions`
     pub async fn start(&self, study: &str, body: &StartSession) -> Result<SessionStarted, Failure> {
         self.requests.post(&format!("/api/studies/{study}/sessions"), body).await

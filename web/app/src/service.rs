@@ -43,6 +43,14 @@ impl Service {
         }
     }
 
+    /// Asks whether this participant could begin; nothing is kept of it.
+    pub async fn ask(&self, study: &StudyProjection, body: &StartSession) -> Result<(), Failure> {
+        match self {
+            Self::Server(server) => server.ask(&study.id, body).await,
+            Self::Site(site) => site.start(study, body).map(drop),
+        }
+    }
+
     /// Begins a session; repeated with the same nonce it is the same session.
     pub async fn start(
         &self,

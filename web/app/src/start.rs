@@ -1,12 +1,16 @@
-//! From the address to a running session: fetch the study, begin or resume.
+//! From the address to a running session: fetch the study, then resume the session that this browser is in
+//! the middle of, or show agreement and device gate. Until both are passed nothing is kept, here or on the
+//! server: the plan is a stand-in's, and its events are in memory alone. [`enter`] begins the session.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use mimique_session::Client;
 use mimique_session::flow::{Input, Plan, State};
 use mimique_session::wire::{Event, Refusal, SessionStarted, StartSession};
+use mimique_session::{Client, EventKind};
 use mimique_study::text::{Words, primary_language};
 use mimique_study::{Multilingual as _, StudyProjection};
+use serde_json::Value;
 
 use crate::address::Address;
 use crate::answer::{Failure, is_gone};
@@ -51,9 +55,9 @@ pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine
     if !host::hold_session(&address.study).await.is_ok_and(|held| held.as_bool() != Some(false)) {
         return Err(Trouble::OtherTab);
     }
-    let (started, events) = match resume(&service, &address).await? {
-        Some(known) => known,
-        None => (begin_session(&service, &address, &study, &language).await?, Vec::new()),
+    let service = Rc::new(service);
+    let Some((started, events)) = resume(&service, &address).await? else {
+        return lobby(service, &address, study, clips, &language, changed).await;
     };
     let store = EventStore::open(Store::Outbox, &started.session).await;
     let stored =
@@ -68,17 +72,115 @@ pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine
         unsent.iter().map(|event| event.sequence).filter(|number| *number < stored).collect();
     let _ = store.forget(&known).await;
 
-    let plan = Plan::new(study, started).map_err(|error| Trouble::Unreadable(error.to_string()))?;
+    let plan = planned(study, started)?;
     let (state, input): (State, fn(Client) -> Input) = if all.is_empty() {
         (State::new(&plan, &language), Input::Opened)
     } else {
         (State::replay(&plan, &all), Input::Resumed)
     };
+    let store = Some(store);
     let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
     let engine = Engine::new(beginning, changed);
     engine.dispatch(input(client()));
     engine.open();
     Ok(engine)
+}
+
+fn planned(study: StudyProjection, started: SessionStarted) -> Result<Plan, Trouble> {
+    Plan::new(study, started).map_err(|error| Trouble::Unreadable(error.to_string()))
+}
+
+/// Agreement and device gate. Whoever could not begin is told before reading.
+async fn lobby(
+    service: Rc<Service>,
+    address: &Address,
+    study: StudyProjection,
+    clips: BTreeMap<String, Value>,
+    language: &str,
+    changed: Rc<dyn Fn()>,
+) -> Result<Rc<Engine>, Trouble> {
+    let ask = arrival(address, &new_nonce()?, language);
+    persist(|| service.ask(&study, &ask)).await?;
+    let conditions = study.sequence.conditions_for(address.condition.as_deref());
+    let condition = conditions.ok().and_then(|names| names.first().map(|name| (*name).to_owned()));
+    let stand_in = SessionStarted {
+        session: String::new(),
+        participant_id: String::new(),
+        participant: 1,
+        slot: 1,
+        condition,
+        seed: 0,
+        stage: String::new(),
+        config_hash: String::new(),
+        withdrawal_code: String::new(),
+    };
+    let plan = planned(study, stand_in)?;
+    let state = State::new(&plan, language);
+    let (store, stored, unsent) = (None, 0, Vec::new());
+    let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
+    let engine = Engine::new(beginning, changed);
+    engine.dispatch(Input::Opened(client()));
+    engine.open();
+    Ok(engine)
+}
+
+/// Begins the session of somebody who has passed the lobby, or whose device cannot take part: what
+/// happened there is its beginning.
+pub async fn enter(lobby: &Engine, changed: Rc<dyn Fn()>) -> Result<Rc<Engine>, Trouble> {
+    let service = Rc::clone(&lobby.service);
+    let study = lobby.plan.study.clone();
+    let language = lobby.language();
+    let turned_away = !lobby.state().record.standing.is_open();
+    let query = document::query();
+    let address = Address::of_study(&study.id, &query);
+    let started = begin_session(&service, &address, &study, &language, turned_away).await?;
+    let store = EventStore::open(Store::Outbox, &started.session).await;
+    let plan = planned(study, started)?;
+    let events = lobby.unkept();
+    let state = State::replay(&plan, &events);
+    let (clips, store, stored, unsent) = (lobby.clips.clone(), Some(store), 0, Vec::new());
+    let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
+    let engine = Engine::new(beginning, changed);
+    engine.keep(events);
+    engine.open();
+    engine.dispatch(Input::Begun);
+    Ok(engine)
+}
+
+/// Counts somebody who has declined, and nothing of them. What is lost on the way is lost.
+pub async fn count_declined(lobby: &Engine) {
+    let study = &lobby.plan.study;
+    let Ok(nonce) = new_nonce() else { return };
+    let language = lobby.language();
+    let condition = Address::of_study(&study.id, &document::query()).condition;
+    let (turned_away, at_ms) = (true, clock::now());
+    let body = StartSession {
+        nonce,
+        condition,
+        language: language.clone(),
+        turned_away,
+        ..StartSession::default()
+    };
+    let Ok(started) = lobby.service.start(study, &body).await else { return };
+    let kinds = [EventKind::Opened { client: Client::default(), language }, EventKind::Declined];
+    let events =
+        (0..).zip(kinds).map(|(sequence, kind)| Event { sequence, at_ms, body: kind.to_body() });
+    let _ = lobby.service.append(&started.session, events.collect()).await;
+}
+
+fn new_nonce() -> Result<String, Trouble> {
+    random::nonce(16).map_err(|error| Trouble::Unreadable(error.to_string()))
+}
+
+fn arrival(address: &Address, nonce: &str, language: &str) -> StartSession {
+    StartSession {
+        nonce: nonce.to_owned(),
+        recruitment: address.recruitment.clone(),
+        condition: address.condition.clone(),
+        language: language.to_owned(),
+        client: about(),
+        turned_away: false,
+    }
 }
 
 /// The language of the pages: the address's first, then the browser's, of those that the study has.
@@ -133,25 +235,16 @@ async fn begin_session(
     address: &Address,
     study: &StudyProjection,
     language: &str,
+    turned_away: bool,
 ) -> Result<SessionStarted, Trouble> {
     let known = Identity::load(&address.study).filter(|identity| identity.started.is_none());
     let mut identity = match known {
         Some(known) => known,
-        None => {
-            let nonce =
-                random::nonce(16).map_err(|error| Trouble::Unreadable(error.to_string()))?;
-            Identity { nonce, started: None }
-        }
+        None => Identity { nonce: new_nonce()?, started: None },
     };
     // Kept before it is sent: a reload in between starts the same session again, not a second one.
     identity.save(&address.study);
-    let body = StartSession {
-        nonce: identity.nonce.clone(),
-        recruitment: address.recruitment.clone(),
-        condition: address.condition.clone(),
-        language: language.to_owned(),
-        client: about(),
-    };
+    let body = StartSession { turned_away, ..arrival(address, &identity.nonce, language) };
     let started = persist(|| service.start(study, &body)).await?;
     identity.started = Some(started.clone());
     identity.save(&address.study);

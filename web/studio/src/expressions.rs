@@ -70,19 +70,21 @@ impl Workspace {
         self.put_expressions("expressions", segments)
     }
 
-    /// Takes segments from a file: CSV, or ELAN (`.eaf`).
+    /// Takes segments from a file: CSV, or ELAN (`.eaf`). `leftOut` says what of an ELAN tier is no segment.
     ///
     /// # Errors
     /// [`Problem`] with the file's name.
     pub fn expressions_file(&mut self, file: &str, text: &str) -> Result<Value, Problem> {
         let (_, rate_hz) = self.length()?;
-        let segments = if is_eaf(file) {
-            let document = EafDocument::parse(text).map_err(|e| Problem::of(file, e))?;
-            document.segments(TIER, rate_hz).map_err(|e| Problem::of(file, e))?
-        } else {
-            read_segments(text).map_err(|e| Problem::of(file, e))?
-        };
-        self.put_expressions(file, segments)
+        if !is_eaf(file) {
+            let segments = read_segments(text).map_err(|e| Problem::of(file, e))?;
+            return self.put_expressions(file, segments);
+        }
+        let document = EafDocument::parse(text).map_err(|e| Problem::of(file, e))?;
+        let found = document.segments(TIER, rate_hz).map_err(|e| Problem::of(file, e))?;
+        let mut told = self.put_expressions(file, found.segments)?;
+        told["leftOut"] = json!(found.left_out.sentence());
+        Ok(told)
     }
 
     fn put_expressions(

@@ -137,6 +137,10 @@ fn expressions_are_suggested_mended_and_carried() {
         assert_eq!(back["segments"][1]["label"], "fear", "{file}: {text}");
         assert_eq!(back["segments"][0]["expression"], serde_json::json!([100, 300]), "{file}");
     }
+    let eaf = workspace.expressions_eaf(None, "2026-01-01T00:00:00+00:00").unwrap();
+    let neutral = workspace.expressions_file("n.eaf", &eaf.replace(">fear<", ">neutral<")).unwrap();
+    assert_eq!(neutral["segments"].as_array().unwrap().len(), 1);
+    assert_eq!(neutral["leftOut"], "annotations left out: 1 of the neutral face");
     let problem =
         workspace.set_expressions(r#"[{"label": "x", "expression": [5, 5]}]"#).unwrap_err();
     assert!(problem.0.contains("x: frames 5:5 of"), "{problem}");

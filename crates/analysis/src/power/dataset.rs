@@ -158,7 +158,9 @@ impl<'d> Data<'d> {
                 (since_onset_ms * 1000.0).round() / 1000.0
             });
             if let Some(rt_ms) = rt_ms {
-                quickest = Some(quickest.map_or(rt_ms, |least| least.min(rt_ms)));
+                // From when answers could be given: the end of the first play.
+                let open_ms = rt_ms - eighths(self.model.parameters.times.clip_ms);
+                quickest = Some(quickest.map_or(open_ms, |least| least.min(open_ms)));
             }
             if has_conditions(self.design.study) {
                 told.insert(id.clone(), as_json(asked, raw.clone()));

@@ -47,7 +47,7 @@ fn strict_demo() -> Value {
     let (mut value, _) = study("demo.json");
     value["exclusions"] = serde_json::json!({
         "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
-        "longestFrameMs": 33.0, "shortestRtMs": 4200.0,
+        "longestFrameMs": 33.0, "shortestRtMs": 1200.0,
     });
     value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
         "id": "H5", "statement": "s", "test": "wilcoxon", "response": "believability",

@@ -259,6 +259,18 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
             format!("les personnes qui échouent à plus de {most} contrôles d’attention"),
         ));
     }
+    let device = from.study.device.as_ref();
+    if let Some(share) = device.and_then(|device| device.minimum_frame_share) {
+        let percent = language.fixed(100.0 * share, 0);
+        words.push(language.pick(
+            format!(
+                "people whose device shows less than {percent} % of a clip's frames (of 60 a second at most) in two plays of it: their session ends there"
+            ),
+            format!(
+                "les personnes dont l’appareil affiche moins de {percent} % des images d’un extrait (sur 60 par seconde au plus) en deux lectures : leur session s’arrête là"
+            ),
+        ));
+    }
     if let Some(share) = rules.late_frame_share {
         let percent = language.fixed(100.0 * share, 0);
         words.push(language.pick(
@@ -274,9 +286,9 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
     }
     if let Some(shortest) = rules.shortest_rt_ms {
         words.push(language.pick(
-            format!("trials answered sooner than {shortest} ms after the onset"),
+            format!("trials answered sooner than {shortest} ms after answers could be given"),
             format!(
-                "les essais répondus en moins de {} ms après le début",
+                "les essais répondus moins de {} ms après l’ouverture des réponses",
                 language.number(shortest)
             ),
         ));

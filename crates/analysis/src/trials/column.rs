@@ -14,6 +14,11 @@ impl<'t> Column<'t> {
         Self { table, name: name.to_owned(), place: table.position(name).ok() }
     }
 
+    /// Whether the export has it.
+    pub(crate) fn is_there(&self) -> bool {
+        self.place.is_some()
+    }
+
     pub(crate) fn text(&self, row: usize) -> Option<&'t str> {
         self.table.cell(row, self.place?)
     }

@@ -86,12 +86,19 @@ pub(crate) struct Flow {
     pub trials: usize,
     /// Trials left out, by reason.
     pub trials_left_out: BTreeMap<&'static str, usize>,
+    /// Rows of trials that name no trial or no response: the study asks for nothing of the kind.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub rows_unread: usize,
     /// Trials used.
     pub trials_used: usize,
     /// Rows of pilot sessions left out because there are live ones.
     pub pilot_people: usize,
     /// Rules of the study file, in words.
     pub rules: Vec<String>,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Flow {
@@ -193,6 +200,7 @@ impl Export {
                 self.people[person].trials += 1;
             }
             self.flow.trials += part.considered;
+            self.flow.rows_unread += part.unread;
             for (reason, count) in part.left_out {
                 *self.flow.trials_left_out.entry(reason).or_insert(0) += count;
             }
@@ -295,7 +303,7 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
         words.push(format!("longestFrameMs > {limit}"));
     }
     if let Some(limit) = rules.shortest_rt_ms {
-        words.push(format!("rt < {limit} ms"));
+        words.push(format!("rt_open < {limit} ms"));
     }
     words
 }

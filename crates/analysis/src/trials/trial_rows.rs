@@ -22,6 +22,7 @@ pub(crate) struct TrialReader<'t> {
     kind: Column<'t>,
     trial_id: Column<'t>,
     rt: Column<'t>,
+    rt_open: Column<'t>,
     stimulus: Column<'t>,
     beside: Column<'t>,
     beside_side: Column<'t>,
@@ -45,6 +46,8 @@ pub(crate) struct TrialRows {
     pub considered: usize,
     /// Those left out, by reason.
     pub left_out: BTreeMap<&'static str, usize>,
+    /// Rows of trials that name no trial or no response: they are in no trial.
+    pub unread: usize,
     /// Trials used.
     pub trials: Vec<Trial>,
     /// Their answers, a trial being its place in `trials`.
@@ -87,6 +90,7 @@ impl<'t> TrialReader<'t> {
             kind: column("trial_type"),
             trial_id: column("trial_id"),
             rt: column("rt"),
+            rt_open: column("rt_open"),
             stimulus: column("stimulus"),
             beside: column("beside"),
             beside_side: column("beside_side"),
@@ -107,8 +111,11 @@ impl<'t> TrialReader<'t> {
         // A trial is left out for its first reason; the quickest answer decides for all of it.
         let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
         for row in rows.clone() {
+            // Exports of before there was that column have the time from the onset alone.
+            let open = self.rt_open.number(row)?;
+            let rt = if self.rt_open.is_there() { open } else { self.rt.number(row)? };
             if let (Some("trial"), Some(trial), Some(rt)) =
-                (self.kind.text(row), self.trial_id.text(row), self.rt.number(row)?)
+                (self.kind.text(row), self.trial_id.text(row), rt)
                 && self.rules.shortest_rt_ms.is_some()
             {
                 let least = quickest.entry((self.person_of_row[row], trial)).or_insert(rt);
@@ -124,8 +131,13 @@ impl<'t> TrialReader<'t> {
             if self.kind.text(row) != Some("trial") {
                 continue;
             }
+            let (Some(id), Some(question)) = (self.trial_id.text(row), self.response.text(row))
+            else {
+                read.unread += 1;
+                continue;
+            };
             let person = self.person_of_row[row];
-            let key = (person, self.trial_id.needed(row)?);
+            let key = (person, id);
             let same = last.filter(|(known, _)| *known == key).map(|(_, trial)| trial);
             let trial = match same.or_else(|| seen.get(&key).copied()) {
                 Some(trial) => trial,
@@ -151,7 +163,6 @@ impl<'t> TrialReader<'t> {
                     rt_ms: self.rt.number(row)?,
                     trial,
                 };
-                let question = self.response.needed(row)?;
                 match read.answers.get_mut(question) {
                     Some(answers) => answers.push(answer),
                     None => {

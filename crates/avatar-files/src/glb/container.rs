@@ -26,12 +26,24 @@ pub(super) struct Unpacked {
     pub stride: usize,
 }
 
-/// Extensions that a file may require: read, or of no concern to a face's shape.
-const KNOWN_EXTENSIONS: [&str; 4] = [
+/// Extensions that a file may require: those that are read, and those without which the face has the same
+/// shape (pictures in other formats, whose surfaces keep their plain colour; lights; words about the file).
+const KNOWN_EXTENSIONS: [&str; 15] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
+    "EXT_texture_webp",
+    "EXT_texture_avif",
+    "KHR_texture_basisu",
+    "MSFT_texture_dds",
+    "KHR_lights_punctual",
+    "EXT_lights_image_based",
+    "EXT_lights_ies",
+    "KHR_animation_pointer",
+    "KHR_node_visibility",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
 ];
 
 /// Splits a file into document and buffers.

@@ -15,8 +15,10 @@ use mimique_avatar::{Image, Mesh, Part, Texture, Textured};
 
 /// A surface's texture as the file names it.
 pub(super) struct Paint {
-    /// Index of the image.
-    image: usize,
+    /// Index of the image, where the texture names one that can be read.
+    image: Option<usize>,
+    /// Index of the texture.
+    texture: usize,
     /// Whether the image's alpha opens the surface.
     open: bool,
     uvs: Vec<[f32; 2]>,
@@ -59,7 +61,10 @@ impl Paint {
             return Err(ReadError::damaged(place, what));
         }
         let open = !matches!(material.alpha_mode, Checked::Valid(AlphaMode::Opaque));
-        Ok(Some(Self { image: texture.source.value(), open, uvs }))
+        // A texture whose picture only an extension names (WebP, KTX2) has no source: gltf_json reads it as
+        // the greatest index.
+        let image = Some(texture.source.value()).filter(|&image| image != u32::MAX as usize);
+        Ok(Some(Self { image, texture: info.index.value(), open, uvs }))
     }
 }
 
@@ -92,11 +97,14 @@ impl<'a> Pictures<'a> {
     /// Lays a picture on a mesh. An eye takes its colours vertex by vertex: the stage draws iris
     /// and cornea itself.
     pub fn lay_on(&mut self, mesh: &mut Mesh, paint: Paint) -> Result<(), ReadError> {
-        let Some(texture) = self.texture(paint.image, paint.open)? else { return Ok(()) };
+        let Some(image) = paint.image else {
+            self.without_source(paint.texture);
+            return Ok(());
+        };
+        let Some(texture) = self.texture(image, paint.open)? else { return Ok(()) };
         if matches!(mesh.part, Part::EyeLeft | Part::EyeRight) {
-            let image = Image::decode(&self.textures[texture]).map_err(|e| {
-                ReadError::damaged(format!("images[{}]", paint.image), e.to_string())
-            })?;
+            let image = Image::decode(&self.textures[texture])
+                .map_err(|e| ReadError::damaged(format!("images[{image}]"), e.to_string()))?;
             let colour = |uv: &[f32; 2]| {
                 let seen = image.linear_at(*uv);
                 std::array::from_fn(|c| seen[c] * mesh.base_colour[c])
@@ -109,6 +117,21 @@ impl<'a> Pictures<'a> {
             mesh.textured = vec![Textured { triangles: 0..mesh.triangles.len(), texture }];
         }
         Ok(())
+    }
+
+    /// Notes a texture whose picture is in a format that is not read, once.
+    fn without_source(&mut self, texture: usize) {
+        let extensions = self.container.root.textures[texture].extensions.as_ref();
+        let names: Vec<&str> =
+            extensions.map_or(Vec::new(), |e| e.others.keys().map(String::as_str).collect());
+        let why = match names.is_empty() {
+            true => "names no picture".to_owned(),
+            false => format!("has its picture by {} alone, which is not read", names.join(", ")),
+        };
+        let note = format!("textures[{texture}] {why}: its surface keeps its plain colour");
+        if !self.notes.contains(&note) {
+            self.notes.push(note);
+        }
     }
 
     fn texture(&mut self, image: usize, open: bool) -> Result<Option<usize>, ReadError> {
@@ -136,11 +159,7 @@ impl<'a> Pictures<'a> {
 
     fn bytes(&self, image: usize, place: &str) -> Result<Vec<u8>, ReadError> {
         let Some(found) = self.container.root.images.get(image) else {
-            // A texture of an extension alone (WebP, KTX2) has no source: gltf reads it as the last.
-            return match image == u32::MAX as usize {
-                true => Ok(Vec::new()),
-                false => Err(ReadError::damaged(place, "the image does not exist")),
-            };
+            return Err(ReadError::damaged(place, "the image does not exist"));
         };
         match (&found.uri, found.buffer_view) {
             (Some(uri), _) => load_uri(uri, self.folder, place),

@@ -9,6 +9,7 @@ mod parse;
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
+use std::path::Path;
 
 use self::material::{Material, NO_MATERIAL, Pictures, materials};
 use self::parse::{Corner, Group, Obj, parse, parse_positions};
@@ -64,6 +65,12 @@ fn look_over(files: &Files) -> Result<(Vec<String>, Option<AvatarSettings>), Rea
         Ok(())
     })?;
     Ok((names, settings))
+}
+
+/// Whether a path is a folder with at least one pose in it.
+pub fn is_folder_of_poses(path: &Path) -> bool {
+    let Ok(entries) = std::fs::read_dir(path) else { return false };
+    entries.flatten().any(|entry| entry.file_name().to_str().and_then(obj_stem).is_some())
 }
 
 fn obj_stem(file: &str) -> Option<&str> {

@@ -53,7 +53,7 @@ pub struct Args {
     /// Neutral frames of the training take [default: 0:60]
     #[arg(long, value_name = "FIRST:END", requires = "training", help_heading = TRAINING)]
     pub(super) training_neutral: Option<Span>,
-    /// Frames of the neutral face, counted from 0, END not included (by default the map's, or 0:60)
+    /// Frames of the neutral face, counted from 0, END not included (by default the map's, or the stillest second)
     #[arg(long, help_heading = CAPTURE, value_name = "FIRST:END")]
     pub(super) neutral: Option<Span>,
     /// Markers that move rigidly with the head (by default the map's)

@@ -1,22 +1,15 @@
 //! `mimique solve --method recorded`: weights of a file under the avatar's own names.
 
 use std::io::Write as _;
-use std::path::Path;
 
 use anyhow::bail;
 use mimique_clip::weights_hash;
-use mimique_mocap::{WeightOptions, read_weights_file};
-use mimique_stimulus::{Provenance, RecordedWeights, sha256_of_file};
+use mimique_mocap::{CaptureFile, Format, WeightOptions};
+use mimique_stimulus::{Provenance, RecordedWeights, avatar_key, sha256_of_file};
 use serde_json::json;
 
 use super::{Args, blame, write_weights};
 use crate::output;
-
-/// SHA-256 of a file.
-fn hash_of(file: &Path) -> anyhow::Result<String> {
-    sha256_of_file(file)
-        .map_err(|e| blame(file, format!("open: {e}; check the path and its permissions")))
-}
 
 pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     if args.vertices.is_some() || args.markers.is_some() || args.training.is_some() {
@@ -24,17 +17,22 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     }
     let avatar =
         mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let recorded = read_weights_file(
-        &args.mocap,
-        &WeightOptions { rate_hz: args.mocap_rate, shape_names: &avatar.avatar.shape_names },
-    )
-    .map_err(|e| blame(&args.mocap, e))?;
+    let mut file = CaptureFile::open(&args.mocap).map_err(|e| blame(&args.mocap, e))?;
+    let options =
+        WeightOptions { rate_hz: args.mocap_rate, shape_names: &avatar.avatar.shape_names };
+    let recorded = file.weights(&options).map_err(|e| blame(&args.mocap, e))?;
+    let notes: Vec<String> = file.format().map(Format::taken_for).into_iter().collect();
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &avatar.avatar.shape_names);
     let hash = weights_hash(&table.weights);
     let provenance = Provenance::new()
-        .json("avatar", hash_of(&args.avatar)?)
-        .json("recorded", hash_of(&args.mocap)?)
+        .json("avatar", avatar_key(&avatar.avatar))
+        .json(
+            "recorded",
+            sha256_of_file(&args.mocap).map_err(|e| {
+                blame(&args.mocap, format!("open: {e}; check the path and its permissions"))
+            })?,
+        )
         .json("weights", hash.as_str())
         .hash();
     let warnings = names.warnings();
@@ -46,6 +44,7 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "shapes": table.shape_names.len(),
         "names": names,
         "warnings": warnings,
+        "notes": notes,
         "weights_hash": hash,
         "provenance": provenance,
         "files": {"avatar": args.avatar, "mocap": args.mocap, "out": args.out},
@@ -71,6 +70,8 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         recorded.shape_names.len() - names.unused.len(),
     )?;
     writeln!(out, "weights {hash}\nprovenance {provenance}")?;
+    let mocap = args.mocap.display();
+    notes.iter().try_for_each(|note| writeln!(out, "note: {mocap}: {note}"))?;
     warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))?;
     Ok(())
 }

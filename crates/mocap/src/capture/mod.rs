@@ -78,8 +78,45 @@ impl Capture {
         &self.positions[frame * p..(frame + 1) * p]
     }
 
-    /// Index of the marker of that label.
+    /// Index of the marker of that label. Where none has it letter for letter, that of the only marker
+    /// that has it but for a subject's name before a colon, on either side: `Actor:brow` is `brow`.
     pub fn marker_index(&self, label: &str) -> Option<usize> {
-        self.labels.iter().position(|l| l == label)
+        let exact = self.labels.iter().position(|l| l == label);
+        exact.or_else(|| {
+            let alike = |l: &str| without_subject(l) == label || l == without_subject(label);
+            let mut found = self.labels.iter().enumerate().filter(|(_, l)| alike(l));
+            let (index, _) = found.next()?;
+            found.next().is_none().then_some(index)
+        })
+    }
+}
+
+/// A label without the name of the subject that recording systems put before it.
+fn without_subject(label: &str) -> &str {
+    label.rsplit_once(':').map_or(label, |(_, own)| own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_subject_before_a_label_is_looked_past_where_only_one_is_meant() {
+        let labels = |labels: &[&str]| Capture {
+            labels: labels.iter().map(ToString::to_string).collect(),
+            rate_hz: 100.0,
+            first_frame: 0,
+            unit: LengthUnit::Metre,
+            positions: Vec::new(),
+            notes: Vec::new(),
+        };
+        let one = labels(&["Actor:brow", "Actor:jaw", "jaw", "Actor:nose:tip"]);
+        assert_eq!(one.marker_index("brow"), Some(0));
+        assert_eq!(one.marker_index("Actor:brow"), Some(0));
+        assert_eq!(one.marker_index("Other:brow"), None, "another subject's");
+        assert_eq!(one.marker_index("jaw"), Some(2), "letter for letter first");
+        assert_eq!(one.marker_index("tip"), Some(3));
+        assert_eq!(labels(&["A:brow", "B:brow"]).marker_index("brow"), None, "which of the two?");
+        assert_eq!(labels(&["brow"]).marker_index("A:brow"), Some(0), "the map has the subject");
     }
 }

@@ -130,6 +130,11 @@ impl CaptureFacts {
                 });
             }
         }
+        // From the slowest cameras to the fastest of capture systems.
+        if !(5.0..=2000.0).contains(&self.rate_hz) {
+            warnings
+                .push(format!("{} frames per second: no usual rate of a capture", self.rate_hz));
+        }
         for marker in self.presence.iter().filter(|m| m.present == 0) {
             warnings.push(format!("{} is missing in every frame", marker.label));
         }

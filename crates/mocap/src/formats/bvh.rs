@@ -45,12 +45,14 @@ struct Joint {
     kept: bool,
     /// Whether the end of its chain was named.
     ended: bool,
+    /// Whether its offset was given.
+    placed: bool,
 }
 
 impl Joint {
     fn new(name: String, parent: Option<usize>, kept: bool) -> Self {
         let (offset, channels) = (Displacement::ZERO, Vec::new());
-        Self { name, parent, offset, channels, kept, ended: false }
+        Self { name, parent, offset, channels, kept, ended: false, placed: false }
     }
 }
 
@@ -59,6 +61,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
     let joints = hierarchy(lines)?;
     let mut table = Table {
         labels: joints.iter().filter(|j| j.kept).map(|j| j.name.clone()).collect(),
+        never_missing: true,
         ..Table::default()
     };
     let channels: usize = joints.iter().map(|j| j.channels.len()).sum();
@@ -68,9 +71,9 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
     while let Some((line, text)) = lines.next_filled()? {
         if let Some((key, value)) = text.split_once(':') {
             let value = value.trim();
-            match key.trim() {
-                "Frames" => declared = value.parse::<usize>().ok(),
-                "Frame Time" => {
+            match key.trim().to_ascii_lowercase().as_str() {
+                "frames" => declared = value.parse::<usize>().ok(),
+                "frame time" => {
                     let seconds: Option<f64> = value.parse().ok().filter(|s| *s > 0.0);
                     table.declared_rate = seconds.map(|s| rounded_rate(1.0 / s));
                 }
@@ -89,9 +92,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         );
         table.lines.push(line);
     }
-    if let Some(declared) = declared.filter(|&n| n != table.lines.len()) {
-        table.notes.push(format!("Frames is {declared}, the rows are {}", table.lines.len()));
-    }
+    table.count_frames("Frames", declared);
     if options.unit.is_none()
         && let Some(extent) = unit::marker_extent(&table.positions, table.labels.len())
     {
@@ -119,7 +120,8 @@ fn numbers(
 ) -> Result<(), ReadError> {
     values.clear();
     for (index, field) in text.split_whitespace().enumerate() {
-        values.push(coordinate(field, Delimiter::Comma).ok_or_else(|| {
+        let value = coordinate(field, Delimiter::Comma).filter(|value| value.is_finite());
+        values.push(value.ok_or_else(|| {
             ReadError::at_line(
                 line,
                 format!("value {}", index + 1),
@@ -155,7 +157,15 @@ fn hierarchy(lines: &mut Lines<'_>) -> Result<Vec<Joint>, ReadError> {
         let damaged = |what: String| ReadError::at_line(line, "HIERARCHY", what, REMEDY);
         match words.as_slice() {
             [] | ["HIERARCHY"] => {}
-            ["MOTION"] => return Ok(joints),
+            ["MOTION"] => {
+                if let Some(&joint) = open.last() {
+                    return Err(damaged(format!("{} is not closed", joints[joint].name)));
+                }
+                if let Some(joint) = joints.iter().find(|joint| !joint.placed) {
+                    return Err(damaged(format!("{} has no OFFSET", joint.name)));
+                }
+                return Ok(joints);
+            }
             ["ROOT" | "JOINT", name @ ..] => {
                 let parent = open.last().copied();
                 open.push(joints.len());
@@ -173,12 +183,15 @@ fn hierarchy(lines: &mut Lines<'_>) -> Result<Vec<Joint>, ReadError> {
                 joints.push(Joint::new(name, Some(parent), kept));
             }
             ["}"] => {
-                open.pop();
+                if open.pop().is_none() {
+                    return Err(damaged("\"}\" closes nothing".to_owned()));
+                }
             }
             ["OFFSET", x, y, z] => {
                 let Some(&joint) = open.last() else {
                     return Err(damaged("an offset without a joint".to_owned()));
                 };
+                joints[joint].placed = true;
                 for (axis, word) in [x, y, z].into_iter().enumerate() {
                     joints[joint].offset[axis] =
                         word.parse().map_err(|_| damaged(format!("\"{word}\" is not a number")))?;
@@ -268,6 +281,16 @@ mod tests {
                 assert!(off < 1e-12, "{:?}", capture.frame(frame));
             }
         }
+    }
+
+    /// A skeleton is computed: a joint at the origin is there, in a frame as in a whole take.
+    #[test]
+    fn a_joint_at_the_origin_is_there() {
+        let rows = "Frames: 3\nFrame Time: 0.01\n0 0 0 0 0 0 0 0 0\n0 0 0 0 0 0 0 0 0\n50 90 0 0 0 0 0 0 0\n";
+        let capture = read_bytes(format!("{HEAD}{rows}").as_bytes()).unwrap();
+        let hips: Vec<Point> = (0..3).map(|frame| capture.frame(frame)[0]).collect();
+        assert_eq!(hips, [Point::ORIGIN, Point::ORIGIN, Point::new(50.0, 90.0, 0.0)]);
+        assert!(capture.notes.iter().all(|note| !note.contains("missing")), "{:?}", capture.notes);
     }
 
     #[test]

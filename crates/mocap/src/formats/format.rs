@@ -62,6 +62,11 @@ pub(crate) enum Write {
 pub(crate) type WeightsWriter = fn(&WeightsTable, &Path) -> Vec<(PathBuf, Vec<u8>)>;
 
 impl Format {
+    /// What to tell of a file that was read: what it was taken for.
+    pub fn taken_for(&self) -> String {
+        format!("read as {}", self.name)
+    }
+
     /// Whether its files hold weights, and no markers.
     pub fn holds_weights(&self) -> bool {
         !matches!(self.read, Read::Binary(_) | Read::Text(_))

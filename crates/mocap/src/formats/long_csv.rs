@@ -54,7 +54,9 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         }
     };
     let delimiter = Delimiter::of(header);
-    let Some(columns) = columns(&split_fields(header, delimiter)) else {
+    let names = split_fields(header, delimiter);
+    let width = names.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
+    let Some(columns) = columns(&names) else {
         return Err(ReadError::at_line(
             header_line,
             "header",
@@ -69,9 +71,15 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         }
         let fields = split_fields(text, delimiter);
         let remedy = "write numbers with a decimal point, a missing one as blank or NaN";
-        rows.take(&columns, &Row { line, fields: &fields, delimiter, remedy })?;
+        let row = Row { line, fields: &fields, delimiter, remedy };
+        row.of_width(width)?;
+        rows.take(&columns, &row)?;
     }
     table.positions = rows.placed(header_line)?;
+    let without_row = table.positions.len() - rows.points.len();
+    if without_row > 0 {
+        table.notes.push(format!("{without_row} positions without a row: taken as missing"));
+    }
     table.labels = rows.labels;
     if columns.frame.is_some() {
         table.frame_numbers = rows.frames.keys().copied().collect();

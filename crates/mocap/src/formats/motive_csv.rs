@@ -2,6 +2,7 @@
 //! that name for each column its type, name, id, parent, measure (position, rotation...) and axis.
 
 use super::format::{Format, Read, Recognise};
+use super::plausibility::shortened;
 use super::text::{Delimiter, Lines, Row, Table, split_fields};
 use crate::{LengthUnit, ReadError, ReadOptions, Recording};
 use std::collections::HashMap;
@@ -40,8 +41,12 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         ..Table::default()
     };
 
+    let exported = setting("Total Exported Frames").and_then(|n| n.parse().ok());
     let header = header(lines)?;
-    let columns = marker_columns(&|row, column| header.cell(row, column), &header.axes);
+    let (columns, partial) = marker_columns(&|row, column| header.cell(row, column), &header.axes);
+    if !partial.is_empty() {
+        table.notes.push(format!("markers without X, Y and Z left out: {}", shortened(&partial)));
+    }
     if columns.is_empty() {
         return Err(ReadError::at_line(
             header.axes_line,
@@ -54,16 +59,9 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
 
     while let Some((line, text)) = lines.next_filled()? {
         let fields = split_fields(text, Delimiter::Comma);
-        if fields.len() < header.axes.len() {
-            return Err(ReadError::at_line(
-                line,
-                "row",
-                format!("{} columns where the header has {}", fields.len(), header.axes.len()),
-                "export the take again; the file may have been cut short",
-            ));
-        }
         let remedy = "export the take again from Motive";
         let row = Row { line, fields: &fields, delimiter: Delimiter::Comma, remedy };
+        row.of_width(header.axes.len())?;
         table.frame_numbers.push(row.frame_number(0)?);
         table.times.push(row.number(1)?);
         for (_, axes) in &columns {
@@ -71,6 +69,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         }
         table.lines.push(line);
     }
+    table.count_frames("Total Exported Frames", exported);
     table.finish(&FORMAT, options)
 }
 
@@ -110,12 +109,12 @@ fn header(lines: &mut Lines<'_>) -> Result<Header, ReadError> {
     ))
 }
 
-/// Label and the three columns of every marker. Columns of type `Marker` are what was measured;
+/// Label and the three columns of every marker, and the labels of those that have fewer. Columns of type `Marker` are what was measured;
 /// only a file without them gives its rigid body or bone markers, which are the model's.
 fn marker_columns<'h>(
     cell: &impl Fn(&str, usize) -> &'h str,
     axes: &[String],
-) -> Vec<(String, [usize; 3])> {
+) -> (Vec<(String, [usize; 3])>, Vec<String>) {
     let measured = (2..axes.len()).any(|c| cell("type", c).eq_ignore_ascii_case("marker"));
     let mut markers: Vec<(String, [Option<usize>; 3])> = Vec::new();
     let mut places: HashMap<(String, String), usize> = HashMap::new();
@@ -132,13 +131,23 @@ fn marker_columns<'h>(
             _ => continue,
         };
         let (name, id) = (cell("name", column).to_owned(), cell("id", column).to_owned());
-        let marker = *places.entry((name.clone(), id)).or_insert_with(|| {
-            markers.push((name, [None; 3]));
+        // The same axis of the same name again is another marker of that name.
+        let known = places.get(&(name.clone(), id.clone())).copied();
+        let marker = known.filter(|&m| markers[m].1[axis].is_none()).unwrap_or_else(|| {
+            markers.push((name.clone(), [None; 3]));
+            places.insert((name, id), markers.len() - 1);
             markers.len() - 1
         });
         markers[marker].1[axis] = Some(column);
     }
-    markers.into_iter().filter_map(|(label, [x, y, z])| Some((label, [x?, y?, z?]))).collect()
+    let (mut whole, mut partial) = (Vec::new(), Vec::new());
+    for (label, axes) in markers {
+        match axes {
+            [Some(x), Some(y), Some(z)] => whole.push((label, [x, y, z])),
+            _ => partial.push(label),
+        }
+    }
+    (whole, partial)
 }
 
 #[cfg(test)]

@@ -75,6 +75,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         };
         let remedy = "export the take again from QTM";
         let row = Row { line, fields: &fields, delimiter: Delimiter::Tab, remedy };
+        row.of_width(leading + 3 * table.labels.len())?;
         if leading == 2 {
             table.frame_numbers.push(row.frame_number(0)?);
             table.times.push(row.number(1)?);
@@ -85,9 +86,7 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
         }
         table.lines.push(line);
     }
-    if let Some(declared) = header.frames.filter(|&n| n != table.lines.len()) {
-        table.notes.push(format!("NO_OF_FRAMES is {declared}, the rows are {}", table.lines.len()));
-    }
+    table.count_frames("NO_OF_FRAMES", header.frames);
     let mut recording = table.finish(&FORMAT, options)?;
     recording.events = header.events;
     Ok(recording)
@@ -244,7 +243,7 @@ mod tests {
         assert_eq!(capture.frame(1)[1], [4.0, 5.0, 6.0]);
         assert_eq!(
             read_bytes(text.as_bytes()).unwrap_err().to_string(),
-            "line 1, header: no rate and no time column; give the rate of the recording (--rate)"
+            "line 1, header: no rate and no time column; give the rate of the recording (--mocap-rate)"
         );
     }
 }

@@ -2,6 +2,7 @@
 //! of names, a line of axes, a line of units and rows. Separated by commas, semicolons or tabs.
 
 use super::format::{Format, Read, Recognise};
+use super::plausibility::shortened;
 use super::text::{Delimiter, Lines, Row, Table, split_fields};
 use crate::{LengthUnit, ReadError, ReadOptions, Recording};
 
@@ -71,6 +72,14 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
             "export the trajectories from Nexus",
         ));
     }
+    let left_out: Vec<String> = (2..names.len().min(fields.len()))
+        .filter(|c| !names[*c].is_empty() && !columns.contains(c))
+        .map(|c| names[c].to_string())
+        .collect();
+    if !left_out.is_empty() {
+        table.notes.push(format!("columns without X, Y and Z left out: {}", shortened(&left_out)));
+    }
+    let declared_width = fields.len();
     let width = columns.last().map_or(0, |last| last + 3);
     table.labels =
         columns.iter().map(|&c| names.get(c).map_or("", AsRef::as_ref).to_owned()).collect();
@@ -80,9 +89,21 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
     let mut ended_early = 0_usize;
     while let Some((line, text)) = lines.next()? {
         if text.trim_matches(|c: char| c.is_whitespace() || ",;".contains(c)).is_empty() {
+            continue;
+        }
+        // What follows is another section.
+        if !text.trim_start_matches(['"', ' ']).starts_with(|c: char| c.is_ascii_digit()) {
             break;
         }
         let fields = split_fields(text, delimiter);
+        if fields.iter().skip(declared_width).any(|field| !field.is_empty()) {
+            return Err(ReadError::at_line(
+                line,
+                "row",
+                format!("{} columns where the header has {declared_width}", fields.len()),
+                "export the take again from Nexus",
+            ));
+        }
         ended_early += usize::from(fields.len() < width);
         let remedy = "export the take again from Nexus";
         let row = Row { line, fields: &fields, delimiter, remedy };

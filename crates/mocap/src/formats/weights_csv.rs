@@ -62,7 +62,7 @@ fn read(lines: &mut Lines<'_>, options: &WeightOptions<'_>) -> Result<WeightsTab
     let mut table =
         WeightsTable { shape_names: header[first..].to_vec(), ..WeightsTable::default() };
     check_names(&table.shape_names, header_line)?;
-    let mut values = Vec::new();
+    let (mut values, mut lines_of_rows) = (Vec::new(), Vec::new());
     while let Some((line, text)) = lines.next_filled()? {
         if !plain_row(text, Delimiter::Comma, header.len(), &mut values)
             || values.iter().any(|v| v.is_nan())
@@ -73,6 +73,8 @@ fn read(lines: &mut Lines<'_>, options: &WeightOptions<'_>) -> Result<WeightsTab
             let what = format!("frame {}", values[0]);
             return Err(wrong(line, "column 1 (frame)", what, "write the frame's number"));
         }
+        in_order(&table, values[0], line)?;
+        lines_of_rows.push(line);
         table.times.push(match (timed, options.rate_hz) {
             (true, _) => values[1],
             (false, rate_hz) => table.frames.len() as f64 / rate_hz.unwrap_or(1.0),
@@ -80,7 +82,59 @@ fn read(lines: &mut Lines<'_>, options: &WeightOptions<'_>) -> Result<WeightsTab
         table.frames.push(values[0] as u64);
         table.weights.extend(&values[first..]);
     }
+    if table.frames.is_empty() {
+        let what = "no frame after the header";
+        return Err(wrong(header_line, "data", what, "write the weights of every frame below it"));
+    }
+    if timed {
+        evenly_timed(&table, &lines_of_rows)?;
+    }
     Ok(table)
+}
+
+/// Refuses times that do not grow evenly, but for the rounding of printed ones.
+fn evenly_timed(table: &WeightsTable, lines: &[usize]) -> Result<(), ReadError> {
+    let Some(rate_hz) = table.rate_hz() else {
+        return match lines {
+            [] | [_] => Ok(()),
+            [.., last] => {
+                let what = "the times do not grow".to_owned();
+                Err(wrong(*last, "column 2 (time)", what, "write the seconds of every frame"))
+            }
+        };
+    };
+    let off = |row: usize| table.times[row] - table.times[0] - row as f64 / rate_hz;
+    match (0..lines.len()).find(|&row| off(row).abs() > 1.0 / rate_hz + 0.011) {
+        None => Ok(()),
+        Some(row) => {
+            let what = format!(
+                "{} s, not {:.3} as at an even rate",
+                table.times[row],
+                table.times[row] - off(row)
+            );
+            Err(wrong(
+                lines[row],
+                "column 2 (time)",
+                what,
+                "write the seconds of every frame, at one rate",
+            ))
+        }
+    }
+}
+
+/// Refuses a frame that does not follow the one before: rows repeated, in disorder, or left out. Frames
+/// may be numbered in steps.
+fn in_order(table: &WeightsTable, number: f64, line: usize) -> Result<(), ReadError> {
+    let Some(&before) = table.frames.last() else { return Ok(()) };
+    let step = match table.frames[..] {
+        [first, second, ..] => second - first,
+        _ => (number - before as f64).max(1.0) as u64,
+    };
+    if number == (before + step) as f64 {
+        return Ok(());
+    }
+    let what = format!("frame {number} after frame {before}, in steps of {step}");
+    Err(wrong(line, "column 1 (frame)", what, "write every frame once, in order"))
 }
 
 /// Refuses a header without shapes, or with one twice.

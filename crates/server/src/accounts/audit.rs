@@ -15,9 +15,13 @@ pub(crate) async fn audit(
     study: &str,
     subject: &str,
 ) -> Result<(), Error> {
+    Ok(add(&app.storage, name(who), action, study, subject).await?)
+}
+
+/// What the log calls a person, or a script of theirs.
+pub(crate) fn name(who: &Researcher) -> String {
     let by = if who.session().is_some() { "" } else { " (token)" };
-    let who = format!("{}{by}", who.account.email);
-    Ok(add(&app.storage, who, action, study, subject).await?)
+    format!("{}{by}", who.account.email)
 }
 
 /// Writes down what was done on the command line, or by one who has only a link.

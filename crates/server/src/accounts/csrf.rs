@@ -133,7 +133,11 @@ pub(crate) fn check_origin(app: &App, headers: &HeaderMap) -> Result<(), Error> 
 async fn fields(request: Request, app: &App) -> Result<BTreeMap<String, String>, Error> {
     let form = Form::<BTreeMap<String, String>>::from_request(request, app).await;
     let not_a_form = |_| Error::NotAForm;
-    Ok(form.map_err(not_a_form)?.0)
+    let fields = form.map_err(not_a_form)?.0;
+    if fields.iter().any(|(name, text)| name.contains('\0') || text.contains('\0')) {
+        return Err(Error::NulInText);
+    }
+    Ok(fields)
 }
 
 fn read<T: DeserializeOwned>(fields: BTreeMap<String, String>) -> Result<T, Error> {

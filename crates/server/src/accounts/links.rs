@@ -71,7 +71,7 @@ pub async fn reset_link(storage: &Storage, email: &str) -> Result<String, AppErr
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
         return Err(AppError::NoAccount { email: email.to_owned(), known });
     };
-    let link = new_link(storage, LinkPurpose::Reset, &account.email, account.role).await?;
+    let link = new_link(storage, LinkPurpose::Recovery, &account.email, account.role).await?;
     super::audit::command(storage, "reset link", &account.email).await?;
     Ok(link)
 }

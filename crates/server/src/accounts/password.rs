@@ -6,6 +6,7 @@ use argon2::{Argon2, PasswordHasher, PasswordVerifier};
 use tokio::sync::Semaphore;
 
 use super::identity::Researcher;
+use crate::clock::now_ms;
 use crate::error::Error;
 use crate::state::App;
 
@@ -56,7 +57,8 @@ pub(super) async fn verify(password: &str, hash: Option<&str>) -> Result<bool, E
     Ok(same.await? && known)
 }
 
-/// Changes the password of one who knows the old one; every other session of theirs ends.
+/// Changes the password of one who knows the old one; every other session of
+/// theirs ends, and every token.
 pub(crate) async fn change_password(
     app: &App,
     who: &Researcher,
@@ -65,13 +67,12 @@ pub(crate) async fn change_password(
 ) -> Result<(), Error> {
     check_length(new)?;
     let session = who.session().ok_or(Error::NotAllowed)?;
-    super::login::throttle(app, &who.account.email).await?;
+    super::login::throttle_session(app, session).await?;
     if !verify(old, Some(&who.account.password_hash)).await? {
         return Err(Error::WrongOldPassword);
     }
-    super::login::forgive(app, &who.account.email).await?;
     let hash = hash(new).await?;
-    app.storage.set_password(who.account.key, &hash, session).await?;
+    app.storage.set_password(who.account.key, &hash, session, now_ms()).await?;
     Ok(())
 }
 

@@ -83,7 +83,9 @@ impl From<StorageError> for Error {
             },
             StorageError::AlreadyTookPart => Self::AlreadyTookPart,
             StorageError::StudyFull => Self::StudyFull,
+            StorageError::SessionFull => Self::SessionFull,
             StorageError::WrongWithdrawalCode => Self::WrongWithdrawalCode,
+            StorageError::UnknownWithdrawalCode => Self::UnknownWithdrawalCode,
             StorageError::Unavailable | StorageError::Stopping => Self::Unavailable,
             other => Self::internal(other),
         }

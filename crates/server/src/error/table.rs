@@ -82,6 +82,9 @@ refusals! {
     RateLimited = TOO_MANY_REQUESTS "too-often",
         en "too many requests from one address"; "wait a moment and send it again",
         fr "trop de demandes de la même adresse"; "attendez un instant et renvoyez-la";
+    NulInText = BAD_REQUEST "bad-request",
+        en "the text has a NUL in it"; "send text without one",
+        fr "le texte contient un caractère nul"; "envoyez un texte sans lui";
     NoSuchRange = RANGE_NOT_SATISFIABLE "no-such-range",
         en "the part asked for is beyond the end"; "ask for less",
         fr "la partie demandée dépasse la fin"; "demandez-en moins";
@@ -119,6 +122,12 @@ refusals! {
     WrongWithdrawalCode = FORBIDDEN "wrong-withdrawal-code",
         en "the withdrawal code is not the one of this session"; "copy it as it was shown",
         fr "le code de retrait n’est pas celui de cette session"; "recopiez-le tel qu’il a été affiché";
+    SessionFull = PAYLOAD_TOO_LARGE "session-full",
+        en "the session has more events than its study can give"; "start the study again from its address",
+        fr "la session a plus d’événements que l’étude ne peut en donner"; "reprenez l’étude depuis son adresse";
+    UnknownWithdrawalCode = NOT_FOUND "unknown-withdrawal-code",
+        en "no participant of this study has this withdrawal code"; "copy it as the last page showed it",
+        fr "aucune personne de cette étude n’a ce code de retrait"; "recopiez-le tel que la dernière page l’a affiché";
     AlreadyTookPart = FORBIDDEN "already-took-part",
         en "this person has already taken part"; "everybody can take part once",
         fr "cette personne a déjà participé"; "on ne participe qu’une fois";
@@ -194,6 +203,9 @@ refusals! {
     LastOwner = CONFLICT "last-owner",
         en "nobody would be left to own this server"; "choose another role or account first",
         fr "il ne resterait personne de responsable de ce serveur"; "choisissez d’abord un autre rôle ou un autre compte";
+    AccountDisabled = CONFLICT "account-disabled",
+        en "this account is disabled"; "enable it first",
+        fr "ce compte est désactivé"; "réactivez-le d’abord";
     NamelessToken = BAD_REQUEST "bad-request",
         en "the token has no name"; "name what it is for",
         fr "le jeton n’a pas de nom"; "dites à quoi il sert";

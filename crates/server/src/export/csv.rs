@@ -10,11 +10,16 @@ use super::merged::Merged;
 /// A table with its header.
 pub(super) fn table(table: &Merged, cells: Cells) -> Result<Vec<u8>, ExportError> {
     let mut bytes = header(&table.columns)?;
-    bytes.extend(match cells {
-        Cells::AsTheyAre => rows(&table.rows)?,
-        Cells::Neutralised => records(table.rows.iter().map(|row| row.iter().map(neutral)))?,
-    });
+    bytes.extend(lines(&table.rows, cells)?);
     Ok(bytes)
+}
+
+/// The lines below the header, with such cells.
+pub(super) fn lines(lines: &[Vec<Value>], cells: Cells) -> Result<Vec<u8>, ExportError> {
+    match cells {
+        Cells::AsTheyAre => rows(lines),
+        Cells::Neutralised => records(lines.iter().map(|row| row.iter().map(neutral))),
+    }
 }
 
 /// Columns as rows: name, kind, unit, levels, description.

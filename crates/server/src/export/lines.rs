@@ -2,13 +2,13 @@
 
 use mimique_session::rows::Column;
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_storage::Storage;
+use mimique_storage::{SessionRecord, Storage};
 use mimique_study::iso_time;
 use serde_json::{Map, Value, json};
 
 use super::error::ExportError;
 use super::merged::Merged;
-use super::sources::{Sources, as_started};
+use super::sources::as_started;
 
 /// One object a row, its keys in alphabetical order.
 pub(super) fn rows(table: &Merged) -> Result<Vec<u8>, ExportError> {
@@ -30,32 +30,28 @@ pub(super) fn add_row(
     add_line(bytes, &Value::Object(object))
 }
 
-/// One object an event; also how many participants and events there are.
+/// One object an event of a session; also how many events there are.
 pub(super) async fn events(
     storage: &Storage,
-    sources: &Sources,
-) -> Result<(Vec<u8>, usize, usize), ExportError> {
+    session: &SessionRecord,
+) -> Result<(Vec<u8>, usize), ExportError> {
     let mut bytes = Vec::new();
-    let (mut participants, mut rows) = (0, 0);
-    for session in &sources.sessions {
-        let events = storage.events(session.key).await?;
-        participants += usize::from(!events.is_empty());
-        rows += events.len();
-        let started = as_started(session);
-        for event in &events {
-            add_event(&mut bytes, &started, event)?;
-        }
+    let events = storage.stored_events(session.key).await?;
+    let started = as_started(session);
+    for stored in &events {
+        add_event(&mut bytes, &started, &stored.event, stored.misfit.as_deref())?;
     }
-    Ok((bytes, participants, rows))
+    Ok((bytes, events.len()))
 }
 
-/// Adds one event.
+/// Adds one event, and why it cannot be one of the session's, if it cannot.
 pub(super) fn add_event(
     bytes: &mut Vec<u8>,
     started: &SessionStarted,
     event: &Event,
+    misfit: Option<&str>,
 ) -> Result<(), ExportError> {
-    let line = json!({
+    let mut line = json!({
         "participant_id": started.participant_id,
         "stage": started.stage,
         "config_hash": started.config_hash,
@@ -64,6 +60,9 @@ pub(super) fn add_event(
         "at": iso_time(event.at_ms),
         "body": event.body,
     });
+    if let Some(word) = misfit {
+        line["misfit"] = word.into();
+    }
     add_line(bytes, &line)
 }
 

@@ -1,4 +1,5 @@
-//! Export: what was answered, as files. Made from the database alone, the same bytes each time.
+//! Export: what was answered, as files. Made from the database alone, the same bytes each time; those
+//! that can be are sent session by session, whatever the size of the study.
 //!
 //! | format | what |
 //! |---|---|
@@ -17,6 +18,7 @@ pub(crate) mod exported;
 pub(crate) mod format;
 mod lines;
 mod merged;
+mod pieces;
 mod psych_ds;
 pub(crate) mod sources;
 mod unstored;
@@ -26,6 +28,7 @@ pub use error::ExportError;
 pub use exported::Exported;
 pub use format::Format;
 use mimique_storage::Storage;
+pub(crate) use pieces::Pieces;
 use sources::Sources;
 pub use unstored::{Unstored, Written};
 
@@ -45,47 +48,20 @@ pub async fn export(
     format: Format,
     options: Options,
 ) -> Result<Exported, ExportError> {
+    if let Some(mut pieces) = Pieces::open(storage, study_id, format, options).await? {
+        let files = vec![(pieces.name(), pieces.whole().await?)];
+        let (participants, rows) = (pieces.participants, pieces.rows);
+        return Ok(Exported { study_id: pieces.study_id().to_owned(), files, participants, rows });
+    }
     let study_id = choose(storage, study_id).await?;
     let sources = Sources::load(storage, &study_id, options.with_identifiers).await?;
-    let stem = format!("{study_id}_responses");
-    let (files, participants, rows) = match format {
-        Format::Csv => {
-            let tidy = sources.tidy(storage).await?;
-            let counts = (tidy.participants, tidy.rows.len());
-            (vec![(format!("{stem}.csv"), csv::table(&tidy, options.cells)?)], counts.0, counts.1)
-        }
-        Format::Wide => {
-            let wide = sources.wide(storage).await?;
-            let counts = (wide.participants, wide.rows.len());
-            (
-                vec![(format!("{study_id}_wide.csv"), csv::table(&wide, options.cells)?)],
-                counts.0,
-                counts.1,
-            )
-        }
-        Format::Json => {
-            let tidy = sources.tidy(storage).await?;
-            let counts = (tidy.participants, tidy.rows.len());
-            (vec![(format!("{stem}.jsonl"), lines::rows(&tidy)?)], counts.0, counts.1)
-        }
-        Format::Events => {
-            let (bytes, participants, rows) = lines::events(storage, &sources).await?;
-            (vec![(format!("{study_id}_events.jsonl"), bytes)], participants, rows)
-        }
-        Format::PsychDs => {
-            let tidy = sources.tidy(storage).await?;
-            let counts = (tidy.participants, tidy.rows.len());
-            (
-                psych_ds::files(
-                    &sources,
-                    &tidy.columns,
-                    csv::table(&tidy, options.cells)?,
-                    counts,
-                )?,
-                counts.0,
-                counts.1,
-            )
-        }
+    let is_wide = format == Format::Wide;
+    let table = if is_wide { sources.wide(storage).await? } else { sources.tidy(storage).await? };
+    let (participants, rows) = (table.participants, table.rows.len());
+    let csv = csv::table(&table, options.cells)?;
+    let files = match is_wide {
+        true => vec![(format!("{study_id}_wide.csv"), csv)],
+        false => psych_ds::files(&sources, &table.columns, csv, (participants, rows))?,
     };
     Ok(Exported { study_id, files, participants, rows })
 }

@@ -112,21 +112,38 @@ impl Sources {
 
     /// One row a participant x trial x response.
     pub async fn tidy(&self, storage: &Storage) -> Result<Merged, ExportError> {
+        let mut merged = self.tidy_columns();
+        for session in &self.sessions {
+            self.add_tidy(storage, session, &mut merged).await?;
+        }
+        Ok(merged)
+    }
+
+    /// The tidy table without rows.
+    pub fn tidy_columns(&self) -> Merged {
         let mut merged = Merged::default();
         for version in &self.versions {
             merged.add_columns(&rows::tidy(&version.study, &version.clips, []).columns);
         }
         merged.add_exclusion_columns();
         self.add_identifier_columns(&mut merged);
-        for session in &self.sessions {
-            let version = self.version(&session.config_hash)?;
-            let events = storage.events(session.key).await?;
-            let started = as_started(session);
-            let record = rows::SessionRecord { started: &started, events: &events };
-            let table = rows::tidy(&version.study, &version.clips, [record]);
-            self.add_rows(&mut merged, &table);
-        }
-        Ok(merged)
+        merged
+    }
+
+    /// Adds the rows of a session to the tidy table.
+    pub async fn add_tidy(
+        &self,
+        storage: &Storage,
+        session: &SessionRecord,
+        merged: &mut Merged,
+    ) -> Result<(), ExportError> {
+        let version = self.version(&session.config_hash)?;
+        let events = storage.counted_events(session.key).await?;
+        let started = as_started(session);
+        let record = rows::SessionRecord { started: &started, events: &events };
+        let table = rows::tidy(&version.study, &version.clips, [record]);
+        self.add_rows(merged, &table);
+        Ok(())
     }
 
     /// One row a participant.
@@ -136,7 +153,7 @@ impl Sources {
         for version in &self.versions {
             let mut sessions = Vec::new();
             for session in self.sessions.iter().filter(|s| s.config_hash == version.config_hash) {
-                let events = storage.events(session.key).await?;
+                let events = storage.counted_events(session.key).await?;
                 sessions.push((as_started(session), events));
             }
             let records =
@@ -228,7 +245,7 @@ impl Identifiers {
 pub(crate) fn as_started(session: &SessionRecord) -> SessionStarted {
     SessionStarted {
         session: String::new(),
-        participant_id: crate::participant_id::participant_id(session.participant),
+        participant_id: mimique_storage::participant_id(session.participant),
         participant: session.participant,
         slot: session.slot,
         condition: session.condition.clone(),

@@ -68,7 +68,7 @@ impl Unstored {
         match self.format {
             Format::Events => {
                 for event in events {
-                    add_event(&mut written.bytes, started, event)?;
+                    add_event(&mut written.bytes, started, event, None)?;
                 }
                 written.rows = events.len();
             }

@@ -72,6 +72,11 @@ fn interface() -> Interface {
             "All that a page needs of a study, or of an earlier version of it",
             get(studies::bundle),
         )
+        .send::<StartSession, ()>(
+            "/api/studies/{study}/arrivals",
+            "Ask whether somebody could begin; nothing is written",
+            post(sessions::arrive),
+        )
         .send::<StartSession, SessionStarted>(
             "/api/studies/{study}/sessions",
             "Start a session; the same nonce finds the same session",

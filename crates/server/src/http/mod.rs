@@ -6,7 +6,7 @@ pub(crate) mod headers;
 mod interface;
 pub(crate) mod language;
 mod metrics;
-mod rate_limit;
+pub(crate) mod rate_limit;
 mod refusal_pages;
 pub(crate) mod responses;
 pub(crate) mod statics;
@@ -24,7 +24,7 @@ use headers::{Headers, settled_headers};
 use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
-use crate::participant::pages;
+use crate::participant::{pages, withdrawal};
 use crate::researcher::handlers::{accounts, studies};
 use crate::state::App;
 use crate::uploads::handlers as uploads;
@@ -44,6 +44,7 @@ pub fn router(app: App) -> Router {
         .route("/", get(pages::index))
         .route("/s/{study}", get(pages::participant_without_slash))
         .route("/s/{study}/", get(pages::participant))
+        .route("/s/{study}/withdraw", get(withdrawal::page).post(withdrawal::redeem))
         .route("/assets/{hash}/{*name}", get(statics::asset))
         .merge(researchers(&app))
         .route("/healthz", get(|| async { "ok\n" }))
@@ -52,6 +53,7 @@ pub fn router(app: App) -> Router {
         .fallback(|| async { Error::NotFound })
         .method_not_allowed_fallback(|| async { Error::MethodNotAllowed })
         .layer(DefaultBodyLimit::max(LARGEST_BODY))
+        .layer(middleware::from_fn(refuse_nul))
         .layer(middleware::from_fn(time_limit))
         .layer(CatchPanicLayer::custom(panicked))
         .layer(middleware::from_fn_with_state(app.clone(), rate_limit::limit_rate))
@@ -75,6 +77,9 @@ fn researchers(app: &App) -> Router<App> {
         .route("/researcher", get(studies::home))
         .route(STUDY, get(studies::study))
         .route(&format!("{STUDY}/live"), get(studies::live))
+        .route(&format!("{STUDY}/withdraw"), post(studies::withdraw))
+        .route(&format!("{STUDY}/keep"), post(studies::keep_overdue))
+        .route("/researcher/clock", post(studies::confirm_clock))
         .route(PERSON, get(studies::participant))
         .route(&format!("{PERSON}/exclude"), post(studies::exclude))
         .route(&format!("{PERSON}/include"), post(studies::include))
@@ -97,6 +102,16 @@ fn researchers(app: &App) -> Router<App> {
         .route(UPLOAD, get(uploads::page).merge(upload))
         .route("/researcher/language/{code}", get(accounts::language))
         .layer(middleware::from_fn_with_state(app.clone(), refusal_pages::refusals_as_pages))
+}
+
+/// No address of ours has a NUL in it, and PostgreSQL takes none.
+async fn refuse_nul(request: Request, next: Next) -> Response {
+    let uri = request.uri();
+    let query = uri.query().unwrap_or_default();
+    if uri.path().contains("%00") || query.contains("%00") {
+        return Error::NulInText.into_response();
+    }
+    next.run(request).await
 }
 
 async fn time_limit(request: Request, next: Next) -> Response {

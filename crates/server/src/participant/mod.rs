@@ -2,5 +2,8 @@
 
 pub(crate) mod pages;
 pub(crate) mod panics;
+mod resumed;
 pub(crate) mod sessions;
 pub(crate) mod studies;
+pub(crate) mod withdrawal;
+mod withdrawal_page;

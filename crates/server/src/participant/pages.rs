@@ -1,6 +1,7 @@
 //! Pages: participant's, preview, the list of studies; readiness.
 
 use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
 use axum::extract::{Path, RawQuery, State};
 use axum::http::{HeaderMap, StatusCode, header};
@@ -9,6 +10,7 @@ use maud::{DOCTYPE, html};
 use mimique_storage::StorageError;
 
 use crate::accounts::identity::Researcher;
+use crate::clock::now_ms;
 use crate::error::Error;
 use crate::state::App;
 use crate::studio::page::{StudioFiles, studio_page};
@@ -100,13 +102,26 @@ pub(crate) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error
     Researcher::of(app, headers).await.map(|_| ())
 }
 
-/// Whether answers can be stored: the database answers, its schema is ours, we are not stopping.
+/// The database is written to this often at most, however often somebody asks.
+const LOOK_AGAIN_AFTER: Duration = Duration::from_secs(2);
+/// An answer would not be stored in time either.
+const LONGEST_LOOK: Duration = Duration::from_secs(5);
+
+/// Whether answers can be stored: the database takes what is written, its schema is ours, we are not
+/// stopping.
 pub(crate) async fn ready(State(app): State<App>) -> Result<&'static str, Error> {
     if app.stopping.load(Ordering::Relaxed) {
         return Err(StorageError::Stopping.into());
     }
     if !app.storage.is_current().await? {
         return Err(Error::internal("the database's schema is not this binary's"));
+    }
+    let mut last = app.last_ready.lock().await;
+    if last.is_none_or(|at| at.elapsed() > LOOK_AGAIN_AFTER) {
+        *last = None;
+        let trial = tokio::time::timeout(LONGEST_LOOK, app.storage.try_writing(now_ms()));
+        trial.await.map_err(|_| Error::Unavailable)??;
+        *last = Some(Instant::now());
     }
     Ok("ready\n")
 }

@@ -9,17 +9,19 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use mimique_session::wire::{
-    Acknowledged, AppendEvents, Complete, Event, Receipt, Resume, SessionStarted, StartSession,
-    Withdraw, Withdrawn,
+    Acknowledged, AppendEvents, Complete, Event, Receipt, SessionStarted, StartSession, Withdraw,
+    Withdrawn,
 };
-use mimique_session::{Record, Standing};
+use mimique_session::{Admission, Record, Standing};
 use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
 use mimique_study::{Multilingual as _, RepeatPrevention, Study};
 
+use super::resumed::resumed;
 use crate::clock::now_ms;
 use crate::error::Error;
 use crate::http::cookies;
 use crate::http::extract::Body;
+use crate::participant::withdrawal::withdrawal_hash;
 use crate::secret;
 use crate::state::App;
 use crate::state::hosted_study::{HostedStudy, Stage};
@@ -33,6 +35,27 @@ const CLIENT_KEYS: [&str; 3] = ["browser", "version", "platform"];
 /// Hexadecimal digits of 128 bits.
 const TOKEN_DIGITS: usize = 32;
 
+/// Somebody who asks to begin.
+struct Arrival {
+    session: NewSession,
+    token: String,
+    browser_mark: Option<String>,
+}
+
+/// Whether somebody could begin; nothing is written.
+pub(crate) async fn arrive(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+    Body(request): Body<StartSession>,
+) -> Result<Json<()>, Error> {
+    let study = app.study(&study)?;
+    let Arrival { session, .. } = arrival(&app, &study, &headers, request).await?;
+    let language = session.language.clone();
+    app.storage.may_start(&session).await.map_err(|error| refused(&study, error, &language))?;
+    Ok(Json(()))
+}
+
 pub(crate) async fn start(
     State(app): State<App>,
     Path(study): Path<String>,
@@ -41,11 +64,44 @@ pub(crate) async fn start(
 ) -> Result<Response, Error> {
     let study = app.study(&study)?;
     let study = study.as_ref();
+    let Arrival { session, token, browser_mark } = arrival(&app, study, &headers, request).await?;
+    let language = session.language.clone();
+    let record = app.storage.start(session).await;
+    let record = record.map_err(|error| refused(study, error, &language))?;
+    if record.is_deleted() {
+        return Err(StorageError::Withdrawn.into());
+    }
+    let mut response = Json(started(&app, token, &record)).into_response();
+    if let Some(mark) = browser_mark {
+        let path = format!("/api/studies/{}/", study.id());
+        let cookie = cookies::set_below(&path, &cookie_name(study), &mark, app.is_encrypted())?;
+        response.headers_mut().insert(header::SET_COOKIE, cookie);
+    }
+    Ok(response)
+}
+
+fn refused(study: &HostedStudy, error: StorageError, language: &str) -> Error {
+    match error {
+        StorageError::AlreadyTookPart => cannot_begin(study.study(), "already-took-part", language),
+        StorageError::StudyFull => cannot_begin(study.study(), "study-full", language),
+        error => error.into(),
+    }
+}
+
+/// What somebody who asks to begin would be given. Whoever is turned away holds no place and uses no
+/// identifier, and is told nothing of hours.
+async fn arrival(
+    app: &App,
+    study: &HostedStudy,
+    headers: &HeaderMap,
+    request: StartSession,
+) -> Result<Arrival, Error> {
     if !secret::is_hex(&request.nonce, TOKEN_DIGITS) {
         return Err(Error::BadNonce);
     }
-    let token = token(&app, study.id(), &request.nonce);
-    let code = withdrawal_code(&app, &token);
+    let takes_part = !request.turned_away;
+    let token = token(app, study.id(), &request.nonce);
+    let code = withdrawal_code(app, &token);
     let client: std::collections::BTreeMap<_, _> = request
         .client
         .iter()
@@ -54,11 +110,17 @@ pub(crate) async fn start(
         .collect();
     let language = study.study().language_for(&request.language).to_owned();
     let recruitment = study.kept_parameters(request.recruitment);
-    let browser_mark = browser_mark(&app, study, &token);
-    let marks = marks(&app, study, &recruitment, browser_mark.as_deref(), &headers)
-        .ok_or_else(|| cannot_begin(study.study(), "no-identifier", &language))?;
-    refuse_outside_hours(&app, study, &token, &language).await?;
-    let conditions = conditions(&app, study, request.condition, &token, &language).await?;
+    let browser_mark = takes_part.then(|| browser_mark(app, study, &token)).flatten();
+    let marks = match takes_part {
+        true => marks(app, study, &recruitment, browser_mark.as_deref(), headers)
+            .ok_or_else(|| cannot_begin(study.study(), "no-identifier", &language))?,
+        false => Vec::new(),
+    };
+    if takes_part {
+        refuse_outside_hours(app, study, &token, &language).await?;
+    }
+    let conditions = conditions(app, study, request.condition, &token, &language).await?;
+    let rules = &study.study().recruitment;
     let session = NewSession {
         token_hash: secret::hash(&token),
         withdrawal_hash: withdrawal_hash(&code),
@@ -71,27 +133,11 @@ pub(crate) async fn start(
         recruitment,
         marks,
         conditions,
-        places: study.study().recruitment.participants,
-        reservation_ms: study.study().recruitment.reservation_ms(),
+        places: rules.participants.filter(|_| takes_part),
+        reservation_ms: if takes_part { rules.reservation_ms() } else { 0 },
         now_ms: now_ms(),
     };
-    let record = app.storage.start(session).await.map_err(|error| match error {
-        StorageError::AlreadyTookPart => {
-            cannot_begin(study.study(), "already-took-part", &language)
-        }
-        StorageError::StudyFull => cannot_begin(study.study(), "study-full", &language),
-        error => error.into(),
-    })?;
-    if record.is_deleted() {
-        return Err(StorageError::Withdrawn.into());
-    }
-    let mut response = Json(started(&app, token, &record)).into_response();
-    if let Some(mark) = browser_mark {
-        let path = format!("/api/studies/{}/", study.id());
-        let cookie = cookies::set_below(&path, &cookie_name(study), &mark, app.is_encrypted())?;
-        response.headers_mut().insert(header::SET_COOKIE, cookie);
-    }
-    Ok(response)
+    Ok(Arrival { session, token, browser_mark })
 }
 
 /// Before the study opens and after it closes nobody begins; who has begun goes on.
@@ -192,13 +238,13 @@ fn marks(
 pub(crate) async fn resume(
     State(app): State<App>,
     Path(token): Path<String>,
-) -> Result<Json<Resume>, Error> {
+) -> Result<Response, Error> {
     let record = app.storage.session(&token_hash(&token)?).await?;
     if record.is_deleted() {
         return Err(StorageError::Withdrawn.into());
     }
-    let events = app.storage.events(record.key).await?;
-    Ok(Json(Resume { started: started(&app, token, &record), events }))
+    let key = record.key;
+    resumed(app.storage.clone(), key, &started(&app, token, &record))
 }
 
 /// The events that can be stored are stored, whatever becomes of the others; an event that differs
@@ -209,10 +255,18 @@ pub(crate) async fn append(
     Body(request): Body<AppendEvents>,
 ) -> Result<Json<Acknowledged>, Error> {
     let token_hash = token_hash(&token)?;
-    let events: Vec<WrittenEvent> =
-        request.events.into_iter().map(checked_event).collect::<Result<_, _>>()?;
+    for event in &request.events {
+        check_event(event)?;
+    }
+    let admission = app.admissions.of(&app.storage, &token_hash).await?;
+    let events: Vec<WrittenEvent> = request
+        .events
+        .into_iter()
+        .map(|event| written(event, admission.as_deref()))
+        .collect::<Result<_, _>>()?;
     let sent = events.len() as u64;
-    let appended = app.storage.append_written(&token_hash, events, now_ms()).await?;
+    let limits = admission.map(|admission| admission.limits());
+    let appended = app.storage.append_written(&token_hash, events, limits, now_ms()).await?;
     let kept = sent - appended.conflicts.len() as u64;
     app.metrics.events.inc_by(kept);
     if appended.conflicts.is_empty() {
@@ -241,10 +295,16 @@ pub(crate) async fn complete(
     };
     // A session may outlive its study's place on this server; its receipt stays good.
     if let Ok(study) = app.study(&completed.study_id) {
-        let events = app.storage.events(completed.key).await?;
-        let standing = Record::of(None, &events).standing;
+        let events = app.storage.counted_events(completed.key).await?;
+        let record = Record::of(None, &events);
+        let standing = record.standing;
+        let admission = app.admissions.of(&app.storage, &token_hash).await?;
+        // Who says to have finished has to have held a place, and to have been through what lies before.
+        let held_place = app.storage.session(&token_hash).await?.slot_lasts_ms > 0;
+        let is_earned = standing != Standing::Completed
+            || (held_place && admission.is_none_or(|admission| admission.is_done(&record)));
         let code = standing.completion_code(&study.study().recruitment);
-        if code.is_some() || standing == Standing::Completed {
+        if is_earned && (code.is_some() || standing == Standing::Completed) {
             let parameters = app.storage.session_recruitment(completed.key).await?;
             receipt.redirect = study.redirect(&parameters, code);
             receipt.completion_code = code.map(str::to_owned);
@@ -260,11 +320,11 @@ pub(crate) async fn withdraw(
 ) -> Result<Json<Withdrawn>, Error> {
     let token_hash = token_hash(&token)?;
     let code_hash = withdrawal_hash(&request.withdrawal_code);
-    let deleted = app.storage.withdraw(&token_hash, &code_hash, now_ms()).await?;
-    Ok(Json(Withdrawn { deleted }))
+    let done = app.storage.withdraw(&token_hash, &code_hash, now_ms()).await?;
+    Ok(Json(Withdrawn { deleted: done.deleted }))
 }
 
-fn checked_event(event: Event) -> Result<WrittenEvent, Error> {
+fn check_event(event: &Event) -> Result<(), Error> {
     let sequence = event.sequence;
     if sequence >= MOST_EVENTS {
         return Err(Error::EventBeyondEnd { sequence, most: MOST_EVENTS });
@@ -272,7 +332,14 @@ fn checked_event(event: Event) -> Result<WrittenEvent, Error> {
     if !event.body.is_object() {
         return Err(Error::EventNotAnObject { sequence });
     }
-    let event = WrittenEvent::from(event);
+    Ok(())
+}
+
+/// The event as it is stored: what the session's plan cannot hold is kept and marked.
+fn written(event: Event, admission: Option<&Admission>) -> Result<WrittenEvent, Error> {
+    let sequence = event.sequence;
+    let misfit = admission.and_then(|admission| admission.misfit(&event.body));
+    let event = WrittenEvent::from(event).found(misfit);
     if event.body.len() > LARGEST_EVENT {
         return Err(Error::EventTooLarge { sequence, most_bytes: LARGEST_EVENT });
     }
@@ -299,15 +366,11 @@ fn withdrawal_code(app: &App, token: &str) -> String {
     secret::spoken(&bytes)
 }
 
-fn withdrawal_hash(code: &str) -> String {
-    secret::hash(&secret::heard(code))
-}
-
 fn started(app: &App, token: String, record: &SessionRecord) -> SessionStarted {
     SessionStarted {
         withdrawal_code: withdrawal_code(app, &token),
         session: token,
-        participant_id: crate::participant_id::participant_id(record.participant),
+        participant_id: mimique_storage::participant_id(record.participant),
         participant: record.participant,
         slot: record.slot,
         condition: record.condition.clone(),

@@ -1,9 +1,11 @@
 //! What every request can reach: studies, packs, pages, storage and the server's keys.
 
 pub(crate) mod access;
+pub(crate) mod admissions;
 pub(crate) mod catalogue;
 pub(crate) mod hosted_study;
 pub(crate) mod metrics;
+pub(crate) mod network;
 pub(crate) mod preparations;
 pub(crate) mod rate_limit;
 pub(crate) mod settings;
@@ -13,13 +15,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use access::Access;
+use admissions::Admissions;
 use catalogue::Catalogue;
 use hosted_study::HostedStudy;
 use metrics::Metrics;
 use mimique_storage::{Registered, Storage, StorageError, StudyVersion};
-use preparations::Preparations;
 use rate_limit::Limits;
 use settings::Settings;
 use start_error::AppError;
@@ -39,7 +42,15 @@ pub struct App {
     pub(crate) registered: Arc<BTreeMap<String, Registered>>,
     pub(crate) settings: Arc<Settings>,
     pub(crate) limits: Arc<Limits>,
+    /// Attempts to log in.
+    pub(crate) login_limits: Arc<Limits>,
+    /// Withdrawal codes tried.
+    pub(crate) code_limits: Arc<Limits>,
+    /// What the sessions' plans admit.
+    pub(crate) admissions: Arc<Admissions>,
     pub(crate) metrics: Arc<Metrics>,
+    /// When the database last took what was written, for those who ask whether it does.
+    pub(crate) last_ready: Arc<tokio::sync::Mutex<Option<Instant>>>,
     /// Set when the server has been told to stop.
     pub(crate) stopping: Arc<AtomicBool>,
     pub(crate) assets: Arc<Assets>,
@@ -50,7 +61,6 @@ pub struct App {
     pub(crate) reports: Arc<Reports>,
     /// Where uploaded studies and their packs lie.
     pub(crate) data_folder: Option<Arc<Path>>,
-    pub(crate) preparations: Preparations,
     /// Version and stage of each uploaded study as it is hosted.
     pub(crate) uploaded: Arc<tokio::sync::Mutex<BTreeMap<String, (String, String)>>>,
     pub(crate) token_key: Arc<[u8]>,
@@ -82,7 +92,11 @@ impl App {
             registered: Arc::new(registered),
             settings: Arc::default(),
             limits: Arc::default(),
+            login_limits: Arc::default(),
+            code_limits: Arc::default(),
+            admissions: Arc::default(),
             metrics: Arc::default(),
+            last_ready: Arc::default(),
             stopping: Arc::default(),
             assets: Arc::new(assets),
             session_views: Arc::default(),
@@ -90,7 +104,6 @@ impl App {
             pulse: Pulse::new(storage.clone()),
             reports: Arc::default(),
             data_folder: None,
-            preparations: Arc::default(),
             uploaded: Arc::default(),
             token_key: key(&storage, "tokens").await?,
             receipt_key: key(&storage, "receipts").await?,

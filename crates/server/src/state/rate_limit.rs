@@ -16,6 +16,10 @@ const MOST_ADDRESSES: usize = 20_000;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peer(pub IpAddr);
 
+/// Marks a request on a place that is kept for questions about health.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reserve;
+
 /// When each address has used up what it has asked so far (the generic cell rate algorithm, ITU-T
 /// I.371: one time an address).
 #[derive(Default)]
@@ -25,13 +29,21 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// Whether an address may ask now.
+    /// Whether an address may ask now: so often in a second in the long run.
     pub fn allow(&self, address: IpAddr, per_second: u32, now: Instant) -> bool {
-        let one = Duration::from_secs(1) / per_second.max(1);
-        let burst = Duration::from_secs(u64::from(BURST_SECONDS));
+        let per_second = per_second.max(1);
+        let every = Duration::from_secs(1) / per_second;
+        self.allow_every(address, every, BURST_SECONDS * per_second, now)
+    }
+
+    /// Whether an address may ask now: once in a while in the long run, and so often at once.
+    pub fn allow_every(&self, address: IpAddr, one: Duration, at_once: u32, now: Instant) -> bool {
+        let burst = one * at_once;
         let mut paid_until = self.paid_until.lock().unwrap_or_else(PoisonError::into_inner);
         if paid_until.len() >= MOST_ADDRESSES {
             paid_until.retain(|_, until| *until > now);
+            // What a flood of addresses took is given back.
+            paid_until.shrink_to(MOST_ADDRESSES / 10);
         }
         let until = paid_until.entry(self.key.hash_one(network(address))).or_insert(now);
         let next = (*until).max(now) + one;
@@ -44,7 +56,7 @@ impl Limits {
 }
 
 /// A household or a machine: of IPv6 the first 64 bits.
-fn network(address: IpAddr) -> IpAddr {
+pub(crate) fn network(address: IpAddr) -> IpAddr {
     match address {
         IpAddr::V6(address) => {
             let [a, b, c, d, ..] = address.segments();
@@ -66,6 +78,10 @@ mod tests {
         let asked = (0..100).filter(|_| limits.allow(address, 5, now)).count();
         assert_eq!(asked, 50, "ten seconds' worth at once");
         assert!(limits.allow("192.0.2.2".parse().unwrap(), 5, now), "others are not touched");
+        let seldom = Limits::default();
+        let asks = |at| seldom.allow_every(address, Duration::from_secs(20), 3, at);
+        assert_eq!((0..10).filter(|_| asks(now)).count(), 3);
+        assert!(!asks(now + Duration::from_secs(19)) && asks(now + Duration::from_secs(21)));
         let later = now + Duration::from_secs(1);
         assert_eq!((0..100).filter(|_| limits.allow(address, 5, later)).count(), 5);
     }

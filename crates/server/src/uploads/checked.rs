@@ -38,7 +38,7 @@ fn look_up(path: &str, folder: &Path) -> Result<(), Problem> {
     if !is_inside(path) {
         return Err(Problem::OutsideArchive { path: path.to_owned() });
     }
-    if folder.join(path).is_file() {
+    if mimique_stimulus::is_source(&folder.join(path)) {
         return Ok(());
     }
     Err(Problem::NoFileInArchive { path: path.to_owned() })

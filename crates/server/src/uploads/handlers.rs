@@ -17,6 +17,7 @@ use crate::http::responses::see;
 use crate::researcher::pages::frame::Frame;
 use crate::state::App;
 use crate::state::hosted_study::Stage;
+use crate::state::preparations::{Noted, Preparation};
 use crate::uploads::{self, Incoming, Taken};
 
 pub(crate) async fn page(State(app): State<App>, who: Researcher) -> Result<Response, Error> {
@@ -63,7 +64,8 @@ pub(crate) async fn upload(State(app): State<App>, request: Request) -> Result<R
 fn answer(app: &App, who: &Researcher, taken: Result<Taken, Error>) -> Result<Response, Error> {
     let frame = Frame::new(app, who);
     let refused = |problem: &str, issues: &[Issue]| {
-        let mut page = upload_page(&frame, Some(problem), issues);
+        let issues: Vec<Noted> = issues.iter().map(Noted::from).collect();
+        let mut page = upload_page(&frame, Some(problem), &issues);
         *page.status_mut() = StatusCode::UNPROCESSABLE_ENTITY;
         page
     };
@@ -89,10 +91,7 @@ pub(crate) async fn preparing(
     who: Researcher,
 ) -> Result<Response, Error> {
     who.needs(Role::Owner)?;
-    let known = {
-        let known = app.preparations.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        known.get(&id).cloned().ok_or(Error::NotFound)?
-    };
+    let known = Preparation::of(&app.storage, &id).await?.ok_or(Error::NotFound)?;
     Ok(preparing_page(&Frame::new(&app, &who), &id, &known))
 }
 

@@ -10,9 +10,9 @@ pub(crate) mod handlers;
 mod pages;
 
 use std::path::{Path, PathBuf};
-use std::sync::PoisonError;
+use std::time::{Duration, Instant};
 
-use mimique_stimulus::{Places, Progress, prepare};
+use mimique_stimulus::{Places, Progress};
 use mimique_storage::{UploadedStudy, durable_file};
 use mimique_study::{CheckedStudy, Issue};
 use sha2::{Digest, Sha256};
@@ -27,13 +27,17 @@ use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
 use crate::files::packs::PackStore;
+use crate::hosting::prepare_hosting;
 use crate::secret;
 use crate::state::App;
 use crate::state::hosted_study::{HostedStudy, Stage};
-use crate::state::preparations::{Preparation, Preparations, Preparing};
+use crate::state::preparations::{Noted, Preparation, Preparing};
 
 /// Bytes of an upload.
 pub(crate) const LARGEST_UPLOAD: u64 = archive::LARGEST_UPLOAD;
+
+/// How far preparing is, is noted so often.
+const TOLD_EVERY: Duration = Duration::from_secs(1);
 
 /// Preparing takes a core and much memory: one study at a time.
 static TURN: Semaphore = Semaphore::const_new(1);
@@ -61,10 +65,14 @@ impl Drop for Arrived {
 impl Incoming {
     pub async fn open(app: &App) -> Result<Self, Error> {
         let folder = uploads_folder(app)?;
-        tokio::fs::create_dir_all(&folder).await?;
+        durable_file::private_folder(&folder)?;
         let random = secret::random::<8>().map_err(Error::internal)?;
         let path = folder.join(format!(".incoming-{random}"));
-        let file = tokio::fs::File::create_new(&path).await?;
+        let mut options = tokio::fs::File::options();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        options.mode(0o600);
+        let file = options.open(&path).await?;
         Ok(Self { path, file, hasher: Sha256::new(), bytes: 0 })
     }
 
@@ -122,30 +130,49 @@ pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Resul
     if app.study(&study_id).is_ok() && !is_uploaded(app, &study_id).await? {
         return Err(Error::OwnStudy { study: study_id });
     }
-    {
-        let mut preparations = app.preparations.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = preparations.get(&study_id).map(|known| &known.state);
-        if matches!(known, Some(Preparing::Under { .. })) {
-            return Err(Error::BeingPrepared { study: study_id });
-        }
-        let state = Preparing::Under { done: 0, of: 0 };
-        let issues = checked.issues;
-        preparations.insert(study_id.clone(), Preparation { state, issues });
+    let issues = checked.issues.iter().map(Noted::from).collect();
+    let preparation = Preparation { state: Preparing::Under { done: 0, of: 0 }, issues };
+    if !preparation.begin(&app.storage, &study_id).await? {
+        return Err(Error::BeingPrepared { study: study_id });
     }
     audit(app, who, "upload a study", &study_id, &study.config_hash()[..12]).await?;
-    tokio::spawn(host(app.clone(), study_file, study, hash));
+    tokio::spawn(host(app.clone(), study_file, study, hash, preparation));
     Ok(Taken::Accepted { study_id })
 }
 
 /// Prepares the stimuli and hosts the study as a pilot.
-async fn host(app: App, study_file: PathBuf, study: CheckedStudy, archive_hash: String) {
+async fn host(
+    app: App,
+    study_file: PathBuf,
+    study: CheckedStudy,
+    archive_hash: String,
+    mut preparation: Preparation,
+) {
     let id = study.study().id.clone();
-    let outcome = prepare_and_host(&app, &study_file, study, archive_hash).await;
-    let state = match outcome {
+    let told = preparation.clone();
+    let outcome = prepare_and_host(&app, &study_file, study, archive_hash.clone(), told).await;
+    preparation.state = match outcome {
         Ok(warnings) => Preparing::Ready { warnings },
-        Err(problem) => Preparing::Failed { problem },
+        Err(problem) => {
+            remove_failed(&app, &archive_hash).await;
+            Preparing::Failed { problem }
+        }
     };
-    note(&app.preparations, &id, state);
+    if let Err(error) = preparation.note(&app.storage, &id).await {
+        tracing::error!("what became of an uploaded study cannot be noted: {error}");
+    }
+}
+
+/// Takes away what was unpacked of an upload that cannot be hosted, unless a study is hosted from it.
+async fn remove_failed(app: &App, archive_hash: &str) {
+    let Ok(folder) = uploads_folder(app) else { return };
+    let Ok(uploads) = app.storage.uploads().await else { return };
+    if uploads.iter().any(|upload| upload.archive_hash == archive_hash) {
+        return;
+    }
+    if let Err(error) = tokio::fs::remove_dir_all(folder.join(archive_hash)).await {
+        tracing::warn!("what a failed upload left cannot be removed: {error}");
+    }
 }
 
 async fn prepare_and_host(
@@ -153,6 +180,7 @@ async fn prepare_and_host(
     study_file: &Path,
     study: CheckedStudy,
     archive_hash: String,
+    mut told: Preparation,
 ) -> Result<Vec<String>, String> {
     let folder = app.data_folder.as_deref().ok_or("the server has no data folder")?;
     let packs_folder = folder.join("packs");
@@ -163,14 +191,19 @@ async fn prepare_and_host(
     };
     let _turn = TURN.acquire().await.map_err(|error| error.to_string())?;
     let id = study.study().id.clone();
-    let preparations = app.preparations.clone();
+    let (storage, runtime) = (app.storage.clone(), tokio::runtime::Handle::current());
     let work = move || {
+        let mut last: Option<Instant> = None;
         let mut said = |progress: Progress<'_>| {
-            let under = Preparing::Under { done: progress.done, of: progress.total };
-            note(&preparations, &id, under);
+            if last.is_some_and(|last| last.elapsed() < TOLD_EVERY) {
+                return;
+            }
+            last = Some(Instant::now());
+            told.state = Preparing::Under { done: progress.done, of: progress.total };
+            // Not to know how far it is, is no reason to give up.
+            let _ = runtime.block_on(told.note(&storage, &id));
         };
-        let prepared =
-            prepare(study.study(), &places, &mut said).map_err(|error| error.to_string())?;
+        let prepared = prepare_hosting(study.study(), &places, &mut said)?;
         let warnings =
             prepared.warnings.iter().map(|(pointer, text)| format!("{pointer}: {text}")).collect();
         let mut packs = PackStore::default();
@@ -202,13 +235,6 @@ async fn prepare_and_host(
         "the database failed; upload the study again".to_owned()
     })?;
     Ok(warnings)
-}
-
-fn note(preparations: &Preparations, id: &str, state: Preparing) {
-    let mut known = preparations.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = known.get_mut(id) {
-        known.state = state;
-    }
 }
 
 /// Changes whether an uploaded study's answers count.

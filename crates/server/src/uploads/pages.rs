@@ -2,13 +2,12 @@
 
 use axum::response::Response;
 use maud::{Markup, html};
-use mimique_study::{Issue, Severity};
 
 use crate::researcher::pages::frame::Frame;
-use crate::state::preparations::{Preparation, Preparing};
+use crate::state::preparations::{Noted, Preparation, Preparing};
 
 /// The form; `problem` is why the last upload was not taken, `issues` what the check found in it.
-pub(crate) fn upload_page(frame: &Frame, problem: Option<&str>, issues: &[Issue]) -> Response {
+pub(crate) fn upload_page(frame: &Frame, problem: Option<&str>, issues: &[Noted]) -> Response {
     let title = frame.say("Upload a study", "Déposer une étude");
     let body = html! {
         p { a href="/researcher" { "← " (frame.say("Studies", "Études")) } }
@@ -80,8 +79,8 @@ pub(crate) fn preparing_page(frame: &Frame, id: &str, known: &Preparation) -> Re
     frame.page(&title, "/researcher", &body)
 }
 
-fn issue_list(frame: &Frame, issues: &[Issue]) -> Markup {
-    let errors = issues.iter().filter(|issue| issue.severity == Severity::Error).count();
+fn issue_list(frame: &Frame, issues: &[Noted]) -> Markup {
+    let errors = issues.iter().filter(|issue| issue.is_error).count();
     html! {
         div.card {
             h2 { (frame.say("What the check found", "Résultat de la vérification")) }
@@ -92,13 +91,13 @@ fn issue_list(frame: &Frame, issues: &[Issue]) -> Markup {
             ul.issues lang="en" {
                 @for issue in issues {
                     li {
-                        @if issue.severity == Severity::Error {
+                        @if issue.is_error {
                             span.tag.bad { "error" }
                         } @else {
                             span.tag.warn { "warning" }
                         }
-                        " " code { (issue.place()) }
-                        " " (issue.message()) "; " (issue.remedy())
+                        " " code { (issue.place) }
+                        " " (issue.message) "; " (issue.remedy)
                     }
                 }
             }

@@ -433,3 +433,165 @@ pub async fn what_is_hosted_is_for_researchers(server: &TestServer) {
     assert_eq!(open.get("/preview/faces").await.status, StatusCode::OK);
     assert!(open.get("/").await.text().contains("/s/faces/"));
 }
+
+/// Whoever was shut out has no way back that was prepared before.
+pub async fn a_disabled_account_has_no_way_in(server: &TestServer) {
+    let mut owner = owner(server).await;
+    let mut analyst = invited(server, &mut owner, Role::Analyst).await;
+    let key = token(server, &mut analyst, Role::Analyst).await;
+    let accounts = server.storage.accounts().await.unwrap();
+    let person = accounts.iter().find(|account| account.role == Role::Analyst).unwrap();
+    let path = format!("/researcher/people/{}", person.key);
+    let earlier = link_in(&owner.send(server, &path, &[("action", "reset")]).await);
+    assert_eq!(Browser::default().open(server, &earlier).await.status, StatusCode::OK);
+    owner.send(server, &path, &[("action", "disable")]).await;
+    let disabled = async || {
+        let accounts = server.storage.accounts().await.unwrap();
+        let person = accounts.into_iter().find(|account| account.role == Role::Analyst);
+        person.unwrap().disabled_ms.is_some()
+    };
+    let mut back = Browser::default();
+    back.open(server, "/researcher/login").await;
+    let fields = [("email", "x@y"), ("password", "six words are best of all")];
+    let used = back.send(server, &earlier, &fields).await;
+    used.refused(StatusCode::GONE, "dead-link");
+    assert!(disabled().await);
+    // Nor can a link be made that would work at once when the account is enabled by mistake.
+    let refused = owner.send(server, &path, &[("action", "reset")]).await;
+    refused.refused(StatusCode::CONFLICT, "account-disabled");
+    // A link of before that is still in the database, as one of an earlier version, enables nothing.
+    let secret = "00112233445566778899aabbccddeeff";
+    let link = mimique_storage::AccountLink {
+        purpose: mimique_storage::LinkPurpose::Reset,
+        email: "analyst@example.org".into(),
+        role: Role::Analyst,
+        expires_ms: i64::MAX,
+    };
+    server.storage.add_link(&crate::study::sha256(secret), &link, 0).await.unwrap();
+    let used = back.send(server, &format!("/researcher/link/{secret}"), &fields).await;
+    used.refused(StatusCode::GONE, "dead-link");
+    assert!(disabled().await);
+    // Enabled again, neither its sessions nor its tokens are.
+    owner.send(server, &path, &[("action", "enable")]).await;
+    assert_eq!(analyst.open(server, "/researcher").await.status, StatusCode::SEE_OTHER);
+    let csv = "/researcher/studies/faces/export/csv";
+    let answer = script(server, Method::GET, csv, &key).await;
+    answer.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+    // Who can reach the database gets in, as before.
+    owner.send(server, &path, &[("action", "disable")]).await;
+    let by_command = reset_link(&server.storage, "analyst@example.org").await.unwrap();
+    let used = back.send(server, &by_command, &fields).await;
+    assert_eq!(used.status, StatusCode::SEE_OTHER, "{}", used.text());
+    assert!(!disabled().await);
+}
+
+/// A token of an owner, once stolen, makes no way in that outlives it.
+pub async fn no_token_manages_people(server: &TestServer) {
+    let mut owner = owner(server).await;
+    let key = token(server, &mut owner, Role::Owner).await;
+    let ask = async |path: &str, fields: &[(&str, &str)]| {
+        let request = axum::http::Request::post(path)
+            .header(header::AUTHORIZATION, format!("Bearer {key}"))
+            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+            .body(axum::body::Body::from(crate::people::encoded(fields)));
+        server.send(request.unwrap()).await
+    };
+    for fields in [
+        &[("action", "reset")][..],
+        &[("action", "role"), ("role", "viewer")],
+        &[("action", "enable")],
+        &[("action", "disable")],
+    ] {
+        ask("/researcher/people/1", fields).await.refused(StatusCode::FORBIDDEN, "not-allowed");
+    }
+    let invitation = [("email", "thief@x"), ("role", "owner")];
+    let invited = ask("/researcher/people/invite", &invitation).await;
+    invited.refused(StatusCode::FORBIDDEN, "not-allowed");
+    assert_eq!(server.storage.accounts().await.unwrap().len(), 1);
+    // It goes with the password that it was made under.
+    let csv = "/researcher/studies/faces/export/csv";
+    assert_eq!(script(server, Method::GET, csv, &key).await.status, StatusCode::OK);
+    owner.open(server, "/researcher/account").await;
+    let fields = [("old", PASSWORD), ("new", "five words are better still")];
+    let changed = owner.send(server, "/researcher/account/password", &fields).await;
+    assert_eq!(changed.status, StatusCode::OK);
+    let answer = script(server, Method::GET, csv, &key).await;
+    answer.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+    assert_eq!(
+        owner.open(server, "/researcher").await.status,
+        StatusCode::OK,
+        "this browser stays"
+    );
+    // And with a password that a link has set.
+    let key = token(server, &mut owner, Role::Owner).await;
+    let link = reset_link(&server.storage, "owner@example.org").await.unwrap();
+    let mut browser = Browser::default();
+    browser.open(server, &link).await;
+    browser.send(server, &link, &[("email", "x@y"), ("password", PASSWORD)]).await;
+    let answer = script(server, Method::GET, csv, &key).await;
+    answer.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+}
+
+/// Whoever tries passwords at an account makes strangers wait, not the person whose browser is known.
+pub async fn nobody_can_lock_an_owner_out(server: &TestServer) {
+    let mut known = owner(server).await;
+    known.send(server, "/researcher/logout", &[]).await;
+    let attempt = async |browser: &mut Browser, password: &str| {
+        browser.open(server, "/researcher/login").await;
+        let fields = [("email", "owner@example.org"), ("password", password)];
+        browser.send(server, "/researcher/login", &fields).await.status
+    };
+    let mut stranger = Browser::default();
+    for _ in 0..8 {
+        assert_eq!(attempt(&mut stranger, "a wrong password").await, StatusCode::FORBIDDEN);
+    }
+    for _ in 0..20 {
+        let waits = attempt(&mut stranger, PASSWORD).await;
+        assert_eq!(waits, StatusCode::TOO_MANY_REQUESTS);
+    }
+    // A mark that the server has not made, or made for somebody else, is none.
+    let mark = known.cookie_value("mimique_known").unwrap().to_owned();
+    assert_eq!(mark.len(), 64);
+    stranger.cookies.push(("mimique_known".into(), "0".repeat(64)));
+    assert_eq!(attempt(&mut stranger, PASSWORD).await, StatusCode::TOO_MANY_REQUESTS);
+    assert_eq!(attempt(&mut known, PASSWORD).await, StatusCode::SEE_OTHER);
+    // A known browser is bounded as well, by itself.
+    known.send(server, "/researcher/logout", &[]).await;
+    let mut stolen = Browser::default();
+    let mark = known.cookie_value("mimique_known").unwrap().to_owned();
+    stolen.cookies.push(("mimique_known".into(), mark));
+    for _ in 0..8 {
+        assert_eq!(attempt(&mut stolen, "a wrong password").await, StatusCode::FORBIDDEN);
+    }
+    assert_eq!(attempt(&mut stolen, PASSWORD).await, StatusCode::TOO_MANY_REQUESTS);
+}
+
+/// One address cannot go through the accounts with a password that many have.
+pub async fn one_address_cannot_try_every_account(server: &TestServer) {
+    let (behind_proxy, logins_per_address) = (true, 2);
+    let settings =
+        mimique_server::Settings { behind_proxy, logins_per_address, ..Default::default() };
+    let server = server.with_settings(settings);
+    let mut browser = Browser::default();
+    browser.open(&server, "/researcher/login").await;
+    let attempt = async |address: &str, email: &str| {
+        let fields = [("email", email), ("password", "123"), ("csrf", browser.csrf.as_str())];
+        let request = axum::http::Request::post("/researcher/login")
+            .header(header::HOST, crate::people::HOST)
+            .header(header::ORIGIN, ORIGIN)
+            .header(header::COOKIE, browser.cookie())
+            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+            .header("x-real-ip", address)
+            .body(axum::body::Body::from(crate::people::encoded(&fields)));
+        server.send(request.unwrap()).await.status
+    };
+    for (number, status) in (0..).zip([
+        StatusCode::FORBIDDEN,
+        StatusCode::FORBIDDEN,
+        StatusCode::TOO_MANY_REQUESTS,
+        StatusCode::TOO_MANY_REQUESTS,
+    ]) {
+        assert_eq!(attempt("192.0.2.1", &format!("person{number}@example.org")).await, status);
+    }
+    assert_eq!(attempt("192.0.2.2", "person@example.org").await, StatusCode::FORBIDDEN);
+}

@@ -121,8 +121,8 @@ pub async fn deletions_reach_the_backups(server: &TestServer) {
     server.storage.backup(&file, 0).await.unwrap();
     let first = server.start(1).await;
     server.withdrawn(&first.session, &first.withdrawal_code).await;
-    assert_eq!(server.storage.erase_participant("faces", 2, 5).await.unwrap(), 4);
-    assert_eq!(server.storage.erase_identifiers("faces", Some(3), 6).await.unwrap(), 1);
+    assert_eq!(server.storage.erase_participant("faces", 2, "somebody", 5).await.unwrap(), 4);
+    assert_eq!(server.storage.erase_identifiers("faces", Some(3), "somebody", 6).await.unwrap(), 1);
     let deletions = server.storage.deletions().await.unwrap();
     let list = folder.path().join("deletions.jsonl");
     write_deletions(&list, &deletions).unwrap();

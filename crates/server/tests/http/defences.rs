@@ -89,6 +89,27 @@ pub async fn one_address_cannot_ask_without_end(server: &TestServer) {
     assert_eq!(ask("127.0.0.1").await.status, StatusCode::OK);
 }
 
+/// PostgreSQL takes no NUL: that is no failure of the server's.
+pub async fn a_nul_is_refused_wherever_it_comes(server: &TestServer) {
+    for path in ["/s/%00/", "/s/fa%00ces/withdraw", "/api/studies/faces?config_hash=%00"] {
+        server.get(path).await.refused(StatusCode::BAD_REQUEST, "bad-request");
+    }
+    let mut owner = crate::people::owner(server).await;
+    for (path, field) in [
+        ("/researcher/people/invite", "email"),
+        ("/researcher/studies/faces/withdraw", "code"),
+        ("/researcher/login", "email"),
+    ] {
+        owner.open(server, "/researcher/account").await;
+        if path.ends_with("login") {
+            owner.open(server, path).await;
+        }
+        let fields = [(field, "a\0b@c"), ("role", "viewer"), ("password", "x")];
+        let answer = owner.send(server, path, &fields).await;
+        assert_eq!(answer.status, StatusCode::BAD_REQUEST, "{path}: {}", answer.text());
+    }
+}
+
 pub async fn metrics_are_the_operators(server: &TestServer) {
     server.start(1).await;
     server.get("/metrics").await.refused(StatusCode::NOT_FOUND, "not-found");

@@ -191,7 +191,7 @@ pub async fn an_identifier_takes_part_once(server: &TestServer) {
     server.withdrawn(&started.session, &started.withdrawal_code).await;
     let _: SessionStarted = begin(&server, 2, "en", "anna", "").await.ok();
     // Nor does one whose identifiers were erased; the answers stay.
-    assert_eq!(server.storage.erase_identifiers("faces", Some(2), 5).await.unwrap(), 2);
+    assert_eq!(server.storage.erase_identifiers("faces", Some(2), "somebody", 5).await.unwrap(), 2);
     let _: SessionStarted = begin(&server, 5, "en", "bea", "").await.ok();
     // A pilot may be repeated.
     let server = server.restart_with(vec![staged(rules, Stage::Pilot)]).await;
@@ -236,33 +236,6 @@ pub async fn nothing_finer_than_a_browsers_name_is_kept(server: &TestServer) {
     let stored = &server.storage.sessions("faces").await.unwrap()[0];
     let expected = json!({"browser": "Mozilla", "version": "140", "platform": "Linux"});
     assert_eq!(serde_json::from_str::<Value>(&stored.client).unwrap(), expected);
-}
-
-pub async fn answers_are_deleted_when_their_time_is_over(server: &TestServer) {
-    let first = server.start(1).await;
-    let second = server.start(2).await;
-    end(server, &first, "finished").await;
-    server.stored(&second.session, &[event(0)]).await;
-    let hash = study::hosted().config_hash().to_owned();
-    let sessions = server.storage.sessions("faces").await.unwrap();
-    let (ended, last) = (sessions[0].ended_ms.unwrap(), sessions[1].last_event_ms.unwrap());
-    let erase =
-        async |before| server.storage.erase_ended_before("faces", &hash, before, last).await;
-    assert_eq!(erase(ended.min(last)).await.unwrap(), 0);
-    assert_eq!(erase(ended.max(last) + 1).await.unwrap(), 2);
-    assert_eq!(erase(ended.max(last) + 1).await.unwrap(), 0);
-    for (session, started) in
-        server.storage.sessions("faces").await.unwrap().iter().zip([&first, &second])
-    {
-        assert_eq!((session.is_deleted(), session.event_count), (true, 0));
-        assert!(server.storage.events(session.key).await.unwrap().is_empty());
-        let answer = server.append(&started.session, &[event(5)]).await;
-        answer.refused(StatusCode::GONE, "withdrawn");
-    }
-    assert!(server.storage.recruitment("faces").await.unwrap().is_empty());
-    assert_eq!(server.start(3).await.participant, 3);
-    // Other versions have their own period.
-    assert_eq!(server.storage.erase_ended_before("faces", "other", i64::MAX, 0).await.unwrap(), 0);
 }
 
 pub async fn a_clock_that_jumps_back_loses_nothing(server: &TestServer) {
@@ -409,4 +382,57 @@ pub async fn conditions_are_balanced_over_those_who_finish(server: &TestServer) 
     let page = owner.open(&server, &page).await.text();
     assert!(page.contains("<dt>Condition</dt><dd>hinted</dd>"), "{page}");
     server.storage.close().await;
+}
+
+/// Asks whether somebody could begin.
+async fn ask(server: &TestServer, nonce: u64, who: &str) -> Answer {
+    let body = json!({
+        "nonce": format!("{nonce:032x}"), "language": "en", "recruitment": {"PROLIFIC_PID": who},
+    });
+    server.post("/api/studies/faces/arrivals", body).await
+}
+
+/// Somebody who has declined, or whose device cannot take part.
+async fn turn_away(server: &TestServer, nonce: u64, who: &str, kind: Value) -> SessionStarted {
+    let body = json!({
+        "nonce": format!("{nonce:032x}"), "language": "en", "turned_away": true,
+        "recruitment": {"PROLIFIC_PID": who},
+    });
+    let started: SessionStarted = server.post("/api/studies/faces/sessions", body).await.ok();
+    let last = Event { body: kind, ..event(1) };
+    server.stored(&started.session, &[event(0), last]).await;
+    started
+}
+
+pub async fn who_only_looks_or_is_turned_away_holds_no_place_and_uses_no_identifier(
+    server: &TestServer,
+) {
+    let study = with(json!({
+        "participants": 1, "repeatPrevention": "recruitmentIdentifier",
+        "screenedOutCode": "NO-DEVICE",
+    }));
+    let server = server.restart_with(vec![study]).await;
+    // Many look at the last place: it stays free, whoever asks and as often as they ask.
+    for nonce in 1..4 {
+        ask(&server, nonce, "ann").await.ok::<()>();
+    }
+    turn_away(&server, 5, "ben", json!({"type": "declined"})).await;
+    let device =
+        json!({"type": "screened_out", "step": "device", "reason": "device", "details": []});
+    let phone = turn_away(&server, 6, "ann", device).await;
+    let receipt = server.receipt(&phone.session, 2).await;
+    assert_eq!(receipt.completion_code.as_deref(), Some("NO-DEVICE"));
+    // On a computer the same person begins, in the place that nobody has taken.
+    ask(&server, 7, "ann").await.ok::<()>();
+    let answer = begin(&server, 7, "en", "ann", "").await;
+    let ann: SessionStarted = answer.ok();
+    assert_eq!(ann.slot, 1);
+    // Now there is none left, and the identifier is used.
+    ask(&server, 8, "ben").await.refused(StatusCode::FORBIDDEN, "study-full");
+    ask(&server, 9, "ann").await.refused(StatusCode::FORBIDDEN, "already-took-part");
+    ask(&server, 7, "ann").await.ok::<()>();
+    // Whoever was turned away and goes on all the same gets no code.
+    let sly = turn_away(&server, 10, "eve", json!({"type": "finished"})).await;
+    let receipt = server.receipt(&sly.session, 2).await;
+    assert_eq!((receipt.completion_code, receipt.redirect), (None, None));
 }

@@ -243,3 +243,30 @@ pub async fn a_study_must_be_named_where_there_are_several(server: &TestServer) 
     assert_eq!((empty.participants, empty.rows), (0, 0));
     assert!(empty.files[0].1.starts_with(b"participant_id,"));
 }
+
+/// What is downloaded is what is exported, sent session by session.
+pub async fn a_download_comes_in_pieces(server: &TestServer) {
+    take_part(server).await;
+    let mut owner = crate::people::owner(server).await;
+    for (word, format) in [("csv", Format::Csv), ("json", Format::Json), ("events", Format::Events)]
+    {
+        let path = format!("/researcher/studies/demo/export/{word}");
+        let whole = exported(server, format).await.files.remove(0);
+        let downloaded = owner.open(server, &path).await;
+        assert_eq!(downloaded.body, whole.1, "{word}");
+        assert!(downloaded.header("content-disposition").contains(&whole.0), "{word}");
+        let request = axum::http::Request::get(&path)
+            .header("cookie", owner.cookie())
+            .body(axum::body::Body::empty())
+            .unwrap();
+        let mut pieces = server.stream(request).await.into_body().into_data_stream();
+        let mut sizes = Vec::new();
+        while let Some(piece) = tokio_stream::StreamExt::next(&mut pieces).await {
+            sizes.push(piece.unwrap().len());
+        }
+        assert_eq!(sizes.iter().sum::<usize>(), whole.1.len());
+        // Two people have answers: neither's come with the other's.
+        assert!(sizes.iter().filter(|size| **size > 0).count() >= 2, "{word}: {sizes:?}");
+        assert!(sizes.iter().all(|size| *size < whole.1.len()), "{word}: {sizes:?}");
+    }
+}

@@ -9,18 +9,22 @@ mod client;
 mod defences;
 mod enrolment;
 mod exports;
+mod misfits;
 mod pages;
 mod participant;
 mod people;
 mod postgres;
 mod researcher;
+mod retention;
 mod schemas;
 mod sessions;
 mod simulated;
 mod standings;
 mod storage;
 mod study;
+mod traces;
 mod uploads;
+mod withdrawal;
 
 use client::TestServer;
 
@@ -65,12 +69,14 @@ topics! {
     sessions::participant_numbers_are_given_once,
     sessions::an_append_repeated_changes_nothing,
     sessions::gaps_are_reported_and_filled_in_any_order,
+    sessions::a_gap_far_back_is_not_searched_for_again,
     sessions::another_body_for_a_stored_event_is_refused_and_kept_apart,
     sessions::many_appends_at_once_are_all_stored,
     sessions::a_session_goes_on_after_a_reload,
     sessions::a_restart_keeps_everything,
     sessions::completing_needs_every_event,
     sessions::a_receipt_stays_the_same,
+    sessions::a_session_has_so_much_and_no_more,
     sessions::the_code_is_given_only_at_the_end,
     sessions::withdrawal_deletes_answers_and_identifiers,
     sessions::withdrawal_needs_the_code,
@@ -83,9 +89,11 @@ topics! {
     defences::browsers_are_told_what_they_may_do,
     defences::a_part_of_a_video_is_sent,
     defences::one_address_cannot_ask_without_end,
+    defences::a_nul_is_refused_wherever_it_comes,
     defences::metrics_are_the_operators,
     defences::logs_hold_no_answers,
     defences::panics_of_pages_are_logged,
+    enrolment::who_only_looks_or_is_turned_away_holds_no_place_and_uses_no_identifier,
     enrolment::the_slot_of_a_drop_out_goes_to_the_next,
     enrolment::a_sign_of_life_keeps_the_slot,
     enrolment::slots_are_given_one_after_the_other,
@@ -96,19 +104,25 @@ topics! {
     enrolment::an_identifier_takes_part_once,
     enrolment::a_browser_takes_part_once,
     enrolment::nothing_finer_than_a_browsers_name_is_kept,
-    enrolment::answers_are_deleted_when_their_time_is_over,
     enrolment::a_clock_that_jumps_back_loses_nothing,
+    retention::answers_are_deleted_a_week_after_their_time_is_over,
+    retention::a_wrong_clock_deletes_nothing,
+    retention::an_owner_keeps_answers_and_confirms_the_clock,
     standings::everybody_agrees_on_every_session,
     storage::one_impossible_change_does_not_take_others_with_it,
     storage::what_was_accepted_before_the_end_is_committed,
     storage::a_later_schema_is_refused,
+    misfits::a_strangers_event_reaches_no_table,
+    misfits::what_comes_after_the_receipt_changes_no_standing,
     pages::pages_carry_a_strict_policy,
     pages::assets_and_packs_are_kept_for_ever,
     pages::the_study_tells_participants_no_secrets,
     pages::the_server_says_that_it_is_ready,
+    pages::a_database_that_cannot_be_written_is_not_ready,
     exports::the_tidy_table_holds_every_answer,
     exports::every_form_is_the_same_each_time,
     exports::the_other_forms_hold_the_same_answers,
+    exports::a_download_comes_in_pieces,
     exports::a_psych_ds_folder_explains_every_column,
     exports::identifiers_are_exported_only_when_asked_for,
     exports::each_session_is_read_by_its_own_version,
@@ -123,6 +137,10 @@ topics! {
     accounts::each_role_may_do_what_it_may,
     accounts::tokens_do_what_their_role_may_until_revoked,
     accounts::a_lost_password_is_replaced,
+    accounts::a_disabled_account_has_no_way_in,
+    accounts::no_token_manages_people,
+    accounts::nobody_can_lock_an_owner_out,
+    accounts::one_address_cannot_try_every_account,
     accounts::somebody_always_owns_the_server,
     accounts::the_log_says_who_did_what,
     accounts::what_is_hosted_is_for_researchers,
@@ -134,7 +152,15 @@ topics! {
     researcher::one_account_has_so_many_streams_and_no_more,
     researcher::scripts_export_as_the_description_says,
     researcher::refusals_are_in_the_readers_language,
+    traces::what_is_deleted_leaves_no_trace,
+    traces::a_reader_only_puts_it_off,
     uploads::an_uploaded_study_is_hosted_as_a_pilot,
     uploads::a_study_with_errors_is_refused_with_all_of_them,
+    uploads::pictures_and_signed_videos_are_hosted,
+    uploads::what_fails_is_taken_away,
     uploads::hostile_uploads_leave_nothing,
+    withdrawal::a_participant_redeems_the_code_alone,
+    withdrawal::codes_cannot_be_tried_without_end,
+    withdrawal::a_researcher_redeems_a_code_that_was_sent,
+    withdrawal::a_withdrawal_of_the_page_is_in_the_log,
 }

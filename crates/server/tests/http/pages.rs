@@ -87,3 +87,11 @@ pub async fn the_server_says_that_it_is_ready(server: &TestServer) {
     let answer = server.get("/readyz").await;
     answer.refused(StatusCode::SERVICE_UNAVAILABLE, "unavailable");
 }
+
+/// A database that answers and takes nothing stores no answer: a balancer has to know.
+pub async fn a_database_that_cannot_be_written_is_not_ready(server: &TestServer) {
+    server.run_sql("ALTER TABLE clock_marks RENAME TO elsewhere").await;
+    assert_eq!(server.get("/readyz").await.status, StatusCode::INTERNAL_SERVER_ERROR);
+    server.run_sql("ALTER TABLE elsewhere RENAME TO clock_marks").await;
+    assert_eq!(server.get("/readyz").await.status, StatusCode::OK);
+}

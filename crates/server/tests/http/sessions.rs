@@ -68,9 +68,35 @@ pub async fn gaps_are_reported_and_filled_in_any_order(server: &TestServer) {
     let acknowledged = server.stored(&session, &[event(6), event(4), event(3)]).await;
     assert_eq!(acknowledged, Acknowledged { stored: 8, gaps: vec![] });
     assert_eq!(server.resume(&session).await.events, events(0..8));
+    assert_eq!(server.storage.sessions("faces").await.unwrap()[0].first_gap, 8);
     // A far sequence does not make a list without end.
     let acknowledged = server.stored(&session, &[event(90_000)]).await;
     assert_eq!((acknowledged.stored, acknowledged.gaps.len()), (8, 1000));
+}
+
+/// However much is stored behind a gap, a request for the session looks at a bounded part of it.
+pub async fn a_gap_far_back_is_not_searched_for_again(server: &TestServer) {
+    let session = server.start(1).await.session;
+    let first_gap = async || server.storage.sessions("faces").await.unwrap()[0].first_gap;
+    let with_gaps: Vec<Event> =
+        events(1..2250).into_iter().filter(|event| event.sequence != 2200).collect();
+    let mut told = Vec::new();
+    for part in with_gaps.chunks(400) {
+        let acknowledged = server.stored(&session, part).await;
+        assert_eq!(acknowledged.stored, 0);
+        told = acknowledged.gaps;
+    }
+    // The second gap lies beyond what is looked at: it is told when the first is filled.
+    assert_eq!((told, first_gap().await), (vec![0], 0));
+    let refusal = server.complete(&session, 2250).await;
+    let refusal = refusal.refused(StatusCode::CONFLICT, "missing-events");
+    assert_eq!(refusal.sequences, [0]);
+    let acknowledged = server.stored(&session, &[event(0)]).await;
+    assert_eq!(acknowledged, Acknowledged { stored: 2200, gaps: vec![2200] });
+    assert_eq!(first_gap().await, 2200);
+    let acknowledged = server.stored(&session, &[event(2200)]).await;
+    assert_eq!(acknowledged, Acknowledged { stored: 2250, gaps: vec![] });
+    assert_eq!(server.receipt(&session, 2250).await.stored, 2250);
 }
 
 pub async fn another_body_for_a_stored_event_is_refused_and_kept_apart(server: &TestServer) {
@@ -168,12 +194,67 @@ pub async fn the_code_is_given_only_at_the_end(server: &TestServer) {
     assert_eq!((receipt.completion_code, receipt.redirect), (None, None));
 
     let session = server.start(2).await.session;
-    let finished = Event { body: json!({"type": "finished"}), ..event(1) };
-    server.stored(&session, &[event(0), finished]).await;
-    let receipt = server.receipt(&session, 2).await;
+    let page = json!({"type": "page_finished", "step": "how", "answers": {"mood": 3}});
+    let finished = |sequence| Event { body: json!({"type": "finished"}), ..event(sequence) };
+    let page = Event { body: page, ..event(1) };
+    server.stored(&session, &[event(0), page, finished(2)]).await;
+    let receipt = server.receipt(&session, 3).await;
     assert_eq!(receipt.completion_code.as_deref(), Some("C1 X"));
     let address = "https://example.org/back?cc=C1%20X&who=person%202";
     assert_eq!(receipt.redirect.as_deref(), Some(address));
+
+    // Whoever only says to have finished has a receipt, and no code.
+    let session = server.start(3).await.session;
+    let elsewhere = json!({"type": "page_finished", "step": "nowhere", "answers": {}});
+    let elsewhere = Event { body: elsewhere, ..event(0) };
+    server.stored(&session, &[elsewhere, finished(1)]).await;
+    let receipt = server.receipt(&session, 2).await;
+    assert_eq!((receipt.completion_code, receipt.redirect), (None, None));
+}
+
+/// What is kept of a session is bounded by what its study can give.
+pub async fn a_session_has_so_much_and_no_more(server: &TestServer) {
+    let session = server.start(1).await.session;
+    let stored = async || server.storage.sessions("faces").await.unwrap().remove(0).stored_bytes;
+    let large = |sequence| Event {
+        body: json!({"type": "x", "log": "y".repeat(900_000)}),
+        ..event(sequence)
+    };
+    // A study of one page: four megabytes and a half.
+    for sequence in 0..5 {
+        server.stored(&session, &[large(sequence)]).await;
+    }
+    let before = stored().await;
+    let full = server.append(&session, &[large(5)]).await;
+    full.refused(StatusCode::PAYLOAD_TOO_LARGE, "session-full");
+    assert_eq!(stored().await, before);
+    // What is small still has room; the whole session comes back in one piece.
+    server.stored(&session, &[event(5)]).await;
+    let resumed = server.resume(&session).await;
+    assert_eq!(resumed.events.len(), 6);
+    assert_eq!((&resumed.events[0], &resumed.events[5]), (&large(0), &event(5)));
+    // Others are not touched by it, in the same moment.
+    let other = server.start(2).await.session;
+    let (too_large, small) = ([large(6)], [event(0)]);
+    let (full, kept) =
+        tokio::join!(server.append(&session, &too_large), server.append(&other, &small));
+    full.refused(StatusCode::PAYLOAD_TOO_LARGE, "session-full");
+    assert_eq!(kept.ok::<Acknowledged>().stored, 1);
+    // So are the bodies that differ from what is stored.
+    for number in 0..130 {
+        let body = json!({"type": "answered", "number": number});
+        let answer = server.append(&other, &[Event { body, ..event(0) }]).await;
+        answer.refused(StatusCode::CONFLICT, "event-conflict");
+    }
+    let conflicts = server.storage.conflict_counts("faces").await.unwrap();
+    assert_eq!(conflicts.iter().map(|(_, count)| *count).collect::<Vec<_>>(), [100]);
+    // And the number of events.
+    let many: Vec<Event> = events(1..2300);
+    server.stored(&other, &many[..2000]).await;
+    let full = server.append(&other, &many[2000..]).await;
+    assert!(full.status == StatusCode::OK, "{}", full.text());
+    let full = server.append(&other, &events(2300..2400)).await;
+    full.refused(StatusCode::PAYLOAD_TOO_LARGE, "session-full");
 }
 
 pub async fn withdrawal_deletes_answers_and_identifiers(server: &TestServer) {

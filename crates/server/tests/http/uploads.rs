@@ -95,6 +95,11 @@ pub async fn an_uploaded_study_is_hosted_as_a_pilot(server: &TestServer) {
     assert_eq!(answer.header(header::LOCATION), "/researcher/upload/uploaded");
     let page = prepared(&server, &mut owner, "uploaded").await;
     assert!(page.contains("hosted as a pilot"), "{page}");
+    // Whichever server on the database is asked says so.
+    let twin = TestServer::open(server.url()).await;
+    let told = owner.open(&twin, "/researcher/upload/uploaded").await;
+    assert!(told.text().contains("hosted as a pilot"), "{}", told.text());
+    twin.storage.close().await;
     let listed = owner.open(&server, "/researcher").await.text();
     assert!(listed.contains("/researcher/studies/uploaded") && listed.contains("<td>pilot</td>"));
     let started: SessionStarted = server.start_in("uploaded", 1).await;
@@ -198,4 +203,71 @@ pub async fn hostile_uploads_leave_nothing(server: &TestServer) {
     }
     assert!(std::fs::read_dir(folder.join("uploads")).unwrap().next().is_none());
     assert!(server.storage.uploads().await.unwrap().is_empty());
+}
+
+/// What a question shows is hosted with the study, whichever way it came.
+pub async fn pictures_and_signed_videos_are_hosted(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    let mut file = whole_study("pictured");
+    let questions = file["questions"].as_array_mut().unwrap();
+    let choice = questions.iter_mut().find(|question| question["type"] == "singleChoice").unwrap();
+    choice["options"][0]["image"] = json!("pictures/first.png");
+    choice["video"] = json!({"en": "signs/asl.webm", "fr": "signs/lsf.webm"});
+    let media: [(&str, &[u8]); 3] = [
+        ("pictures/first.png", b"\x89PNG the picture"),
+        ("signs/asl.webm", b"\x1a\x45 signed in ASL"),
+        ("signs/lsf.webm", b"\x1a\x45 signed in LSF"),
+    ];
+    let text = file.to_string();
+    // One that is not in the archive is refused before anything is hosted.
+    let lacking = packed(&[("study.json", text.as_bytes()), media[0]]);
+    let answer = upload(&server, &owner, &lacking).await;
+    assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert!(answer.text().contains("signs/asl.webm"), "{}", answer.text());
+    let whole: Vec<_> = std::iter::once(("study.json", text.as_bytes())).chain(media).collect();
+    let answer = upload(&server, &owner, &packed(&whole)).await;
+    assert_eq!(answer.status, StatusCode::SEE_OTHER, "{}", answer.text());
+    let page = prepared(&server, &mut owner, "pictured").await;
+    assert!(page.contains("hosted as a pilot"), "{page}");
+    let bundle: mimique_session::wire::Bundle = server.get("/api/studies/pictured").await.ok();
+    for (path, bytes) in media {
+        let source = bundle.clips.get(&format!("media:{path}"));
+        let hash = source.unwrap_or_else(|| panic!("{path} is not hosted")).packs().next().unwrap();
+        assert_eq!(server.get(&format!("/packs/{hash}")).await.body, bytes, "{path}");
+    }
+}
+
+/// What cannot be prepared leaves nothing behind but why; what arrives is its owner's alone.
+pub async fn what_fails_is_taken_away(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    let mut file = whole_study("broken");
+    file["stimuli"]["avatars"]["broken"] = json!({"file": "head.glb"});
+    let avatars = file["stimuli"]["avatars"].as_object().unwrap().keys().cloned();
+    let first = avatars.into_iter().find(|name| name != "broken").unwrap();
+    file["stimuli"]["avatars"][&first] = json!({"file": "head.glb"});
+    let text = file.to_string();
+    let archive = packed(&[("study.json", text.as_bytes()), ("head.glb", b"no head")]);
+    let answer = upload(&server, &owner, &archive).await;
+    assert_eq!(answer.status, StatusCode::SEE_OTHER, "{}", answer.text());
+    let page = prepared(&server, &mut owner, "broken").await;
+    assert!(page.contains("role=\"alert\""), "{page}");
+    let uploads = folder.path().join("uploads");
+    assert_eq!(std::fs::read_dir(&uploads).unwrap().count(), 0);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode =
+            |path: &std::path::Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode(&uploads), 0o700);
+        if let Some(path) = server.url().strip_prefix("sqlite:") {
+            for name in ["", "-wal"] {
+                let path = format!("{path}{name}");
+                assert_eq!(mode(std::path::Path::new(&path)), 0o600, "{path}");
+            }
+        }
+    }
 }

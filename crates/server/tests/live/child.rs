@@ -13,6 +13,8 @@ use crate::{block_on, study};
 const DATABASE: &str = "MIMIQUE_LIVE_TEST_DATABASE";
 /// The address to listen on.
 const LISTEN: &str = "MIMIQUE_LIVE_TEST_LISTEN";
+/// How many connections there may be.
+pub const CONNECTIONS: &str = "MIMIQUE_LIVE_TEST_CONNECTIONS";
 const NAME: &str = "child::serve_when_told_to";
 
 /// Serves until it is told to stop, in the process that [`Server::start`] makes; nothing otherwise.
@@ -24,7 +26,14 @@ fn serve_when_told_to() {
         let storage = Storage::open(&url).await.unwrap();
         let (assets, packs) = (study::assets(folder.path()), study::packs(folder.path()));
         let settings = Settings {
-            header_timeout: Duration::from_millis(700),
+            // Where connections are counted, none of them is shown out meanwhile.
+            header_timeout: match std::env::var(CONNECTIONS) {
+                Ok(_) => Duration::from_secs(20),
+                Err(_) => Duration::from_millis(700),
+            },
+            reader_patience: Duration::from_millis(900),
+            most_connections: std::env::var(CONNECTIONS)
+                .map_or(1000, |count| count.parse().expect("a number")),
             behind_tls: true,
             ..Settings::default()
         };

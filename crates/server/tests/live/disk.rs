@@ -1,5 +1,6 @@
 //! Disks that are full or refuse to be written, under SQLite.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -28,6 +29,14 @@ impl Disk {
 
     fn remount(&self, options: &str) {
         assert!(mount(&["-o", &format!("remount,{options}")], &self.0), "remount,{options}");
+    }
+
+    /// Fills the disk but for so many bytes.
+    fn leave(&self, bytes: u64) {
+        let mut file = std::fs::File::create(self.0.join("something else")).unwrap();
+        while file.write_all(&[1; 65_536]).is_ok() {}
+        let filled = file.metadata().unwrap().len();
+        file.set_len(filled.saturating_sub(bytes)).unwrap();
     }
 
     fn database(&self) -> String {
@@ -59,13 +68,15 @@ fn post(port: u16, path: &str, body: &Value) -> (u16, String) {
 fn a_disk_without_room_stops_acknowledging_until_it_has_some() {
     let test = "a_disk_without_room_stops_acknowledging_until_it_has_some";
     let folder = tempfile::tempdir().unwrap();
-    let Some(disk) = Disk::mount(test, &folder.path().join("disk"), "12m") else { return };
+    let Some(disk) = Disk::mount(test, &folder.path().join("disk"), "6m") else { return };
     let url = disk.database();
     let server = Server::start(&url);
     let (status, answer) = start_session(server.port);
     assert_eq!(status, 200, "{answer}");
     let mut people = Person::several(3);
     answer_while(&mut people, &[server.port], || std::thread::sleep(Duration::from_millis(200)));
+    // Something else lies there: less is left than what is kept of one session.
+    disk.leave(1_500_000);
     // Somebody sends much until there is no room.
     let session = serde_json::from_str::<Value>(&answer).unwrap();
     let path = format!("/api/sessions/{}/events", session["session"].as_str().unwrap());

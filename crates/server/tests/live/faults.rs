@@ -283,3 +283,52 @@ fn postgres_is_reached_over_tls_and_its_certificate_checked() {
         storage.close().await;
     });
 }
+
+/// Who asks for much and takes nothing of it does not hold a connection for ever.
+#[test]
+fn a_caller_who_does_not_read_is_shown_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start(&sqlite(&folder));
+    let session = begin(server.port).session;
+    let large = "x".repeat(900_000);
+    for sequence in 0..5 {
+        let event =
+            json!({"sequence": sequence, "at_ms": 1.0, "body": {"type": "x", "log": large}});
+        let body = json!({"events": [event]}).to_string();
+        let request = text_of("POST", &format!("/api/sessions/{session}/events"), &body);
+        assert_eq!(exchange(server.port, request.as_bytes()).unwrap().0, 200);
+    }
+    let ask = text_of("GET", &format!("/api/sessions/{session}"), "");
+    let whole = exchange(server.port, ask.as_bytes()).unwrap().1.len();
+    assert!(whole > 4_500_000, "{whole}: who reads gets it all");
+    // Twenty times one after the other: more than the system holds for a reader.
+    let mut idle = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
+    idle.write_all(ask.replace("Connection: close\r\n", "").repeat(20).as_bytes()).unwrap();
+    std::thread::sleep(Duration::from_secs(5));
+    // What the system held back for the reader is there; the rest was never sent.
+    idle.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    let mut rest = Vec::new();
+    let _ = idle.read_to_end(&mut rest);
+    assert!(rest.len() < 15 * whole, "{} of {}", rest.len(), 20 * whole);
+}
+
+/// A server whose connections are all taken still says that it lives.
+#[test]
+fn health_is_told_when_all_connections_are_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let before = format!("export {}=8", crate::child::CONNECTIONS);
+    let server = Server::start_with(&sqlite(&folder), 0, &before);
+    let taken: Vec<TcpStream> = (0..8)
+        .map(|_| {
+            let mut stream = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\nX-Slow: ").unwrap();
+            stream
+        })
+        .collect();
+    // They are shown out after a while; before that nobody else is served.
+    let status = |path: &str| exchange(server.port, text_of("GET", path, "").as_bytes()).unwrap().0;
+    assert_eq!(status("/healthz"), 200);
+    assert_eq!(status("/s/faces/"), 503);
+    assert_eq!(status("/readyz"), 200);
+    drop(taken);
+}

@@ -38,6 +38,8 @@ pub enum Effect {
         /// How many events the session has.
         events: u64,
     },
+    /// Go to this address, the way back to the recruiting site.
+    GoBack(String),
     /// Send the outbox, then `POST withdraw`; report by `WithdrawalConfirmed`.
     Withdraw,
     /// A new page stands there: move the focus to its heading.

@@ -6,11 +6,11 @@ use super::clock;
 use super::effect::Effect;
 use super::state::{Play, State};
 use super::update::Transition;
-use crate::event::{Calibrated, EventKind};
+use crate::event::{Calibrated, EventKind, PlayLog};
 use crate::plan::{Plan, Step, StepKind};
 use mimique_study::{
-    AfterTraining, Answers, AttentionEnd, Calibration, Display, FullscreenRule, ScreeningRule,
-    StudyProjection, Unmet,
+    AfterTraining, Answers, AttentionEnd, Calibration, DeviceRules, Display, FullscreenRule,
+    ScreeningRule, StudyProjection, Unmet,
 };
 
 /// Width of a bank card, millimetres (ISO/IEC 7810, ID-1).
@@ -23,13 +23,21 @@ pub(super) const DISTANCES_CM: std::ops::RangeInclusive<f64> = 15.0..=300.0;
 /// many.
 const MEASUREMENTS_RECORDED: u32 = 50;
 
+/// Plays of one trial with too few frames after which a session ends: the second chance is the last.
+const SLOW_PLAYS: u32 = 2;
+
 impl Transition<'_> {
     /// The page has measured the display.
     pub(super) fn measured(&mut self, display: &Display) -> bool {
         let first = self.state.record.display.is_none();
         let known = self.state.record.display.as_ref() == Some(display);
         if !known && self.state.record.measurements < MEASUREMENTS_RECORDED {
+            let was_at_device = self.is_at_device();
             self.record(EventKind::DeviceMeasured { display: display.clone() });
+            if was_at_device && !self.is_at_device() {
+                self.arrive();
+                return true;
+            }
         }
         // A page that appears and is fine already only stands in the way.
         if first && self.is_at_device() && !self.asks_fullscreen() && self.device_is_fine() {
@@ -93,6 +101,26 @@ impl Transition<'_> {
         self.screen_out("device", unmet.iter().map(|each| each.key().to_owned()).collect());
         self.leave();
         true
+    }
+
+    /// Notes in the log of a whole play that it showed fewer frames than the study wants.
+    pub(super) fn judged(&self, mut log: PlayLog) -> PlayLog {
+        let rules = self.plan.study.device.as_ref();
+        let clip_ms = log.end_ms - log.onset_ms;
+        let enough =
+            |rules: &DeviceRules| rules.shows_enough(log.frames.len(), clip_ms, log.refresh_hz);
+        if log.is_whole() && !rules.is_none_or(enough) {
+            log.aborted = Some(PlayLog::TOO_FEW_FRAMES.to_owned());
+        }
+        log
+    }
+
+    /// Ends the session of somebody whose device shows too few frames once more.
+    pub(super) fn end_slow(&mut self) {
+        if self.state.record.attempt.slow_plays >= SLOW_PLAYS {
+            self.screen_out("frames", vec!["minimumFrameShare".to_owned()]);
+            self.leave();
+        }
     }
 
     pub(super) fn remeasure(&mut self) -> bool {
@@ -216,7 +244,15 @@ fn screens_out_of_training(study: &StudyProjection) -> bool {
 /// What the device lacks; `None` before it was measured.
 pub(super) fn device_problems(plan: &Plan, state: &State) -> Option<Vec<Unmet>> {
     let display = state.record.display.as_ref()?;
-    Some(plan.study.device.as_ref().map_or_else(Vec::new, |rules| rules.unmet(display)))
+    Some(unmet(&plan.study, display))
+}
+
+/// What a display lacks. Where the study asks for nothing, it must be able to draw the clips.
+pub(crate) fn unmet(study: &StudyProjection, display: &Display) -> Vec<Unmet> {
+    match &study.device {
+        Some(rules) => rules.unmet(display),
+        None => DeviceRules::default().unmet(display),
+    }
 }
 
 /// Whether the pages fill the screen.

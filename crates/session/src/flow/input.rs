@@ -3,7 +3,7 @@
 use mimique_study::Display;
 use serde_json::Value;
 
-use crate::event::{Client, PlayLog};
+use crate::event::{Client, PlayLog, StageFailure};
 use crate::wire::Receipt;
 
 /// What comes in: acts of the participant, reports of the page.
@@ -14,6 +14,9 @@ pub enum Input {
     Opened(Client),
     /// The page was opened again, after [`crate::flow::State::replay`].
     Resumed(Client),
+    /// The session has begun, after [`crate::flow::State::replay`] of what came before it (agreement and
+    /// device: [`crate::flow::Plan::is_before_session`]).
+    Begun,
     /// The participant chooses a language.
     ChooseLanguage(String),
     /// The participant agrees.
@@ -55,9 +58,11 @@ pub enum Input {
     ClipFailed {
         /// Which clip.
         clip: String,
-        /// What the stage says.
-        message: String,
+        /// Why.
+        failure: StageFailure,
     },
+    /// The connection is back.
+    Online,
     /// The button that tries again what failed: a clip, a picture or a signed video.
     Retry,
     /// The page lost the focus or was hidden.
@@ -98,6 +103,10 @@ pub enum Input {
     },
     /// The server's receipt.
     ReceiptArrived(Receipt),
+    /// The completion code was copied.
+    Copied,
+    /// The button of the last page that keeps it from going back by itself.
+    Stay,
     /// The server has deleted everything.
     WithdrawalConfirmed,
 }
@@ -108,6 +117,7 @@ impl Input {
         match self {
             Self::Opened(_) => "opened",
             Self::Resumed(_) => "resumed",
+            Self::Begun => "begun",
             Self::ChooseLanguage(_) => "choose_language",
             Self::Consent => "consent",
             Self::Decline => "decline",
@@ -119,6 +129,7 @@ impl Input {
             Self::ClipProgress { .. } => "clip_progress",
             Self::ClipPrepared { .. } => "clip_prepared",
             Self::ClipFailed { .. } => "clip_failed",
+            Self::Online => "online",
             Self::Retry => "retry",
             Self::FocusLost => "focus_lost",
             Self::FocusGained => "focus_gained",
@@ -135,6 +146,8 @@ impl Input {
             Self::Withdraw => "withdraw",
             Self::Acknowledged { .. } => "acknowledged",
             Self::ReceiptArrived(_) => "receipt_arrived",
+            Self::Copied => "copied",
+            Self::Stay => "stay",
             Self::WithdrawalConfirmed => "withdrawal_confirmed",
         }
     }

@@ -30,6 +30,7 @@ mod view_question;
 
 pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
 pub use effect::Effect;
+pub(crate) use gate::unmet;
 pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM};
 pub use input::Input;
 pub use mimique_study::{ChoiceView, QuestionKindView};
@@ -37,8 +38,8 @@ pub use render::view;
 pub use state::{Live, Play, State};
 pub use update::update;
 pub use view::{
-    BesideView, ButtonView, ClockView, ContactView, EndView, FailedView, Phase, ProgressView,
-    SectionView, StageSize, TrialView, View,
+    BesideView, ButtonView, ClockView, CodeView, ContactView, EndView, FailedView, Phase,
+    ProgressView, RecordsView, SectionView, StageSize, TrialView, View,
 };
 pub use view_gate::{
     CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,

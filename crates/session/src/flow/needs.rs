@@ -2,6 +2,7 @@
 //! questions. All of them are prepared before it, and none of them is missing when a trial starts.
 
 use super::state::{Live, State};
+use crate::event::StageFailure;
 use crate::plan::{Plan, Step, TrialStep};
 use mimique_study::MEDIA_PREFIX;
 
@@ -44,7 +45,7 @@ pub(super) enum Needs {
     /// On their way, 0..1.
     Loading(f64),
     /// One of them could not be had: its name, and why.
-    Failed(String, String),
+    Failed(String, StageFailure),
 }
 
 /// How far the needs of a step are.

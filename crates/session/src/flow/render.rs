@@ -5,10 +5,11 @@ use super::gate;
 use super::needs::{Needs, needs_of};
 use super::state::{Play, State};
 use super::view::{
-    BesideView, ButtonView, ContactView, EndView, FailedView, Phase, ProgressView, SectionView,
-    TrialView, View,
+    BesideView, ButtonView, CodeView, ContactView, EndView, FailedView, Phase, ProgressView,
+    RecordsView, SectionView, TrialView, View,
 };
 use crate::plan::{Plan, Step, StepKind, TrialStep};
+use crate::record::CutShort;
 use crate::standing::Standing;
 use mimique_study::text::{Words, typeset};
 use mimique_study::{LocalText, MEDIA_PREFIX, Section};
@@ -87,9 +88,9 @@ impl Screen<'_> {
                 text: page.text.as_ref().map_or_else(Vec::new, |text| self.paragraphs(text)),
                 questions: self.questions(step),
                 failed: match needs_of(step, self.state) {
-                    Needs::Failed(_, reason) => Some(FailedView {
+                    Needs::Failed(_, failure) => Some(FailedView {
                         message: self.words.media_failed().to_owned(),
-                        reason,
+                        reason: self.words.stage_failure(&failure.code, &failure.values),
                         retry: self.words.retry().to_owned(),
                     }),
                     _ => None,
@@ -185,10 +186,11 @@ impl Screen<'_> {
         let mut failed = words.clip_failed();
         let phase = match needs {
             _ if playing => Phase::Playing,
-            Needs::Failed(need, reason) => {
+            Needs::Failed(need, failure) => {
                 if need.starts_with(MEDIA_PREFIX) {
                     failed = words.media_failed();
                 }
+                let reason = words.stage_failure(&failure.code, &failure.values);
                 Phase::Failed { reason, retry: words.retry().to_owned() }
             }
             _ if progress.plays > 0 => Phase::Answering,
@@ -204,8 +206,12 @@ impl Screen<'_> {
             Phase::Answering => words.answer_now(),
             Phase::Loading { .. } if saving && prepared => words.saving(),
             Phase::Loading { .. } => words.loading(),
-            Phase::Ready if progress.cut_short => words.play_interrupted(),
-            Phase::Ready => words.watch_first(),
+            Phase::Ready => match progress.cut_short {
+                Some(CutShort::OutOfView) => words.play_out_of_view(),
+                Some(CutShort::TooFewFrames) => words.play_too_slow(),
+                Some(CutShort::Interrupted) => words.play_interrupted(),
+                None => words.watch_first(),
+            },
         };
         let of = self.plan.trial_count(trial.training);
         let heading = if trial.training {
@@ -257,22 +263,39 @@ impl Screen<'_> {
                 total: self.state.record.events,
             };
         };
-        let labelled = |label: &str, value: &Option<String>| {
-            value.as_ref().map(|value| (label.to_owned(), value.clone()))
+        let labelled = |label: &str, value: &str| (label.to_owned(), value.to_owned());
+        let (outcome, heading, mut text) = self.outcome();
+        let what_now = match (&receipt.redirect, &receipt.completion_code) {
+            (Some(_), _) => words.take_way_back(),
+            (None, Some(_)) => words.take_code(),
+            (None, None) => words.can_close(),
         };
-        let (outcome, heading, text) = self.outcome();
+        text.push(what_now.to_owned());
+        let completion_code = receipt.completion_code.as_ref().map(|code| CodeView {
+            label: words.completion_code().to_owned(),
+            code: code.clone(),
+            copy: words.copy_code().to_owned(),
+            copied: live.copied.then(|| words.copied().to_owned()),
+        });
+        let started = &self.plan.started;
         View::End(Box::new(EndView {
             outcome,
             heading,
             text,
-            completion_code: labelled(words.completion_code(), &receipt.completion_code),
-            redirect: labelled(words.go_back(), &receipt.redirect),
-            receipt: (words.receipt().to_owned(), receipt.receipt.clone()),
-            withdrawal_code: (
-                words.withdrawal_code().to_owned(),
-                self.plan.started.withdrawal_code.clone(),
-                words.withdrawal_code_text().to_owned(),
-            ),
+            completion_code,
+            redirect: receipt.redirect.as_ref().map(|to| labelled(words.go_back(), to)),
+            returning: live.return_ms.map(|at_ms| {
+                let seconds = ((at_ms - live.now_ms) / 1000.0).ceil().max(0.0) as u64;
+                (words.go_back_in(seconds), words.stay_here().to_owned())
+            }),
+            records: RecordsView {
+                heading: words.for_your_records().to_owned(),
+                withdrawal_code: labelled(words.withdrawal_code(), &started.withdrawal_code),
+                participant: labelled(words.participant_number(), &started.participant_id),
+                receipt: labelled(words.receipt(), &receipt.receipt),
+                note: words.withdrawal_code_text().to_owned(),
+                delete: words.delete_by_code().to_owned(),
+            },
         }))
     }
 }

@@ -230,6 +230,9 @@ impl Screen<'_> {
     fn screened_out_reasons(&self) -> Vec<String> {
         let words = self.words;
         match self.state.record.standing {
+            Standing::DeviceRefused if self.state.record.was_too_slow() => {
+                vec![words.screened_out_frames().to_owned()]
+            }
             Standing::DeviceRefused => gate::device_problems(self.plan, self.state)
                 .unwrap_or_default()
                 .iter()

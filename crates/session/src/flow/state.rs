@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::event::Calibrated;
+use crate::event::{Calibrated, StageFailure};
 use crate::plan::Plan;
 use crate::record::Record;
 use crate::wire::{Event, Receipt};
@@ -35,7 +35,7 @@ pub struct Live {
     /// Clips on their way, 0..1.
     pub progress: BTreeMap<String, f64>,
     /// Clips that failed, and why.
-    pub failed: BTreeMap<String, String>,
+    pub failed: BTreeMap<String, StageFailure>,
     /// Whether a clip is being played.
     pub play: Play,
     /// Whether missing answers are pointed out.
@@ -54,6 +54,10 @@ pub struct Live {
     pub completing: bool,
     /// The server's receipt.
     pub receipt: Option<Receipt>,
+    /// When the last page goes back by itself, page clock.
+    pub return_ms: Option<f64>,
+    /// Whether the completion code was copied.
+    pub copied: bool,
     /// Whether the server was asked to delete everything.
     pub withdrawing: bool,
     /// Whether it has done so.

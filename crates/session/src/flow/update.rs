@@ -9,7 +9,7 @@ use super::gate;
 use super::input::Input;
 use super::needs::needs_ahead;
 use super::state::{Play, State};
-use crate::event::{Client, EventKind, PlayLog, ShownBeside};
+use crate::event::{Client, EventKind, PlayLog, ShownBeside, StageFailure};
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::standing::Standing;
 use crate::wire;
@@ -41,11 +41,17 @@ impl<'a> Transition<'a> {
         match input {
             Input::Tick => {
                 self.tick();
+                self.go_back();
                 true
             }
             Input::Acknowledged { stored } => self.acknowledged(*stored),
-            Input::ReceiptArrived(receipt) => {
-                self.state.live.receipt = Some(receipt.clone());
+            Input::ReceiptArrived(receipt) => self.receipt_arrived(receipt),
+            Input::Copied => {
+                self.state.live.copied = true;
+                true
+            }
+            Input::Stay => {
+                self.state.live.return_ms = None;
                 true
             }
             Input::WithdrawalConfirmed => {
@@ -64,12 +70,18 @@ impl<'a> Transition<'a> {
             }
             Input::Withdraw => self.withdraw(),
             // After the end nothing more is recorded.
-            Input::Resumed(_) if !self.state.record.standing.is_open() => self.resumed_at_end(),
+            Input::Resumed(_) | Input::Begun if !self.state.record.standing.is_open() => {
+                self.resumed_at_end()
+            }
             _ if !self.state.record.standing.is_open() => true,
             Input::Opened(client) => self.opened(client),
             // Only an opened session can go on.
             _ if self.state.record.events == 0 => true,
             Input::Resumed(client) => self.resumed(client),
+            Input::Begun => {
+                self.arrive();
+                true
+            }
             Input::ChooseLanguage(language) => self.choose_language(language),
             Input::Consent => self.consent(),
             Input::Decline => self.decline(),
@@ -78,7 +90,8 @@ impl<'a> Transition<'a> {
             Input::Next => self.next(),
             Input::Play => self.play(),
             Input::Played(log) => self.played(log),
-            Input::ClipFailed { clip, message } => self.clip_failed(clip, message),
+            Input::ClipFailed { clip, failure } => self.clip_failed(clip, failure),
+            Input::Online => self.online(),
             Input::Retry => self.retry(),
             Input::FocusLost => self.focus(false),
             Input::FocusGained => self.focus(true),
@@ -150,7 +163,7 @@ impl<'a> Transition<'a> {
     }
 
     /// A step stands there: what it and the next trials need is prepared, what is behind is sent.
-    fn arrive(&mut self) {
+    pub(super) fn arrive(&mut self) {
         self.state.live.show_problems = false;
         self.state.live.timed_out = false;
         self.state.live.play = Play::Still;
@@ -320,19 +333,29 @@ impl<'a> Transition<'a> {
             return false;
         }
         self.state.live.play = Play::Still;
-        self.record(EventKind::TrialPlayed { step: step.id.clone(), log: log.clone() });
+        let log = self.judged(log.clone());
+        self.record(EventKind::TrialPlayed { step: step.id.clone(), log });
+        self.end_slow();
         true
     }
 
-    fn clip_failed(&mut self, clip: &str, message: &str) -> bool {
+    fn clip_failed(&mut self, clip: &str, failure: &StageFailure) -> bool {
         self.state.live.prepared.remove(clip);
         self.state.live.progress.remove(clip);
-        self.state.live.failed.insert(clip.to_owned(), message.to_owned());
+        self.state.live.failed.insert(clip.to_owned(), failure.clone());
         if self.trial().is_some_and(|(_, trial)| trial.clips().any(|each| each == clip)) {
             self.state.live.play = Play::Still;
         }
-        let (clip, message) = (clip.to_owned(), message.to_owned());
-        self.record(EventKind::ClipFailed { clip, message });
+        let StageFailure { code, message, .. } = failure.clone();
+        self.record(EventKind::ClipFailed { clip: clip.to_owned(), message, code });
+        true
+    }
+
+    /// What could not be had without a connection is asked for again by itself.
+    fn online(&mut self) -> bool {
+        if !self.state.live.failed.is_empty() {
+            self.prepare();
+        }
         true
     }
 
@@ -366,6 +389,25 @@ impl<'a> Transition<'a> {
         self.effects.extend([Effect::StopClip, Effect::Flush, Effect::Withdraw]);
         self.effects.push(Effect::FocusHeading);
         true
+    }
+
+    fn receipt_arrived(&mut self, receipt: &wire::Receipt) -> bool {
+        let after = self.plan.study.return_after_seconds.filter(|_| receipt.redirect.is_some());
+        self.state.live.return_ms = after.map(|seconds| self.now_ms + f64::from(seconds) * 1000.0);
+        self.state.live.receipt = Some(receipt.clone());
+        true
+    }
+
+    /// Goes back by itself when its time has come, once.
+    fn go_back(&mut self) {
+        let live = &mut self.state.live;
+        let address = live.receipt.as_ref().and_then(|receipt| receipt.redirect.clone());
+        if live.return_ms.is_some_and(|at_ms| at_ms <= self.now_ms)
+            && let Some(address) = address
+        {
+            live.return_ms = None;
+            self.effects.push(Effect::GoBack(address));
+        }
     }
 
     fn acknowledged(&mut self, stored: u64) -> bool {

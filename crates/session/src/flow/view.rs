@@ -103,7 +103,7 @@ pub enum View {
 pub struct FailedView {
     /// What is said.
     pub message: String,
-    /// What went wrong.
+    /// What went wrong, in words.
     pub reason: String,
     /// The button that tries again ([`super::Input::Retry`]).
     pub retry: String,
@@ -217,7 +217,7 @@ pub struct TrialView {
 pub struct BesideView {
     /// Identifier of the clip.
     pub clip: String,
-    /// Whether it stands left (above, on a narrow screen).
+    /// Whether it stands left.
     pub left: bool,
     /// A line below it.
     pub caption: Option<String>,
@@ -235,7 +235,7 @@ pub enum Phase {
     },
     /// The clip could not be loaded or shown; `retry` is the button's label.
     Failed {
-        /// What the stage says.
+        /// What went wrong, in words.
         reason: String,
         /// The button's label.
         retry: String,
@@ -257,12 +257,42 @@ pub struct EndView {
     pub heading: String,
     /// Paragraphs.
     pub text: Vec<String>,
-    /// Label and completion code.
-    pub completion_code: Option<(String, String)>,
+    /// The completion code.
+    pub completion_code: Option<CodeView>,
     /// Label and address of the way back.
     pub redirect: Option<(String, String)>,
-    /// Label and receipt.
+    /// That the page goes back by itself, and the button that keeps it here ([`super::Input::Stay`]).
+    pub returning: Option<(String, String)>,
+    /// What a participant keeps.
+    pub records: RecordsView,
+}
+
+/// A code to be handed on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CodeView {
+    /// What it is.
+    pub label: String,
+    /// The code.
+    pub code: String,
+    /// The button that copies it ([`super::Input::Copied`]).
+    pub copy: String,
+    /// Said once it is copied.
+    pub copied: Option<String>,
+}
+
+/// What a participant keeps; labels and values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecordsView {
+    /// Heading.
+    pub heading: String,
+    /// Code by which answers are deleted.
+    pub withdrawal_code: (String, String),
+    /// The participant's number.
+    pub participant: (String, String),
+    /// The server's receipt.
     pub receipt: (String, String),
-    /// Label, code, and what it is for.
-    pub withdrawal_code: (String, String, String),
+    /// What code and number are for.
+    pub note: String,
+    /// Link to the page where answers are deleted by the code, which a server has.
+    pub delete: String,
 }

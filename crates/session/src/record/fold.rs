@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::Record;
 use super::step::{Attempt, EarlyEnd, EndReason, FinishedStep};
 use crate::event::{Client, EventKind, PlayLog};
+use crate::flow::unmet;
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::standing::Standing;
 
@@ -14,8 +15,28 @@ impl Record {
     pub(crate) fn apply(&mut self, plan: Option<&Plan>, event: EventKind, at_ms: f64) {
         self.events += 1;
         self.last_ms = at_ms;
+        self.pass_unasked_gate(plan, &event, at_ms);
         if !self.takes(plan, event, at_ms) {
             self.unexpected += 1;
+        }
+    }
+
+    /// A gate for which the study has no rules is passed by a measurement that lacks nothing. Sessions of
+    /// before there was one go on behind it.
+    fn pass_unasked_gate(&mut self, plan: Option<&Plan>, event: &EventKind, at_ms: f64) {
+        let Some(plan) = plan.filter(|plan| plan.study.device.is_none()) else { return };
+        if self.here(Some(plan)).is_none_or(|step| step.kind != StepKind::Device) {
+            return;
+        }
+        let passes = match event {
+            EventKind::DeviceMeasured { display } => unmet(&plan.study, display).is_empty(),
+            event => {
+                let behind = plan.step(self.step + 1).map(|step| step.id.as_str());
+                event.step().is_some_and(|step| Some(step) == behind)
+            }
+        };
+        if passes && self.standing.is_open() {
+            self.enter(self.step + 1, at_ms);
         }
     }
 
@@ -108,7 +129,7 @@ impl Record {
             EventKind::Declined => (Standing::Declined, None),
             EventKind::ScreenedOut { step, reason: by, details } => {
                 let standing = match by.as_str() {
-                    "device" => Standing::DeviceRefused,
+                    "device" | "frames" => Standing::DeviceRefused,
                     "training" => Standing::PracticeFailed,
                     _ => Standing::ScreenedOut,
                 };

@@ -15,7 +15,7 @@ use crate::event::{Calibrated, Client, EventKind};
 use crate::plan::Plan;
 use crate::standing::Standing;
 use crate::wire::Event;
-pub use step::{Attempt, EarlyEnd, EndReason, FinishedStep};
+pub use step::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep};
 
 /// What the events of a session make of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,6 +119,13 @@ impl Record {
             record.events = record.events.max(event.sequence + 1);
         }
         record
+    }
+
+    /// Whether the session ended since the device showed too few frames of a clip.
+    pub fn was_too_slow(&self) -> bool {
+        self.early_end.as_ref().is_some_and(
+            |end| matches!(&end.reason, EndReason::ScreenedOut { by, .. } if by == "frames"),
+        )
     }
 
     /// The draft of a question, if there is one.

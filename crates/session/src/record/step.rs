@@ -17,19 +17,23 @@ pub struct Attempt {
     pub beside: Option<ShownBeside>,
     /// Whole plays.
     pub plays: u32,
+    /// Whole plays before the page was opened again, by which the trial began anew.
+    pub earlier_plays: u32,
     /// The first whole play.
     pub play: Option<PlayLog>,
+    /// Plays that showed too few frames.
+    pub slow_plays: u32,
     /// Whether the page filled the screen in that play.
     pub play_fullscreen: bool,
-    /// Whether the last play was cut short.
-    pub cut_short: bool,
+    /// Why the last play does not count, if it does not.
+    pub cut_short: Option<CutShort>,
     /// When answers could first be given, page clock.
     pub answering_ms: Option<f64>,
     /// When each answer was last changed, page clock.
     pub answered_ms: BTreeMap<String, f64>,
     /// How often the time of the step was extended.
     pub extensions: u32,
-    /// How often the page was opened again, or a play was cut short.
+    /// How often a play was cut short, or the page was opened again before the clip was seen whole.
     pub interruptions: u32,
     /// How often the page lost the focus or was hidden.
     pub focus_losses: u32,
@@ -53,9 +57,10 @@ impl Attempt {
 
     /// The clip was played, wholly or not.
     pub(super) fn played(&mut self, log: PlayLog, fullscreen: bool, at_ms: f64) {
-        self.cut_short = !log.is_whole();
-        if self.cut_short {
+        self.cut_short = CutShort::of(&log);
+        if let Some(why) = self.cut_short {
             self.interruptions += 1;
+            self.slow_plays += u32::from(why == CutShort::TooFewFrames);
             return;
         }
         self.plays += 1;
@@ -69,14 +74,38 @@ impl Attempt {
     /// The page was opened again: a trial that had begun starts anew; the answers of a page stay, with
     /// their times.
     pub(super) fn resumed(&mut self) {
-        self.interruptions += 1;
+        self.interruptions += u32::from(self.plays == 0);
         if self.is_started() {
             *self = Self {
                 shown_ms: self.shown_ms,
+                earlier_plays: self.earlier_plays + self.plays,
+                slow_plays: self.slow_plays,
                 interruptions: self.interruptions,
                 focus_losses: self.focus_losses,
                 ..Self::default()
             };
+        }
+    }
+}
+
+/// Why a play does not count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CutShort {
+    /// It was stopped, the page was hidden, or the renderer was lost.
+    Interrupted,
+    /// A part of the picture was not in the window.
+    OutOfView,
+    /// It showed fewer frames than the study wants.
+    TooFewFrames,
+}
+
+impl CutShort {
+    /// Why a play does not count; none for one that does.
+    fn of(log: &PlayLog) -> Option<Self> {
+        match log.aborted.as_deref()? {
+            PlayLog::OUT_OF_VIEW => Some(Self::OutOfView),
+            PlayLog::TOO_FEW_FRAMES => Some(Self::TooFewFrames),
+            _ => Some(Self::Interrupted),
         }
     }
 }
@@ -136,7 +165,7 @@ pub struct EarlyEnd {
 pub enum EndReason {
     /// The study does not take this participant.
     ScreenedOut {
-        /// `device`, `screening` or `training`.
+        /// `device`, `frames`, `screening` or `training`.
         by: String,
         /// What was missing: the rules' keys, or the question.
         details: Vec<String>,

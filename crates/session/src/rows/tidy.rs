@@ -190,7 +190,7 @@ impl<'a> Layout<'a> {
         put("browser", about.join(" ").into());
         let Some(clip) = &step.clip else { return };
         put("stimulus", clip.as_str().into());
-        put("replays", step.replays.into());
+        put("replays", (step.replays + step.attempt.earlier_plays).into());
         if let Some(known) = self.clips.get(clip) {
             for (factor, value) in &known.factors {
                 put(factor, value.to_value());
@@ -282,6 +282,9 @@ impl<'a> Layout<'a> {
 
     fn row(&self, mut cells: Cells, step: &FinishedStep, id: &str, answer: Value) -> Vec<Value> {
         let onset_ms = step.attempt.play.as_ref().map_or(step.start_ms, |play| play.onset_ms);
+        let answered_ms = step.attempt.answered_ms.get(id).filter(|_| !answer.is_null());
+        let open = answered_ms.zip(step.attempt.answering_ms).map(|(at_ms, open)| at_ms - open);
+        cells.insert("rt_open".to_owned(), open.map_or(Value::Null, milliseconds));
         let rt = step.attempt.answered_ms.get(id).map(|at_ms| at_ms - onset_ms);
         // An answer without an event of its own takes the time at which all were sent.
         let rt = rt.filter(|_| !answer.is_null()).or(step.rt_ms.filter(|_| !answer.is_null()));

@@ -10,7 +10,7 @@ use mimique_session::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_session::wire::{Event, Receipt, SessionStarted};
-use mimique_session::{Client, PlayLog, Record};
+use mimique_session::{Client, PlayLog, Record, StageFailure};
 use mimique_study::{Display, Study, config_hash};
 pub use mimique_test_support::{study_folder, study_text};
 use serde_json::{Value, json};
@@ -240,6 +240,15 @@ pub fn whole_play(onset_ms: f64) -> PlayLog {
         device_pixel_ratio: 2.0,
         weights_hash: "ab".repeat(32),
         ..PlayLog::default()
+    }
+}
+
+/// A failure of the stage with this code.
+pub fn failure(code: &str) -> StageFailure {
+    StageFailure {
+        code: code.to_owned(),
+        values: BTreeMap::from([("seconds".to_owned(), "15".to_owned())]),
+        message: "pack 0123: no network".to_owned(),
     }
 }
 

@@ -40,7 +40,7 @@ pub enum VertexAssociation {
 pub struct AssociatedRows {
     /// How they are associated.
     pub association: VertexAssociation,
-    /// How many vertices (for [`VertexAssociation::Points`] markers) are associated to at least one marker.
+    /// How many vertices (for [`VertexAssociation::Points`] markers) are associated with at least one marker.
     pub vertex_count: usize,
     /// For each marker the upper triangle of sum over v of w_vm B_v^T B_v, row by row:
     /// P x N(N+1)/2, m^2.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::provenance::{Provenance, numbers_of};
 
 /// The hash of an avatar's content.
-pub(super) fn avatar_key(avatar: &Avatar) -> String {
+pub fn avatar_key(avatar: &Avatar) -> String {
     let pictures = avatar.textures.iter();
     Provenance::default()
         .json("name", avatar.name.as_str())

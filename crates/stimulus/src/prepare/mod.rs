@@ -12,7 +12,7 @@ mod source_files;
 mod sources;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mimique_avatar::Avatar;
 use mimique_clip::{TakeContent, TakePack, encode_take, solve_packs};
@@ -20,12 +20,18 @@ use mimique_solver::{Group, Method, MethodSpec};
 use mimique_study::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
+pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
 use crate::RecordedWeights;
 use crate::provenance::Provenance;
+
+/// Whether what a study names is there: a file, or a folder of an avatar's poses.
+pub fn is_source(path: &Path) -> bool {
+    path.is_file() || mimique_avatar_files::is_folder_of_poses(path)
+}
 
 /// Where things are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,7 +91,7 @@ impl PrepareError {
 
 impl Places {
     /// The study file's own folder; the data folder as `MIMIQUE_DATA` names it.
-    pub fn of(study_file: &std::path::Path, packs: impl Into<PathBuf>) -> Self {
+    pub fn of(study_file: &Path, packs: impl Into<PathBuf>) -> Self {
         let folder = study_file.parent().filter(|p| !p.as_os_str().is_empty());
         Self {
             study: folder.map_or_else(|| PathBuf::from("."), PathBuf::from),

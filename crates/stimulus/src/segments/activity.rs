@@ -93,11 +93,16 @@ impl Activity {
         }
         Ok(activity)
     }
+
+    /// The channels after the low-pass, gaps bridged: channel after channel, a number a frame.
+    pub fn smooth(&self) -> &[f64] {
+        &self.smooth
+    }
 }
 
 /// Missing values on the line between their neighbours; at the ends the nearest value; 0 where
 /// there is none.
-fn bridge(track: &mut [f64]) {
+pub fn bridge(track: &mut [f64]) {
     let known: Vec<usize> = (0..track.len()).filter(|&f| track[f].is_finite()).collect();
     let (Some(&first), Some(&last)) = (known.first(), known.last()) else {
         track.fill(0.0);

@@ -4,13 +4,13 @@
 //! A document keeps its text. A tier is added or replaced by splicing, so that media, other tiers,
 //! vocabularies, comments and layout are the same characters before and after.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 
-use super::eaf_read::{Aligned, Reading, at};
+use super::eaf_read::{Reading, at};
+use super::eaf_times;
 
 /// An annotation: a stretch of time and a word.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,13 +23,15 @@ pub struct EafAnnotation {
     pub value: String,
 }
 
-/// A tier and its time-aligned annotations, in order of time.
+/// A tier and its annotations, in order of time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EafTier {
     /// Its name.
     pub id: String,
-    /// Its annotations. Those that refer to another tier's are not among them.
+    /// Its annotations; those that refer to another tier's have the times of what they refer to.
     pub annotations: Vec<EafAnnotation>,
+    /// How many annotations more it has, whose times nothing in the document tells.
+    pub without_times: usize,
 }
 
 /// A document that cannot be read or a tier that cannot be written.
@@ -114,12 +116,8 @@ impl EafDocument {
                 Event::Decl(_) | Event::PI(_) | Event::DocType(_) | Event::Comment(_) => {}
             }
         }
-        let Reading { places, times, aligned, .. } = reading.whole()?;
-        let tiers = tiers(&places, &times, aligned).map_err(|what| EafError {
-            place: "TIME_ORDER".to_owned(),
-            what,
-            remedy: REMEDY,
-        })?;
+        let Reading { places, times, annotations, .. } = reading.whole()?;
+        let tiers = eaf_times::tiers(&places, &times, &annotations)?;
         Ok(Self { text: text.to_owned(), tiers, places })
     }
 
@@ -137,49 +135,4 @@ impl EafDocument {
     pub fn text(&self) -> &str {
         &self.text
     }
-}
-
-/// The tiers with their times; a slot without a time lies evenly between those around it, as ELAN
-/// shows it.
-fn tiers(
-    places: &Places,
-    times: &[Option<u64>],
-    aligned: Vec<Aligned>,
-) -> Result<Vec<EafTier>, String> {
-    let mut whole = Vec::with_capacity(times.len());
-    for (i, time) in times.iter().enumerate() {
-        whole.push(time.unwrap_or_else(|| {
-            let before = (0..i).rev().find_map(|j| Some((j, times[j]?)));
-            let after = (i + 1..times.len()).find_map(|j| Some((j, times[j]?)));
-            match (before, after) {
-                (Some((a, s)), Some((b, t))) => {
-                    let share = (i - a) as f64 / (b - a) as f64;
-                    s + (t.saturating_sub(s) as f64 * share).round() as u64
-                }
-                (Some((_, t)), None) | (None, Some((_, t))) => t,
-                (None, None) => 0,
-            }
-        }));
-    }
-    let by_name: BTreeMap<&str, u64> =
-        places.slots.iter().zip(&whole).map(|((id, _), time)| (id.as_str(), *time)).collect();
-    let mut tiers: Vec<EafTier> = places
-        .tiers
-        .iter()
-        .map(|tier| EafTier { id: tier.id.clone(), annotations: Vec::new() })
-        .collect();
-    for Aligned { tier, slots: [start, end], value } in aligned {
-        let time = |slot: &String| {
-            by_name.get(slot.as_str()).copied().ok_or_else(|| format!("no time slot {slot:?}"))
-        };
-        let (start_ms, end_ms) = (time(&start)?, time(&end)?);
-        if end_ms < start_ms {
-            return Err(format!("{value:?} ends at {end_ms} ms, before it begins at {start_ms}"));
-        }
-        tiers[tier].annotations.push(EafAnnotation { start_ms, end_ms, value });
-    }
-    for tier in &mut tiers {
-        tier.annotations.sort_by_key(|a| (a.start_ms, a.end_ms));
-    }
-    Ok(tiers)
 }

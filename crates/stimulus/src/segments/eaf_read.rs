@@ -8,14 +8,24 @@ use quick_xml::events::{BytesRef, BytesStart};
 
 use super::eaf::{EafError, Places, REMEDY, TierPlace};
 
-/// An annotation with times of its own.
-pub(super) struct Aligned {
+/// An annotation as it stands in the document.
+pub(super) struct Annotation {
     /// Index of its tier.
     pub(super) tier: usize,
-    /// The time slots at its ends.
-    pub(super) slots: [String; 2],
+    /// Its identifier.
+    pub(super) id: String,
+    /// What says when it is.
+    pub(super) bounds: Bounds,
     /// What is written there.
     pub(super) value: String,
+}
+
+/// What says when an annotation is.
+pub(super) enum Bounds {
+    /// The time slots at its ends.
+    Slots([String; 2]),
+    /// The annotation that it refers to, and the one before it among those that refer to the same.
+    Of { annotation: String, previous: Option<String> },
 }
 
 /// What is known of a document while it is read.
@@ -24,7 +34,7 @@ pub(super) struct Reading<'t> {
     pub(super) places: Places,
     /// Millisecond of each time slot, where it has one.
     pub(super) times: Vec<Option<u64>>,
-    pub(super) aligned: Vec<Aligned>,
+    pub(super) annotations: Vec<Annotation>,
     /// Names of the elements that are open.
     open: Vec<String>,
     /// The tier that is open.
@@ -68,7 +78,7 @@ impl<'t> Reading<'t> {
             text,
             places: Places::default(),
             times: Vec::new(),
-            aligned: Vec::new(),
+            annotations: Vec::new(),
             open: Vec::new(),
             tier: None,
             value: None,
@@ -89,14 +99,19 @@ impl<'t> Reading<'t> {
         if self.open.is_empty() && tag.name != "ANNOTATION_DOCUMENT" {
             return Err(tag.refuse(format!("the document is a {:?}, not ELAN's", tag.name)));
         }
+        if self.open.is_empty() && self.places.after_tiers.is_some() {
+            return Err(tag.refuse("a second document in the file".to_owned()));
+        }
         match tag.name.as_str() {
+            "HEADER" => in_milliseconds(&tag)?,
             "TIME_ORDER" => self.places.time_order = Some((tag.range.clone(), None)),
             "TIME_SLOT" => self.time_slot(&tag)?,
             "TIER" => self.tier(&tag)?,
             "ALIGNABLE_ANNOTATION" | "REF_ANNOTATION" => self.annotation(&tag)?,
             "ANNOTATION_VALUE" => {
-                let own = self.open.last().is_some_and(|o| o == "ALIGNABLE_ANNOTATION");
-                self.value = (own && !empty).then(String::new);
+                let kinds = ["ALIGNABLE_ANNOTATION", "REF_ANNOTATION"];
+                let of_one = self.open.last().is_some_and(|o| kinds.contains(&o.as_str()));
+                self.value = (of_one && !empty).then(String::new);
             }
             "LINGUISTIC_TYPE" => self.linguistic_type(&tag)?,
             "PROPERTY" if tag.attribute("NAME").as_deref() == Some("lastUsedAnnotationId") => {
@@ -114,12 +129,11 @@ impl<'t> Reading<'t> {
         let id = tag.needed("TIME_SLOT_ID")?;
         let time = match tag.attribute("TIME_VALUE") {
             None => None,
-            Some(value) => Some(
-                value
-                    .trim()
-                    .parse::<u64>()
-                    .map_err(|_| tag.refuse(format!("TIME_VALUE {value:?} is no time")))?,
-            ),
+            Some(value) => Some(value.trim().parse::<u64>().map_err(|_| {
+                let negative = value.trim().parse::<i64>().is_ok();
+                let what = if negative { "a negative time" } else { "no time in milliseconds" };
+                tag.refuse(format!("time slot {id:?}: TIME_VALUE {value:?} is {what}"))
+            })?),
         };
         raise(&mut self.places.slot_number, &id, "ts");
         self.places.slots.push((id, tag.range.clone()));
@@ -128,8 +142,12 @@ impl<'t> Reading<'t> {
     }
 
     fn tier(&mut self, tag: &Tag) -> Result<(), EafError> {
+        let id = tag.needed("TIER_ID")?;
+        if self.places.tiers.iter().any(|tier| tier.id == id) {
+            return Err(tag.refuse(format!("tier {id:?} twice")));
+        }
         self.places.tiers.push(TierPlace {
-            id: tag.needed("TIER_ID")?,
+            id,
             element: tag.range.clone(),
             open_tag: tag.range.clone(),
             parent: tag.attribute("PARENT_REF"),
@@ -143,15 +161,19 @@ impl<'t> Reading<'t> {
         let Some(tier) = self.tier else {
             return Err(tag.refuse(format!("{} outside a tier", tag.name)));
         };
-        raise(&mut self.places.annotation_number, &tag.needed("ANNOTATION_ID")?, "a");
-        if tag.name == "REF_ANNOTATION" {
+        let id = tag.needed("ANNOTATION_ID")?;
+        raise(&mut self.places.annotation_number, &id, "a");
+        let bounds = if tag.name == "REF_ANNOTATION" {
             self.places.tiers[tier].refers = true;
-            return Ok(());
-        }
-        let slots = [tag.needed("TIME_SLOT_REF1")?, tag.needed("TIME_SLOT_REF2")?];
-        let id = &self.places.tiers[tier].id;
-        self.places.uses.extend(slots.iter().map(|slot| (slot.clone(), id.clone())));
-        self.aligned.push(Aligned { tier, slots, value: String::new() });
+            let previous = tag.attribute("PREVIOUS_ANNOTATION");
+            Bounds::Of { annotation: tag.needed("ANNOTATION_REF")?, previous }
+        } else {
+            let slots = [tag.needed("TIME_SLOT_REF1")?, tag.needed("TIME_SLOT_REF2")?];
+            let tier = &self.places.tiers[tier].id;
+            self.places.uses.extend(slots.iter().map(|slot| (slot.clone(), tier.clone())));
+            Bounds::Slots(slots)
+        };
+        self.annotations.push(Annotation { tier, id, bounds, value: String::new() });
         Ok(())
     }
 
@@ -205,7 +227,8 @@ impl<'t> Reading<'t> {
                 }
             }
             "ANNOTATION_VALUE" => {
-                if let (Some(value), Some(last)) = (self.value.take(), self.aligned.last_mut()) {
+                if let (Some(value), Some(last)) = (self.value.take(), self.annotations.last_mut())
+                {
                     last.value = value;
                 }
             }
@@ -232,6 +255,16 @@ impl<'t> Reading<'t> {
             None => "no ANNOTATION_DOCUMENT".to_owned(),
         };
         Err(at(self.text.len(), what))
+    }
+}
+
+/// Refuse times that count frames: the format allows it, ELAN writes milliseconds.
+fn in_milliseconds(header: &Tag) -> Result<(), EafError> {
+    match header.attribute("TIME_UNITS") {
+        Some(unit) if unit != "milliseconds" => {
+            Err(header.refuse(format!("TIME_UNITS {unit:?}, not milliseconds")))
+        }
+        _ => Ok(()),
     }
 }
 

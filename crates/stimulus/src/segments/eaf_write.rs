@@ -49,8 +49,8 @@ impl EafDocument {
     /// Everything else stays, character by character.
     ///
     /// # Errors
-    /// [`EafError`]: annotations that overlap or are empty, which a tier of ELAN cannot hold, a tier on
-    /// which others depend, or time slots without a time that would move.
+    /// [`EafError`]: annotations that overlap or are empty, which a tier of ELAN cannot hold, or a tier
+    /// from which others take their times.
     pub fn with_tier(&self, id: &str, annotations: &[EafAnnotation]) -> Result<Self, EafError> {
         let refuse =
             |what: String, remedy| EafError { place: format!("tier {id:?}"), what, remedy };
@@ -83,7 +83,7 @@ impl EafDocument {
         }
         let old = old.map(|tier| (tier.element.clone(), tier.open_tag.clone()));
         let with = self.spliced(id, &sorted, old)?;
-        // A slot without a time lies between those around it: new ones at its side would move it.
+        // Some tool's document refers to a tier without naming it as the parent.
         let others = |document: &Self| -> Vec<EafTier> {
             document.tiers().iter().filter(|tier| tier.id != id).cloned().collect()
         };
@@ -91,8 +91,8 @@ impl EafDocument {
         if before != after {
             let same = before.iter().zip(&after).take_while(|(before, after)| before == after);
             let moved = before.get(same.count()).map_or("", |tier| &tier.id);
-            let what = format!("it would move annotations without times of the tier {moved:?}");
-            return Err(refuse(what, "give their ends times in ELAN, or write to another file"));
+            let what = format!("the tier {moved:?} takes its times from it");
+            return Err(refuse(what, "write to another tier"));
         }
         Ok(with)
     }
@@ -194,11 +194,11 @@ impl EafDocument {
     }
 
     /// The segments of a tier at a rate; each annotation is a clip that is all expression.
-    /// Annotations without a word, or called `N` or `neutral`, are left out.
+    /// Annotations without a word, or called `N` or `neutral`, are left out and counted.
     ///
     /// # Errors
     /// [`EafError`]: no such tier.
-    pub fn segments(&self, tier: &str, rate_hz: f64) -> Result<Vec<TakeSegment>, EafError> {
+    pub fn segments(&self, tier: &str, rate_hz: f64) -> Result<EafSegments, EafError> {
         let found = self.tier(tier).ok_or_else(|| {
             let names: Vec<&str> = self.tiers().iter().map(|t| t.id.as_str()).collect();
             EafError {
@@ -208,16 +208,62 @@ impl EafDocument {
             }
         })?;
         let frame = |ms: u64| (ms as f64 * rate_hz / 1000.0).round() as usize;
-        let named = found.annotations.iter().filter(|a| {
-            let value = a.value.trim();
-            !value.is_empty()
-                && !value.eq_ignore_ascii_case("n")
-                && !value.eq_ignore_ascii_case("neutral")
-        });
-        Ok(named
-            .map(|a| TakeSegment::new(a.value.trim(), frame(a.start_ms)..frame(a.end_ms)))
-            .filter(|s| !s.clip.is_empty())
-            .collect())
+        let mut left_out = LeftOut { without_times: found.without_times, ..LeftOut::default() };
+        let mut segments = Vec::new();
+        for annotation in &found.annotations {
+            let word = annotation.value.trim();
+            let frames = frame(annotation.start_ms)..frame(annotation.end_ms);
+            if word.is_empty() {
+                left_out.without_word += 1;
+            } else if word.eq_ignore_ascii_case("n") || word.eq_ignore_ascii_case("neutral") {
+                left_out.neutral += 1;
+            } else if frames.is_empty() {
+                left_out.without_frame += 1;
+            } else {
+                segments.push(TakeSegment::new(word, frames));
+            }
+        }
+        Ok(EafSegments { segments, left_out })
+    }
+}
+
+/// The segments of a tier, and what of it is none.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct EafSegments {
+    /// The segments, in order of time.
+    pub segments: Vec<TakeSegment>,
+    /// The annotations that are no segments.
+    pub left_out: LeftOut,
+}
+
+/// How many annotations of a tier are no segments, and why.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Their times are not in the document.
+    pub without_times: usize,
+    /// Nothing is written there.
+    pub without_word: usize,
+    /// They say that the face is neutral.
+    pub neutral: usize,
+    /// They are shorter than a frame of the take.
+    pub without_frame: usize,
+}
+
+impl LeftOut {
+    /// What to tell of them; nothing where all annotations are segments.
+    pub fn sentence(&self) -> Option<String> {
+        let counts = [
+            (self.without_times, "without times"),
+            (self.without_word, "without a word"),
+            (self.neutral, "of the neutral face"),
+            (self.without_frame, "shorter than a frame"),
+        ];
+        let told: Vec<String> = counts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, why)| format!("{count} {why}"))
+            .collect();
+        (!told.is_empty()).then(|| format!("annotations left out: {}", told.join(", ")))
     }
 }
 

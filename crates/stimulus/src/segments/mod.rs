@@ -11,15 +11,19 @@ mod activity;
 mod csv;
 mod eaf;
 mod eaf_read;
+mod eaf_times;
 mod eaf_write;
+mod peaks;
 mod study;
 mod suggest;
 
 use std::ops::Range;
 
-pub use activity::{Activity, ActivityOptions, Channels};
+pub use activity::{Activity, ActivityOptions, Channels, bridge};
 pub use csv::{SegmentFileError, read_segments, write_segments};
 pub use eaf::{EafAnnotation, EafDocument, EafError, EafTier};
+pub use eaf_write::{EafSegments, LeftOut};
+pub use peaks::{nearest_quantile, peaks};
 pub use study::study_segments;
 pub use suggest::{SuggestError, SuggestOptions, Suggestion, Timeline, TimelineSegment, suggest};
 

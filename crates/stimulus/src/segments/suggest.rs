@@ -10,6 +10,7 @@ use std::ops::Range;
 use mimique_mocap::FilterError;
 use serde::Serialize;
 
+use super::peaks::{nearest_quantile, peaks};
 use super::{Activity, ActivityOptions, Channels, TakeSegment};
 
 /// What the user decides.
@@ -111,10 +112,6 @@ const WEAKEST: f64 = 0.12;
 const EDGE: f64 = 0.03;
 /// How far above the noise at rest a level stands out.
 const OVER_NOISE: f64 = 4.0;
-/// How far above the lowest energies around it a border stands out, as a share of the strong ones.
-const BORDER: f64 = 0.15;
-/// Seconds within which two borders are one.
-const BORDER_S: f64 = 0.12;
 /// Shortest expression, seconds: micro-expressions last 1/25 to 1/2 s; shorter is a twitch.
 const SHORTEST_S: f64 = 0.2;
 /// Shortest plateau between two expressions that follow each other without neutral, seconds.
@@ -138,7 +135,7 @@ pub fn suggest(take: Channels<'_>, options: &SuggestOptions) -> Result<Suggestio
     }
     let activity = Activity::of(take, &options.activity)?;
     let root: Vec<f64> = activity.energy.iter().map(|e| e.sqrt()).collect();
-    let borders = borders(&root, take.rate_hz);
+    let borders = peaks(&root, take.rate_hz);
     let neutral = neutral_face(&activity.smooth, frames, &root, options.neutral.clone());
     let level: Vec<f64> = (0..frames)
         .map(|f| {
@@ -203,38 +200,6 @@ impl Suggestion {
     }
 }
 
-/// The middles of the changes: peaks of the energy's root that stand out and fall to half on
-/// either side. A change has two peaks of acceleration about one of velocity: it is one border.
-fn borders(root: &[f64], rate_hz: f64) -> Vec<usize> {
-    let frames = root.len();
-    let mut sorted = root.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let least = BORDER * quantile(&sorted, 0.95);
-    let around = ((BORDER_S * rate_hz) as usize).max(2);
-    // How far the curve falls on a side before it rises above the peak again.
-    let fall = |peak: usize, side: &mut dyn Iterator<Item = usize>| {
-        let until = side.take_while(|&g| root[g] <= root[peak]);
-        root[peak] - until.map(|g| root[g]).fold(root[peak], f64::min)
-    };
-    let mut found: Vec<usize> = (1..frames - 1)
-        .filter(|&f| root[f] > root[f - 1] && root[f] >= root[f + 1] && root[f] >= least)
-        .filter(|&f| {
-            let falls = fall(f, &mut (0..f).rev()).min(fall(f, &mut (f + 1..frames)));
-            falls >= least.max(0.5 * root[f])
-        })
-        .map(|f| {
-            let half = |g: &usize| root[*g] > 0.5 * root[f];
-            let start = (0..f).rev().take_while(half).last().unwrap_or(f);
-            let end = (f..frames).take_while(half).last().unwrap_or(f);
-            let weight: f64 = (start..=end).map(|g| root[g]).sum();
-            let moment: f64 = (start..=end).map(|g| root[g] * g as f64).sum();
-            (moment / weight).round() as usize
-        })
-        .collect();
-    found.dedup_by(|b, a| b.abs_diff(*a) <= around);
-    found
-}
-
 /// The neutral face: the mean of the named frames, else the face that the take comes back to.
 fn neutral_face(
     smooth: &[f64],
@@ -251,7 +216,7 @@ fn neutral_face(
     const SAMPLES: usize = 300;
     let mut sorted = root.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let calm = quantile(&sorted, 0.5);
+    let calm = nearest_quantile(&sorted, 0.5);
     let calmer: Vec<usize> = (0..frames).filter(|&f| root[f] <= calm).collect();
     let samples: Vec<usize> =
         calmer.iter().copied().step_by((calmer.len() / SAMPLES).max(1)).collect();
@@ -259,7 +224,7 @@ fn neutral_face(
     let spread = |f: usize| {
         let mut all: Vec<f64> = samples.iter().map(|&g| distance(f, g)).collect();
         all.sort_by(f64::total_cmp);
-        quantile(&all, 0.25)
+        nearest_quantile(&all, 0.25)
     };
     let best = samples
         .iter()
@@ -281,14 +246,14 @@ fn neutral_face(
 fn rest_and_threshold(level: &[f64], neutral: Option<&Range<usize>>) -> (f64, f64) {
     let mut sorted = level.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let strong = quantile(&sorted, 0.95);
+    let strong = nearest_quantile(&sorted, 0.95);
     let rest = match neutral {
         Some(named) => {
             let mut own = level[named.clone()].to_vec();
             own.sort_by(f64::total_cmp);
-            quantile(&own, 0.9)
+            nearest_quantile(&own, 0.9)
         }
-        None => quantile(&sorted, 0.2),
+        None => nearest_quantile(&sorted, 0.2),
     };
     (rest, (OVER_NOISE * rest).max(rest + WEAKEST * (strong - rest)))
 }
@@ -380,10 +345,4 @@ fn split(
     }
     parts.push(start..whole.end);
     parts
-}
-
-/// A quantile of sorted numbers; 0 of none.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let at = share * sorted.len().saturating_sub(1) as f64;
-    sorted.get(at.round() as usize).copied().unwrap_or(0.0)
 }

@@ -21,7 +21,7 @@ pub fn read_anyhow(bytes: &[u8]) {
             assert!(a.start_ms <= a.end_ms, "{a:?}");
         }
         all += tier.annotations.len();
-        for s in document.segments(&tier.id, 200.0).unwrap_or_default() {
+        for s in document.segments(&tier.id, 200.0).unwrap_or_default().segments {
             assert!(!s.label.trim().is_empty() && s.clip.start < s.clip.end, "{s:?}");
         }
     }

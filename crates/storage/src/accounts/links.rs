@@ -1,5 +1,6 @@
 //! One-time links.
 
+use super::people::end_access;
 use super::records::{Account, AccountLink, LinkPurpose};
 use super::row::{account, account_link};
 use crate::database::{Row, Transaction, query};
@@ -78,7 +79,11 @@ impl Storage {
         let Some(link) = row.as_ref().map(account_link).transpose()? else { return Ok(None) };
         let email = if link.email.is_empty() { email } else { &link.email };
         let found = match link.purpose {
-            LinkPurpose::Reset => reset(&mut transaction, email, password_hash).await?,
+            LinkPurpose::Recovery => {
+                enable(&mut transaction, email).await?;
+                reset(&mut transaction, email, password_hash, now_ms).await?
+            }
+            LinkPurpose::Reset => reset(&mut transaction, email, password_hash, now_ms).await?,
             LinkPurpose::FirstOwner if !is_first_owner(&mut transaction).await? => None,
             _ => {
                 query(
@@ -100,27 +105,35 @@ impl Storage {
     }
 }
 
-/// Sets a password; whoever was logged in by the old one is so no more.
+/// Lets an account be used again.
+async fn enable(transaction: &mut Transaction, email: &str) -> Result<(), StorageError> {
+    query("UPDATE accounts SET disabled_ms = NULL WHERE email = $1")
+        .bind(email)
+        .execute(transaction)
+        .await?;
+    Ok(())
+}
+
+/// Sets the password of an account that can be used; whoever was logged in by the old one, or has a token
+/// from that time, is so no more.
 async fn reset(
     transaction: &mut Transaction,
     email: &str,
     password_hash: &str,
+    now_ms: i64,
 ) -> Result<Option<Row>, StorageError> {
-    query(
-        "DELETE FROM account_sessions WHERE account_key IN \
-         (SELECT account_key FROM accounts WHERE email = $1)",
-    )
-    .bind(email)
-    .execute(&mut *transaction)
-    .await?;
-    query(
-        "UPDATE accounts SET password_hash = $2, disabled_ms = NULL WHERE email = $1 \
+    let row = query(
+        "UPDATE accounts SET password_hash = $2 WHERE email = $1 AND disabled_ms IS NULL \
          RETURNING account_key, email, role, password_hash, created_ms, disabled_ms",
     )
     .bind(email)
     .bind(password_hash)
-    .fetch_optional(transaction)
-    .await
+    .fetch_optional(&mut *transaction)
+    .await?;
+    if let Some(row) = &row {
+        end_access(transaction, row.get("account_key")?, "", now_ms).await?;
+    }
+    Ok(row)
 }
 
 /// Whether nobody has become the first owner; of two first links used at once one makes the owner.

@@ -82,29 +82,34 @@ impl Storage {
         Ok(())
     }
 
-    /// Counts an attempt to log in; how many there were within the window, this one included.
+    /// Counts an attempt to log in; how many there were within the window, this one included. Beyond `most`
+    /// attempts are not remembered: they neither prolong the wait nor fill the table.
     pub async fn count_attempt(
         &self,
         subject: &str,
         now_ms: i64,
         window_ms: i64,
+        most: u64,
     ) -> Result<u64, StorageError> {
         let mut transaction = self.writers.begin_write().await?;
         query("DELETE FROM login_attempts WHERE at_ms < $1")
             .bind(now_ms - window_ms)
             .execute(&mut transaction)
             .await?;
-        query("INSERT INTO login_attempts (subject, at_ms) VALUES ($1, $2)")
-            .bind(subject)
-            .bind(now_ms)
-            .execute(&mut transaction)
-            .await?;
         let row = query("SELECT COUNT(*) AS found FROM login_attempts WHERE subject = $1")
             .bind(subject)
             .fetch_one(&mut transaction)
             .await?;
+        let before = row.unsigned("login_attempts", "found")?;
+        if before < most {
+            query("INSERT INTO login_attempts (subject, at_ms) VALUES ($1, $2)")
+                .bind(subject)
+                .bind(now_ms)
+                .execute(&mut transaction)
+                .await?;
+        }
         transaction.commit().await?;
-        Ok(row.get::<i64>("found")?.unsigned_abs())
+        Ok(before + 1)
     }
 
     /// Forgets the attempts of one who has logged in.

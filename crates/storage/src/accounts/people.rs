@@ -2,7 +2,7 @@
 
 use super::records::{Account, Role};
 use super::row::account;
-use crate::database::query;
+use crate::database::{Transaction, query};
 use crate::error::StorageError;
 use crate::handle::Storage;
 
@@ -36,12 +36,13 @@ impl Storage {
         row.as_ref().map(account).transpose()
     }
 
-    /// Sets a password and ends every other session of the account.
+    /// Sets a password and ends every other session of the account, its tokens and its links.
     pub async fn set_password(
         &self,
         account_key: i64,
         password_hash: &str,
         kept_session: &str,
+        now_ms: i64,
     ) -> Result<(), StorageError> {
         let mut transaction = self.writers.begin_write().await?;
         query("UPDATE accounts SET password_hash = $2 WHERE account_key = $1")
@@ -49,11 +50,7 @@ impl Storage {
             .bind(password_hash)
             .execute(&mut transaction)
             .await?;
-        query("DELETE FROM account_sessions WHERE account_key = $1 AND secret_hash <> $2")
-            .bind(account_key)
-            .bind(kept_session)
-            .execute(&mut transaction)
-            .await?;
+        end_access(&mut transaction, account_key, kept_session, now_ms).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -72,7 +69,7 @@ impl Storage {
         Ok(done == 1)
     }
 
-    /// Disables an account and ends its sessions; false where nobody would be left to own the server.
+    /// Disables an account and ends its sessions, tokens and links; false where nobody would be left to own the server.
     pub async fn disable_account(
         &self,
         account_key: i64,
@@ -91,10 +88,7 @@ impl Storage {
         if done == 0 {
             return Ok(false);
         }
-        query("DELETE FROM account_sessions WHERE account_key = $1")
-            .bind(account_key)
-            .execute(&mut transaction)
-            .await?;
+        end_access(&mut transaction, account_key, "", now_ms).await?;
         transaction.commit().await?;
         Ok(true)
     }
@@ -107,4 +101,31 @@ impl Storage {
             .await?;
         Ok(done == 1)
     }
+}
+
+/// Ends every way into an account but one browser's session: other sessions, tokens, links that wait.
+pub(super) async fn end_access(
+    transaction: &mut Transaction,
+    account_key: i64,
+    kept_session: &str,
+    now_ms: i64,
+) -> Result<(), StorageError> {
+    query("DELETE FROM account_sessions WHERE account_key = $1 AND secret_hash <> $2")
+        .bind(account_key)
+        .bind(kept_session)
+        .execute(&mut *transaction)
+        .await?;
+    query("UPDATE api_tokens SET revoked_ms = $2 WHERE account_key = $1 AND revoked_ms IS NULL")
+        .bind(account_key)
+        .bind(now_ms)
+        .execute(&mut *transaction)
+        .await?;
+    query(
+        "DELETE FROM account_links WHERE used_ms IS NULL \
+         AND email = (SELECT email FROM accounts WHERE account_key = $1)",
+    )
+    .bind(account_key)
+    .execute(transaction)
+    .await?;
+    Ok(())
 }

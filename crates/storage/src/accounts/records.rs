@@ -54,8 +54,10 @@ pub enum LinkPurpose {
     FirstOwner,
     /// Makes a further account.
     Invitation,
-    /// Sets a new password.
+    /// Sets a new password of an account that can be used.
     Reset,
+    /// Sets a new password and enables the account: for one who can reach the database.
+    Recovery,
 }
 
 impl LinkPurpose {
@@ -64,11 +66,13 @@ impl LinkPurpose {
             Self::FirstOwner => "first-owner",
             Self::Invitation => "invitation",
             Self::Reset => "reset",
+            Self::Recovery => "recovery",
         }
     }
 
     pub(super) fn from_word(word: &str) -> Option<Self> {
-        [Self::FirstOwner, Self::Invitation, Self::Reset].into_iter().find(|p| p.word() == word)
+        let every = [Self::FirstOwner, Self::Invitation, Self::Reset, Self::Recovery];
+        every.into_iter().find(|purpose| purpose.word() == word)
     }
 }
 

@@ -95,6 +95,8 @@ fn empty_session(columns: &[String], row: &mut [Value]) -> bool {
         ("client", Value::from("{}")),
         ("event_count", 0.into()),
         ("next_sequence", 0.into()),
+        ("first_gap", 0.into()),
+        ("stored_bytes", 0.into()),
         ("last_event_ms", Value::Null),
         ("receipt", Value::Null),
         ("receipt_events", Value::Null),

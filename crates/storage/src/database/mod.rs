@@ -29,6 +29,14 @@ pub(crate) enum Pool {
     Postgres(sqlx::Pool<Postgres>),
 }
 
+/// The connections to one database, by what they do.
+pub(crate) struct Opened {
+    pub writers: Pool,
+    pub readers: Pool,
+    /// Brings SQLite's log into the file.
+    pub wiper: Option<Pool>,
+}
+
 impl Pool {
     pub fn dialect(&self) -> &'static Dialect {
         match self {
@@ -52,6 +60,14 @@ impl Pool {
             Self::Sqlite(pool) => Transaction::Sqlite(pool.begin_with(statement).await?),
             Self::Postgres(pool) => Transaction::Postgres(pool.begin_with(statement).await?),
         })
+    }
+
+    /// Whether [`Self::close`] was called.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Sqlite(pool) => pool.is_closed(),
+            Self::Postgres(pool) => pool.is_closed(),
+        }
     }
 
     /// Waits until every connection is given back, and closes them.

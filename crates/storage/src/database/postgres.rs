@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 
-use super::{Pool, dialect};
+use super::{Opened, Pool, dialect};
 use crate::address::without_password;
 use crate::error::StorageError;
 
 /// Connects: a connection for each lane that writes and four that read.
-pub(crate) async fn open(url: &str) -> Result<[Pool; 2], StorageError> {
+pub(crate) async fn open(url: &str) -> Result<Opened, StorageError> {
     let options = options(url)?;
     let pool = |size| {
         PgPoolOptions::new()
@@ -19,7 +19,8 @@ pub(crate) async fn open(url: &str) -> Result<[Pool; 2], StorageError> {
             .connect_with(options.clone())
     };
     let lanes = dialect::POSTGRES.lanes as u32;
-    Ok([Pool::Postgres(pool(lanes).await?), Pool::Postgres(pool(4).await?)])
+    let [writers, readers] = [pool(lanes).await?, pool(4).await?].map(Pool::Postgres);
+    Ok(Opened { writers, readers, wiper: None })
 }
 
 /// Connects once, for a restoration.

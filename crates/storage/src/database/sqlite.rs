@@ -6,11 +6,14 @@ use std::time::Duration;
 use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 
-use super::Pool;
+use super::{Opened, Pool};
+use crate::durable_file;
 use crate::error::StorageError;
 
-/// Connects to the file, made when absent: one connection that writes and four that read.
-pub(crate) async fn open(path: &Path) -> Result<[Pool; 2], StorageError> {
+/// Connects to the file, made when absent: one connection that writes, four that read, and one that brings
+/// the log into the file, which does not wait long for others.
+pub(crate) async fn open(path: &Path) -> Result<Opened, StorageError> {
+    close_to_others(path);
     let pool = |size| {
         SqlitePoolOptions::new()
             .max_connections(size)
@@ -22,13 +25,29 @@ pub(crate) async fn open(path: &Path) -> Result<[Pool; 2], StorageError> {
             })
             .connect_with(options(path))
     };
-    Ok([Pool::Sqlite(pool(1).await?), Pool::Sqlite(pool(4).await?)])
+    let (writers, readers) = (pool(1).await?, pool(4).await?);
+    let wiper = SqlitePoolOptions::new()
+        .max_connections(1)
+        .connect_with(options(path).busy_timeout(WIPER_PATIENCE))
+        .await?;
+    let [writers, readers, wiper] = [writers, readers, wiper].map(Pool::Sqlite);
+    Ok(Opened { writers, readers, wiper: Some(wiper) })
 }
+
+/// Nobody can write while the log is brought into the file: readers are waited for so long.
+const WIPER_PATIENCE: Duration = Duration::from_millis(200);
 
 /// Connects once, for a restoration.
 pub(crate) async fn open_once(path: &Path) -> Result<Pool, StorageError> {
+    close_to_others(path);
     let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options(path));
     Ok(Pool::Sqlite(pool.await?))
+}
+
+/// The database is its owner's alone; SQLite makes what lies beside it like it. Where no file can be made
+/// SQLite says so itself.
+fn close_to_others(path: &Path) {
+    let _ = durable_file::keep_private(path);
 }
 
 fn options(path: &Path) -> SqliteConnectOptions {

@@ -4,12 +4,13 @@
 use std::collections::{HashMap, HashSet};
 
 use mimique_session::wire::Acknowledged;
-use mimique_session::{Record, Standing};
+use mimique_session::{Misfit, Record, SessionLimits, Standing};
 use sha2::{Digest, Sha256};
 
-use super::row::{SESSION_COLUMNS, event, session_record};
+use super::gaps::{first_gap, missing_between};
+use super::row::{COUNTED_EVENTS, SESSION_COLUMNS, event, session_record};
 use crate::database::{Builder, Transaction, Value, query, signed};
-use crate::error::{MOST_SEQUENCES_REPORTED, StorageError};
+use crate::error::StorageError;
 use crate::records::{Appended, SessionRecord, WrittenEvent};
 
 /// Rows in one statement: one of these numbers.
@@ -21,8 +22,24 @@ const MOST_ROWS: usize = 96;
 pub(super) struct Append {
     pub token_hash: String,
     pub events: Vec<WrittenEvent>,
+    /// How much of the session is kept; no bound where its study is not known.
+    pub limits: Option<SessionLimits>,
     pub now_ms: i64,
 }
+
+impl Append {
+    /// Whether it would be more than is kept of a session.
+    fn is_beyond(&self, session: &SessionRecord) -> bool {
+        let bytes: u64 = self.events.iter().map(|event| event.body.len() as u64).sum();
+        self.limits.is_some_and(|limits| {
+            session.event_count + self.events.len() as u64 > limits.events
+                || session.stored_bytes + bytes > limits.bytes
+        })
+    }
+}
+
+/// Bodies kept beside those that are stored under their sequence, of one session.
+const MOST_CONFLICTS: i64 = 100;
 
 /// Makes the appends in their order; one answer each. The outer error means that none was made.
 pub(super) async fn append_all(
@@ -30,18 +47,26 @@ pub(super) async fn append_all(
     appends: &[&Append],
 ) -> Result<Vec<Result<Appended, StorageError>>, StorageError> {
     let mut sessions = lock_sessions(transaction, appends).await?;
-    let mut inserted = insert(transaction, &sessions, appends).await?;
+    // Found out before anything is counted, so that nothing is inserted that is not counted.
+    let is_beyond = |append: &&Append| {
+        sessions.get(&append.token_hash).is_some_and(|session| append.is_beyond(session))
+    };
+    let beyond: Vec<bool> = appends.iter().map(is_beyond).collect();
+    let mut inserted = insert(transaction, &sessions, appends, &beyond).await?;
     let mut touched = Vec::new();
     let mut outcomes = Vec::with_capacity(appends.len());
-    for append in appends {
+    for (append, is_beyond) in appends.iter().zip(beyond) {
         outcomes.push(match sessions.get_mut(&append.token_hash) {
             None => Err(StorageError::UnknownSession),
             Some(session) if session.is_deleted() => Err(StorageError::Withdrawn),
+            Some(_) if is_beyond => Err(StorageError::SessionFull),
             Some(session) => {
-                let before = session.event_count;
+                let (before, bytes) = (session.event_count, session.stored_bytes);
                 let outcome = count_in(transaction, session, append, &mut inserted).await?;
-                if session.event_count > before {
+                if session.stored_bytes > bytes {
                     touched.push(&append.token_hash);
+                }
+                if session.event_count > before {
                     let ends = append.events.iter().any(|event| event.may_end);
                     if ends || !session.standing.is_open() {
                         stand(transaction, session).await?;
@@ -112,12 +137,13 @@ async fn insert(
     transaction: &mut Transaction,
     sessions: &HashMap<String, SessionRecord>,
     appends: &[&Append],
+    beyond: &[bool],
 ) -> Result<HashSet<(i64, u64)>, StorageError> {
     let mut seen = HashSet::new();
     let mut rows = Vec::new();
-    for append in appends {
+    for (append, is_beyond) in appends.iter().zip(beyond) {
         let Some(session) = sessions.get(&append.token_hash) else { continue };
-        if session.is_deleted() {
+        if session.is_deleted() || *is_beyond {
             continue;
         }
         // The first of two under one sequence is tried; the other one is compared with it.
@@ -129,11 +155,14 @@ async fn insert(
     }
     let mut inserted = HashSet::with_capacity(rows.len());
     for piece in pieces(&rows, shortest) {
-        let mut insert =
-            Builder::new("INSERT INTO events (session_key, sequence, at_ms, received_ms, body) ");
-        let rows = piece.into_iter().map(|(key, event, now_ms)| -> [Value<'_>; 5] {
+        let mut insert = Builder::new(
+            "INSERT INTO events (session_key, sequence, at_ms, received_ms, body, misfit) ",
+        );
+        let rows = piece.into_iter().map(|(key, event, now_ms)| -> [Value<'_>; 6] {
             let sequence = signed(event.sequence);
-            [key.into(), sequence.into(), event.at_ms.into(), now_ms.into(), (&event.body).into()]
+            let misfit = Value::Text(event.misfit.map(Misfit::word));
+            let (at_ms, body) = (event.at_ms.into(), (&event.body).into());
+            [key.into(), sequence.into(), at_ms, now_ms.into(), body, misfit]
         });
         insert.push_rows("{}", rows);
         insert.push(
@@ -155,14 +184,22 @@ async fn count_in(
 ) -> Result<Appended, StorageError> {
     let mut conflicts = Vec::new();
     let before = session.event_count;
+    let mut filled = false;
     for event in &append.events {
         if inserted.remove(&(session.key, event.sequence)) {
             session.event_count += 1;
+            session.stored_bytes += event.body.len() as u64;
             session.next_sequence = session.next_sequence.max(event.sequence + 1);
+            filled |= event.sequence == session.first_gap;
         } else if !is_stored(transaction, session.key, event).await? {
-            keep_apart(transaction, session.key, event, append.now_ms).await?;
+            if keep_apart(transaction, session.key, event, append.now_ms).await? {
+                session.stored_bytes += event.body.len() as u64;
+            }
             conflicts.push(event.sequence);
         }
+    }
+    if filled {
+        session.first_gap = first_gap(transaction, session).await?;
     }
     if session.event_count > before {
         session.last_event_ms = Some(append.now_ms);
@@ -170,12 +207,9 @@ async fn count_in(
             session.slot_expires_ms = Some(expires_ms);
         }
     }
-    let gaps = if session.event_count == session.next_sequence {
-        Vec::new()
-    } else {
-        missing_below(transaction, session.key, session.next_sequence).await?
-    };
-    let stored = gaps.first().copied().unwrap_or(session.next_sequence);
+    let (first, end) = (session.first_gap, session.next_sequence);
+    let gaps = missing_between(transaction, session.key, first..end).await?;
+    let stored = session.first_gap;
     Ok(Appended { acknowledged: Acknowledged { stored, gaps }, conflicts })
 }
 
@@ -185,11 +219,7 @@ async fn stand(
     transaction: &mut Transaction,
     session: &mut SessionRecord,
 ) -> Result<(), StorageError> {
-    let rows =
-        query("SELECT sequence, at_ms, body FROM events WHERE session_key = $1 ORDER BY sequence")
-            .bind(session.key)
-            .fetch_all(&mut *transaction)
-            .await?;
+    let rows = query(COUNTED_EVENTS).bind(session.key).fetch_all(&mut *transaction).await?;
     let events: Vec<_> =
         rows.iter().map(|row| event(session.key, row)).collect::<Result<_, _>>()?;
     session.standing = Record::of(None, &events).standing;
@@ -221,15 +251,18 @@ async fn update_sessions(
     for piece in pieces(sessions, last) {
         let mut update = Builder::new(
             "UPDATE sessions SET event_count = fresh.column2, next_sequence = fresh.column3, \
-             last_event_ms = fresh.column4, slot_expires_ms = fresh.column5 FROM (",
+             last_event_ms = fresh.column4, slot_expires_ms = fresh.column5, \
+             first_gap = fresh.column6, stored_bytes = fresh.column7 FROM (",
         );
-        let rows = piece.into_iter().map(|session| -> [Value<'_>; 5] {
+        let rows = piece.into_iter().map(|session| -> [Value<'_>; 7] {
             [
                 session.key.into(),
                 signed(session.event_count).into(),
                 signed(session.next_sequence).into(),
                 session.last_event_ms.into(),
                 session.slot_expires_ms.into(),
+                signed(session.first_gap).into(),
+                signed(session.stored_bytes).into(),
             ]
         });
         // PostgreSQL takes untyped parameters of a list for text.
@@ -256,17 +289,21 @@ async fn is_stored(
     Ok(stored_at == event.at_ms && stored_body == event.body)
 }
 
-/// Keeps a second body of a stored sequence beside the responses.
+/// Keeps a second body of a stored sequence beside the responses; whether it is kept, since it was not
+/// there and there are not too many yet.
 async fn keep_apart(
     transaction: &mut Transaction,
     session_key: i64,
     event: &WrittenEvent,
     now_ms: i64,
-) -> Result<(), StorageError> {
+) -> Result<bool, StorageError> {
     let digest = hex::encode(Sha256::digest(format!("{} {}", event.at_ms, event.body)));
-    query(
+    let kept = query(
         "INSERT INTO event_conflicts (session_key, sequence, digest, at_ms, received_ms, body) \
-         VALUES ($1, $2, $3, $4, $5, $6) ON CONFLICT DO NOTHING",
+         SELECT CAST($1 AS BIGINT), CAST($2 AS BIGINT), $3, CAST($4 AS DOUBLE PRECISION), \
+         CAST($5 AS BIGINT), $6 \
+         WHERE (SELECT COUNT(*) FROM event_conflicts WHERE session_key = $1) < $7 \
+         ON CONFLICT DO NOTHING",
     )
     .bind(session_key)
     .bind(signed(event.sequence))
@@ -274,35 +311,10 @@ async fn keep_apart(
     .bind(event.at_ms)
     .bind(now_ms)
     .bind(&event.body)
+    .bind(MOST_CONFLICTS)
     .execute(transaction)
     .await?;
-    Ok(())
-}
-
-/// The sequences in `0..end` that are not stored, at most [`MOST_SEQUENCES_REPORTED`].
-pub(super) async fn missing_below(
-    transaction: &mut Transaction,
-    session_key: i64,
-    end: u64,
-) -> Result<Vec<u64>, StorageError> {
-    let rows = query(
-        "SELECT sequence FROM events WHERE session_key = $1 AND sequence < $2 ORDER BY sequence",
-    )
-    .bind(session_key)
-    .bind(signed(end))
-    .fetch_all(transaction)
-    .await?;
-    let mut missing = Vec::new();
-    let mut expected = 0;
-    for row in &rows {
-        let sequence = row.unsigned("events", "sequence")?;
-        let room = MOST_SEQUENCES_REPORTED - missing.len();
-        missing.extend((expected..sequence).take(room));
-        expected = sequence + 1;
-    }
-    let room = MOST_SEQUENCES_REPORTED - missing.len();
-    missing.extend((expected..end).take(room));
-    Ok(missing)
+    Ok(kept > 0)
 }
 
 #[cfg(test)]

@@ -2,18 +2,18 @@
 
 use super::append::{Append, append_all};
 use super::complete::complete;
-use super::erase::withdraw;
+use super::erase::{Holder, withdraw};
 use super::start::start;
 use crate::database::Transaction;
 use crate::error::StorageError;
-use crate::records::{Appended, Completed, NewSession, SessionRecord};
+use crate::records::{Appended, Completed, NewSession, SessionRecord, Withdrawal};
 
 /// A change to make.
 pub(super) enum Change {
     Start(Box<NewSession>),
     Append(Append),
     Complete { token_hash: String, events: u64, receipt_key: Vec<u8>, now_ms: i64 },
-    Withdraw { token_hash: String, withdrawal_hash: String, now_ms: i64 },
+    Withdraw { holder: Holder, withdrawal_hash: String, now_ms: i64 },
 }
 
 impl Change {
@@ -31,7 +31,7 @@ pub(super) enum Outcome {
     Started(Box<SessionRecord>),
     Appended(Appended),
     Completed(Completed),
-    Withdrawn { deleted: u64 },
+    Withdrawn(Withdrawal),
 }
 
 pub(super) async fn apply(
@@ -51,9 +51,8 @@ pub(super) async fn apply(
                 .await
                 .map(Outcome::Completed)
         }
-        Change::Withdraw { token_hash, withdrawal_hash, now_ms } => {
-            let deleted = withdraw(transaction, token_hash, withdrawal_hash, *now_ms).await?;
-            Ok(Outcome::Withdrawn { deleted })
+        Change::Withdraw { holder, withdrawal_hash, now_ms } => {
+            withdraw(transaction, holder, withdrawal_hash, *now_ms).await.map(Outcome::Withdrawn)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The end of a session: every event is there, and the receipt says so.
 
-use super::append::missing_below;
 use super::find::open_session;
+use super::gaps::missing_between;
 use super::receipt::ReceiptHasher;
 use crate::database::{Transaction, query, signed};
 use crate::error::StorageError;
@@ -19,13 +19,10 @@ pub(super) async fn complete(
     if let Some((receipt, stored)) = session.receipt {
         return Ok(Completed { key: session.key, study_id: session.study_id, receipt, stored });
     }
-    // An unbroken prefix needs no search; otherwise the gaps and the unseen end are missing.
-    let unbroken = session.event_count == session.next_sequence && events <= session.event_count;
-    if !unbroken {
-        let missing = missing_below(transaction, session.key, events).await?;
-        if !missing.is_empty() {
-            return Err(StorageError::MissingEvents { missing });
-        }
+    if events > session.first_gap {
+        let range = session.first_gap..events;
+        let missing = missing_between(transaction, session.key, range).await?;
+        return Err(StorageError::MissingEvents { missing });
     }
     let mut hasher = ReceiptHasher::new(receipt_key, &session.study_id, session.participant);
     let rows = query(

@@ -1,20 +1,24 @@
-//! Deletions that a researcher or the clock asks for, and the list of all there were.
+//! Deletions that a researcher asks for, and the list of all there were.
 
 use sqlx::AssertSqlSafe;
 
-use super::erase::{Cause, erase};
+use super::erase::{By, Cause, erase};
 use super::row::{SESSION_COLUMNS, session_record};
+use crate::accounts::records::AuditEntry;
 use crate::database::{query, signed};
+use crate::decisions::insert_entry;
 use crate::error::StorageError;
 use crate::handle::Storage;
-use crate::records::Deletion;
+use crate::records::{Deletion, participant_id};
 
 impl Storage {
-    /// Deletes a participant's answers and identifiers at their wish; returns how many events.
+    /// Deletes a participant's answers and identifiers at their wish; returns how many events. `who` does
+    /// it, for the log.
     pub async fn erase_participant(
         &self,
         study_id: &str,
         participant: u64,
+        who: &str,
         now_ms: i64,
     ) -> Result<u64, StorageError> {
         let mut transaction = self.writers.begin_write().await?;
@@ -27,17 +31,20 @@ impl Storage {
         .fetch_optional(&mut transaction)
         .await?;
         let session = session_record(&row.ok_or(StorageError::UnknownSession)?)?;
-        let deleted = erase(&mut transaction, &session, Cause::Wish, now_ms).await?;
+        let by = By { who, action: "delete a participant’s answers" };
+        let deleted = erase(&mut transaction, &session, Cause::Wish, by, now_ms).await?;
         transaction.commit().await?;
+        self.wiper.wipe().await;
         Ok(deleted)
     }
 
     /// Deletes recruitment identifiers and repeat marks, of one participant or of all of a study;
-    /// returns how many.
+    /// returns how many. `who` does it, for the log.
     pub async fn erase_identifiers(
         &self,
         study_id: &str,
         participant: Option<u64>,
+        who: &str,
         now_ms: i64,
     ) -> Result<u64, StorageError> {
         const WHOSE: &str = "study_id = $1 AND ($2 = 0 OR participant = $2)";
@@ -62,38 +69,18 @@ impl Storage {
             .execute(&mut transaction)
             .await?;
         }
+        let entry = AuditEntry {
+            key: 0,
+            at_ms: now_ms,
+            who: who.to_owned(),
+            action: "delete identifiers".to_owned(),
+            study_id: study_id.to_owned(),
+            subject: participant.map(participant_id).unwrap_or_default(),
+        };
+        insert_entry(&mut transaction, &entry).await?;
         transaction.commit().await?;
+        self.wiper.wipe().await;
         Ok(deleted)
-    }
-
-    /// Deletes the answers of the sessions of a version that ended (or showed their last sign of
-    /// life) before `before_ms`; returns how many sessions.
-    pub async fn erase_ended_before(
-        &self,
-        study_id: &str,
-        config_hash: &str,
-        before_ms: i64,
-        now_ms: i64,
-    ) -> Result<u64, StorageError> {
-        let mut transaction = self.writers.begin_write().await?;
-        let lock = transaction.dialect().row_lock;
-        let rows = query(AssertSqlSafe(format!(
-            "SELECT {SESSION_COLUMNS} FROM sessions WHERE study_id = $1 AND config_hash = $2 \
-             AND deleted_ms IS NULL \
-             AND COALESCE(ended_ms, last_event_ms, started_ms) < $3 \
-             ORDER BY session_key{lock}"
-        )))
-        .bind(study_id)
-        .bind(config_hash)
-        .bind(before_ms)
-        .fetch_all(&mut transaction)
-        .await?;
-        for row in &rows {
-            let session = session_record(row)?;
-            erase(&mut transaction, &session, Cause::TimeOver, now_ms).await?;
-        }
-        transaction.commit().await?;
-        Ok(rows.len() as u64)
     }
 
     /// Every deletion there was, in order of time: what a backup must not bring back.

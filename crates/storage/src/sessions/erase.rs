@@ -5,25 +5,59 @@ use mimique_session::Standing;
 use sqlx::AssertSqlSafe;
 use subtle::ConstantTimeEq;
 
-use super::find::find_session;
+use super::find::{find_by_code, find_session};
+use crate::accounts::records::AuditEntry;
 use crate::database::{Transaction, query};
+use crate::decisions::insert_entry;
 use crate::error::StorageError;
-use crate::records::{Deletion, PERSONAL_TABLES, SessionRecord};
+use crate::records::{Deletion, PERSONAL_TABLES, SessionRecord, Withdrawal, participant_id};
 
-/// Deletes what a participant has answered who holds the withdrawal code; gives how many events.
+/// Who holds a withdrawal code.
+pub(super) enum Holder {
+    /// The session's own page.
+    Page { token_hash: String },
+    /// Somebody who brings the code alone, to one study or to any.
+    Code { study_id: Option<String>, who: String },
+}
+
+/// Deletes what a participant has answered who holds the withdrawal code.
 pub(super) async fn withdraw(
     transaction: &mut Transaction,
-    token_hash: &str,
+    holder: &Holder,
     withdrawal_hash: &str,
     now_ms: i64,
-) -> Result<u64, StorageError> {
-    let session =
-        find_session(transaction, token_hash).await?.ok_or(StorageError::UnknownSession)?;
-    // In a time that does not tell where the two differ.
-    if !bool::from(session.withdrawal_hash.as_bytes().ct_eq(withdrawal_hash.as_bytes())) {
-        return Err(StorageError::WrongWithdrawalCode);
-    }
-    erase(transaction, &session, Cause::Wish, now_ms).await
+) -> Result<Withdrawal, StorageError> {
+    let (session, who) = match holder {
+        Holder::Page { token_hash } => {
+            let session = find_session(transaction, token_hash).await?;
+            let session = session.ok_or(StorageError::UnknownSession)?;
+            // In a time that does not tell where the two differ.
+            if !bool::from(session.withdrawal_hash.as_bytes().ct_eq(withdrawal_hash.as_bytes())) {
+                return Err(StorageError::WrongWithdrawalCode);
+            }
+            (session, PARTICIPANT)
+        }
+        Holder::Code { study_id, who } => {
+            let session = find_by_code(transaction, study_id.as_deref(), withdrawal_hash).await?;
+            (session.ok_or(StorageError::UnknownWithdrawalCode)?, who.as_str())
+        }
+    };
+    let by = By { who, action: "withdraw" };
+    let deleted = erase(transaction, &session, Cause::Wish, by, now_ms).await?;
+    Ok(Withdrawal { study_id: session.study_id, participant: session.participant, deleted })
+}
+
+/// The participant in the log: whoever holds the code, by whatever way.
+pub(super) const PARTICIPANT: &str = "(participant)";
+
+/// The command line and the server itself, in the log.
+pub(super) const SERVER: &str = "(server)";
+
+/// Who deletes, and what the log calls it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct By<'a> {
+    pub who: &'a str,
+    pub action: &'a str,
 }
 
 /// Why answers are deleted.
@@ -50,6 +84,7 @@ pub(super) async fn erase(
     transaction: &mut Transaction,
     session: &SessionRecord,
     cause: Cause,
+    by: By<'_>,
     now_ms: i64,
 ) -> Result<u64, StorageError> {
     let mut deleted = 0;
@@ -70,16 +105,35 @@ pub(super) async fn erase(
         };
         query(AssertSqlSafe(format!(
             "UPDATE sessions SET status = $1, ended_ms = $2, deleted_ms = $2, client = '{{}}', \
-             event_count = 0, next_sequence = 0, last_event_ms = NULL, receipt = NULL, \
-             receipt_events = NULL, slot_expires_ms = {expires_ms} WHERE session_key = $3"
+             event_count = 0, next_sequence = 0, first_gap = 0, stored_bytes = 0, last_event_ms = NULL, receipt = NULL, \
+             receipt_events = NULL, overdue_ms = NULL, slot_expires_ms = {expires_ms} WHERE session_key = $3"
         )))
         .bind(standing.stored_word())
         .bind(now_ms)
         .bind(session.key)
-        .execute(transaction)
+        .execute(&mut *transaction)
         .await?;
+        log(transaction, session, by, now_ms).await?;
     }
     Ok(deleted)
+}
+
+/// A line of the log: in the transaction of the deletion, so that neither is without the other.
+async fn log(
+    transaction: &mut Transaction,
+    session: &SessionRecord,
+    by: By<'_>,
+    now_ms: i64,
+) -> Result<(), StorageError> {
+    let entry = AuditEntry {
+        key: 0,
+        at_ms: now_ms,
+        who: by.who.to_owned(),
+        action: by.action.to_owned(),
+        study_id: session.study_id.clone(),
+        subject: participant_id(session.participant),
+    };
+    insert_entry(transaction, &entry).await
 }
 
 /// Deletes again what was deleted after a backup was made; a session that is not here was started
@@ -97,7 +151,8 @@ pub(crate) async fn repeat_deletions(
         match causes.into_iter().find(|cause| cause.word() == deletion.what) {
             Some(cause) => {
                 repeated += u64::from(!session.is_deleted());
-                erase(transaction, &session, cause, deletion.at_ms).await?;
+                let by = By { who: SERVER, action: "delete again after a restoration" };
+                erase(transaction, &session, cause, by, deletion.at_ms).await?;
             }
             None => {
                 for table in ["recruitment", "repeat_marks"] {

@@ -22,6 +22,24 @@ pub(super) async fn find_session(
     row.as_ref().map(session_record).transpose()
 }
 
+/// The session with this withdrawal code, of one study or of any, locked until the transaction ends.
+pub(super) async fn find_by_code(
+    transaction: &mut Transaction,
+    study_id: Option<&str>,
+    withdrawal_hash: &str,
+) -> Result<Option<SessionRecord>, StorageError> {
+    let lock = transaction.dialect().row_lock;
+    let row = query(AssertSqlSafe(format!(
+        "SELECT {SESSION_COLUMNS} FROM sessions WHERE withdrawal_hash = $1 \
+         AND ($2 = '' OR study_id = $2) ORDER BY session_key LIMIT 1{lock}"
+    )))
+    .bind(withdrawal_hash)
+    .bind(study_id.unwrap_or_default())
+    .fetch_optional(transaction)
+    .await?;
+    row.as_ref().map(session_record).transpose()
+}
+
 /// The session, if it still takes events.
 pub(super) async fn open_session(
     transaction: &mut Transaction,

@@ -6,6 +6,8 @@ mod complete;
 mod deletion;
 pub(crate) mod erase;
 mod find;
+mod gaps;
+mod overdue;
 mod read;
 mod receipt;
 mod row;

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use mimique_session::wire::Event;
 use sqlx::AssertSqlSafe;
 
-use super::row::{SESSION_COLUMNS, event, session_record};
-use crate::database::query;
+use super::row::{COUNTED_EVENTS, SESSION_COLUMNS, event, session_record};
+use crate::database::{Row, query, signed};
 use crate::error::StorageError;
 use crate::handle::Storage;
-use crate::records::{RecruitmentEntry, SessionRecord};
+use crate::records::{RecruitmentEntry, SessionRecord, StoredEvent, WrittenEvent};
 
 impl Storage {
     /// The session with this token's hash.
@@ -59,6 +59,56 @@ impl Storage {
         .fetch_all(&self.readers)
         .await?;
         rows.iter().map(|row| event(session_key, row)).collect()
+    }
+
+    /// Some of the stored events of a session, from a sequence on, their bodies as text: a piece of what
+    /// may be much. Empty after the last.
+    pub async fn events_from(
+        &self,
+        session_key: i64,
+        sequence: u64,
+    ) -> Result<Vec<WrittenEvent>, StorageError> {
+        const MOST: i64 = 16;
+        let rows = query(
+            "SELECT sequence, at_ms, body FROM events WHERE session_key = $1 AND sequence >= $2 \
+             ORDER BY sequence LIMIT $3",
+        )
+        .bind(session_key)
+        .bind(signed(sequence))
+        .bind(MOST)
+        .fetch_all(&self.readers)
+        .await?;
+        let written = |row: &Row| -> Result<WrittenEvent, StorageError> {
+            Ok(WrittenEvent {
+                sequence: row.unsigned("events", "sequence")?,
+                at_ms: row.get("at_ms")?,
+                body: row.get("body")?,
+                may_end: false,
+                misfit: None,
+            })
+        };
+        rows.iter().map(written).collect()
+    }
+
+    /// The events of a session that count, by sequence: what tables, dashboard and standing are made of.
+    pub async fn counted_events(&self, session_key: i64) -> Result<Vec<Event>, StorageError> {
+        let rows = query(COUNTED_EVENTS).bind(session_key).fetch_all(&self.readers).await?;
+        rows.iter().map(|row| event(session_key, row)).collect()
+    }
+
+    /// Every stored event of a session, by sequence, with what is wrong with it.
+    pub async fn stored_events(&self, session_key: i64) -> Result<Vec<StoredEvent>, StorageError> {
+        let rows = query(
+            "SELECT sequence, at_ms, body, misfit FROM events WHERE session_key = $1 \
+             ORDER BY sequence",
+        )
+        .bind(session_key)
+        .fetch_all(&self.readers)
+        .await?;
+        let stored = |row: &Row| -> Result<StoredEvent, StorageError> {
+            Ok(StoredEvent { event: event(session_key, row)?, misfit: row.get("misfit")? })
+        };
+        rows.iter().map(stored).collect()
     }
 
     /// How many differing bodies were sent for stored sequences, by session key.

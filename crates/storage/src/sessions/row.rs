@@ -11,7 +11,7 @@ use crate::records::SessionRecord;
 pub(super) const SESSION_COLUMNS: &str = "session_key, study_id, participant, config_hash, seed, stage, \
      language, client, withdrawal_hash, status, started_ms, last_event_ms, ended_ms, \
      event_count, next_sequence, receipt, receipt_events, slot, slot_expires_ms, slot_lasts_ms, \
-     deleted_ms, assigned_condition";
+     deleted_ms, assigned_condition, first_gap, stored_bytes";
 
 /// A session as its row says.
 pub(super) fn session_record(row: &Row) -> Result<SessionRecord, StorageError> {
@@ -44,12 +44,21 @@ pub(super) fn session_record(row: &Row) -> Result<SessionRecord, StorageError> {
         deleted_ms: row.get("deleted_ms")?,
         event_count: row.unsigned(TABLE, "event_count")?,
         next_sequence: row.unsigned(TABLE, "next_sequence")?,
+        first_gap: row.unsigned(TABLE, "first_gap")?,
+        stored_bytes: row.unsigned(TABLE, "stored_bytes")?,
         receipt: match (receipt, receipt_events) {
             (Some(receipt), Some(events)) => Some((receipt, unsigned(TABLE, events)?)),
             _ => None,
         },
     })
 }
+
+/// The events of a session that count, by sequence: neither those that cannot be one of it, nor those
+/// that came after its receipt, which does not cover them.
+pub(super) const COUNTED_EVENTS: &str = "SELECT e.sequence, e.at_ms, e.body FROM events e \
+     JOIN sessions s ON s.session_key = e.session_key WHERE e.session_key = $1 \
+     AND e.misfit IS NULL AND (s.receipt_events IS NULL OR e.sequence < s.receipt_events) \
+     ORDER BY e.sequence";
 
 /// An event of a session as its row says.
 pub(super) fn event(session_key: i64, row: &Row) -> Result<Event, StorageError> {

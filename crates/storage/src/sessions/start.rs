@@ -51,6 +51,23 @@ pub(super) async fn start(
     fresh(session, &place, key)
 }
 
+/// Whether a session could start: refuses as [`start`] does, and writes nothing.
+pub(super) async fn may_start(
+    transaction: &mut Transaction,
+    session: &NewSession,
+) -> Result<(), StorageError> {
+    // Nothing is locked: a snapshot is for reading alone.
+    let known = query("SELECT 1 FROM sessions WHERE token_hash = $1")
+        .bind(&session.token_hash)
+        .fetch_optional(&mut *transaction)
+        .await?;
+    if known.is_some() {
+        return Ok(());
+    }
+    refuse_repeats(transaction, session).await?;
+    refuse_beyond_places(transaction, session).await
+}
+
 /// What a session is given at its start.
 struct Place<'s> {
     participant: i64,
@@ -144,6 +161,8 @@ fn fresh(session: &NewSession, place: &Place<'_>, key: i64) -> Result<SessionRec
         deleted_ms: None,
         event_count: 0,
         next_sequence: 0,
+        first_gap: 0,
+        stored_bytes: 0,
         receipt: None,
     })
 }

@@ -202,7 +202,12 @@ mod tests {
     use super::*;
 
     fn append(token: &str) -> Change {
-        Change::Append(Append { token_hash: token.to_owned(), events: Vec::new(), now_ms: 0 })
+        Change::Append(Append {
+            token_hash: token.to_owned(),
+            events: Vec::new(),
+            limits: None,
+            now_ms: 0,
+        })
     }
 
     fn completion(token: &str) -> Change {

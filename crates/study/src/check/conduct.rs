@@ -39,6 +39,9 @@ fn device(subject: &Subject<'_>, issues: &mut Issues) {
             );
         }
     }
+    if let Some(share) = rules.minimum_frame_share.filter(|share| !(0.0..=1.0).contains(share)) {
+        issues.error("/device/minimumFrameShare", Problem::NotAShare { share });
+    }
     if let Some(hz) = rules.minimum_refresh_hz.filter(|hz| !(1.0..=500.0).contains(hz)) {
         issues.error(
             "/device/minimumRefreshHz",

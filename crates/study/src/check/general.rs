@@ -199,6 +199,7 @@ fn recruitment(subject: &Subject<'_>, issues: &mut Issues) {
         issues.error("/recruitment", Problem::NoRecruitmentIdentifier);
     }
     enrolment(recruitment, issues);
+    way_back(recruitment, issues);
     let Some(redirect) = &recruitment.redirect else { return };
     let pointer = "/recruitment/redirect";
     if !redirect.starts_with("https://") {
@@ -212,6 +213,22 @@ fn recruitment(subject: &Subject<'_>, issues: &mut Issues) {
         }
     }
 }
+
+/// Whether the last page goes back by itself, and when.
+fn way_back(recruitment: &Recruitment, issues: &mut Issues) {
+    let Some(seconds) = recruitment.return_after_seconds else { return };
+    let pointer = "/recruitment/returnAfterSeconds";
+    if recruitment.redirect.is_none() {
+        issues.error(pointer, Problem::NoWayBack);
+    }
+    if !(LEAST_RETURN_SECONDS..=3600).contains(&seconds) {
+        let (value, least) = (f64::from(seconds), f64::from(LEAST_RETURN_SECONDS));
+        issues.error(pointer, Problem::OutOfRange { value, unit: "s", least, most: 3600.0 });
+    }
+}
+
+/// Least seconds before the last page goes back by itself: WCAG 2.2, 2.2.1, gives 20 to press one key.
+const LEAST_RETURN_SECONDS: u32 = 20;
 
 /// Who can begin, and when.
 fn enrolment(recruitment: &Recruitment, issues: &mut Issues) {

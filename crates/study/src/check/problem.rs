@@ -132,6 +132,8 @@ NoFailedChecksCode: "no-code",
     "people who fail the attention checks have no code to go back with", "add \"failedChecksCode\": \"...\"";
 UnknownParameter { name: String }: "unknown-parameter",
     "{{{name}}} is not one of urlParameters", "add it to urlParameters";
+NoWayBack: "no-way-back", "the last page is to go back by itself, and no address says where",
+    "add \"redirect\": \"https://...\", or remove it";
 NoParticipants: "out-of-range", "nobody could take part", "write how many, or leave it out for any number";
 NoReservation: "out-of-range",
     "a place that is kept for 0 minutes is lost at once", "write the time that the study takes, in minutes";

@@ -30,6 +30,11 @@ pub struct DeviceRules {
     /// Least refresh rate of the display as the browser draws, Hz; 5 % below it still count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minimum_refresh_hz: Option<f64>,
+    /// Least share of its frames that a play must show to count, 0 to 1; of those that the display shows in
+    /// the clip's time, 60 a second at most. A play below it is played once more; after the second one the
+    /// session ends with `deviceCode`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minimum_frame_share: Option<f64>,
     /// Whether the pages fill the screen.
     #[serde(default)]
     pub fullscreen: FullscreenRule,

@@ -62,6 +62,9 @@ pub struct Recruitment {
     /// For those whom the study cannot take.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub screened_out_code: Option<String>,
+    /// For those whose device cannot take part; `screenedOutCode` if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device_code: Option<String>,
     /// For those who failed the attention checks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_checks_code: Option<String>,
@@ -69,6 +72,10 @@ pub struct Recruitment {
     /// parameter of the arrival.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redirect: Option<String>,
+    /// Seconds after which the last page goes back to `redirect` by itself, 20 or more; the participant can
+    /// stay. Not by itself if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub return_after_seconds: Option<u32>,
     /// Parameters of the address that are kept, apart from the answers: `PROLIFIC_PID`...
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub url_parameters: Vec<String>,

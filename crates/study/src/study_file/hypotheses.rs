@@ -74,7 +74,7 @@ pub struct Exclusions {
     /// Leave out a trial with a frame longer than this, milliseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_frame_ms: Option<f64>,
-    /// Leave out a trial answered sooner than this after the onset, milliseconds.
+    /// Leave out a trial answered sooner than this after answers could first be given, milliseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shortest_rt_ms: Option<f64>,
     /// Leave out a participant who failed more attention checks than this.

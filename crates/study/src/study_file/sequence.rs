@@ -69,7 +69,7 @@ pub struct Beside {
     pub clip_caption: Option<LocalText>,
 }
 
-/// On which side of the clip its companion stands. On a narrow screen left is above.
+/// On which side of the clip its companion stands, on every screen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum Side {

@@ -1,5 +1,7 @@
 //! Texts in which something is filled in, or which are chosen by what has happened.
 
+use std::collections::BTreeMap;
+
 use super::table::{NAMES, Place};
 use super::{Shown, Words};
 use crate::answer::AnswerProblem;
@@ -25,6 +27,22 @@ impl Words {
     /// "You must be at least 18 years old to take part."
     pub fn minimum_age(&self, years: u32) -> String {
         self.fill(Place::minimum_age, &[("years", &years)])
+    }
+
+    /// The page goes back by itself.
+    pub fn go_back_in(&self, seconds: u64) -> String {
+        self.fill(Place::go_back_in, &[("seconds", &seconds)])
+    }
+
+    /// Why something could not be shown, by the code that the stage gives and the values that its words
+    /// name (`static/stage/failure.js`).
+    pub fn stage_failure(&self, code: &str, values: &BTreeMap<String, String>) -> String {
+        let text = self.by_name(&format!("failed_{code}"));
+        let mut text = text.unwrap_or_else(|| self.at(Place::failed_unknown)).to_owned();
+        for (name, value) in values {
+            text = text.replace(&format!("{{{name}}}"), value);
+        }
+        text
     }
 
     /// "You can go on in 12 seconds."
@@ -152,8 +170,12 @@ impl Words {
 
     /// What is said of a refusal of the server, by its code.
     fn by_code(&self, code: &str) -> Option<&str> {
-        let name = format!("refused_{}", code.replace('-', "_"));
+        self.by_name(&format!("refused_{}", code.replace('-', "_")))
+    }
+
+    /// The text of a name; none where no text has it.
+    fn by_name(&self, name: &str) -> Option<&str> {
         let place = NAMES.iter().position(|known| *known == name)?;
-        Some(self.own.get(&name).map_or(self.built_in[place], String::as_str))
+        Some(self.own.get(name).map_or(self.built_in[place], String::as_str))
     }
 }

@@ -12,7 +12,7 @@ macro_rules! table {
         /// Where a text stands.
         #[derive(Clone, Copy)]
         #[allow(non_camel_case_types, reason = "the names are those of the translations")]
-        #[allow(dead_code, reason = "what is said of refusals is found by its name")]
+        #[allow(dead_code, reason = "what is said of refusals and failures is found by its name")]
         pub(super) enum Place { $($name,)* $($place,)* }
 
         /// The names of the texts.
@@ -95,6 +95,14 @@ fixed {
     play_interrupted:
         "The clip was interrupted. Please play it again.",
         "La lecture a été interrompue. Veuillez revoir l’extrait.";
+    /// A play was not wholly in view.
+    play_out_of_view:
+        "A part of the clip was not in view. Please play it again with the whole picture on the screen.",
+        "Une partie de l’extrait n’était pas visible. Veuillez le revoir avec l’image entière à l’écran.";
+    /// A play showed too few frames.
+    play_too_slow:
+        "The clip did not run smoothly on this device. Please close other pages and programs, then play it once more.",
+        "L’extrait n’a pas été fluide sur cet appareil. Fermez d’autres pages et programmes, puis revoyez-le une fois.";
     /// A clip failed.
     clip_failed: "This clip could not be shown.", "Cet extrait n’a pas pu être affiché.";
     /// A picture or a sign-language video of the page failed.
@@ -111,8 +119,28 @@ fixed {
     thanks: "Thank you", "Merci";
     /// Text of the last page.
     thanks_text:
-        "All your answers have arrived. You can close this page now.",
-        "Toutes vos réponses sont arrivées. Vous pouvez fermer cette page.";
+        "All your answers have arrived.",
+        "Toutes vos réponses sont arrivées.";
+    /// Nothing more is to be done on this page.
+    can_close: "You can close this page now.", "Vous pouvez fermer cette page.";
+    /// What to do with the completion code.
+    take_code:
+        "Please give this code to the site that sent you here.",
+        "Donnez ce code au site qui vous a adressé ici.";
+    /// What to do where there is a way back.
+    take_way_back:
+        "Please go back to the site that sent you here: only then does it know that you have been here.",
+        "Veuillez revenir au site qui vous a adressé ici\u{a0}: c’est ainsi qu’il sait que vous êtes venu(e).";
+    /// Button: copy the completion code.
+    copy_code: "Copy the code", "Copier le code";
+    /// The code was copied.
+    copied: "Copied", "Copié";
+    /// Button: do not go back by itself.
+    stay_here: "Stay on this page", "Rester sur cette page";
+    /// Heading of what a participant keeps: withdrawal code, number, receipt.
+    for_your_records: "For your records", "À conserver";
+    /// Label of the participant's number.
+    participant_number: "Participant number", "Numéro de participant";
     /// Label of the completion code.
     completion_code: "Completion code", "Code de fin";
     /// Link back to the recruiting site.
@@ -123,8 +151,14 @@ fixed {
     withdrawal_code: "Withdrawal code", "Code de retrait";
     /// What the withdrawal code is for.
     withdrawal_code_text:
-        "Keep this code if you might want to have your answers deleted later: give it to the investigator.",
-        "Gardez ce code si vous pensez vouloir faire effacer vos réponses plus tard\u{a0}: donnez-le au responsable de l’étude.";
+        "Keep the withdrawal code and your number if you might want to have your answers deleted later: give them to the investigator.",
+        "Gardez le code de retrait et votre numéro si vous pensez vouloir faire effacer vos réponses plus tard\u{a0}: donnez-les au responsable de l’étude.";
+    /// Link to the page where answers are deleted by the withdrawal code.
+    delete_by_code: "Have my answers deleted by this code", "Faire effacer mes réponses avec ce code";
+    /// The session is being begun.
+    beginning: "Just a moment: the study begins.", "Un instant\u{a0}: l’étude commence.";
+    /// Button: back to the agreement, after declining.
+    back_to_consent: "Back to the agreement", "Revenir à l’accord de participation";
     /// Heading after declining.
     declined: "You chose not to take part", "Vous avez choisi de ne pas participer";
     /// Text after declining.
@@ -171,10 +205,10 @@ fixed {
     move_up: "Move up:", "Monter\u{a0}:";
     /// Button beside an item of a ranking, before the item's name.
     move_down: "Move down:", "Descendre\u{a0}:";
-    /// Answer of a comparison: the clip on the left, or above on a narrow screen.
-    left_one: "The left one (or upper one)", "Celui de gauche (ou du haut)";
-    /// Answer of a comparison: the clip on the right, or below on a narrow screen.
-    right_one: "The right one (or lower one)", "Celui de droite (ou du bas)";
+    /// Answer of a comparison: the clip on the left.
+    left_one: "The left one", "Celui de gauche";
+    /// Answer of a comparison: the clip on the right.
+    right_one: "The right one", "Celui de droite";
     /// Answer of a comparison: no difference.
     both_alike: "No difference", "Aucune différence";
     /// Group of answers: which of the options is best.
@@ -265,10 +299,14 @@ fixed {
     screened_out_training:
         "The practice clips were not answered as the study needs it.",
         "Les extraits d’entraînement n’ont pas été réussis comme l’étude le demande.";
+    /// The device shows too few frames.
+    screened_out_frames:
+        "The clips do not run smoothly enough on this device, so that your answers could not be compared with those of others. This is not your fault.",
+        "Les extraits ne sont pas assez fluides sur cet appareil pour que vos réponses soient comparables à celles des autres. Vous n’y êtes pour rien.";
     /// What becomes of somebody who was screened out.
     screened_out_text:
-        "Thank you for your time. Nothing more is asked of you; you can close this page.",
-        "Merci de votre temps. Rien d’autre ne vous est demandé\u{a0}; vous pouvez fermer cette page.";
+        "Thank you for your time. Nothing more is asked of you.",
+        "Merci de votre temps. Rien d’autre ne vous est demandé.";
     /// Heading: too many attention checks were failed.
     checks_failed: "The study ends here", "L’étude se termine ici";
 }
@@ -285,6 +323,68 @@ made {
     minimum_age:
         "You must be at least {years} years old to take part.",
         "Il faut avoir au moins {years} ans pour participer.";
+    /// The page goes back by itself.
+    go_back_in: "You go back by itself in {seconds} s.", "Retour automatique dans {seconds} s.";
+    /// Why something could not be shown.
+    failed_connection:
+        "The connection broke off. It is fetched by itself when the connection is back; you can also try again.",
+        "La connexion s’est interrompue. Le chargement reprendra de lui-même à son retour\u{a0}; vous pouvez aussi réessayer.";
+    /// Why something could not be shown.
+    failed_stalled:
+        "Nothing arrived for {seconds} s. Please check the connection and try again.",
+        "Rien n’est arrivé pendant {seconds} s. Vérifiez la connexion et réessayez.";
+    /// Why something could not be shown.
+    failed_refused:
+        "The server does not give it out (answer {status}). Try again in a moment.",
+        "Le serveur ne le fournit pas (réponse {status}). Réessayez dans un instant.";
+    /// Why something could not be shown.
+    failed_damaged:
+        "It arrived damaged. Please check the connection and try again.",
+        "Il est arrivé endommagé. Vérifiez la connexion et réessayez.";
+    /// Why something could not be shown.
+    failed_missing:
+        "The server does not have it. Please write to the investigator.",
+        "Le serveur ne l’a pas. Écrivez au responsable de l’étude.";
+    /// Why something could not be shown.
+    failed_module:
+        "A part of this page could not be loaded. Please check the connection and try again, or reload the page.",
+        "Une partie de cette page n’a pas pu être chargée. Vérifiez la connexion et réessayez, ou rechargez la page.";
+    /// Why something could not be shown.
+    failed_no_graphics:
+        "This browser cannot draw the animations. Use a current Chrome, Edge, Firefox or Safari with hardware acceleration switched on.",
+        "Ce navigateur ne peut pas dessiner les animations. Utilisez une version récente de Chrome, Edge, Firefox ou Safari, avec l’accélération matérielle activée.";
+    /// Why something could not be shown.
+    failed_graphics_lost:
+        "The graphics of this device stopped. Close other pages and programs, then try again.",
+        "L’affichage graphique de cet appareil s’est arrêté. Fermez d’autres pages et programmes, puis réessayez.";
+    /// Why something could not be shown.
+    failed_solver:
+        "The animation could not be computed. Please try again, or reload the page.",
+        "L’animation n’a pas pu être calculée. Réessayez, ou rechargez la page.";
+    /// Why something could not be shown.
+    failed_solver_silent:
+        "The animation was not computed within {seconds} s. Close other pages and programs, then try again.",
+        "L’animation n’a pas été calculée en {seconds} s. Fermez d’autres pages et programmes, puis réessayez.";
+    /// Why something could not be shown.
+    failed_video:
+        "This browser cannot play the video. Try another browser.",
+        "Ce navigateur ne peut pas lire la vidéo. Essayez un autre navigateur.";
+    /// Why something could not be shown.
+    failed_picture:
+        "This browser cannot read a picture of the face. Try another browser.",
+        "Ce navigateur ne peut pas lire une image du visage. Essayez un autre navigateur.";
+    /// Why something could not be shown.
+    failed_picture_hidden:
+        "This browser hides pictures from pages (its protection against fingerprinting). Allow this page to read canvases, or use another browser.",
+        "Ce navigateur cache les images aux pages (protection contre le pistage). Autorisez cette page à lire les canevas, ou utilisez un autre navigateur.";
+    /// Why something could not be shown.
+    failed_memory:
+        "There is not enough memory for a picture of the face. Close other pages and programs, then try again.",
+        "La mémoire ne suffit pas pour une image du visage. Fermez d’autres pages et programmes, puis réessayez.";
+    /// Why something could not be shown.
+    failed_unknown:
+        "Something unexpected happened. Please try again, or reload the page.",
+        "Une erreur inattendue est survenue. Réessayez, ou rechargez la page.";
     /// A break lasts so long.
     wait_seconds: "You can go on in {seconds} s.", "Vous pourrez continuer dans {seconds} s.";
     /// What to correct in an answer.

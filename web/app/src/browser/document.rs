@@ -81,6 +81,12 @@ pub fn site() -> Option<(String, String)> {
     Some((meta.get_attribute("content")?, meta.get_attribute("data-study")?))
 }
 
+/// Goes to another address.
+pub fn go(address: &str) {
+    // Where the browser does not go, the link is there to be pressed.
+    let _ = window().location().set_href(address);
+}
+
 /// Loads the page again.
 pub fn reload() {
     // Where the browser does not reload, the person does.

@@ -3,9 +3,9 @@
 use gloo_utils::{document, window};
 use wasm_bindgen::JsCast as _;
 use wasm_bindgen_futures::spawn_local;
-use web_sys::HtmlElement;
+use web_sys::{HtmlElement, ScrollIntoViewOptions, ScrollLogicalPosition};
 
-use super::clock::next_frame;
+use super::clock::{next_frame, painted};
 
 /// Focuses what the first of the selectors finds that finds something.
 pub fn focus(selectors: &[&str]) {
@@ -46,6 +46,18 @@ pub fn focus_heading() {
         if !is_inside {
             window().scroll_to_with_x_and_y(0.0, 0.0);
             focus(&["main h1"]);
+        }
+    });
+}
+
+/// Scrolls, once the page stands, as little as brings what the selector finds into view.
+pub fn bring_into_view(selector: &'static str) {
+    spawn_local(async move {
+        painted().await;
+        if let Some(element) = document().query_selector(selector).ok().flatten() {
+            let options = ScrollIntoViewOptions::new();
+            options.set_block(ScrollLogicalPosition::Nearest);
+            element.scroll_into_view_with_scroll_into_view_options(&options);
         }
     });
 }

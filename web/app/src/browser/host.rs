@@ -39,9 +39,14 @@ extern "C" {
     #[wasm_bindgen(js_name = playClip, catch)]
     pub async fn play_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
 
-    /// What browser and display can do, as the JSON of `mimique_study::Display`.
+    /// What browser and display can do, as the JSON of `mimique_study::Display`; where a clip is given, while
+    /// it is drawn in the study's look.
     #[wasm_bindgen(js_name = measure, catch)]
-    pub async fn measure() -> Result<JsValue, JsValue>;
+    pub async fn measure(
+        clip: Option<String>,
+        source: &str,
+        look: &str,
+    ) -> Result<JsValue, JsValue>;
 
     /// Lets the page fill the screen; called from a press.
     #[wasm_bindgen(js_name = requestFullscreen)]
@@ -58,6 +63,10 @@ extern "C" {
     /// The address of a picture or a sign-language video of the study, fetched by its hash.
     #[wasm_bindgen(js_name = mediaAddress, catch)]
     pub async fn media_address(hash: &str, media_type: &str) -> Result<JsValue, JsValue>;
+
+    /// Copies a text; resolves with whether that was possible.
+    #[wasm_bindgen(js_name = copy, catch)]
+    pub async fn copy(text: &str) -> Result<JsValue, JsValue>;
 
     /// Gives the participant a text as a file.
     #[wasm_bindgen(js_name = download)]

@@ -2,10 +2,11 @@
 
 use std::rc::Rc;
 
-use gloo_events::EventListener;
-use gloo_timers::callback::Interval;
+use gloo_events::{EventListener, EventListenerOptions, EventListenerPhase};
+use gloo_timers::callback::{Interval, Timeout};
 use gloo_utils::{document, window};
-use web_sys::EventTarget;
+use wasm_bindgen::JsCast as _;
+use web_sys::{Element, Event, EventTarget};
 
 /// What happens to the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,11 +19,20 @@ pub enum WindowEvent {
     Resized,
     /// It entered or left the full screen.
     FullscreenChanged,
-    /// The connection is back, or the page is hidden and may never come back: what waits should go out.
+    /// The connection is back.
+    Online,
+    /// The page is hidden and may never come back: what waits should go out.
     SendNow,
     /// A second has passed.
     Second,
+    /// Something that acts when it is let go is pressed.
+    Pressed,
+    /// It was let go, and what that does is done.
+    LetGo,
 }
+
+/// What acts when it is let go, if it is still below the finger then. A line of a scale acts while it is held.
+const ACTS_ON_RELEASE: &str = "button, a, label, summary, input:not([type=range])";
 
 /// Calls back with everything that happens, for as long as the page lives.
 pub fn watch(call: impl Fn(WindowEvent) + 'static) {
@@ -34,7 +44,7 @@ pub fn watch(call: impl Fn(WindowEvent) + 'static) {
     listen(&window(), "blur", WindowEvent::Blurred);
     listen(&window(), "focus", WindowEvent::Focused);
     listen(&window(), "resize", WindowEvent::Resized);
-    listen(&window(), "online", WindowEvent::SendNow);
+    listen(&window(), "online", WindowEvent::Online);
     listen(&window(), "pagehide", WindowEvent::SendNow);
     listen(&document(), "fullscreenchange", WindowEvent::FullscreenChanged);
     let seen = Rc::clone(&call);
@@ -48,5 +58,35 @@ pub fn watch(call: impl Fn(WindowEvent) + 'static) {
         }
     })
     .forget();
+    watch_presses(&call);
     Interval::new(1_000, move || call(WindowEvent::Second)).forget();
+}
+
+/// Says when something is pressed, and when its click is over.
+fn watch_presses<F: Fn(WindowEvent) + 'static>(call: &Rc<F>) {
+    // A finger's press comes as a mouse's again, right before the click.
+    for name in ["pointerdown", "mousedown"] {
+        let call = Rc::clone(call);
+        // Before the field that loses the focus says that it has changed.
+        let options =
+            EventListenerOptions { phase: EventListenerPhase::Capture, ..Default::default() };
+        EventListener::new_with_options(&window(), name, options, move |event: &Event| {
+            let target = event.target().and_then(|target| target.dyn_into::<Element>().ok());
+            let acts = |target: Element| target.closest(ACTS_ON_RELEASE).ok().flatten();
+            if target.and_then(acts).is_some() {
+                call(WindowEvent::Pressed);
+            }
+        })
+        .forget();
+    }
+    // The window's own loss of the focus; that of a field does not come up here.
+    for name in ["pointerup", "pointercancel", "mouseup", "keydown", "blur"] {
+        let call = Rc::clone(call);
+        EventListener::new(&window(), name, move |_| {
+            let call = Rc::clone(&call);
+            // The click comes with the release, before anything that waits.
+            Timeout::new(0, move || call(WindowEvent::LetGo)).forget();
+        })
+        .forget();
+    }
 }

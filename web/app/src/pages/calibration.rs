@@ -17,10 +17,7 @@ pub fn calibration(shown: &CalibrationView) -> Element {
         .option(shown.card.as_ref().map(card))
         .option(shown.distance.as_ref().map(distance))
         .with(submit(&shown.button.label));
-    main("page wide-card", "calibration")
-        .set("data-step", &shown.step)
-        .with(progress_line(shown.progress))
-        .with(form)
+    main("page wide-card", "calibration").with(progress_line(shown.progress)).with(form)
 }
 
 /// The distance of the eyes.

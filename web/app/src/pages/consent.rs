@@ -9,7 +9,7 @@ use crate::engine::Engine;
 
 /// The agreement, with the choice of language.
 pub fn consent(engine: &Engine, view: &View) -> Element {
-    let View::Consent { step, title, description, sections, contacts, languages, agree, decline } =
+    let View::Consent { title, description, sections, contacts, languages, agree, decline, .. } =
         view
     else {
         return super::opening();
@@ -37,7 +37,7 @@ pub fn consent(engine: &Engine, view: &View) -> Element {
     let actions = el("div", "actions")
         .with(button("primary", "agree", agree).on("click", sends(|| Input::Consent)))
         .with(button("", "decline", decline).on("click", sends(|| Input::Decline)));
-    main("page", "consent").set("data-step", step).with(card.with(people).with(actions))
+    main("page", "consent").with(card.with(people).with(actions))
 }
 
 fn language(code: &str, name: &str, chosen: bool) -> Element {

@@ -22,7 +22,7 @@ pub fn device(gate: &DeviceView) -> Element {
         .option(offered("", "give-up", &gate.give_up, || Input::GiveUp));
     let card = el("div", "card").with(heading(&gate.heading)).with(status).with(actions);
     main("page", "device")
-        .set("data-step", &gate.step)
+        .set("data-measuring", if gate.measuring { "true" } else { "false" })
         .set("data-fine", if gate.button.can_submit { "true" } else { "false" })
         .with(progress_line(gate.progress))
         .with(card)

@@ -21,7 +21,6 @@ pub fn feedback(feedback: &FeedbackView) -> Element {
         .option(feedback.text.as_ref().map(|text| words("p", "", text)))
         .with(el("div", "actions").with(next(&feedback.button.label)));
     main("page", "feedback")
-        .set("data-step", &feedback.step)
         .set("data-correct", if feedback.correct { "true" } else { "false" })
         .with(progress_line(feedback.progress))
         .with(card)

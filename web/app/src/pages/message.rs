@@ -28,10 +28,14 @@ fn told(view: &str, title: &str, text: &str, more: Option<Element>) -> Element {
     main("page", view).with(card.with(heading(title)).with(words("p", "", text)).option(more))
 }
 
-/// The participant did not agree.
+/// The participant did not agree, and may have pressed the wrong button.
 pub fn declined(engine: &Engine, title: &str, text: &str) -> Element {
-    let card = el("div", "card").with(heading(title)).with(words("p", "", text));
-    main("page", "declined").with(card.option(another_person(engine)))
+    let back = button("", "back-to-consent", engine.words().back_to_consent());
+    let card = el("div", "card")
+        .with(heading(title))
+        .with(words("p", "", text))
+        .with(el("div", "actions").with(back.on("click", |_| Act::BeginAgain)));
+    main("page", "declined").with(card)
 }
 
 /// Where the study lets one browser take part again: a session of its own for the next person.

@@ -14,6 +14,7 @@ mod read;
 mod trial;
 
 use mimique_session::flow::{Input, ProgressView, View};
+use mimique_study::text::Words;
 
 use crate::browser::focus;
 use crate::dom::{Element, FieldEvent, el, words};
@@ -73,15 +74,28 @@ pub fn pages(engine: &Engine, view: &View, shape: &str, watched: &WatchedClip) -
             message::withdrawn(heading, text, *confirmed)
         }
     };
+    // Steps and clips have names of the study's in the log; the page shows their places alone.
+    let step = step_of(view).map(|_| mark(engine));
     let mut all = header::header(engine, view);
-    all.push(main.key(shape));
+    all.push(main.maybe("data-step", step.as_deref()).key(shape));
     all
+}
+
+/// What names the step on the screen, and nothing of it: its place.
+fn mark(engine: &Engine) -> String {
+    ["s", &engine.state().record.step.to_string()].concat()
 }
 
 /// Before there is anything to show.
 pub fn opening() -> Element {
     let card = el("div", "card").with(words("p", "soft", "…"));
     main("page", "opening").key("opening").with(card)
+}
+
+/// While the session is being begun.
+pub fn entering(fixed: &Words) -> Element {
+    let card = el("div", "card").set("role", "status").with(words("p", "", fixed.beginning()));
+    main("page", "opening").key("entering").with(card)
 }
 
 /// The frame of a page.

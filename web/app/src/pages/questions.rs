@@ -10,8 +10,9 @@ use crate::engine::Engine;
 
 /// A page of questions.
 pub fn questions(engine: &Engine, view: &View) -> Element {
-    let View::Questions { step, title, text, questions, failed, button: on, clock: left, progress } =
-        view
+    let View::Questions {
+        title, text, questions, failed, button: on, clock: left, progress, ..
+    } = view
     else {
         return super::opening();
     };
@@ -19,10 +20,9 @@ pub fn questions(engine: &Engine, view: &View) -> Element {
         .with(heading(title))
         .paragraphs(text)
         .option(failed.as_ref().map(media_failed))
-        .all(question_list(engine, step, questions))
+        .all(question_list(engine, questions))
         .with(submit(&on.label));
     main("page", "questions")
-        .set("data-step", step)
         .with(progress_line(*progress))
         .option(left.as_ref().map(clock))
         .with(form)
@@ -40,6 +40,8 @@ fn media_failed(failed: &FailedView) -> Element {
 }
 
 /// Questions one below the other; each is built once and then changes in place.
-pub fn question_list(engine: &Engine, step: &str, questions: &[QuestionView]) -> Vec<Element> {
-    questions.iter().map(|each| question(engine, &[step, "/", &each.id].concat(), each)).collect()
+pub fn question_list(engine: &Engine, questions: &[QuestionView]) -> Vec<Element> {
+    let mark = super::mark(engine);
+    let name = |each: &QuestionView| [mark.as_str(), "/", &each.id].concat();
+    questions.iter().map(|each| question(engine, &name(each), each)).collect()
 }

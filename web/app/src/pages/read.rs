@@ -8,7 +8,7 @@ use crate::dom::{Element, el, words};
 
 /// A page to read.
 pub fn read(view: &View) -> Element {
-    let View::Page { step, heading: title, text, progress, button, clock: left } = view else {
+    let View::Page { heading: title, text, progress, button, clock: left, .. } = view else {
         return super::opening();
     };
     let hint = button.hint.as_deref().unwrap_or_default();
@@ -18,9 +18,5 @@ pub fn read(view: &View) -> Element {
         .paragraphs(text)
         .with(words("p", "soft", hint).key("hint").set("role", "status"))
         .with(el("div", "actions").with(next));
-    main("page", "page")
-        .set("data-step", step)
-        .with(progress_line(*progress))
-        .option(left.as_ref().map(clock))
-        .with(card)
+    main("page", "page").with(progress_line(*progress)).option(left.as_ref().map(clock)).with(card)
 }

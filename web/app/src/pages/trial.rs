@@ -32,43 +32,53 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         Phase::Failed { reason, retry } => Some((reason, retry)),
         _ => None,
     };
-    let mut card = el("div", "card")
+    let mut card = el("div", "card clip-card")
         .key("clip")
         .with(heading(&trial.heading))
         .option(trial.instruction.as_ref().map(|text| words("p", "", text).key("instruction")))
-        .with(frame(engine, trial))
+        .with(frame(engine, trial, seen))
         .with(words("p", "trial-message", &trial.message).key("message").set("role", "status"));
     if let Some((reason, retry)) = failed {
         card = card
             .with(words("p", "notice bad", reason).key("failed"))
             .with(button("primary", "retry", retry).on("click", sends(|| Input::Retry)));
-    } else if trial.can_play || !matches!(trial.phase, Phase::Answering) {
-        // It stays while the clip is loaded and played: the keyboard's place does not vanish.
-        let can_play = trial.can_play;
-        let play = button(if seen { "" } else { "primary" }, "play", &trial.play_label)
-            .flag("aria-disabled", !can_play)
-            .handles("click", move |_| can_play.then_some(Act::Input(Input::Play)));
-        card = card.with(el("div", "actions centred").key("play").with(play));
     }
     let questions = seen.then(|| {
         let fields = el("fieldset", "bare")
             .flag("disabled", !trial.can_answer)
-            .all(question_list(engine, &trial.step, &trial.questions))
+            .all(question_list(engine, &trial.questions))
             .with(submit(&trial.button.label));
         form().with(fields)
     });
-    main("page", "trial")
-        .set("data-step", &trial.step)
-        .set("data-phase", phase_word(&trial.phase))
-        .set("data-clip", &trial.clip)
-        .with(progress_line(trial.progress))
-        .with(card)
+    let answers = el("div", "answers")
+        .key("answers")
         .option(trial.clock.as_ref().map(clock))
-        .option(questions)
+        .option(questions);
+    main("page trial-page", "trial")
+        .set("data-phase", phase_word(&trial.phase))
+        .with(progress_line(trial.progress))
+        .with(el("div", "trial").key("trial").with(card).with(answers))
+}
+
+/// The button that plays, on the picture. It stays while the clip is loaded and played: the keyboard's place
+/// does not vanish.
+fn play_button(trial: &TrialView, seen: bool) -> Option<Element> {
+    let can_play = trial.can_play;
+    let stays = match &trial.phase {
+        Phase::Failed { .. } => false,
+        Phase::Answering => can_play,
+        _ => true,
+    };
+    stays.then(|| {
+        let play = button(if seen { "" } else { "primary" }, "play", &trial.play_label)
+            .flag("aria-disabled", !can_play)
+            .handles("click", move |_| can_play.then_some(Act::Input(Input::Play)));
+        el("div", "play").key("play").with(play)
+    })
 }
 
 /// The clip, and the one beside it.
-fn frame(engine: &Engine, trial: &TrialView) -> Element {
+fn frame(engine: &Engine, trial: &TrialView, seen: bool) -> Element {
     let size = trial.size;
     // In millimetres, the size follows the zoom of the page.
     let now = document::pixel_ratio();
@@ -92,9 +102,12 @@ fn frame(engine: &Engine, trial: &TrialView) -> Element {
     el("div", if beside.is_some() { "stage-frame pair" } else { "stage-frame" })
         .key("stage")
         .style("--stage-width", &px(width))
+        .style("--stage-height", &px(height))
+        .style("--stage-ratio", &(width / height).to_string())
         .style("--stage-aspect", &[hundredth(width).as_str(), &hundredth(height)].join(" / "))
         .with(figure)
         .option(beside.map(|beside| companion(beside, &look)))
+        .option(play_button(trial, seen))
 }
 
 /// What is played in step beside the trial's own clip, on its side.
@@ -103,7 +116,7 @@ fn companion(beside: &BesideView, look: &str) -> Element {
     let canvas = canvas(caption.unwrap_or_default(), look, true);
     el("figure", if beside.left { "first" } else { "" })
         .key("beside")
-        .set("data-beside", &beside.clip)
+        .set("data-beside", "")
         .with(el("div", "stage").with(canvas))
         .option(caption.map(|text| words("figcaption", "", text)))
 }

@@ -72,9 +72,16 @@ fn steps(language: Language, flow: &Flow) -> [Step; 4] {
     };
     let people_left_out = people_left_out(language, flow);
     let trials_left_out = reasons(language, &flow.trials_left_out);
+    let unread = match flow.rows_unread {
+        0 => Vec::new(),
+        rows => vec![language.pick(
+            format!("rows that name no trial or no response: {rows}"),
+            format!("lignes sans essai ou sans réponse : {rows}"),
+        )],
+    };
     [
         step(flow.people, "people with answers", "personnes avec des réponses", people_left_out),
-        step(flow.people_used, "people in the analysis", "personnes dans l’analyse", Vec::new()),
+        step(flow.people_used, "people in the analysis", "personnes dans l’analyse", unread),
         step(flow.trials, "trials they answered", "essais de ces personnes", trials_left_out),
         step(flow.trials_used, "trials in the analysis", "essais dans l’analyse", Vec::new()),
     ]

@@ -19,7 +19,7 @@ pub(crate) fn read(file: &mut dyn Source, options: &ReadOptions) -> Result<Recor
     if parameters.is_empty() {
         notes.push("no parameters: labels are made up, the rest is the header's".to_owned());
     }
-    let rate_hz = rate(&header, &parameters, options)?;
+    let rate_hz = rate(&header, &parameters, options, &mut notes)?;
     let layout = layout(&header, &parameters, length, &mut notes)?;
     let (first_frame, frames) = frames(&header, &parameters, &layout, length, &mut notes)?;
 
@@ -48,21 +48,30 @@ pub(crate) fn read(file: &mut dyn Source, options: &ReadOptions) -> Result<Recor
 }
 
 /// The rate: the caller's, POINT:RATE, else the header's.
-fn rate(header: &Header, parameters: &Parameters, options: &ReadOptions) -> Result<f64, ReadError> {
+fn rate(
+    header: &Header,
+    parameters: &Parameters,
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+) -> Result<f64, ReadError> {
     let valid = |rate: &f64| rate.is_finite() && *rate > 0.0;
-    options
-        .rate_hz
-        .or_else(|| parameters.number("POINT", "RATE").filter(valid))
-        .or(Some(f64::from(header.rate_hz)))
-        .filter(valid)
-        .ok_or_else(|| {
-            ReadError::at_byte(
-                20,
-                "header",
-                format!("{} frames per second", header.rate_hz),
-                "give the rate of the recording (--rate)",
-            )
-        })
+    let by_header = Some(f64::from(header.rate_hz)).filter(valid);
+    let by_parameters = parameters.number("POINT", "RATE").filter(valid);
+    if let (None, Some(header), Some(taken)) = (options.rate_hz, by_header, by_parameters)
+        && (header / taken - 1.0).abs() > 1e-3
+    {
+        notes.push(format!(
+            "the header has {header} frames per second, the parameters {taken}: the parameters' is taken"
+        ));
+    }
+    options.rate_hz.or(by_parameters).or(by_header).filter(valid).ok_or_else(|| {
+        ReadError::at_byte(
+            20,
+            "header",
+            format!("{} frames per second", header.rate_hz),
+            "give the rate of the recording (--mocap-rate)",
+        )
+    })
 }
 
 /// Where the data are and how a frame is stored.
@@ -73,6 +82,12 @@ fn layout(
     notes: &mut Vec<String>,
 ) -> Result<Layout, ReadError> {
     let points = parameters.count("POINT", "USED").map_or(header.points, |n| n as usize);
+    if points != header.points {
+        notes.push(format!(
+            "the header has {} points, the parameters {points}: the parameters' are taken",
+            header.points
+        ));
+    }
     if points == 0 {
         return Err(ReadError::at_byte(
             2,
@@ -85,6 +100,20 @@ fn layout(
         .number("POINT", "SCALE")
         .filter(|s| s.is_finite() && *s != 0.0)
         .unwrap_or(f64::from(header.scale));
+    if f64::from(header.scale) * scale < 0.0 {
+        let kind = |scale: f64| if scale < 0.0 { "floats" } else { "integers" };
+        notes.push(format!(
+            "the header says {} (scale {}), the parameters {} ({scale}): the parameters are followed",
+            kind(f64::from(header.scale)),
+            header.scale,
+            kind(scale)
+        ));
+    } else if scale > 0.0 && (f64::from(header.scale) / scale - 1.0).abs() > 1e-3 {
+        notes.push(format!(
+            "the header has scale {}, the parameters {scale}: the parameters' is taken",
+            header.scale
+        ));
+    }
     let storage = if scale < 0.0 { Storage::Float } else { Storage::Integer(scale) };
     if !scale.is_finite() || scale == 0.0 {
         return Err(ReadError::at_byte(

@@ -59,6 +59,21 @@ pub(crate) struct Row<'r> {
 }
 
 impl Row<'_> {
+    /// Refuse a row that has less than `columns`, or values beyond them: its numbers may stand in the
+    /// wrong places.
+    pub(crate) fn of_width(&self, columns: usize) -> Result<(), ReadError> {
+        let surplus = self.fields.iter().skip(columns).any(|f| !f.is_empty());
+        if self.fields.len() < columns || surplus {
+            return Err(ReadError::at_line(
+                self.line,
+                "row",
+                format!("{} columns where the header has {columns}", self.fields.len()),
+                "complete the row or remove it; the file may have been cut short",
+            ));
+        }
+        Ok(())
+    }
+
     /// The text of a column; nothing where the row is shorter.
     pub(crate) fn text(&self, column: usize) -> &str {
         self.fields.get(column).map_or("", AsRef::as_ref)

@@ -29,9 +29,18 @@ pub(crate) struct Table {
     pub(crate) system: Option<String>,
     /// What was worth saying.
     pub(crate) notes: Vec<String>,
+    /// Whether the format has no missing positions, so that 0, 0, 0 is a place like any other.
+    pub(crate) never_missing: bool,
 }
 
 impl Table {
+    /// Note where as many frames as a file says to have are not there.
+    pub(crate) fn count_frames(&mut self, key: &str, declared: Option<usize>) {
+        if let Some(declared) = declared.filter(|&n| n != self.lines.len()) {
+            self.notes.push(format!("{key} is {declared}, the rows are {}", self.lines.len()));
+        }
+    }
+
     /// Decide rate and unit, make dropped frames good, and hand over the recording.
     pub(crate) fn finish(
         mut self,
@@ -67,7 +76,9 @@ impl Table {
             &mut self.notes,
         );
         let labels = unique_labels(self.labels, &mut self.notes);
-        zeros_to_missing(&mut self.positions, &labels, unit, &mut self.notes);
+        if !self.never_missing {
+            zeros_to_missing(&mut self.positions, &labels, unit, &mut self.notes);
+        }
         let capture = Capture {
             labels,
             rate_hz,
@@ -106,13 +117,16 @@ impl Table {
     fn rate(&mut self, header: usize, options: &ReadOptions) -> Result<f64, ReadError> {
         if let Some(rate) = options.rate_hz.or(self.declared_rate) {
             if rate.is_finite() && rate > 0.0 {
+                if options.rate_hz.is_none() {
+                    self.hold_against_times(rate);
+                }
                 return Ok(rate);
             }
             return Err(ReadError::at_line(
                 header,
                 "rate",
                 format!("{rate} frames per second"),
-                "give the rate of the recording (--rate)",
+                "give the rate of the recording (--mocap-rate)",
             ));
         }
         rate_of_times(&self.times, &self.frame_numbers).ok_or_else(|| {
@@ -121,8 +135,26 @@ impl Table {
             } else {
                 "no rate, and the times do not grow"
             };
-            ReadError::at_line(header, "header", what, "give the rate of the recording (--rate)")
+            ReadError::at_line(
+                header,
+                "header",
+                what,
+                "give the rate of the recording (--mocap-rate)",
+            )
         })
+    }
+
+    /// Note where the times tell of another rate than the header. Printed times are rounded: two rows may
+    /// be off by a millisecond.
+    fn hold_against_times(&mut self, declared: f64) {
+        let Some(timed) = rate_of_times(&self.times, &self.frame_numbers) else { return };
+        let span = self.times.last().zip(self.times.first()).map_or(0.0, |(b, a)| (b - a).abs());
+        let tolerance = 0.01 + 2e-3 / span.max(1e-9);
+        if (timed / declared - 1.0).abs() > tolerance {
+            self.notes.push(format!(
+                "the header says {declared} frames per second, the times {timed:.3}: the header's is taken"
+            ));
+        }
     }
 
     /// Insert missing rows where frame numbers (or, without them, times) jump. Returns the first
@@ -153,7 +185,7 @@ impl Table {
                     self.times[row + 1],
                     self.times[row]
                 ),
-                "give one take a file, frames in order, and its rate (--rate)",
+                "give one take a file, frames in order, and its rate (--mocap-rate)",
             ));
         }
         let total = index.last().map_or(0, |last| last.saturating_add(1));
@@ -228,7 +260,7 @@ fn rate_of_times(times: &[f64], frame_numbers: &[u64]) -> Option<f64> {
 
 /// A rate within the uncertainty of the times (a millisecond over the whole duration, at most
 /// 0.1 %) of a whole number or of a whole number times 1000/1001 is that number.
-fn snapped_rate(raw: f64, duration_s: f64) -> f64 {
+pub(crate) fn snapped_rate(raw: f64, duration_s: f64) -> f64 {
     let tolerance = raw * (1e-3 / duration_s).clamp(1e-6, 1e-3);
     let whole = raw.round();
     let ntsc = (raw * 1.001).round() / 1.001;

@@ -11,7 +11,7 @@ pub use write::write_csv;
 
 use crate::formats::plausibility::shortened;
 use crate::formats::text::{
-    Delimiter, Lines, Table, coordinate, frame_number, plain_row, split_fields,
+    Delimiter, Lines, Row, Table, coordinate, frame_number, plain_row, split_fields,
 };
 use crate::formats::{Format, Read, Recognise, Write};
 use crate::{LengthUnit, ReadError, ReadOptions, Recording};
@@ -55,14 +55,8 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
     let (header_line, header) = header(lines, &mut table)?;
     let delimiter = Delimiter::of(&header);
     let names = split_fields(&header, delimiter);
-    let (labels, columns, unit) = columns(&names).map_err(|name| {
-        ReadError::at_line(
-            header_line,
-            "header",
-            format!("two columns are {name}"),
-            "give every column its own name",
-        )
-    })?;
+    let (labels, columns, unit) = columns(&names)
+        .map_err(|(what, remedy)| ReadError::at_line(header_line, "header", what, remedy))?;
     table.labels = labels;
     table.declared_unit = table.declared_unit.or(unit);
     table.notes.extend(ignored(&names, &columns));
@@ -83,7 +77,8 @@ fn read(lines: &mut Lines<'_>, options: &ReadOptions) -> Result<Recording, ReadE
             continue;
         }
         let fields = split_fields(line, delimiter);
-        row_width(&fields, columns.len(), line_number)?;
+        let remedy = "write numbers with a decimal point, a missing one as blank or NaN";
+        Row { line: line_number, fields: &fields, delimiter, remedy }.of_width(columns.len())?;
         let cells = fields.iter().zip(&columns).enumerate().map(|(index, (field, column))| {
             if *column == Column::Ignored {
                 return Ok((f64::NAN, None));
@@ -159,20 +154,6 @@ fn put<'f>(
     Ok(())
 }
 
-/// Refuse a row that is shorter than the header or has values beyond it.
-fn row_width(fields: &[Cow<'_, str>], columns: usize, line: usize) -> Result<(), ReadError> {
-    let surplus = fields.iter().skip(columns).any(|f| !f.is_empty());
-    if fields.len() < columns || surplus {
-        return Err(ReadError::at_line(
-            line,
-            "row",
-            format!("{} columns where the header has {columns}", fields.len()),
-            "complete the row or remove it; the file may have been cut short",
-        ));
-    }
-    Ok(())
-}
-
 /// Read `# unit: mm` and `# rate_hz: 200`.
 fn comment(line: &str, table: &mut Table) {
     for part in line.trim_start_matches('#').split([',', ';']) {
@@ -186,17 +167,17 @@ fn comment(line: &str, table: &mut Table) {
     }
 }
 
-/// Labels, meaning of every column, and the unit named in the columns. `Err` is a name that
-/// occurs twice.
+/// Labels, meaning of every column, and the unit named in the columns. `Err` says what is wrong, a name or
+/// a unit, and what to do.
 #[allow(clippy::type_complexity)] // three results of one pass, used once
 fn columns(
     names: &[Cow<'_, str>],
-) -> Result<(Vec<String>, Vec<Column>, Option<LengthUnit>), String> {
+) -> Result<(Vec<String>, Vec<Column>, Option<LengthUnit>), (String, &'static str)> {
     let mut labels: Vec<String> = Vec::new();
     let mut places: Vec<[Option<usize>; 3]> = Vec::new();
     let mut by_label: HashMap<String, usize> = HashMap::new();
     let mut columns = vec![Column::Ignored; names.len()];
-    let mut unit = None;
+    let mut unit: Option<LengthUnit> = None;
     let (mut frame_seen, mut time_seen) = (false, false);
     for (index, name) in names.iter().enumerate() {
         let (name, in_brackets) = without_unit(name);
@@ -226,9 +207,17 @@ fn columns(
             labels.len() - 1
         });
         if places[marker][axis].replace(index).is_some() {
-            return Err(name.to_owned());
+            return Err((format!("two columns are {name}"), "give every column its own name"));
         }
-        unit = unit.or(in_brackets.and_then(LengthUnit::from_name));
+        let own = in_brackets.and_then(LengthUnit::from_name);
+        if let (Some(unit), Some(own)) = (unit, own)
+            && unit != own
+        {
+            let what =
+                format!("{name} is in {}, columns before it in {}", own.symbol(), unit.symbol());
+            return Err((what, "write all coordinates in one unit"));
+        }
+        unit = unit.or(own);
     }
     // Keep whole triples only.
     let mut kept = Vec::new();
@@ -345,7 +334,7 @@ mod tests {
         );
         assert_eq!(
             message("frame,a_x,a_y,a_z\n0,1,2,3\n"),
-            "line 1, header: no rate and no time column; give the rate of the recording (--rate)"
+            "line 1, header: no rate and no time column; give the rate of the recording (--mocap-rate)"
         );
         assert_eq!(
             message(&format!("{head}0,0,1,2,3\n900719925474099,0.01,1,2,3\n")),

@@ -61,7 +61,7 @@ async fn viewed(
             Some(view) => view,
             None => {
                 let version = sources.version(&session.config_hash)?;
-                let events = storage.events(session.key).await?;
+                let events = storage.counted_events(session.key).await?;
                 views.keep(session, SessionView::new(version, session, &events))
             }
         };

@@ -1,6 +1,6 @@
 //! `/researcher/…`: logging in, links, people, tokens, the log, the language.
 
-use axum::extract::{Path, Query, State};
+use axum::extract::{Extension, Path, Query, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use mimique_analysis::Language;
@@ -21,6 +21,7 @@ use crate::researcher::pages::frame::Frame;
 use crate::researcher::pages::people::{Done, account_page, log_page, people_page};
 use crate::secret;
 use crate::state::App;
+use crate::state::rate_limit::Peer;
 
 /// Where a page leads afterwards.
 #[derive(Deserialize)]
@@ -50,14 +51,16 @@ pub(crate) struct Login {
 
 pub(crate) async fn login(
     State(app): State<App>,
+    peer: Option<Extension<Peer>>,
     Anonymous { visitor, headers, form }: Anonymous<Login>,
 ) -> Result<Response, Error> {
-    match login::log_in(&app, &headers, &form.email, &form.password).await {
+    let peer = peer.map(|Extension(peer)| peer);
+    match login::log_in(&app, &headers, peer, &form.email, &form.password).await {
         Ok(logged_in) => {
             // The address is the account's own, known to be one.
             let who = Researcher::entered(logged_in.account, visitor.language);
             audit(&app, &who, "log in", "", "").await?;
-            Ok(with_cookies(see(safe(&form.next)), Some(logged_in.cookie)))
+            Ok(with_cookies(see(safe(&form.next)), logged_in.cookies))
         }
         Err(error @ (Error::WrongPassword | Error::TooManyAttempts)) => {
             let text = error.sentence(visitor.language);
@@ -125,7 +128,7 @@ pub(crate) async fn use_link(
             let who = Researcher::entered(account.clone(), visitor.language);
             audit(&app, &who, "use a link", "", account.role.word()).await?;
             let logged_in = login::log_in_as(&app, &headers, account).await?;
-            Ok(with_cookies(see("/researcher"), Some(logged_in.cookie)))
+            Ok(with_cookies(see("/researcher"), logged_in.cookies))
         }
         Err(error) if error.code() == "bad-request" => {
             let link = app.storage.link(&secret::hash(&given), now_ms()).await?;
@@ -218,6 +221,8 @@ pub(crate) async fn invite(
     headers: HeaderMap,
     Guarded { who, form }: Guarded<Invitation>,
 ) -> Result<Response, Error> {
+    // A token that could make accounts, or ways into them, could not be revoked.
+    person_only(&who)?;
     who.needs(Role::Owner)?;
     let role = role(&form.role)?;
     let link = links::invite(&app, &form.email, role).await?;
@@ -240,6 +245,7 @@ pub(crate) async fn person(
     headers: HeaderMap,
     Guarded { who, form }: Guarded<PersonAction>,
 ) -> Result<Response, Error> {
+    person_only(&who)?;
     who.needs(Role::Owner)?;
     let accounts = app.storage.accounts().await?;
     let account = accounts.into_iter().find(|account| account.key == key);
@@ -264,6 +270,7 @@ pub(crate) async fn person(
             app.storage.enable_account(key).await?;
             account.email.clone()
         }
+        "reset" if account.disabled_ms.is_some() => return Err(Error::AccountDisabled),
         "reset" => {
             let purpose = LinkPurpose::Reset;
             let link = links::new_link(&app.storage, purpose, &account.email, account.role).await?;

@@ -17,19 +17,21 @@ use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 
 use super::inline_styles::report_policy;
-use crate::accounts::audit::audit;
+use crate::accounts::audit::{self, audit};
 use crate::accounts::csrf::Guarded;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::export::{self, Cells, Format, Options};
+use crate::export::{self, Cells, Format, Options, Pieces};
 use crate::http::extract::Asked;
 use crate::http::responses::{attachment, see};
+use crate::participant::withdrawal::withdrawal_hash;
 use crate::researcher::dashboard::overview::Overview;
 use crate::researcher::pages::frame::Frame;
 use crate::researcher::pages::home::{Listed, home_page};
 use crate::researcher::pages::participant::{Shown, participant_page};
-use crate::researcher::pages::study::study_page;
+use crate::researcher::pages::study::{Hosting, study_page};
+use crate::retention;
 use crate::state::App;
 use crate::state::hosted_study::HostedStudy;
 use crate::uploads;
@@ -52,7 +54,8 @@ pub(crate) async fn home(State(app): State<App>, who: Researcher) -> Result<Resp
         let uploaded_ms = uploads.get(study.id()).copied();
         listed.push(Listed { study, sessions: sessions.len(), completed, uploaded_ms });
     }
-    Ok(home_page(&Frame::new(&app, &who), &listed))
+    let doubt = retention::clock_doubt(&app.storage, now_ms()).await?;
+    Ok(home_page(&Frame::new(&app, &who), &listed, doubt))
 }
 
 pub(crate) async fn study(
@@ -63,7 +66,9 @@ pub(crate) async fn study(
     let study = app.study(&id)?;
     let overview = overview(&app, &study, &who).await?;
     let is_uploaded = uploads::is_uploaded(&app, study.id()).await?;
-    Ok(study_page(&Frame::new(&app, &who), &study, &overview, is_uploaded))
+    let overdue = app.storage.overdue(study.id()).await?;
+    let hosting = Hosting { is_uploaded, overdue };
+    Ok(study_page(&Frame::new(&app, &who), &study, &overview, hosting))
 }
 
 /// A line whenever something of the study has changed; the page then fetches what it shows.
@@ -119,11 +124,11 @@ pub(crate) async fn participant(
     let overview = overview(&app, &study, &who).await?;
     let found = overview.sessions.iter().find(|(session, _)| session.participant == number);
     let (session, view) = found.ok_or(Error::NotFound)?;
-    let events = app.storage.events(session.key).await?;
+    let events = app.storage.stored_events(session.key).await?;
     let mut exclusions = app.storage.exclusions(study.id()).await?;
     exclusions.retain(|change| change.session_key == session.key);
     if who.role >= Role::Analyst {
-        let subject = crate::participant_id::participant_id(number);
+        let subject = mimique_storage::participant_id(number);
         audit(&app, &who, "read a participant’s answers", study.id(), &subject).await?;
     }
     let shown = Shown {
@@ -183,13 +188,56 @@ pub(crate) async fn erase(
     who.needs(Role::Owner)?;
     let study = app.study(&id)?;
     let name =
-        crate::participant_id::participant_id(session(&app, study.id(), number).await?.participant);
+        mimique_storage::participant_id(session(&app, study.id(), number).await?.participant);
     if !form.confirmation.trim().eq_ignore_ascii_case(&name) {
         return Err(Error::NotConfirmed { participant: name });
     }
-    app.storage.erase_participant(study.id(), number, now_ms()).await?;
-    audit(&app, &who, "delete a participant’s answers", study.id(), &name).await?;
+    app.storage.erase_participant(study.id(), number, &audit::name(&who), now_ms()).await?;
     Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Code {
+    code: String,
+}
+
+/// Deletes the answers of whoever brought this withdrawal code to the researcher.
+pub(crate) async fn withdraw(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Guarded { who, form }: Guarded<Code>,
+) -> Result<Response, Error> {
+    who.needs(Role::Owner)?;
+    let study = app.study(&id)?;
+    let hash = withdrawal_hash(&form.code);
+    let name = audit::name(&who);
+    let done = app.storage.withdraw_by_code(Some(study.id()), &hash, &name, now_ms()).await?;
+    Ok(see(&format!("/researcher/studies/{}/participants/{}", study.id(), done.participant)))
+}
+
+/// Keeps answers that were found to be over their time.
+pub(crate) async fn keep_overdue(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Guarded { who, .. }: Guarded<Nothing>,
+) -> Result<Response, Error> {
+    who.needs(Role::Owner)?;
+    let study = app.study(&id)?;
+    let kept = app.storage.keep_overdue(study.id()).await?;
+    audit(&app, &who, "keep answers over their time", study.id(), &kept.to_string()).await?;
+    Ok(see(&format!("/researcher/studies/{}", study.id())))
+}
+
+/// An owner has looked at the server's clock.
+pub(crate) async fn confirm_clock(
+    State(app): State<App>,
+    Guarded { who, .. }: Guarded<Nothing>,
+) -> Result<Response, Error> {
+    who.needs(Role::Owner)?;
+    let now = now_ms();
+    retention::confirm_clock(&app.storage, now).await?;
+    audit(&app, &who, "confirm the clock", "", &mimique_study::iso_time(now as f64)).await?;
+    Ok(see("/researcher"))
 }
 
 async fn change_exclusion(
@@ -206,7 +254,7 @@ async fn change_exclusion(
     let by = who.account.email.clone();
     let exclusion = Exclusion { session_key: session.key, reason, who: by, at_ms };
     app.storage.add_exclusion(&exclusion).await?;
-    audit(app, who, action, study.id(), &crate::participant_id::participant_id(number)).await?;
+    audit(app, who, action, study.id(), &mimique_storage::participant_id(number)).await?;
     Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
 }
 
@@ -234,10 +282,14 @@ pub(crate) async fn export(
     let study = app.study(&id)?.id().to_owned();
     let subject =
         if query.with_identifiers { format!("{word}, identifiers") } else { word.clone() };
+    let cells = if query.neutralised { Cells::Neutralised } else { Cells::AsTheyAre };
+    let options = Options { with_identifiers: query.with_identifiers, cells };
     let (name, bytes) = match (Format::from_word(&word), word.as_str()) {
         (Some(format), _) => {
-            let cells = if query.neutralised { Cells::Neutralised } else { Cells::AsTheyAre };
-            let options = Options { with_identifiers: query.with_identifiers, cells };
+            if let Some(pieces) = Pieces::open(&app.storage, Some(&study), format, options).await? {
+                audit(&app, &who, "export", &study, &subject).await?;
+                return attachment(&pieces.name(), pieces.into_body());
+            }
             let exported = export::export(&app.storage, Some(&study), format, options).await?;
             if format == Format::PsychDs {
                 (format!("{study}_psych-ds.zip"), exported.into_zip()?)

@@ -55,7 +55,7 @@ pub(crate) fn link_page(
             language.pick("Make the first account", "Créer le premier compte")
         }
         LinkPurpose::Invitation => language.pick("Make your account", "Créer votre compte"),
-        LinkPurpose::Reset => {
+        LinkPurpose::Reset | LinkPurpose::Recovery => {
             language.pick("Choose a new password", "Choisir un nouveau mot de passe")
         }
     };
@@ -67,7 +67,7 @@ pub(crate) fn link_page(
     let body = html! {
         div.card.narrow {
             h1 { (title) }
-            @if link.purpose != LinkPurpose::Reset {
+            @if !matches!(link.purpose, LinkPurpose::Reset | LinkPurpose::Recovery) {
                 p {
                     (language.pick("Role: ", "Rôle : ")) strong { (role_word(language, link.role)) } ", "
                     (role_line(language, link.role)) "."

@@ -1,11 +1,12 @@
 //! The list of studies: what is hosted, in which stage, how many came.
 
 use axum::response::Response;
-use maud::html;
+use maud::{Markup, html};
 use mimique_storage::Role;
 
 use super::frame::{Frame, time};
 use super::study::stage_word;
+use crate::retention::ClockDoubt;
 use crate::state::hosted_study::HostedStudy;
 use mimique_study::Multilingual as _;
 
@@ -19,10 +20,11 @@ pub(crate) struct Listed {
 }
 
 /// The list of studies.
-pub(crate) fn home_page(frame: &Frame, studies: &[Listed]) -> Response {
+pub(crate) fn home_page(frame: &Frame, studies: &[Listed], doubt: Option<ClockDoubt>) -> Response {
     let title = frame.say("Studies", "Études");
     let body = html! {
         h1 { (title) }
+        @if let Some(doubt) = doubt { (clock_notice(frame, doubt)) }
         div.card {
             @if studies.is_empty() {
                 p { (frame.say("No study yet.", "Aucune étude pour l’instant.")) }
@@ -64,4 +66,28 @@ pub(crate) fn home_page(frame: &Frame, studies: &[Listed]) -> Response {
         }
     };
     frame.page(title, "/researcher", &body)
+}
+
+/// The server's clock is not believed, and who can say that it is right.
+fn clock_notice(frame: &Frame, doubt: ClockDoubt) -> Markup {
+    html! {
+        div.notice.bad role="alert" {
+            p {
+                (frame.say("The server’s clock shows ", "L’horloge du serveur indique "))
+                (time(Some(doubt.now_ms)))
+                (frame.say("; what it has seen before is ", " ; elle avait vu auparavant "))
+                (time(Some(doubt.seen_ms)))
+                (frame.say(
+                    ". Nothing is deleted for its age until an owner says that the clock is right.",
+                    ". Rien n’est supprimé pour son âge tant qu’une personne responsable n’a pas dit que l’horloge est juste.",
+                ))
+            }
+            @if frame.may(Role::Owner) {
+                form method="post" action="/researcher/clock" {
+                    (frame.token())
+                    button type="submit" { (frame.say("The clock is right", "L’horloge est juste")) }
+                }
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use axum::response::Response;
 use maud::{Markup, html};
 use mimique_session::wire::Event;
-use mimique_storage::{Exclusion, Role, SessionRecord};
+use mimique_storage::{Exclusion, Role, SessionRecord, StoredEvent};
 use mimique_study::Multilingual as _;
 use serde_json::Value;
 
@@ -22,7 +22,7 @@ pub(crate) struct Shown<'a> {
     pub overview: &'a Overview,
     pub session: &'a SessionRecord,
     pub view: &'a SessionView,
-    pub events: &'a [Event],
+    pub events: &'a [StoredEvent],
     pub exclusions: &'a [Exclusion],
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Shown<'a> {
 pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
     let Shown { study, session, view, .. } = shown;
     let id = study.id();
-    let name = crate::participant_id::participant_id(session.participant);
+    let name = mimique_storage::participant_id(session.participant);
     let address = format!("/researcher/studies/{id}/participants/{}", session.participant);
     let title = format!("{name} · {id}");
     let language = study.study().language_for(frame.language.code());
@@ -177,7 +177,7 @@ fn timeline(frame: &Frame, shown: &Shown<'_>) -> Markup {
                         } }
                         tbody {
                             @for event in shown.events.iter().take(MOST_EVENTS) {
-                                (row(event, with_answers))
+                                (row(frame, event, with_answers))
                             }
                         }
                     }
@@ -190,7 +190,8 @@ fn timeline(frame: &Frame, shown: &Shown<'_>) -> Markup {
     }
 }
 
-fn row(event: &Event, with_answers: bool) -> Markup {
+fn row(frame: &Frame, stored: &StoredEvent, with_answers: bool) -> Markup {
+    let event = &stored.event;
     let text = |name: &str| event.body[name].as_str().unwrap_or_default();
     let place = match text("clip") {
         "" => text("step").to_owned(),
@@ -201,7 +202,15 @@ fn row(event: &Event, with_answers: bool) -> Markup {
         tr {
             td.number { (event.sequence) }
             td { (time(Some(event.at_ms as i64))) }
-            td { (text("type")) }
+            td {
+                (text("type"))
+                @if let Some(misfit) = &stored.misfit {
+                    span.soft {
+                        (frame.say(" (counts for nothing: ", " (ne compte pas : "))
+                        code { (misfit) } ")"
+                    }
+                }
+            }
             td { (place) }
             @if with_answers { td { (answers(event)) } }
         }

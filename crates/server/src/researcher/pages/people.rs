@@ -50,8 +50,8 @@ pub(crate) fn account_page(frame: &Frame, tokens: &[&ApiToken], done: Option<&Do
             }
             p.soft {
                 (frame.say(
-                    "Every other browser is logged out by it.",
-                    "Tous les autres navigateurs sont alors déconnectés.",
+                    "Every other browser is logged out by it, and every token below is ended: make new ones for your scripts.",
+                    "Tous les autres navigateurs sont alors déconnectés et tous les jetons ci-dessous révoqués : créez-en d’autres pour vos scripts.",
                 ))
             }
         }

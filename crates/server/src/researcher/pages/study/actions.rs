@@ -1,9 +1,11 @@
 //! What is done with a study: its exports and reports, its stage, its removal.
 
 use maud::{Markup, html};
+use mimique_storage::{Overdue, Role};
 
 use crate::export::format::Format;
-use crate::researcher::pages::frame::Frame;
+use crate::researcher::pages::frame::{Frame, time};
+use crate::retention::GRACE_MS;
 use crate::state::hosted_study::{HostedStudy, Stage};
 
 /// What an owner does with a study that came through the page.
@@ -27,6 +29,63 @@ pub(super) fn hosting(frame: &Frame, study: &HostedStudy) -> Markup {
             form method="post" action={ (base) "/remove" } {
                 (frame.token())
                 button.danger type="submit" { (frame.say("Host it no more (answers stay)", "Ne plus l’héberger (les réponses restent)")) }
+            }
+        }
+    }
+}
+
+/// Answers over their time: when they go, and how they are kept.
+pub(super) fn overdue(frame: &Frame, id: &str, overdue: &Overdue) -> Markup {
+    html! {
+        div.notice role="status" {
+            p {
+                strong { (overdue.sessions) }
+                (frame.say(
+                    " sessions are over the study’s retentionDays; their answers are deleted from ",
+                    " sessions ont dépassé les retentionDays de l’étude ; leurs réponses sont supprimées à partir du ",
+                ))
+                (time(Some(overdue.first_marked_ms + GRACE_MS)))
+                (frame.say(
+                    " on. If the server’s clock was wrong, keep them and set it right.",
+                    ". Si l’horloge du serveur était fausse, gardez-les et réglez-la.",
+                ))
+            }
+            @if frame.may(Role::Owner) {
+                form method="post" action={ "/researcher/studies/" (id) "/keep" } {
+                    (frame.token())
+                    button type="submit" { (frame.say("Keep the answers", "Garder les réponses")) }
+                }
+            }
+        }
+    }
+}
+
+/// Deletion by the code that a participant brings.
+pub(super) fn withdrawal(frame: &Frame, id: &str) -> Markup {
+    html! {
+        h2 { (frame.say("Withdrawal", "Retrait")) }
+        p.soft {
+            (frame.say(
+                "Participants delete their answers themselves, with the code of the last page, at ",
+                "Les participants suppriment eux-mêmes leurs réponses, avec le code de la dernière page, sur ",
+            ))
+            a href={ "/s/" (id) "/withdraw" } { "/s/" (id) "/withdraw" }
+            (frame.say(
+                ". Here you do it for somebody who has sent you the code.",
+                ". Ici, vous le faites pour une personne qui vous a envoyé le code.",
+            ))
+        }
+        form.stack method="post" action={ "/researcher/studies/" (id) "/withdraw" } {
+            (frame.token())
+            div.field {
+                label for="code" { (frame.say("Withdrawal code", "Code de retrait")) }
+                input #code name="code" type="text" required autocomplete="off" spellcheck="false"
+                    maxlength="40";
+            }
+            div.actions {
+                button.danger type="submit" {
+                    (frame.say("Delete the answers of this code", "Supprimer les réponses de ce code"))
+                }
             }
         }
     }

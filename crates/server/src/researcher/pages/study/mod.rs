@@ -11,10 +11,10 @@ mod trials;
 use axum::response::Response;
 use maud::{Markup, html};
 use mimique_analysis::Language;
-use mimique_storage::Role;
+use mimique_storage::{Overdue, Role};
 use mimique_study::Multilingual as _;
 
-use self::actions::{exports, hosting};
+use self::actions::{exports, withdrawal};
 use self::answers::answers;
 use self::participants::participants;
 pub(super) use self::participants::{browser, status};
@@ -25,12 +25,21 @@ use super::standing_words::standing_word;
 use crate::researcher::dashboard::overview::Overview;
 use crate::state::hosted_study::HostedStudy;
 
+/// How the study is hosted, beside what was answered.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hosting {
+    /// It came through the page.
+    pub is_uploaded: bool,
+    /// Sessions whose answers wait to be deleted.
+    pub overdue: Option<Overdue>,
+}
+
 /// The dashboard of a study.
 pub(crate) fn study_page(
     frame: &Frame,
     study: &HostedStudy,
     overview: &Overview,
-    is_uploaded: bool,
+    hosting: Hosting,
 ) -> Response {
     let id = study.id();
     let language = study.study().language_for(frame.language.code());
@@ -46,8 +55,10 @@ pub(crate) fn study_page(
                 " · "
                 a href={ "/preview/" (id) } { (frame.say("preview of the stimuli", "aperçu des stimuli")) }
             }
+            @if let Some(overdue) = &hosting.overdue { (actions::overdue(frame, id, overdue)) }
             @if frame.may(Role::Analyst) { (exports(frame, id)) }
-            @if frame.may(Role::Owner) && is_uploaded { (hosting(frame, study)) }
+            @if frame.may(Role::Owner) { (withdrawal(frame, id)) }
+            @if frame.may(Role::Owner) && hosting.is_uploaded { (actions::hosting(frame, study)) }
         }
         p.live-state role="status" data-live-state=""
             data-on=(frame.say("Live: the page follows what happens.", "En direct : la page suit ce qui se passe."))

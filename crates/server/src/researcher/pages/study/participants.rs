@@ -55,7 +55,7 @@ fn participant(
         tr {
             th scope="row" {
                 a href={ "/researcher/studies/" (id) "/participants/" (number) } {
-                    (crate::participant_id::participant_id(number))
+                    (mimique_storage::participant_id(number))
                 }
             }
             td { (status(frame, session, view, overview)) }

@@ -1,0 +1,71 @@
+//! Intervals by resampling whole takes, or persons (Efron and Tibshirani 1993, section 13.3).
+
+use mimique_stats::quantile_sorted;
+
+use super::{Counts, Scores};
+use crate::AnnotateError;
+use crate::error::above_zero;
+use crate::random::Stream;
+
+/// Fewest takes (or persons) whose resamples say something.
+pub const FEWEST: usize = 5;
+
+/// Resamples: for each, which of the `takes` are drawn, with replacement, as many as there are. One
+/// ChaCha stream a resample.
+///
+/// # Errors
+/// [`AnnotateError::Count`] for fewer than [`FEWEST`].
+pub fn draws(takes: usize, resamples: usize, seed: u64) -> Result<Vec<Vec<usize>>, AnnotateError> {
+    if takes < FEWEST {
+        let what = "takes to resample";
+        return Err(AnnotateError::Count { what, found: takes, expected: FEWEST });
+    }
+    let draw = |number: usize| {
+        let mut stream = Stream::new(seed, number as u64);
+        (0..takes).map(|_| stream.below(takes)).collect()
+    };
+    Ok((0..resamples).map(draw).collect())
+}
+
+/// The percentile interval of a score at a level (0.95), of resamples in which it is defined; none
+/// where it is in none. `takes` are the counts of each take, or of each person.
+///
+/// # Errors
+/// [`AnnotateError::Setting`] for a level outside 0 to 1, [`AnnotateError::Label`] for a draw that
+/// names no take.
+pub fn interval(
+    takes: &[Counts],
+    draws: &[Vec<usize>],
+    level: f64,
+    score: impl Fn(&Scores) -> Option<f64>,
+) -> Result<Option<[f64; 2]>, AnnotateError> {
+    above_zero("level", level)?;
+    above_zero("1 - level", 1.0 - level)?;
+    let mut values = Vec::with_capacity(draws.len());
+    for (row, draw) in draws.iter().enumerate() {
+        if let Some(&label) = draw.iter().find(|&&take| take >= takes.len()) {
+            return Err(AnnotateError::Label { row, label, labels: takes.len() });
+        }
+        let pooled = Counts::pooled(draw.iter().map(|&take| &takes[take]));
+        values.extend(pooled.and_then(|counts| score(&counts.scores())));
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    let tail = (1.0 - level) / 2.0;
+    let ends = [tail, 1.0 - tail].map(|share| quantile_sorted(&values, share));
+    Ok((!values.is_empty()).then_some(ends))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn draws_are_the_seeds_and_of_few_takes_none() {
+        let found = draws(6, 100, 7).unwrap();
+        assert_eq!(found, draws(6, 100, 7).unwrap());
+        assert_ne!(found, draws(6, 100, 8).unwrap());
+        assert!(found.iter().all(|d| d.len() == 6 && d.iter().all(|&t| t < 6)));
+        assert_eq!(found[..50], draws(6, 50, 7).unwrap());
+        assert!(draws(4, 10, 7).is_err());
+    }
+}

@@ -1,0 +1,54 @@
+//! A study's stimuli, pictures and signed videos made ready to be hosted: the one way for studies that the
+//! server is started with, for those that come through the page, and for exported sites.
+
+use std::collections::BTreeMap;
+
+use mimique_stimulus::{Places, Prepared, Progress, prepare};
+use mimique_storage::durable_file;
+use mimique_study::{ClipSource, MEDIA_PREFIX, Study, media_type, resolve_path};
+use serde_json::json;
+use sha2::{Digest as _, Sha256};
+
+/// Prepares the clips of a study, and keeps its pictures and videos by content hash beside their packs.
+///
+/// # Errors
+/// A clip cannot be prepared, or a file cannot be read; the sentence names it.
+pub fn prepare_hosting(
+    study: &Study,
+    places: &Places,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Prepared, String> {
+    let mut prepared = prepare(study, places, &mut *progress).map_err(|error| error.to_string())?;
+    add_media(study, places, &mut prepared.clips)?;
+    Ok(prepared)
+}
+
+/// Puts every picture and video into the folder of the packs, and names it among the clips.
+fn add_media(
+    study: &Study,
+    places: &Places,
+    clips: &mut BTreeMap<String, ClipSource>,
+) -> Result<(), String> {
+    for path in study.media() {
+        let place = resolve_path(path, &places.study, places.data.as_deref())
+            .map_err(|error| error.to_string())?;
+        let at = |error: std::io::Error| {
+            format!("{}: cannot be read ({error}); correct the path", place.display())
+        };
+        let bytes = std::fs::read(&place).map_err(at)?;
+        let hash = hex::encode(Sha256::digest(&bytes));
+        std::fs::create_dir_all(&places.packs).map_err(at)?;
+        let kept = places.packs.join(&hash);
+        if !kept.exists() {
+            durable_file::write(&kept, &bytes).map_err(at)?;
+        }
+        let source = json!({
+            "avatar": hash, "operators": "", "take": "", "method": { "method": "recorded" },
+            "duration_ms": 0.0, "bytes": bytes.len(), "provenance": hash, "weights_hash": "",
+            "video": media_type(path),
+        });
+        let source = serde_json::from_value(source).map_err(|error| error.to_string())?;
+        clips.insert(format!("{MEDIA_PREFIX}{path}"), source);
+    }
+    Ok(())
+}
