@@ -2,7 +2,7 @@
 //! power of a test whose distribution is known.
 
 use mimique_analysis::{Parameters, Power, PowerOptions, Preregistration, power, preregistration};
-use mimique_study::Study;
+use mimique_study::{StraightLining, Study};
 use serde_json::Value;
 
 fn study(name: &str) -> (Study, String) {
@@ -196,6 +196,7 @@ fn preregistration_says_what_the_file_says() {
                 "H4",
                 "Holm’s correction over the 4 hypotheses",
                 "people who do not finish",
+                "in more than 12 trials in a row (counted for each of `emotion`, `perceived_intensity`, `believability`)",
                 "aligned rank transform",
             ],
         ),
@@ -206,11 +207,14 @@ fn preregistration_says_what_the_file_says() {
                 "H4",
                 "correction de Holm sur les 4 hypothèses",
                 "les personnes qui ne terminent pas",
+                "dans plus de 12 essais de suite",
                 "rangs alignés",
             ],
         ),
     ] {
-        let (study, hash) = study("demo.json");
+        let (mut study, hash) = study("demo.json");
+        let rule = StraightLining { longest_run: 12, questions: Vec::new() };
+        study.exclusions.get_or_insert_default().straight_lining = Some(rule);
         let parameters = Parameters::for_study(&study);
         let power = power(&study, &hash, &parameters, &options(&[10], 4), &|| {}).unwrap();
         let text = preregistration(&Preregistration {

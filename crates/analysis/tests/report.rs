@@ -423,3 +423,34 @@ fn parts_of_questions_are_tested_by_their_names() {
         assert!(response != "grid.valence" || p < 1e-4, "{response}: {p}");
     }
 }
+
+/// Whoever gives the same answer in more trials in a row than the rule allows is left out by that name, in the
+/// chart and in the file; the rows may come in any order.
+#[test]
+fn straight_lining_is_left_out_by_the_study_s_rule() {
+    let path = format!("{}/../../study-config/demo.json", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    value["exclusions"]["straightLining"] =
+        json!({"longestRun": 8, "questions": ["believability"]});
+    let study = Study::from_value(&value).unwrap();
+    let csv = export(&demo_study(), &Raters { people: 9, effect: 0.5, seed: 4 });
+    let mut rows: Vec<Vec<String>> =
+        csv.lines().map(|row| row.split(',').map(str::to_owned).collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|cell| cell == name).unwrap();
+    let (response, answer) = (column("response_id"), column("answer"));
+    for row in &mut rows {
+        if row[0] == "p0004" && row[response] == "believability" {
+            row[answer] = "4".to_owned();
+        }
+    }
+    rows[1..].reverse();
+    let text: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+    let table = Table::parse(text.join("\n").as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::French).unwrap();
+    let flow = &results(&report)["flow"];
+    assert_eq!(flow["people_left_out"]["straight-lining"], 1, "{flow}");
+    assert!(flow["rules"].to_string().contains("straightLining.longestRun > 8"), "{flow}");
+    assert!(report.files[0].text.contains("réponses toujours identiques: 1"));
+    let before = analyze(&table, &demo_study(), Language::French).unwrap();
+    assert_eq!(report.people.0 + 1, before.people.0);
+}

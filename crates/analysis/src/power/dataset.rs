@@ -16,6 +16,7 @@ use crate::simulate::{
     Asked, BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths,
 };
 use crate::trials::export::{Answer, Export, Person as Who, Trial, exclude_people, why_left_out};
+use crate::trials::straight_lining::Runs;
 
 impl Design<'_> {
     /// The answers of the first `participants` people of a seed.
@@ -83,10 +84,12 @@ impl<'d> Data<'d> {
             status: if leaves { "active" } else { "completed" }.to_owned(),
             trials: 0,
             failed_checks: 0,
+            longest_run: 0,
             excluded: None,
         };
         let mut has_rows = !person.about.is_empty() || self.design.study.training.is_some();
         let mut earlier = person.about.clone();
+        let mut runs = Runs::default();
         let mut done = 0;
         for step in walk {
             match step {
@@ -107,7 +110,8 @@ impl<'d> Data<'d> {
                         break;
                     }
                     has_rows = true;
-                    self.trial(&mut person, &mut who, place, (*clip, block, done), &earlier);
+                    let shown = (*clip, block.as_str(), done);
+                    self.trial(&mut person, (&mut who, &mut runs), place, shown, &earlier);
                     done += 1;
                 }
             }
@@ -115,6 +119,7 @@ impl<'d> Data<'d> {
         if !has_rows {
             return;
         }
+        who.longest_run = runs.longest();
         for (question, cells) in &mut self.export.about {
             let assigned = condition.filter(|_| question == ASSIGNED_CONDITION);
             let told = || person.about.get(question).map(text);
@@ -127,7 +132,7 @@ impl<'d> Data<'d> {
     fn trial(
         &mut self,
         person: &mut Person<'_>,
-        who: &mut Who,
+        (who, runs): (&mut Who, &mut Runs<'d>),
         place: usize,
         (clip, block, done): (usize, &str, usize),
         earlier: &Answers,
@@ -165,9 +170,27 @@ impl<'d> Data<'d> {
             if has_conditions(self.design.study) {
                 told.insert(id.clone(), as_json(asked, raw.clone()));
             }
+            self.run(runs, asked, &raw);
             self.keep(id, &Given { person: place, clip, asked, raw: &raw, rt_ms });
         }
         self.trials.push((place, trial, quickest));
+    }
+
+    /// Counts an answer, or each of its parts, in its run of equal answers.
+    fn run(&self, runs: &mut Runs<'d>, asked: &Asked<'_>, raw: &Raw) {
+        let id = &asked.question.id;
+        for response in &self.design.needs.runs {
+            let Some(suffix) = response.strip_prefix(id.as_str()) else { continue };
+            let told = as_json(asked, raw.clone());
+            let answer = match suffix.strip_prefix('.') {
+                Some(part) => asked.question.kind.part_of(&told, part),
+                None if suffix.is_empty() => told,
+                None => continue,
+            };
+            if !answer.is_null() {
+                runs.add(response, &text(&answer));
+            }
+        }
     }
 
     /// Shows the clip of a trial: the trial's row, and the time from its onset to the end of its last

@@ -48,6 +48,7 @@ fn strict_demo() -> Value {
     value["exclusions"] = serde_json::json!({
         "incomplete": true, "failedAttentionChecks": 0, "lateFrameShare": 0.05,
         "longestFrameMs": 33.0, "shortestRtMs": 1200.0,
+        "straightLining": {"longestRun": 3},
     });
     value["hypotheses"].as_array_mut().unwrap().push(serde_json::json!({
         "id": "H5", "statement": "s", "test": "wilcoxon", "response": "believability",

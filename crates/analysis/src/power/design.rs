@@ -4,6 +4,7 @@ use mimique_study::{Draw, Measure, OrderError, OrderedItem, Study, order};
 
 use super::clips::{ScaledClips, scaled};
 use crate::simulate::{Draws, Model, Parameters, condition_and_slot};
+use crate::trials::straight_lining;
 
 /// What participants go through, the same in every run.
 pub(crate) struct Design<'s> {
@@ -28,6 +29,8 @@ pub(crate) struct Needs {
     pub times: bool,
     pub display: bool,
     pub pages: bool,
+    /// Responses in which runs of equal answers are counted.
+    pub runs: Vec<String>,
     /// Questions that hypotheses are about.
     pub responses: Vec<String>,
 }
@@ -73,6 +76,7 @@ impl<'s> Design<'s> {
                 || rules.late_frame_share.is_some()
                 || rules.longest_frame_ms.is_some(),
             pages: rules.failed_attention_checks.is_some() || has_conditions(study),
+            runs: straight_lining::responses(study),
             responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
         };
         Ok(Self { study, clips, walks, conditions, needs })

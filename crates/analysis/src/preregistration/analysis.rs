@@ -284,6 +284,24 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
             format!("les essais ayant une image de plus de {} ms", language.number(longest)),
         ));
     }
+    if let Some(rule) = &rules.straight_lining {
+        let run = rule.longest_run;
+        let asked: Vec<String> = from
+            .study
+            .straight_lining_questions()
+            .iter()
+            .map(|question| format!("`{}`", question.id))
+            .collect();
+        let asked = asked.join(", ");
+        words.push(language.pick(
+            format!(
+                "people who gave the same answer in more than {run} trials in a row (counted for each of {asked})"
+            ),
+            format!(
+                "les personnes ayant donné la même réponse dans plus de {run} essais de suite (compté pour chaque question : {asked})"
+            ),
+        ));
+    }
     if let Some(shortest) = rules.shortest_rt_ms {
         words.push(language.pick(
             format!("trials answered sooner than {shortest} ms after answers could be given"),

@@ -10,7 +10,9 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 use crate::trials::combinations::Combinations;
+use crate::trials::reason::Reason;
 use crate::trials::sessions::{Sessions, about_people};
+use crate::trials::straight_lining::count_runs;
 use crate::trials::trial_rows::{TrialReader, TrialRows, stretches};
 
 /// One person.
@@ -24,8 +26,11 @@ pub(crate) struct Person {
     pub trials: usize,
     /// Attention checks failed.
     pub failed_checks: usize,
+    /// Most equal answers in a row, where the study has a rule about them; else 0.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub longest_run: usize,
     /// Why the person is left out.
-    pub excluded: Option<&'static str>,
+    pub excluded: Option<Reason>,
 }
 
 /// One answer in a trial that is used. Millions of answers share a few texts.
@@ -76,7 +81,7 @@ pub(crate) struct Flow {
     /// People with at least one row.
     pub people: usize,
     /// People left out, by reason.
-    pub people_left_out: BTreeMap<&'static str, usize>,
+    pub people_left_out: BTreeMap<Reason, usize>,
     /// Those of them whom the researcher excluded, by the reason given.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub researcher_reasons: BTreeMap<String, usize>,
@@ -85,7 +90,7 @@ pub(crate) struct Flow {
     /// Trials of the people used.
     pub trials: usize,
     /// Trials left out, by reason.
-    pub trials_left_out: BTreeMap<&'static str, usize>,
+    pub trials_left_out: BTreeMap<Reason, usize>,
     /// Rows of trials that name no trial or no response: the study asks for nothing of the kind.
     #[serde(skip_serializing_if = "is_zero")]
     pub rows_unread: usize,
@@ -106,7 +111,7 @@ impl Flow {
     pub fn why(&self) -> String {
         let reasons = self.people_left_out.iter().chain(&self.trials_left_out);
         let words: Vec<String> =
-            reasons.map(|(reason, count)| format!("{reason}: {count}")).collect();
+            reasons.map(|(reason, count)| format!("{}: {count}", reason.english())).collect();
         if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
     }
 }
@@ -126,9 +131,6 @@ pub(crate) struct Export {
     /// Of the trials; found when first asked for.
     combinations: OnceLock<Combinations>,
 }
-
-/// Why somebody is left out whom the researcher excluded.
-pub(crate) const BY_RESEARCHER: &str = "excluded by the researcher";
 
 /// In the place of the status of somebody whom the researcher excluded.
 pub(super) const EXCLUDED: &str = "excluded";
@@ -170,10 +172,11 @@ impl Export {
             ));
         }
         let mut sessions = Sessions::read(table)?;
+        count_runs(table, study, &sessions.person_of_row, &mut sessions.people)?;
         let mut flow = exclude_people(study, &mut sessions.people, &sessions.stages);
         let Sessions { people, person_of_row, reasons, .. } = sessions;
         for (person, reason) in people.iter().zip(&reasons) {
-            if let (Some(BY_RESEARCHER), Some(reason)) = (person.excluded, reason) {
+            if let (Some(Reason::ByResearcher), Some(reason)) = (person.excluded, reason) {
                 *flow.researcher_reasons.entry((*reason).to_owned()).or_insert(0) += 1;
             }
         }
@@ -231,7 +234,7 @@ pub(crate) fn why_left_out(
     rules: &Exclusions,
     trial: &Trial,
     quickest_ms: Option<f64>,
-) -> Option<&'static str> {
+) -> Option<Reason> {
     let share = match (trial.late, trial.frames) {
         (Some(late), Some(frames)) if frames > 0.0 => Some(late / frames),
         _ => None,
@@ -240,11 +243,11 @@ pub(crate) fn why_left_out(
     let quick =
         matches!((quickest_ms, rules.shortest_rt_ms), (Some(rt), Some(limit)) if rt < limit);
     if over(share, rules.late_frame_share) {
-        Some("late frames")
+        Some(Reason::LateFrames)
     } else if over(trial.longest_ms, rules.longest_frame_ms) {
-        Some("long frame")
+        Some(Reason::LongFrame)
     } else if quick {
-        Some("answered too soon")
+        Some(Reason::AnsweredTooSoon)
     } else {
         None
     }
@@ -259,24 +262,30 @@ pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&st
         let standing = Standing::from_export_word(&person.status);
         person.excluded = if live && *stage == "pilot" {
             flow.pilot_people += 1;
-            Some("pilot")
+            Some(Reason::Pilot)
         } else if standing == Some(Standing::Withdrawn) {
-            Some("withdrawn")
+            Some(Reason::Withdrawn)
         } else if standing == Some(Standing::Declined) {
-            Some("declined")
+            Some(Reason::Declined)
         } else if person.status == EXCLUDED {
-            Some(BY_RESEARCHER)
+            Some(Reason::ByResearcher)
         } else if rules.incomplete && standing != Some(Standing::Completed) {
             Some(match standing {
-                Some(screened_out) if screened_out.is_screened_out() => "screened out",
-                Some(Standing::ChecksFailed) => "attention checks",
-                _ => "incomplete",
+                Some(screened_out) if screened_out.is_screened_out() => Reason::ScreenedOut,
+                Some(Standing::ChecksFailed) => Reason::AttentionChecks,
+                _ => Reason::Incomplete,
             })
         } else if rules
             .failed_attention_checks
             .is_some_and(|limit| person.failed_checks > limit as usize)
         {
-            Some("attention checks")
+            Some(Reason::AttentionChecks)
+        } else if rules
+            .straight_lining
+            .as_ref()
+            .is_some_and(|rule| person.longest_run > rule.longest_run as usize)
+        {
+            Some(Reason::StraightLining)
         } else {
             None
         };
@@ -295,6 +304,9 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
     }
     if let Some(limit) = rules.failed_attention_checks {
         words.push(format!("failedAttentionChecks > {limit}"));
+    }
+    if let Some(rule) = &rules.straight_lining {
+        words.push(format!("straightLining.longestRun > {}", rule.longest_run));
     }
     if let Some(limit) = rules.late_frame_share {
         words.push(format!("lateFrameShare > {limit}"));

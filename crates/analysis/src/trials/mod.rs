@@ -5,5 +5,7 @@ pub(crate) mod column;
 pub(crate) mod combinations;
 pub(crate) mod export;
 pub(crate) mod measure;
+pub(crate) mod reason;
 mod sessions;
+pub(crate) mod straight_lining;
 pub(crate) mod trial_rows;

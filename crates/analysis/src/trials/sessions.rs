@@ -42,6 +42,7 @@ impl<'t> Sessions<'t> {
                         status: status.text(row).unwrap_or("unknown").to_owned(),
                         trials: 0,
                         failed_checks: 0,
+                        longest_run: 0,
                         excluded: None,
                     });
                     stages.push(stage.text(row).unwrap_or("live"));

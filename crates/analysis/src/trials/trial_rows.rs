@@ -10,6 +10,7 @@ use mimique_study::{Exclusions, Study};
 
 use crate::trials::column::Column;
 use crate::trials::export::{Answer, Beside, Export, Person, Trial, why_left_out};
+use crate::trials::reason::Reason;
 
 /// Stretches that a file is cut into: more than there are cores, so that none waits long.
 const STRETCHES: usize = 16;
@@ -45,7 +46,7 @@ pub(crate) struct TrialRows {
     /// Trials of people who are used.
     pub considered: usize,
     /// Those left out, by reason.
-    pub left_out: BTreeMap<&'static str, usize>,
+    pub left_out: BTreeMap<Reason, usize>,
     /// Rows of trials that name no trial or no response: they are in no trial.
     pub unread: usize,
     /// Trials used.

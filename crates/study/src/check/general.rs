@@ -10,7 +10,8 @@ use super::problem::Problem;
 use super::values::{Names, Nearest};
 use crate::columns::is_reserved_column;
 use crate::instant::instant_ms;
-use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section};
+use crate::question::Question;
+use crate::study_file::{LocalText, Recruitment, RepeatPrevention, Section, StraightLining};
 use crate::text;
 
 pub(super) fn examine(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
@@ -283,6 +284,7 @@ fn consent(subject: &Subject<'_>, issues: &mut Issues) {
 }
 
 fn exclusions(subject: &Subject<'_>, issues: &mut Issues) {
+    advice_on_careless_people(subject, issues);
     let Some(rules) = &subject.study.exclusions else { return };
     if let Some(share) = rules.late_frame_share.filter(|share| !(0.0..=1.0).contains(share)) {
         issues.error("/exclusions/lateFrameShare", Problem::NotAShare { share });
@@ -294,5 +296,46 @@ fn exclusions(subject: &Subject<'_>, issues: &mut Issues) {
             let place = format!("/exclusions/{key}");
             issues.error(place, Problem::ExcludesNothing { ms: value });
         }
+    }
+    if let Some(rule) = &rules.straight_lining {
+        straight_lining(subject, rule, issues);
+    }
+}
+
+fn straight_lining(subject: &Subject<'_>, rule: &StraightLining, issues: &mut Issues) {
+    let place = "/exclusions/straightLining";
+    if rule.longest_run < 3 {
+        let run = rule.longest_run;
+        issues.error(below(place, "longestRun"), Problem::ShortRun { run });
+    }
+    let shared = &subject.study.questions;
+    for (index, id) in rule.questions.iter().enumerate() {
+        let place = format!("{place}/questions/{index}");
+        match shared.iter().find(|question| question.id == *id) {
+            None => {
+                let known: Vec<_> = shared.iter().map(|question| question.id.as_str()).collect();
+                issues.error(place, Problem::unknown("question", id, known));
+            }
+            Some(question) if !question.is_closed() => {
+                issues.error(place, Problem::NotClosed { question: id.clone() });
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+/// What a study whose people are sent back to a panel, which pays them, does well to rule beforehand.
+fn advice_on_careless_people(subject: &Subject<'_>, issues: &mut Issues) {
+    let study = subject.study;
+    let is_asked = study.questions.iter().any(Question::is_closed);
+    if study.recruitment.redirect.is_none() || !is_asked {
+        return;
+    }
+    let rules = study.exclusions.clone().unwrap_or_default();
+    if rules.shortest_rt_ms.is_none() {
+        issues.warning("/exclusions", Problem::NoSpeedRule);
+    }
+    if rules.straight_lining.is_none() {
+        issues.warning("/exclusions", Problem::NoStraightLiningRule);
     }
 }

@@ -154,6 +154,18 @@ NotAShare { share: f64 }: "out-of-range", "{share} is not a share", "write 0 to 
 ExcludesNothing { ms: f64 }: "out-of-range",
     "{ms} ms excludes nothing or everything", "write a time above 0";
 
+ShortRun { run: u32 }: "out-of-range",
+    "{run} equal answers in a row come about by chance", "write 3 or more";
+NotClosed { question: String }: "not-closed",
+    "\"{question}\" is answered neither on a scale nor by options: equal answers say nothing",
+    "name questions with a scale or options";
+NoSpeedRule: "no-speed-rule",
+    "people are paid, and whoever answers at once, as scripts do, counts like the others",
+    "add \"shortestRtMs\": 300, or what your pilot shows nobody can do in earnest";
+NoStraightLiningRule: "no-straight-lining-rule",
+    "people are paid, and whoever always gives the same answer counts like the others",
+    "add \"straightLining\": {{\"longestRun\": 12}}, or what your pilot shows nobody does in earnest";
+
 // Device, calibration, time limits, practice, screening, hosting.
 CalibratesNothing: "empty", "the calibration asks nothing", "remove \"card\": false, or the section";
 OneSideInMillimetres: "incomplete", "one side in millimetres", "give both widthMm and heightMm";

@@ -118,6 +118,13 @@ impl Question {
             None => vec![self.id.clone()],
         }
     }
+
+    /// Whether people answer on a scale, by options or by one of two clips, so that a run of equal answers
+    /// says something.
+    pub fn is_closed(&self) -> bool {
+        let kind = &self.kind;
+        kind.scale().is_some() || !kind.options().is_empty() || kind.compares_clips()
+    }
 }
 
 /// One option.

@@ -77,10 +77,27 @@ pub struct Exclusions {
     /// Leave out a trial answered sooner than this after answers could first be given, milliseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shortest_rt_ms: Option<f64>,
+    /// Leave out a participant who gave the same answer in too many trials in a row.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub straight_lining: Option<StraightLining>,
     /// Leave out a participant who failed more attention checks than this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_attention_checks: Option<u32>,
     /// Leave out a participant who did not finish.
     #[serde(default)]
     pub incomplete: bool,
+}
+
+/// A rule against straight-lining: the longest run of equal answers (the long-string index of Johnson 2005,
+/// Journal of Research in Personality 39, 103-129). Runs are counted question by question over the trials
+/// in their order, practice not counted; a question left unanswered neither ends a run nor adds to it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct StraightLining {
+    /// Leave out a participant with more equal answers in a row than this.
+    pub longest_run: u32,
+    /// The questions whose answers are looked at. Without them: all that are asked in trials and answered
+    /// on a scale or by options, but attention checks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub questions: Vec<String>,
 }

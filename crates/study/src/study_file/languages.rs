@@ -39,6 +39,15 @@ pub trait Multilingual {
             .or_else(|| languages.iter().find(|known| known.eq_ignore_ascii_case(short)))
             .map_or_else(|| self.default_language(), String::as_str)
     }
+
+    /// The language of the pages: the first of those asked for that the study has, else its default.
+    fn language_among<'a>(&self, mut wanted: impl Iterator<Item = &'a str>) -> &str {
+        let is_spoken =
+            |each: &&str| primary_language(self.language_for(each)) == primary_language(each);
+        wanted
+            .find(is_spoken)
+            .map_or_else(|| self.default_language(), |each| self.language_for(each))
+    }
 }
 
 impl Multilingual for Study {

@@ -34,7 +34,7 @@ pub use conduct::{
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
-pub use hypotheses::{Exclusions, Hypothesis, Measure, TestName};
+pub use hypotheses::{Exclusions, Hypothesis, Measure, StraightLining, TestName};
 pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
@@ -236,6 +236,20 @@ impl Study {
     /// Every question of the file: demographics, shared ones, those of questionnaires.
     pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
         questions_among(self.demographics.as_ref(), &self.components, &self.questions)
+    }
+
+    /// The questions on which a run of equal answers is straight-lining: those that the rule names, else all
+    /// that trials may ask and that are answered on a scale or by options, but attention checks. None where
+    /// the study has no such rule.
+    pub fn straight_lining_questions(&self) -> Vec<&Question> {
+        let rule = self.exclusions.as_ref().and_then(|rules| rules.straight_lining.as_ref());
+        let is_meant = |rule: &StraightLining, question: &Question| match rule.questions.as_slice()
+        {
+            [] => question.attention_check.is_none() && question.is_closed(),
+            named => named.contains(&question.id),
+        };
+        let of = |rule| self.questions.iter().filter(move |question| is_meant(rule, question));
+        rule.into_iter().flat_map(of).collect()
     }
 
     /// The questions that a step asks, by the step's identifier (`demographics`, `faces/joy2.box`).

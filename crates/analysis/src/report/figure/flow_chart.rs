@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Svg};
-use crate::trials::export::{BY_RESEARCHER, Flow};
+use crate::trials::export::Flow;
+use crate::trials::reason::Reason;
 
 pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
     let caption = language
@@ -91,10 +92,10 @@ fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
     let mut people_out = reasons(language, &flow.people_left_out);
     if !flow.researcher_reasons.is_empty() {
         // Each of the researcher's own reasons has its line.
-        let whole = format!("{}: ", in_words(language, BY_RESEARCHER));
+        let whole = format!("{}: ", in_words(language, Reason::ByResearcher));
         let place = people_out.iter().position(|line| line.starts_with(&whole));
         let lines = flow.researcher_reasons.iter().map(|(reason, count)| {
-            format!("{} ({}): {count}", in_words(language, BY_RESEARCHER), shortened(reason))
+            format!("{} ({}): {count}", in_words(language, Reason::ByResearcher), shortened(reason))
         });
         if let Some(place) = place {
             people_out.splice(place..=place, lines);
@@ -103,9 +104,9 @@ fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
     people_out
 }
 
-fn reasons(language: Language, left_out: &BTreeMap<&'static str, usize>) -> Vec<String> {
+fn reasons(language: Language, left_out: &BTreeMap<Reason, usize>) -> Vec<String> {
     let line =
-        |(reason, count): (&&str, &usize)| format!("{}: {count}", in_words(language, reason));
+        |(&reason, count): (&Reason, &usize)| format!("{}: {count}", in_words(language, reason));
     left_out.iter().map(line).collect()
 }
 
@@ -118,19 +119,6 @@ fn shortened(reason: &str) -> String {
     reason.chars().take(MOST - 1).chain(['…']).collect()
 }
 
-fn in_words(language: Language, reason: &str) -> String {
-    let french = match reason {
-        "pilot" => "pilote",
-        "withdrawn" => "retirés",
-        "declined" => "sans accord",
-        BY_RESEARCHER => "exclus par le chercheur",
-        "screened out" => "non retenus",
-        "incomplete" => "incomplets",
-        "attention checks" => "contrôles d’attention",
-        "late frames" => "images en retard",
-        "long frame" => "image trop longue",
-        "answered too soon" => "réponse trop rapide",
-        other => other,
-    };
-    language.pick(reason, french).to_owned()
+fn in_words(language: Language, reason: Reason) -> &'static str {
+    language.pick(reason.english(), reason.french())
 }
