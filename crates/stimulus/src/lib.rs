@@ -80,4 +80,6 @@ pub use take::{
     SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds, TakeOptions, Training,
     sidecar_path, solve_take,
 };
-pub use weights::{Driven, RecordedNames, RecordedWeights, WeightSteps, weight_steps};
+pub use weights::{
+    Driven, RecordedNames, RecordedWeights, WeightBeyondSense, WeightSteps, weight_steps,
+};

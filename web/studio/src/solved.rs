@@ -281,7 +281,8 @@ impl Workspace {
 /// Recorded weights under the avatar's own names.
 fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Value), Problem> {
     let RecordedWeights { table, names } =
-        RecordedWeights::of(table, &face.read.avatar.shape_names);
+        RecordedWeights::of(table, &face.read.avatar.shape_names)
+            .map_err(|e| Problem::of(name, e))?;
     let rate_hz = table
         .rate_hz()
         .ok_or_else(|| Problem::of(name, "column time: no rate; write the time of each row"))?;

@@ -105,7 +105,7 @@ impl Laboratory {
             let table =
                 read_weights_file(&self.path("recorded.csv"), &WeightOptions::default()).unwrap();
             let shapes = &read.avatar.shape_names;
-            return weights_hash(&RecordedWeights::of(&table, shapes).table.weights);
+            return weights_hash(&RecordedWeights::of(&table, shapes).unwrap().table.weights);
         }
         let mut spec = spec.clone();
         lock_shapes(&mut spec, &read.locked);

@@ -23,7 +23,8 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     let recorded = file.weights(&options).map_err(|e| blame(&args.mocap, e))?;
     let notes: Vec<String> = file.format().map(Format::taken_for).into_iter().collect();
     let RecordedWeights { table, names } =
-        RecordedWeights::of(&recorded, &avatar.avatar.shape_names);
+        RecordedWeights::of(&recorded, &avatar.avatar.shape_names)
+            .map_err(|e| blame(&args.mocap, e))?;
     let hash = weights_hash(&table.weights);
     let provenance = Provenance::new()
         .json("avatar", avatar_key(&avatar.avatar))

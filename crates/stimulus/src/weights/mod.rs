@@ -3,5 +3,5 @@
 mod recorded;
 mod steps;
 
-pub use recorded::{Driven, RecordedNames, RecordedWeights};
+pub use recorded::{Driven, RecordedNames, RecordedWeights, WeightBeyondSense};
 pub use steps::{WeightSteps, weight_steps};

@@ -1,6 +1,9 @@
 //! `recorded`: weights of a file under an avatar's own shapes, and what of both finds no partner.
 
+use std::collections::BTreeSet;
+
 use mimique_mocap::WeightsTable;
+use mimique_solver::LARGEST_WEIGHT;
 use serde::Serialize;
 
 /// Recorded weights under an avatar's shapes.
@@ -34,12 +37,39 @@ pub struct Driven {
     pub columns: Vec<(String, f64)>,
 }
 
+/// A weight of a file that no face has a use for: in percent, or damaged.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "frame {frame}, column {column}: {value}, where 1 is the whole shape and no face has a use for more than \
+     {LARGEST_WEIGHT}; divide percentages by 100, or correct the cell"
+)]
+pub struct WeightBeyondSense {
+    /// Number of the frame, as the file has it.
+    pub frame: u64,
+    /// The column.
+    pub column: String,
+    /// What stands there.
+    pub value: f64,
+}
+
 impl RecordedWeights {
     /// Joins the columns of `recorded` to the avatar's shapes by [`mimique_avatar::map_shapes`]:
     /// ARKit's names, Left and Right as `_L` and `_R`, shapes split by side or merged.
-    pub fn of(recorded: &WeightsTable, shape_names: &[String]) -> Self {
+    ///
+    /// # Errors
+    /// [`WeightBeyondSense`] for the first weight over [`LARGEST_WEIGHT`] in a column that drives a shape.
+    pub fn of(recorded: &WeightsTable, shape_names: &[String]) -> Result<Self, WeightBeyondSense> {
         let map = mimique_avatar::map_shapes(shape_names, &recorded.shape_names);
         let name = |c: usize| recorded.shape_names[c].clone();
+        let driving: BTreeSet<usize> = map.terms.iter().flatten().map(|&(c, _)| c).collect();
+        for (row, &frame) in recorded.frames.iter().enumerate() {
+            let values = recorded.row(row);
+            let beyond = driving.iter().find(|&&c| values[c].abs() > LARGEST_WEIGHT);
+            if let Some(&column) = beyond {
+                let (column, value) = (name(column), values[column]);
+                return Err(WeightBeyondSense { frame, column, value });
+            }
+        }
         let weights = (0..recorded.frames.len())
             .flat_map(|row| {
                 let row = recorded.row(row);
@@ -60,7 +90,7 @@ impl RecordedWeights {
             held: held.map(|(shape, _)| shape.clone()).collect(),
         };
         let table = WeightsTable { shape_names: shape_names.to_vec(), weights, ..recorded.clone() };
-        Self { table, names }
+        Ok(Self { table, names })
     }
 }
 
@@ -111,7 +141,7 @@ mod tests {
             "mouthSmile_L",
             "mouthSmile_R",
         ]);
-        let split = RecordedWeights::of(&phone, &avatar);
+        let split = RecordedWeights::of(&phone, &avatar).unwrap();
         assert_eq!(split.table.row(0), [0.2, 0.2, 0.3, 0.3, 0.5, 0.1, 0.4, 0.0]);
         assert_eq!(split.table.frames, [7, 8]);
         assert_eq!(split.names.unused, ["HeadYaw"]);
@@ -122,7 +152,8 @@ mod tests {
 
         // The other way round: halves of both sides.
         let back =
-            RecordedWeights::of(&split.table, &texts(&["browInnerUp", "cheekPuff", "jawOpen"]));
+            RecordedWeights::of(&split.table, &texts(&["browInnerUp", "cheekPuff", "jawOpen"]))
+                .unwrap();
         for (found, expected) in back.table.row(0).iter().zip([0.2, 0.3, 0.1]) {
             assert!((found - expected).abs() < 1e-15);
         }
@@ -131,7 +162,20 @@ mod tests {
             [("browInnerUp_L".into(), 0.5), ("browInnerUp_R".into(), 0.5)]
         );
         assert!(back.names.held.is_empty());
-        let nothing = RecordedWeights::of(&phone, &texts(&["smirk"]));
+        let nothing = RecordedWeights::of(&phone, &texts(&["smirk"])).unwrap();
         assert!(nothing.names.warnings()[0].contains("stays neutral"));
+    }
+
+    #[test]
+    fn percentages_and_nonsense_are_refused_where_they_drive_a_shape() {
+        let shapes = texts(&["jawOpen", "headYawDegrees"]);
+        let weights = vec![0.5, 45.0, 1.2, -90.0, 37.5, 0.0];
+        let percent = WeightsTable::at_rate(shapes, weights, 0, 60.0);
+        let found = RecordedWeights::of(&percent, &texts(&["jawOpen"])).unwrap_err();
+        let expected = WeightBeyondSense { frame: 2, column: "jawOpen".into(), value: 37.5 };
+        assert_eq!(found, expected);
+        assert!(found.to_string().contains("divide percentages by 100"), "{found}");
+        // A column that drives no shape may be in any unit.
+        assert!(RecordedWeights::of(&percent, &texts(&["mouthClose"])).is_ok());
     }
 }
