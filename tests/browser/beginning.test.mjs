@@ -5,6 +5,7 @@ import { mkdirSync, mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { badProxy } from "./lib/bad_proxy.mjs";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { firefox, openFirefox } from "./lib/firefox.mjs";
 import { go, leave, place, until } from "./lib/participant.mjs";
@@ -142,6 +143,43 @@ test("beginning: a click after an error on a number field is not lost", { skip: 
     await page.waitForFunction(() => document.querySelector("main[data-view]").dataset.view !== "questions", undefined, { timeout: 10_000 });
   } finally {
     await browser.close();
+    await server.stop();
+  }
+});
+
+test("beginning: title and agreement can be read before the page's module is there, in the language it will have", { skip: unable, timeout: 240_000 }, async () => {
+  const server = await serve([written()]);
+  const proxy = await badProxy(server.url);
+  const address = `${proxy.url}/s/beginning/?backend=webgl2`;
+  const asked = async (path, languages) => (await fetch(path, { headers: { "accept-language": languages } })).text();
+  assert.match(await asked(address, "de, fr-CA;q=0.8, en;q=0.5"), /<html lang="fr">[^]*<main[^>]*>[^]*<h1>/);
+  assert.match(await asked(`${address}&lang=en`, "fr"), /<html lang="en">/);
+  const browser = await open("webgl2", { locale: "fr-FR" });
+  const { page } = browser;
+  try {
+    proxy.rule((_, path) => (path.includes("app_bg.wasm") ? "silent" : undefined));
+    await page.goto(address, { waitUntil: "domcontentloaded" });
+    const words = () => page.evaluate(() => [...document.querySelectorAll("main :is(h1, h2, section p, .languages button)")].map((part) => part.innerText));
+    const places = () => page.evaluate(() => [...document.querySelectorAll("main :is(h1, h2, section p)")].map((part) => Math.round(part.getBoundingClientRect().top)));
+    await page.waitForSelector("main[data-view=opening] h1");
+    const [before, stood] = [await words(), await places()];
+    assert.ok(before.length >= 4, before.join(" | "));
+    assert.equal(await page.locator("main :is(a, button:not(:disabled))").count(), 2, "the contacts' addresses, and nothing that does nothing");
+    proxy.rule(() => undefined);
+    await page.reload();
+    await page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });
+    assert.deepEqual(await words(), before, "the same page");
+    assert.deepEqual(await places(), stood, "nothing has moved");
+    // In the middle of a session somebody else's first page is not shown again.
+    const here = await place(page);
+    await go(page, "mouse");
+    await leave(page, here);
+    proxy.rule((_, path) => (path.includes("/api/") ? "silent" : undefined));
+    await page.reload();
+    await page.waitForFunction(() => document.querySelector("main[data-view=opening]")?.innerText.trim() === "…", null, { timeout: 30_000 });
+  } finally {
+    await browser.close();
+    await proxy.close();
     await server.stop();
   }
 });

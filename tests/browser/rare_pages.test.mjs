@@ -26,15 +26,20 @@ const study = small("rare", {
   stimuli: stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, [["head", "box"]]),
 });
 
-for (const [scheme, width, locale] of [["light", 1280, "en-GB"], ["dark", 320, "fr-FR"]]) {
-  test(`access: pages that few see, ${scheme}, ${width} px`, { skip: unable, timeout: 300_000 }, async () => {
+for (const [scheme, width, locale, forcedColors] of [
+  ["light", 1280, "en-GB", "none"],
+  ["dark", 320, "fr-FR", "none"],
+  ["dark", 800, "en-GB", "active"],
+]) {
+  const colours = forcedColors === "active" ? `forced ${scheme}` : scheme;
+  test(`access: pages that few see, ${colours}, ${width} px`, { skip: unable, timeout: 300_000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), "mimique-rare-"));
     writeFileSync(join(folder, "rare.json"), JSON.stringify(study));
     const server = await serve([join(folder, "rare.json")]);
     const proxy = await badProxy(server.url);
-    const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
+    const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale, forcedColors });
     const { page, context } = browser;
-    const shots = screenshotFolder(`rare-${scheme}-${width}`);
+    const shots = screenshotFolder(`rare-${colours.replace(" ", "-")}-${width}`);
     const seen = [];
     const lookAt = async (where, name) => {
       await looker(where, shots).look(name);
@@ -70,6 +75,12 @@ for (const [scheme, width, locale] of [["light", 1280, "en-GB"], ["dark", 320, "
       await page.locator("[data-action=withdraw]").click();
       await page.waitForSelector("dialog[open]");
       await look("withdraw-dialog");
+      // It stands in the middle of the window, whole.
+      const box = await page.locator("dialog").boundingBox();
+      const window = page.viewportSize();
+      assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= window.width && box.y + box.height <= window.height, JSON.stringify(box));
+      for (const [from, size, whole] of [[box.x, box.width, window.width], [box.y, box.height, window.height]])
+        assert.ok(Math.abs(from + size / 2 - whole / 2) <= 2, `${JSON.stringify(box)} in ${JSON.stringify(window)}`);
       await page.locator("dialog button").first().click();
       assert.equal(await page.locator("dialog[open]").count(), 0);
       const second = await context.newPage();

@@ -139,7 +139,8 @@ fn write(
         ("study", &study.id),
         ("post", &post),
     ];
-    let page = assets.page("participant/site.html", &values).context(
+    let page = assets.participant_page("participant/site.html", &values, study, language);
+    let page = page.context(
         "participant/site.html is not among the pages; run `cargo xtask web` and build again",
     )?;
     folder.put("index.html", page.as_bytes())?;
@@ -200,10 +201,10 @@ fn write_packs(folder: &mut Folder<'_>, hosted: &HostedStudy, packs: &Path) -> a
 /// What `site.json` says: the study, its clips, its codes, and where the answers go.
 fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage) -> SiteFile {
     let recruitment = &study.recruitment;
-    // By the exported word: several standings share one, and its code.
+    // By the stored word, which names one standing: those that one exported word joins may have codes of their own.
     let code = |standing: Standing| {
         let code = standing.completion_code(recruitment)?;
-        Some((standing.export_word().to_owned(), code.to_owned()))
+        Some((standing.stored_word().to_owned(), code.to_owned()))
     };
     let contact = study.contact.as_ref();
     SiteFile {

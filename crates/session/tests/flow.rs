@@ -444,9 +444,9 @@ fn pictures_are_loaded_before_their_page_and_no_trial_starts_without_them() {
 fn pages_come_in_the_language_chosen() {
     let mut page = Page::open(&study_text("demo.json"), 14);
     page.send(Input::ChooseLanguage("fr".into()));
-    let View::Consent { agree, title, .. } = page.view() else { panic!() };
+    let View::Consent { agree, agreement, .. } = page.view() else { panic!() };
     assert_eq!(agree, "J’accepte de participer");
-    assert_eq!(title, "Que lisez-vous sur ce visage\u{a0}?");
+    assert_eq!(agreement.title, "Que lisez-vous sur ce visage\u{a0}?");
     page.reload();
     let View::Consent { agree, .. } = page.view() else { panic!() };
     assert_eq!(agree, "J’accepte de participer", "kept after a reload");

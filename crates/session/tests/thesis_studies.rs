@@ -163,10 +163,13 @@ fn read(name: &str, language: &str) -> Vec<Vec<String>> {
     let mut pages = Vec::new();
     loop {
         let shown = match page.view() {
-            View::Consent { title, sections, agree, decline, .. } => {
-                let mut all = vec![title, agree, decline];
+            View::Consent { agreement, agree, decline, .. } => {
+                let mut all = vec![agreement.title, agree, decline];
                 all.extend(
-                    sections.into_iter().flat_map(|it| [vec![it.heading], it.text].concat()),
+                    agreement
+                        .sections
+                        .into_iter()
+                        .flat_map(|it| [vec![it.heading], it.text].concat()),
                 );
                 all
             }

@@ -22,7 +22,7 @@ const backends = {
 };
 
 /** A browser with a fresh profile: `{page, context, requests, errors, close()}`. */
-export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", profile } = {}) {
+export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", forcedColors = "none", profile } = {}) {
   profile ??= mkdtempSync(join(tmpdir(), "mimique-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: executable,
@@ -32,6 +32,7 @@ export async function open(backend, { locale = "en-GB", viewport = { width: 1280
     viewport,
     colorScheme,
     reducedMotion,
+    forcedColors,
   });
   const requests = [];
   const errors = [];

@@ -54,6 +54,8 @@ struct App {
     lobby: RefCell<Option<Rc<Engine>>>,
     /// Whether a declining was counted.
     declined: Cell<bool>,
+    /// Whether the pages are drawn: before, title and agreement stand there as the HTML has them.
+    drawn: Cell<bool>,
     /// Whether it is drawn at the end of this turn.
     due: Cell<bool>,
     /// Whether something is pressed: what stands under the pointer stays there until it is let go.
@@ -79,6 +81,7 @@ pub fn start() {
             watched: RefCell::default(),
             lobby: RefCell::default(),
             declined: Cell::new(false),
+            drawn: Cell::new(false),
             due: Cell::new(false),
             pressed: Cell::new(false),
         }
@@ -235,6 +238,8 @@ impl App {
             let element = match &*self.status.borrow() {
                 Status::Failed(trouble, words) => failure::trouble(trouble, words),
                 Status::Entering(words) => pages::entering(words),
+                // Who is only beginning can read the agreement meanwhile.
+                _ if !self.drawn.get() && !start::is_under_way() => return,
                 _ => pages::opening(),
             };
             return self.show(vec![element]);
@@ -254,6 +259,9 @@ impl App {
     }
 
     fn show(&self, elements: Vec<Element>) {
+        if !self.drawn.replace(true) {
+            document::clear();
+        }
         self.mount.borrow_mut().show(elements);
     }
 

@@ -201,7 +201,7 @@ impl Site {
                 return Err(Failure::Unreachable(format!("HTTP {}", answer.status)));
             }
         }
-        let code = site.codes.get(standing.export_word()).cloned();
+        let code = site.codes.get(standing.stored_word()).cloned();
         // As the server does: who has no code does not go back as somebody who has finished.
         let back = site.redirect.filter(|_| code.is_some() || standing == Standing::Completed);
         let redirect = back.map(|address| filled(&address, code.as_deref()));

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use mimique_session::flow::{Input, Plan, State};
 use mimique_session::wire::{Event, Refusal, SessionStarted, StartSession};
 use mimique_session::{Client, EventKind};
-use mimique_study::text::{Words, primary_language};
+use mimique_study::text::Words;
 use mimique_study::{Multilingual as _, StudyProjection};
 use serde_json::Value;
 
@@ -37,15 +37,27 @@ pub enum Trouble {
     OtherTab,
 }
 
+/// Whether this browser is in the middle of a session of the study that the address names.
+pub fn is_under_way() -> bool {
+    let address = address(&Service::of_document());
+    let identity = address.and_then(|address| Identity::load(&address.study));
+    identity.is_some_and(|identity| identity.started.is_some())
+}
+
+/// The address of the study.
+fn address(service: &Service) -> Option<Address> {
+    let query = document::query();
+    match service.site() {
+        Some(site) => Some(Address::of_study(site.study(), &query)),
+        None => Address::parse(&document::path(), &query),
+    }
+}
+
 /// Everything before the first page; `fixed` becomes what is said if it fails, in the study's own words
 /// as soon as it is there. `changed` is called when something changed that the screen shows.
 pub async fn begin(fixed: &mut Words, changed: Rc<dyn Fn()>) -> Result<Rc<Engine>, Trouble> {
     let service = Service::of_document();
-    let query = document::query();
-    let address = match service.site() {
-        Some(site) => Address::of_study(site.study(), &query),
-        None => Address::parse(&document::path(), &query).ok_or(Trouble::NoStudy)?,
-    };
+    let address = address(&service).ok_or(Trouble::NoStudy)?;
     let bundle = bundle(&service, &address.study).await?;
     let Bundle { study, clips, .. } = bundle;
     let language = language(&address, &study);
@@ -186,11 +198,8 @@ fn arrival(address: &Address, nonce: &str, language: &str) -> StartSession {
 /// The language of the pages: the address's first, then the browser's, of those that the study has.
 fn language(address: &Address, study: &StudyProjection) -> String {
     let of_browser = document::languages();
-    let mut wanted = address.language.iter().chain(&of_browser);
-    wanted
-        .find(|each| primary_language(study.language_for(each)) == primary_language(each))
-        .map_or_else(|| study.default_language(), |each| study.language_for(each))
-        .to_owned()
+    let wanted = address.language.iter().chain(&of_browser).map(String::as_str);
+    study.language_among(wanted).to_owned()
 }
 
 /// The study as it is today; or, in the middle of a session that began before the study was

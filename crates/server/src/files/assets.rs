@@ -6,10 +6,12 @@ use std::io;
 use std::path::Path;
 
 use axum::body::Bytes;
+use mimique_study::Study;
 use sha2::{Digest, Sha256};
 
 use super::{compression, folder};
 use crate::files::static_file::{StaticFile, content_type};
+use crate::participant::first_page::first_page;
 
 /// A file that `build.rs` embedded.
 struct EmbeddedFile {
@@ -137,6 +139,19 @@ impl Assets {
         Some(values.iter().fold(template.to_owned(), |page, (name, value)| {
             page.replace(&format!("{{{{{name}}}}}"), &escaped(value))
         }))
+    }
+
+    /// The same for a participant's page: `{{first_page}}` is title and agreement of the study.
+    pub fn participant_page(
+        &self,
+        name: &str,
+        values: &[(&str, &str)],
+        study: &Study,
+        language: &str,
+    ) -> Option<String> {
+        // Last: a study's text may have braces.
+        let page = self.page(name, values)?;
+        Some(page.replace("{{first_page}}", &first_page(study, language).0))
     }
 }
 

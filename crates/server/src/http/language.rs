@@ -1,4 +1,4 @@
-//! Language of the researchers' pages.
+//! The languages that a browser asks for; language of the researchers' pages.
 
 use axum::http::{HeaderMap, header};
 use mimique_analysis::Language;
@@ -13,7 +13,12 @@ pub(crate) fn language_of(headers: &HeaderMap) -> Language {
     if let Some(chosen) = cookies::find(headers, LANGUAGE_COOKIE).and_then(Language::from_code) {
         return chosen;
     }
+    accepted(headers).filter_map(Language::from_code).next().unwrap_or_default()
+}
+
+/// The languages that a browser asks for, in its order.
+pub(crate) fn accepted(headers: &HeaderMap) -> impl Iterator<Item = &str> {
     let wanted = headers.get(header::ACCEPT_LANGUAGE).and_then(|value| value.to_str().ok());
-    let codes = wanted.unwrap_or_default().split(',').filter_map(|part| part.split(';').next());
-    codes.filter_map(|code| Language::from_code(code.trim())).next().unwrap_or_default()
+    let parts = wanted.unwrap_or_default().split(',');
+    parts.filter_map(|part| part.split(';').next()).map(str::trim).filter(|code| !code.is_empty())
 }

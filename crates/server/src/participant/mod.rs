@@ -1,5 +1,6 @@
 //! The participants' addresses: pages, studies, sessions.
 
+pub(crate) mod first_page;
 pub(crate) mod pages;
 pub(crate) mod panics;
 mod resumed;

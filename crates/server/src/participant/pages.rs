@@ -3,15 +3,17 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use axum::extract::{Path, RawQuery, State};
+use axum::extract::{Path, Query, RawQuery, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, html};
 use mimique_storage::StorageError;
+use serde::Deserialize;
 
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
+use crate::http::language::accepted;
 use crate::state::App;
 use crate::studio::page::{StudioFiles, studio_page};
 use mimique_study::Multilingual as _;
@@ -71,12 +73,21 @@ pub(crate) async fn participant_without_slash(
     Ok((StatusCode::PERMANENT_REDIRECT, [(header::LOCATION, address)]).into_response())
 }
 
+/// What the address of the page asks for.
+#[derive(Deserialize)]
+pub(crate) struct Asked {
+    /// A language.
+    lang: Option<String>,
+}
+
 pub(crate) async fn participant(
     State(app): State<App>,
     Path(study): Path<String>,
+    Query(asked): Query<Asked>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    from_template(&app, "participant/index.html", &study, &headers)
+    let asked = asked.lang.as_deref();
+    from_template(&app, "participant/index.html", &study, asked, &headers)
 }
 
 pub(crate) async fn preview(
@@ -85,7 +96,7 @@ pub(crate) async fn preview(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     may_look(&app, &headers).await?;
-    from_template(&app, "researcher/preview.html", &study, &headers)
+    from_template(&app, "researcher/preview.html", &study, None, &headers)
 }
 
 /// The studio: everything in it happens in the browser.
@@ -130,15 +141,11 @@ fn from_template(
     app: &App,
     name: &str,
     study: &str,
+    asked: Option<&str>,
     headers: &HeaderMap,
 ) -> Result<Response, Error> {
     let study = app.study(study)?;
-    let wanted = headers
-        .get(header::ACCEPT_LANGUAGE)
-        .and_then(|value| value.to_str().ok())
-        .and_then(|value| value.split([',', ';']).next())
-        .unwrap_or_default();
-    let language = study.study().language_for(wanted.trim());
+    let language = study.study().language_among(asked.into_iter().chain(accepted(headers)));
     let values = [
         ("assets", app.assets.prefix()),
         ("lang", language.to_owned()),
@@ -147,6 +154,8 @@ fn from_template(
         ("packs", app.settings.packs_address.clone().unwrap_or_else(|| "/packs".into())),
     ];
     let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
-    let page = app.assets.page(name, &values).ok_or(Error::NotFound)?;
-    Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
+    let page = app.assets.participant_page(name, &values, study.study(), language);
+    let page = page.ok_or(Error::NotFound)?;
+    let kept = [(header::CACHE_CONTROL, "no-cache"), (header::VARY, "accept-language")];
+    Ok((kept, Html(page)).into_response())
 }

@@ -13,6 +13,7 @@
 //! then:        render view(plan, state); wait; update(input); carry out effects; again
 //! ```
 
+mod agreement;
 mod allowed;
 mod clock;
 mod effect;
@@ -29,6 +30,7 @@ mod view_gate;
 mod view_question;
 
 pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
+pub use agreement::AgreementView;
 pub use effect::Effect;
 pub(crate) use gate::unmet;
 pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM};

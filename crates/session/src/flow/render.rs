@@ -1,17 +1,18 @@
 //! From state to screen: decisions made, texts in the participant's language.
 
+use super::agreement::{self, AgreementView};
 use super::allowed::{break_seconds_left, can_play, can_submit, is_saving};
 use super::gate;
 use super::needs::{Needs, needs_of};
 use super::state::{Play, State};
 use super::view::{
-    BesideView, ButtonView, CodeView, ContactView, EndView, FailedView, Phase, ProgressView,
-    RecordsView, SectionView, TrialView, View,
+    BesideView, ButtonView, CodeView, EndView, FailedView, Phase, ProgressView, RecordsView,
+    SectionView, TrialView, View,
 };
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::record::CutShort;
 use crate::standing::Standing;
-use mimique_study::text::{Words, typeset};
+use mimique_study::text::Words;
 use mimique_study::{LocalText, MEDIA_PREFIX, Section};
 
 /// What stands on the screen.
@@ -45,8 +46,7 @@ pub(super) struct Screen<'a> {
 
 impl Screen<'_> {
     pub(super) fn text(&self, text: &LocalText) -> String {
-        let language = &self.state.record.language;
-        typeset(language, text.in_language(language)).into_owned()
+        agreement::text(&self.state.record.language, text)
     }
 
     /// The path of a file, as the study file writes it.
@@ -55,13 +55,11 @@ impl Screen<'_> {
     }
 
     pub(super) fn paragraphs(&self, text: &LocalText) -> Vec<String> {
-        let text = self.text(text);
-        let paragraphs = text.split("\n\n").map(str::trim).filter(|each| !each.is_empty());
-        paragraphs.map(str::to_owned).collect()
+        agreement::paragraphs(&self.state.record.language, text)
     }
 
     fn section(&self, section: &Section) -> SectionView {
-        SectionView { heading: self.text(&section.heading), text: self.paragraphs(&section.text) }
+        agreement::section(&self.state.record.language, section)
     }
 
     pub(super) fn progress(&self) -> ProgressView {
@@ -133,31 +131,6 @@ impl Screen<'_> {
     fn consent(&self, step: &Step) -> View {
         let study = &self.plan.study;
         let words = self.words;
-        let mut sections = Vec::new();
-        if let Some(consent) = &study.consent {
-            sections.extend(consent.sections.iter().map(|section| self.section(section)));
-            if let Some(retention) = &consent.retention {
-                let text = self.paragraphs(retention);
-                sections.push(SectionView { heading: words.retention().into(), text });
-            }
-            if let Some(years) = consent.minimum_age {
-                let text = vec![words.minimum_age(years)];
-                sections.push(SectionView { heading: words.age().into(), text });
-            }
-        }
-        let contact = study.contact.as_ref();
-        let people = [
-            (words.investigator(), contact.map(|contact| &contact.investigator)),
-            (words.ethics_board(), contact.and_then(|contact| contact.ethics_board.as_ref())),
-        ];
-        let contacts = people.into_iter().filter_map(|(role, person)| {
-            person.map(|person| ContactView {
-                role: role.to_owned(),
-                name: self.text(&person.name),
-                email: person.email.clone(),
-                reference: person.reference.clone(),
-            })
-        });
         let languages = if study.languages.len() > 1 {
             let name = |code: &String| (code.clone(), self.plan.words(code).language_name().into());
             study.languages.iter().map(name).collect()
@@ -166,10 +139,7 @@ impl Screen<'_> {
         };
         View::Consent {
             step: step.id.clone(),
-            title: self.text(&study.title),
-            description: self.text(&study.description),
-            sections,
-            contacts: contacts.collect(),
+            agreement: AgreementView::new(study, &self.state.record.language, words),
             languages,
             agree: words.agree().to_owned(),
             decline: words.decline().to_owned(),

@@ -1,5 +1,6 @@
 //! The vocabulary of the screen: what the page renders, without deciding anything itself.
 
+use super::agreement::AgreementView;
 use super::view_gate::{CalibrationView, DeviceView, FeedbackView};
 use super::view_question::QuestionView;
 
@@ -10,14 +11,8 @@ pub enum View {
     Consent {
         /// Identifier of the step, for [`super::Input::Shown`].
         step: String,
-        /// Title of the study.
-        title: String,
-        /// What it is, in a sentence or two.
-        description: String,
-        /// The text; the lines on age and retention are its last sections.
-        sections: Vec<SectionView>,
-        /// Whom to write to.
-        contacts: Vec<ContactView>,
+        /// What is read before.
+        agreement: AgreementView,
         /// Languages to choose from: code and own name; empty if there is one only.
         languages: Vec<(String, String)>,
         /// The button that agrees.

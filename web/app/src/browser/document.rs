@@ -6,14 +6,17 @@ use web_sys::{HtmlDialogElement, HtmlElement, Node};
 
 use crate::address::Address;
 
-/// Where the pages stand, emptied.
+/// Where the pages stand. What the HTML has there stays until [`clear`].
 pub fn root() -> Node {
-    let place: Node = match document().get_element_by_id("app") {
+    match document().get_element_by_id("app") {
         Some(place) => place.into(),
         None => gloo_utils::body().into(),
-    };
-    place.set_text_content(None);
-    place
+    }
+}
+
+/// Takes away what the HTML has where the pages stand.
+pub fn clear() {
+    root().set_text_content(None);
 }
 
 /// Opens or closes the dialog of the page.

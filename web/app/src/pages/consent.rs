@@ -9,9 +9,7 @@ use crate::engine::Engine;
 
 /// The agreement, with the choice of language.
 pub fn consent(engine: &Engine, view: &View) -> Element {
-    let View::Consent { title, description, sections, contacts, languages, agree, decline, .. } =
-        view
-    else {
+    let View::Consent { agreement, languages, agree, decline, .. } = view else {
         return super::opening();
     };
     let fixed = engine.words();
@@ -25,15 +23,15 @@ pub fn consent(engine: &Engine, view: &View) -> Element {
                 .all(buttons.collect()),
         );
     }
-    card = card.with(heading(title)).with(words("p", "", description));
-    for section in sections {
+    card = card.with(heading(&agreement.title)).with(words("p", "", &agreement.description));
+    for section in &agreement.sections {
         let section =
             el("section", "").with(words("h2", "", &section.heading)).paragraphs(&section.text);
         card = card.with(section);
     }
     let people = el("section", "")
-        .with(words("h2", "", fixed.contact()))
-        .all(contacts.iter().map(contact).collect());
+        .with(words("h2", "", &agreement.contact))
+        .all(agreement.contacts.iter().map(contact).collect());
     let actions = el("div", "actions")
         .with(button("primary", "agree", agree).on("click", sends(|| Input::Consent)))
         .with(button("", "decline", decline).on("click", sends(|| Input::Decline)));
