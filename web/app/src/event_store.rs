@@ -127,8 +127,18 @@ impl EventStore {
 
     /// Puts an event.
     pub async fn put(&self, event: &Event) -> Result<(), Error> {
-        let (key, text) = (self.key(event.sequence), JsValue::from_str(&json!(event).to_string()));
-        self.write(|store| store.put(&text, Some(&key)).map(drop)).await
+        self.put_all(std::slice::from_ref(event)).await
+    }
+
+    /// Puts events, all or none.
+    pub async fn put_all(&self, events: &[Event]) -> Result<(), Error> {
+        self.write(|store| {
+            events.iter().try_for_each(|event| {
+                let text = JsValue::from_str(&json!(event).to_string());
+                store.put(&text, Some(&self.key(event.sequence))).map(drop)
+            })
+        })
+        .await
     }
 
     /// Forgets events that the server has.

@@ -150,10 +150,13 @@ pub async fn enter(lobby: &Engine, changed: Rc<dyn Fn()>) -> Result<Rc<Engine>, 
     let plan = planned(study, started)?;
     let events = lobby.unkept();
     let state = State::replay(&plan, &events);
-    let (clips, store, stored, unsent) = (lobby.clips.clone(), Some(store), 0, Vec::new());
+    // Kept before the next page is shown: a reload finds the agreement given.
+    let kept = store.put_all(&events).await.is_ok();
+    let (unsent, later) = if kept { (events, Vec::new()) } else { (Vec::new(), events) };
+    let (clips, store, stored) = (lobby.clips.clone(), Some(store), 0);
     let beginning = Beginning { plan, state, clips, service, store, stored, unsent };
     let engine = Engine::new(beginning, changed);
-    engine.keep(events);
+    engine.keep(later);
     engine.open();
     engine.dispatch(Input::Begun);
     Ok(engine)
