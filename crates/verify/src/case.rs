@@ -123,7 +123,8 @@ impl Case {
         }
     }
 
-    /// Compares a computation's outcome; its refusal is a wrong value that says why.
+    /// Compares a computation's outcome; its refusal is a wrong value that says why, unless the case
+    /// expects that there is none.
     pub(crate) fn compare_outcome<T, E: std::fmt::Display>(
         &mut self,
         field: &str,
@@ -134,6 +135,7 @@ impl Case {
     ) {
         match outcome {
             Ok(got) => self.compare(field, expected, &shown(got), by),
+            Err(_) if expected.is_null() => self.compare(field, expected, &Value::Null, by),
             Err(refusal) => self.refused(field, &refusal),
         }
     }
@@ -207,6 +209,18 @@ mod tests {
         }
         assert!(compared(&json!([]), &json!([]), Tolerance::Exact).right);
         assert!(!Case::new("without values").right, "a case without a value shows nothing");
+    }
+
+    #[test]
+    fn a_refusal_is_wrong_unless_nothing_is_expected() {
+        let by = Tolerance::Exact;
+        let refused: Result<f64, &str> = Err("why");
+        let mut case = Case::new("c");
+        case.compare_outcome("undefined", &Value::Null, refused, by, number);
+        case.compare_outcome("defined", &json!(1), refused, by, number);
+        case.compare_outcome("right", &json!(1), Ok::<f64, &str>(1.0), by, number);
+        assert_eq!(wrong(&case), ["defined"]);
+        assert_eq!(case.values[1].got, "why");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! `hmm/`: hidden Markov models, given, learnt and joined; label paths.
 
-use mimique_annotate::{BaumWelch, Composite, Hmm, LabelPath, Mixture, Rows, runs};
+use mimique_annotate::{
+    AnnotateError, BaumWelch, Composite, Hmm, LabelPath, Mixture, Posterior, Rows, runs,
+};
 use serde_json::{Value, json};
 
 use super::{Checking, Source, Stop, rows, shown};
@@ -53,15 +55,21 @@ pub(super) fn given(source: &Source<'_>, each: &mut dyn FnMut(Case)) -> Result<(
         let mut checking = Checking { case: source.case(case.get("name")?.text()?), expected };
         let computed = (|| {
             let (hmm, sequence) = (model(&case.get("model")?)?, rows(&case.get("sequence")?)?);
-            let found = hmm.posterior(&sequence)?;
-            checking.member("log_likelihood", RELATIVE, number(found.log_likelihood));
-            let path = hmm.best_path(&sequence)?;
-            checking.member("path", Tolerance::Exact, json!(path.states));
-            checking.member("path_log_probability", RELATIVE, number(path.log_probability));
+            checking.outcome("log_likelihood", RELATIVE, hmm.log_likelihood(&sequence), number);
+            let path = hmm.best_path(&sequence);
+            checking.outcome("path", Tolerance::Exact, path.clone(), |path| json!(path.states));
+            // What no path gives has the probability 0.
+            let probability = path.map(|path| path.log_probability).or_else(|why| match why {
+                AnnotateError::Impossible { .. } => Ok(f64::NEG_INFINITY),
+                other => Err(other),
+            });
+            checking.outcome("path_log_probability", RELATIVE, probability, number);
             let at = frames(&case, &sequence)?;
             let all = case::rows(&hmm.emissions(&sequence)?, hmm.start().len());
             checking.member("emission", RELATIVE, at.iter().map(|&f| all[f].clone()).collect());
-            checking.member("posterior", NEAR, shown(&found.states.select(at)));
+            let posterior = hmm.posterior(&sequence);
+            let states = |found: Posterior| shown(&found.states.select(at));
+            checking.outcome("posterior", NEAR, posterior, states);
             Ok(())
         })();
         each(checking.done(computed)?);

@@ -7,7 +7,7 @@ use mimique_solver::{LaplacianKind, Method, MethodSpec};
 use serde_json::{Map, Value, json};
 
 /// How a name begins and the method that it is of.
-const FAMILIES: [(&str, Method); 15] = [
+const FAMILIES: [(&str, Method); 13] = [
     ("F1", Method::LstsNorm),
     ("F2", Method::LstsShort),
     ("F3", Method::LstsSoft),
@@ -21,8 +21,6 @@ const FAMILIES: [(&str, Method); 15] = [
     ("pinv", Method::PseudoInverse),
     ("kouadio", Method::Kouadio),
     ("ridge", Method::Ridge),
-    ("regression", Method::Regression),
-    ("recorded", Method::Recorded),
 ];
 
 /// Words of names that set no number: a Laplacian, a unit.
