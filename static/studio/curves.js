@@ -6,7 +6,8 @@ const $ = (id) => document.getElementById(id);
 const COLOURS = ["#3b82c4", "#d9822b", "#3a9a6e", "#b0508c", "#8a6d3b", "#5b5bd6", "#c4453b", "#2a9d9d"];
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3]];
 
-const style = (index) => ({ colour: COLOURS[index % COLOURS.length], dash: DASHES[Math.floor(index / 2) % DASHES.length] });
+/// Colour and dash of the line of a number.
+export const style = (index) => ({ colour: COLOURS[index % COLOURS.length], dash: DASHES[Math.floor(index / 2) % DASHES.length] });
 
 export class Curves {
   #page;

@@ -3,6 +3,7 @@ import { Player } from "../stage/player.js";
 import { Curves } from "./curves.js";
 import { callWorker } from "./worker-calls.js";
 import { save, wireExports } from "./export.js";
+import { Labels } from "./labels.js";
 import { Matching } from "./matching.js";
 import { MethodPanel } from "./panel.js";
 import { Timeline } from "./timeline.js";
@@ -100,6 +101,7 @@ const timeline = new Timeline({
     choosePart();
   },
 });
+const labels = new Labels({ ...page, expressions: (segments) => timeline.take(segments) });
 wireExports(page);
 new TrainingFiles(page);
 
@@ -136,12 +138,14 @@ async function takeHere(facts) {
   if (facts.kind === "weights") {
     $("take-facts").textContent = `${facts.file}: recorded weights, ${facts.frames} frames, ${facts.columns.length} columns`;
     timeline.reset(facts.frames, facts.rate_hz ?? 1);
+    await labels.reset(facts.frames, facts.rate_hz ?? 1);
   } else {
     const { frames, rate_hz, duration_s, markers, system, warnings, notes } = facts.facts;
     const words = [`${facts.file}: ${markers} markers, ${frames} frames at ${rate_hz} Hz (${duration_s.toFixed(1)} s)`];
     if (system) words.push(system);
     $("take-facts").textContent = [...words, ...notes, ...warnings].join("; ");
     timeline.reset(frames, rate_hz);
+    await labels.reset(frames, rate_hz);
   }
   await sourcesChanged();
 }
@@ -234,7 +238,7 @@ function wire() {
   $("show-markers").addEventListener("change", () => player.draw());
   $("range").addEventListener("change", () => (choosePart(), player.seek(player.part?.[0] ?? 0)));
   player.wire({ m: () => $("show-markers").click() });
-  player.onDraw = (ms) => (curves.at(ms), timeline.at(ms));
+  player.onDraw = (ms) => (curves.at(ms), timeline.at(ms), labels.at(ms));
   const main = document.querySelector("main");
   addEventListener("dragover", (event) => (event.preventDefault(), main.classList.add("dropping")));
   addEventListener("dragleave", (event) => event.relatedTarget === null && main.classList.remove("dropping"));

@@ -1,10 +1,10 @@
 // The expressions of a take: suggested, dragged, typed, saved.
 import { made } from "../stage/player.js";
 import { draw } from "./curves.js";
+import { movable } from "./drag.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
-const EDGE_PX = 8;
 
 export class Timeline {
   #page;
@@ -23,6 +23,7 @@ export class Timeline {
     $("expressions-file").addEventListener("change", (event) => this.#open(event.target).catch(page.report));
     $("save-csv").addEventListener("click", guarded(async () => page.save("expressions.csv", await callWorker("expressionsCsv"))));
     $("save-eaf").addEventListener("click", guarded(() => this.#saveEaf(undefined, "expressions.eaf")));
+    $("save-study").addEventListener("click", guarded(async () => page.save("segments.json", await callWorker("studySegments"))));
     $("into-eaf").addEventListener("change", (event) => this.#into(event.target).catch(page.report));
     $("expressions").addEventListener("toggle", () => this.#draw());
     addEventListener("resize", () => this.#draw());
@@ -34,6 +35,12 @@ export class Timeline {
     this.#curve = null;
     $("expressions-note").textContent = "";
     this.#put([]);
+  }
+
+  /// Segments that the worker has taken from elsewhere.
+  take(segments) {
+    this.#curve = null;
+    this.#put(segments);
   }
 
   at(timeMs) {
@@ -80,7 +87,7 @@ export class Timeline {
   #put(segments) {
     this.#segments = segments;
     $("segments").replaceChildren(...segments.map((segment, i) => this.#row(segment, i)));
-    for (const id of ["save-csv", "save-eaf"]) $(id).disabled = segments.length === 0;
+    for (const id of ["save-csv", "save-eaf", "save-study"]) $(id).disabled = segments.length === 0;
     this.#draw();
     this.#page.changed(segments);
   }
@@ -124,48 +131,10 @@ export class Timeline {
   }
 
   #box({ label, expression, clip_s }, index) {
-    const percent = (frame) => (100 * frame) / this.#frames;
     const box = made("button", { type: "button", className: "segment", title: label }, label);
-    const lay = ([from, to]) => {
-      box.style.insetInlineStart = `${percent(from)}%`;
-      box.style.width = `${percent(to - from)}%`;
-    };
-    lay(expression);
     box.addEventListener("click", () => this.#page.seek(1000 * clip_s[0]));
-    let drag = null;
-    box.addEventListener("pointerdown", (event) => {
-      const { left, right } = box.getBoundingClientRect();
-      const part = event.clientX - left < EDGE_PX ? "start" : right - event.clientX < EDGE_PX ? "end" : "whole";
-      drag = { part, from: event.clientX, frames: expression, now: expression };
-      box.setPointerCapture(event.pointerId);
-    });
-    box.addEventListener("pointermove", (event) => {
-      if (!drag) return;
-      const width = $("timeline").clientWidth;
-      const by = Math.round(((event.clientX - drag.from) / width) * this.#frames);
-      let [from, to] = drag.frames;
-      if (drag.part !== "end") from += by;
-      if (drag.part !== "start") to += by;
-      if (from < 0 || to > this.#frames || to - from < 2) return;
-      drag.now = [from, to];
-      lay(drag.now);
-    });
-    const drop = () => {
-      const moved = drag && drag.now.some((frame, i) => frame !== drag.frames[i]);
-      if (moved) this.#edit(index, { expression: drag.now });
-      drag = null;
-    };
-    box.addEventListener("pointerup", drop);
-    box.addEventListener("pointercancel", () => ((drag = null), lay(expression)));
-    box.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (!by) return;
-      event.preventDefault();
-      event.stopPropagation();
-      const step = by * Math.max(1, Math.round(this.#rate / 20));
-      const [from, to] = expression;
-      this.#edit(index, { expression: event.shiftKey ? [from, to + step] : event.altKey ? [from + step, to] : [from + step, to + step] });
-    });
+    const line = { element: $("timeline"), frames: this.#frames, rate: this.#rate, least: 2 };
+    movable(box, expression, line, (frames) => this.#edit(index, { expression: frames }));
     return box;
   }
 }

@@ -6,6 +6,8 @@ const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
   "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
   "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
+  "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",
+  "labelsFromExpressions", "labelsToExpressions",
 ]);
 
 let worker = null;

@@ -1,7 +1,7 @@
 //! The `mimique` command: one file a command; this one reads the command line and reports errors.
 //!
 //! Errors go to stderr as `error: FILE: PLACE: what, value, remedy` with exit code 2; results go to
-//! stdout, as text or, with `--json`, as JSON.
+//! stdout, as text or, with `--json`, as JSON. `verify` alone ends with 1, where a value is wrong.
 
 mod account;
 mod analyze;
@@ -26,6 +26,7 @@ mod simulate;
 mod solve;
 mod study_file;
 mod test_command;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -84,6 +85,8 @@ enum Command {
     Test(test_command::Args),
     /// Compute every table and figure of a study
     Analyze(analyze::Args),
+    /// Show that this installation computes what cases with answers expect
+    Verify(verify::Args),
 }
 
 fn main() -> ExitCode {
@@ -116,17 +119,19 @@ fn main() -> ExitCode {
         Command::Power(args) => power::run(args, json),
         Command::Test(args) => test_command::run(args, json),
         Command::Analyze(args) => analyze::run(args, json),
+        Command::Verify(args) => verify::run(args, json),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
+            let code = if error.is::<verify::Wrong>() { 1 } else { 2 };
             // An empty message means that the command has already said everything.
             let text = format!("{error:#}");
             if !text.is_empty() {
                 eprintln!("error: {text}");
             }
-            ExitCode::from(2)
+            ExitCode::from(code)
         }
     }
 }

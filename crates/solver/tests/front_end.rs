@@ -300,36 +300,21 @@ fn planted_displacements(data: &Path, avatar: &Points) -> (usize, Vec<f64>) {
 }
 
 #[test]
-fn planted_take_from_its_file_gives_the_stored_weights() {
-    let Some(data) = real_data("planted_take_from_its_file_gives_the_stored_weights") else {
+fn every_frame_of_the_planted_take_meets_its_conditions() {
+    let Some(data) = real_data("every_frame_of_the_planted_take_meets_its_conditions") else {
         return;
     };
     let operators = common::operators(&data, &OperatorOptions::default());
     let (frames, d) = planted_displacements(&data, &operators.parts().marker_positions);
     assert_eq!(frames, 5660);
-    let names = std::fs::read_to_string(data.join("lsts/frames/_Dm_metres.csv")).unwrap();
-    let at: Vec<usize> =
-        names.lines().skip(1).map(|l| l.split(',').next().unwrap().parse().unwrap()).collect();
-    let (_, stored) = common::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
-    let found: Vec<f64> = at.iter().flat_map(|&f| d[f * 120..(f + 1) * 120].to_vec()).collect();
-    let error = common::worst(&found, &stored);
-    eprintln!("displacements {error:.1e} m");
-    assert!(error < 1e-9, "{error:e}");
-    for (method, alpha, file) in [
-        (Method::Lsts, Some(0.3), "F4_box_k0.1_a0.3"),
-        (Method::Box, None, "box_no_prior_lsq_linear"),
-        (Method::LstsNorm, Some(0.5), "F1_thesis_normalised_a0.5"),
-    ] {
+    for (method, alpha) in
+        [(Method::Lsts, Some(0.3)), (Method::Box, None), (Method::LstsNorm, Some(0.5))]
+    {
         let mut spec = MethodSpec::new(method);
         spec.alpha = alpha;
         let take = Fit::new(&operators, &spec).unwrap().solve_take(&d).unwrap();
-        let found: Vec<f64> =
-            at.iter().flat_map(|&f| take.weights[f * 53..(f + 1) * 53].to_vec()).collect();
-        let (_, expected) = common::table(&data.join(format!("lsts/frames/{file}.csv")), 1);
-        let error = common::worst(&found, &expected);
         let steps: u32 = take.reports.iter().map(|r| r.iterations).sum();
-        eprintln!("{method}: {error:.1e}, {:.2} steps per frame", f64::from(steps) / 5660.0);
-        assert!(error < 1e-6, "{method}: {error:e}");
+        eprintln!("{method}: {:.2} steps per frame", f64::from(steps) / 5660.0);
         let kkt = take.reports.iter().fold(0.0_f64, |s, r| s.max(r.kkt_error));
         assert!(kkt < 1e-9 && take.reports.iter().all(|r| r.warning.is_none()), "{kkt:e}");
     }

@@ -1,11 +1,12 @@
-//! Laplacian, thin shell, D, H and their scales against closed forms and stored matrices.
+//! Laplacian, thin shell, D, H and their scales against closed forms; `mimique verify` holds them
+//! against stored matrices.
 
 mod common;
 
 use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
-    Fit, Laplacian, LaplacianKind, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
-    SkinMesh, SparseDeltas, Unit, VertexAssociation, apply_shell, mixed_voronoi_areas, shell_gram,
+    Laplacian, LaplacianKind, OperatorOptions, OperatorParts, Operators, SkinMesh, SparseDeltas,
+    VertexAssociation, apply_shell, mixed_voronoi_areas, shell_gram,
 };
 use mimique_test_support::real_data;
 
@@ -119,129 +120,6 @@ fn energy_of_a_translation_is_zero_and_of_a_rotation_is_not() {
     let h = shell_gram(&mesh, &l, 1.0, 1.0, &[]);
     assert!(h[0].abs() < 1e-30);
     assert!(h[4] > 1e-6 && h[8] > 1e-6, "{h:?}");
-}
-
-#[test]
-fn toy_every_matrix_and_solution() {
-    let Some(data) = real_data("toy_every_matrix_and_solution") else { return };
-    let toy = common::json(&data.join("lsts/toy.json"));
-    let numbers = |key: &str| common::numbers(&toy[key]);
-    let triples = |key: &str| -> Vec<[f64; 3]> { numbers(key).as_chunks::<3>().0.to_vec() };
-    let positions: Vec<Point> = triples("vertices").into_iter().map(Point::from).collect();
-    let triangles: Vec<[u32; 3]> =
-        triples("triangles").iter().map(|t| t.map(|v| v as u32)).collect();
-    let shapes: Vec<SparseDeltas> = (triples("deltas").chunks(16))
-        .map(|d| SparseDeltas {
-            vertices: (0..16).collect(),
-            deltas: d.iter().map(|&d| d.into()).collect(),
-        })
-        .collect();
-    let vertices: Vec<usize> = numbers("markers").iter().map(|&v| v as usize).collect();
-    let close = |what: &str, a: &[f64], b: &[f64]| {
-        let error = common::worst(a, b) / common::largest(b);
-        assert!(error < 1e-12, "{what}: {error:e}");
-    };
-
-    let uniform = Laplacian::new(&positions, &triangles, LaplacianKind::Uniform);
-    let matrix = |l: &Laplacian| -> Vec<f64> {
-        let mut a = vec![0.0; 256];
-        for j in 0..16 {
-            let unit: Vec<f64> = (0..16).map(|i| f64::from(u8::from(i == j))).collect();
-            for (i, x) in apply_shell(l, 1.0, 1.0, &unit).into_iter().enumerate() {
-                a[i * 16 + j] = x;
-            }
-        }
-        a
-    };
-    close("A uniform", &matrix(&uniform), &numbers("A_uniform"));
-    let cotan = Laplacian::cotangent_over_areas(&positions, &triangles);
-    close("A cotangent", &matrix(&cotan), &numbers("A_cot"));
-    close("areas", &mixed_voronoi_areas(&positions, &triangles), &numbers("area_mixed"));
-    let mut ab = vec![0.0; 48 * 3];
-    for (k, shape) in shapes.iter().enumerate() {
-        for axis in 0..3 {
-            let field: Vec<f64> = shape.deltas.iter().map(|d| d[axis]).collect();
-            for (i, x) in apply_shell(&uniform, 1.0, 1.0, &field).into_iter().enumerate() {
-                ab[(3 * i + axis) * 3 + k] = x;
-            }
-        }
-    }
-    close("AB", &ab, &numbers("AB"));
-
-    let mesh = SkinMesh { positions, triangles, shapes };
-    let names: Vec<String> = (0..3).map(|k| format!("shape{k}")).collect();
-    let markers: Vec<(String, usize)> = vertices.iter().map(|&v| (format!("M{v}"), v)).collect();
-    let operators = Operators::build(&mesh, &names, &markers, &OperatorOptions::default()).unwrap();
-    close("H", &operators.parts().shell_gram, &numbers("H_uniform_nonmarker"));
-    close("l^2", &[operators.data_scale()], &numbers("ell2"));
-    close("tau", &[operators.shell_scale()], &numbers("tau"));
-
-    let d = numbers("d");
-    for (name, method) in [
-        ("thesis_literal", Method::ThesisLiteral),
-        ("F1", Method::LstsNorm),
-        ("F3", Method::LstsSoft),
-        ("F4_box", Method::Lsts),
-    ] {
-        let mut spec = MethodSpec::new(method);
-        spec.alpha = Some(0.5);
-        spec.unit = (method == Method::ThesisLiteral).then_some(Unit::M);
-        let solution = Fit::new(&operators, &spec).unwrap().solve_frame(&d).unwrap();
-        let expected = common::numbers(&toy["solutions"][name]["c"]);
-        let error = common::worst(&solution.weights, &expected);
-        assert!(error < 1e-12, "{name}: {error:e}");
-    }
-}
-
-#[test]
-fn stored_operators_of_a_real_head() {
-    let Some(data) = real_data("stored_operators_of_a_real_head") else { return };
-    let stored = common::json(&data.join("lsts/operators.json"));
-    let constants = common::json(&data.join("lsts/constants.json"));
-    let close = |what: &str, a: &[f64], b: &[f64]| {
-        let error = common::worst(a, b) / common::largest(b);
-        eprintln!("{what}: {error:.1e}");
-        assert!(error < 1e-12, "{what}: {error:e}");
-    };
-    for (kind, h, tau) in [
-        (LaplacianKind::Uniform, "H_uniform", "tau_uniform"),
-        (LaplacianKind::Umbrella, "H_umbrella", "tau_umbrella"),
-        (LaplacianKind::CotanLiteral, "H_cot", "tau_cot"),
-    ] {
-        let options = OperatorOptions { laplacian: kind, ..OperatorOptions::default() };
-        let operators = common::operators(&data, &options);
-        assert_eq!(operators.parts().vertex_count, constants["S"].as_u64().unwrap() as usize);
-        close("D", &operators.parts().marker_deltas, &common::numbers(&stored["D"]));
-        close(h, &operators.parts().shell_gram, &common::numbers(&stored[h]));
-        close("l^2", &[operators.data_scale()], &common::numbers(&stored["ell2"]));
-        close(tau, &[operators.shell_scale()], &common::numbers(&stored[tau]));
-    }
-    let (mesh, _) = common::skin(&data);
-    let l = Laplacian::new(&mesh.positions, &mesh.triangles, LaplacianKind::Uniform);
-    let rows: Vec<usize> =
-        common::numbers(&stored["check_rows"]).iter().map(|&r| r as usize).collect();
-    let mut ab = vec![0.0; rows.len() * 3 * mesh.shapes.len()];
-    for (k, shape) in mesh.shapes.iter().enumerate() {
-        for axis in 0..3 {
-            let mut field = vec![0.0; mesh.positions.len()];
-            for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {
-                field[v as usize] = d[axis];
-            }
-            let a = apply_shell(&l, 1.0, 1.0, &field);
-            for (at, &row) in rows.iter().enumerate() {
-                ab[(3 * at + axis) * mesh.shapes.len() + k] = a[row];
-            }
-        }
-    }
-    close("AB", &ab, &common::numbers(&stored["ABrows_uniform"]));
-    let kouadio = OperatorOptions {
-        association: Some(VertexAssociation::Zones { sigma: 0.012 }),
-        ..OperatorOptions::default()
-    };
-    let associated =
-        common::operators(&data, &kouadio).parts().associated.as_ref().unwrap().vertex_count;
-    let expected = &constants["variants"]["kouadio_box_sigma12mm"]["linked_vertices"];
-    assert_eq!(associated as u64, expected.as_u64().unwrap());
 }
 
 #[test]

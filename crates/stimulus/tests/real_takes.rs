@@ -1,12 +1,11 @@
-//! Real avatars and captures, end to end: `solve_take` against stored optima, and the packs.
+//! Real avatars and captures, end to end: `solve_take`, and the packs.
 
 use std::path::Path;
 
 use mimique_clip::{decode_operators, encode_operators, encode_take, solve_packs, solve_segment};
+use mimique_mocap::Capture;
 use mimique_solver::{Gaze, Method, MethodSpec};
-use mimique_stimulus::{
-    AvatarSkin, JoinedTake, MarkerMap, SolvedCapture, TakeOptions, solve_take, suggest_map,
-};
+use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, TakeOptions, solve_take, suggest_map};
 use mimique_test_support::real_data;
 
 fn skin(path: &Path) -> AvatarSkin {
@@ -17,67 +16,48 @@ fn map(path: &Path) -> MarkerMap {
     MarkerMap::from_text(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-fn solve_lsts(root: &Path, take: &str, spec: &MethodSpec) -> SolvedCapture {
-    let capture = mimique_mocap::read(&root.join("lsts").join(take)).unwrap();
-    let options = TakeOptions { neutral: Some(0..60), ..TakeOptions::default() };
-    let skin = skin(&root.join("lsts/avatar_skin.glb"));
-    let map = map(&root.join("lsts/mapping.csv"));
-    solve_take(&skin, &capture, &map, spec, &options, &mut || 0.0).unwrap()
-}
-
-/// Largest difference between solved weights and a file of stored optima at some frames.
-fn worst(solved: &SolvedCapture, root: &Path, file: &str) -> f64 {
-    let text = std::fs::read_to_string(root.join("lsts/frames").join(file)).unwrap();
-    // Ten frames from anywhere: a table, and no take.
-    let mut rows = text.lines();
-    let header = rows.next().unwrap();
-    let first_shape = header.split(',').position(|name| name != "frame" && name != "time").unwrap();
-    let names: Vec<&str> = header.split(',').skip(first_shape).collect();
-    assert_eq!(names, solved.table.shape_names);
-    let mut worst = 0f64;
-    let mut count = 0;
-    for row in rows {
-        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
-        let mine = solved.table.row(cells[0] as usize);
-        for (a, b) in mine.iter().zip(&cells[first_shape..]) {
-            worst = worst.max((a - b).abs());
-        }
-        count += 1;
-    }
-    assert_eq!(count, 10);
-    worst
+/// The first 60 frames, which are neutral, and then these.
+fn cut(whole: &Capture, frames: &[usize]) -> Capture {
+    let all = (0..60).chain(frames.iter().copied());
+    let positions = all.flat_map(|frame| whole.frame(frame).to_vec());
+    Capture::new(whole.labels.clone(), whole.rate_hz, whole.unit, positions)
 }
 
 fn lsts(alpha: f64) -> MethodSpec {
     MethodSpec { alpha: Some(alpha), kappa: Some(0.1), ..MethodSpec::new(Method::Lsts) }
 }
 
-/// The stored optima are of a head that was not filtered, every shape solved.
+/// A head that is not filtered, every shape solved: no frame depends on another.
 fn unfiltered(spec: MethodSpec) -> MethodSpec {
     MethodSpec { head_lowpass_hz: Some(0.0), gaze: Some(Gaze::Markers), ..spec }
 }
 
+/// `mimique verify` holds single frames against stored optima: the whole take has the same there.
 #[test]
-fn the_planted_take_gives_the_stored_weights() {
-    let Some(root) = real_data("the_planted_take_gives_the_stored_weights") else { return };
-    // `box` has no prior: it multiplies the rounding of the C3D's single precision (0.06 µm) so
-    // that any exact solver differs by 3e-4 there; the next test shows that nothing else does.
-    for (take, tolerance, tolerance_of_box) in
-        [("take_n01.csv", 1e-6, 1e-6), ("take_n01.c3d", 1e-4, 5e-4)]
-    {
-        for (spec, file) in [
-            (lsts(0.3), "F4_box_k0.1_a0.3.csv"),
-            (lsts(0.5), "F4_box_k0.1_a0.5.csv"),
-            (MethodSpec::new(Method::Box), "box_no_prior_lsq_linear.csv"),
-        ] {
-            let solved = solve_lsts(&root, take, &unfiltered(spec.clone()));
-            let worst = worst(&solved, &root, file);
-            eprintln!("{take} {file}: {worst:.2e}");
-            let is_box = spec.method == Method::Box;
-            let tolerance = if is_box { tolerance_of_box } else { tolerance };
-            assert!(worst <= tolerance, "{take} against {file}: {worst:e}");
-            assert_eq!(solved.table.frames.len(), 5660);
-            assert!(solved.report.summary.held.is_none());
+fn a_take_gives_the_weights_of_its_frames() {
+    let Some(root) = real_data("a_take_gives_the_weights_of_its_frames") else { return };
+    let skin = skin(&root.join("lsts/avatar_skin.glb"));
+    let map = map(&root.join("lsts/mapping.csv"));
+    let options = TakeOptions { neutral: Some(0..60), ..TakeOptions::default() };
+    let frames: Vec<usize> = (195..5660).step_by(620).collect();
+    for take in ["take_n01.csv", "take_n01.c3d"] {
+        let capture = mimique_mocap::read(&root.join("lsts").join(take)).unwrap();
+        let some = cut(&capture, &frames);
+        for spec in [lsts(0.3), lsts(0.5), MethodSpec::new(Method::Box)] {
+            let spec = unfiltered(spec);
+            let solve =
+                |capture| solve_take(&skin, capture, &map, &spec, &options, &mut || 0.0).unwrap();
+            let (whole, alone) = (solve(&capture), solve(&some));
+            assert_eq!(whole.table.frames.len(), 5660);
+            assert!(whole.report.summary.held.is_none());
+            let mut worst = 0.0_f64;
+            for (at, &frame) in frames.iter().enumerate() {
+                for (a, b) in whole.table.row(frame).iter().zip(alone.table.row(60 + at)) {
+                    worst = worst.max((a - b).abs());
+                }
+            }
+            eprintln!("{take} {}: {worst:.2e}", spec.method);
+            assert!(worst <= 1e-8, "{take}, {}: {worst:e}", spec.method);
         }
     }
 }

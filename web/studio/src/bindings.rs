@@ -259,6 +259,100 @@ impl Studio {
         self.workspace.expressions_eaf(document.as_deref(), date).map_err(error)
     }
 
+    /// [`Workspace::label_model`].
+    #[wasm_bindgen(js_name = labelModel)]
+    pub fn label_model(&mut self, file: &str, model: &str) -> Result<String, JsError> {
+        self.workspace.label_model(file, model).map(text).map_err(error)
+    }
+
+    /// [`Workspace::label_model_json`].
+    #[wasm_bindgen(js_name = labelModelJson)]
+    pub fn label_model_json(&self) -> Result<String, JsError> {
+        self.workspace.label_model_json().map_err(error)
+    }
+
+    /// [`Workspace::suggest_labels`].
+    #[wasm_bindgen(js_name = suggestLabels)]
+    pub fn suggest_labels(&mut self, slot: &str) -> Result<String, JsError> {
+        self.workspace.suggest_labels(slot).map(text).map_err(error)
+    }
+
+    /// [`Workspace::learn_labels`].
+    #[wasm_bindgen(js_name = learnLabels)]
+    pub fn learn_labels(&mut self, slot: &str) -> Result<String, JsError> {
+        self.workspace.learn_labels(slot).map(text).map_err(error)
+    }
+
+    /// [`Workspace::confirm_label`].
+    #[wasm_bindgen(js_name = confirmLabel)]
+    pub fn confirm_label(&mut self, index: usize) -> Result<String, JsError> {
+        self.workspace.confirm_label(index).map(text).map_err(error)
+    }
+
+    /// [`Workspace::release_label`].
+    #[wasm_bindgen(js_name = releaseLabel)]
+    pub fn release_label(&mut self, index: usize) -> Result<String, JsError> {
+        self.workspace.release_label(index).map(text).map_err(error)
+    }
+
+    /// [`Workspace::relabel`].
+    pub fn relabel(&mut self, index: usize, name: &str) -> Result<String, JsError> {
+        self.workspace.relabel(index, name).map(text).map_err(error)
+    }
+
+    /// [`Workspace::move_label`].
+    #[wasm_bindgen(js_name = moveLabel)]
+    pub fn move_label(
+        &mut self,
+        index: usize,
+        first: usize,
+        end: usize,
+    ) -> Result<String, JsError> {
+        self.workspace.move_label(index, first, end).map(text).map_err(error)
+    }
+
+    /// [`Workspace::labels_state`].
+    #[wasm_bindgen(js_name = labelsState)]
+    pub fn labels_state(&self) -> String {
+        text(self.workspace.labels_state())
+    }
+
+    /// [`Workspace::label_probabilities`].
+    #[wasm_bindgen(js_name = labelProbabilities)]
+    pub fn label_probabilities(&self, label: usize) -> Vec<f32> {
+        self.workspace.label_probabilities(label)
+    }
+
+    /// [`Workspace::labels_from_expressions`].
+    #[wasm_bindgen(js_name = labelsFromExpressions)]
+    pub fn labels_from_expressions(&mut self, rest_is_neutral: bool) -> Result<String, JsError> {
+        self.workspace.labels_from_expressions(rest_is_neutral).map(text).map_err(error)
+    }
+
+    /// [`Workspace::labels_to_expressions`].
+    #[wasm_bindgen(js_name = labelsToExpressions)]
+    pub fn labels_to_expressions(&mut self, confirmed_only: bool) -> Result<String, JsError> {
+        self.workspace.labels_to_expressions(confirmed_only).map(text).map_err(error)
+    }
+
+    /// [`Workspace::labels_csv`].
+    #[wasm_bindgen(js_name = labelsCsv)]
+    pub fn labels_csv(&self) -> Result<String, JsError> {
+        self.workspace.labels_csv().map_err(error)
+    }
+
+    /// [`Workspace::labels_eaf`].
+    #[wasm_bindgen(js_name = labelsEaf)]
+    pub fn labels_eaf(&self, document: Option<String>, date: &str) -> Result<String, JsError> {
+        self.workspace.labels_eaf(document.as_deref(), date).map_err(error)
+    }
+
+    /// [`Workspace::study_segments`].
+    #[wasm_bindgen(js_name = studySegments)]
+    pub fn study_segments(&self) -> Result<String, JsError> {
+        self.workspace.study_segments().map_err(error)
+    }
+
     /// [`Workspace::weights_csv`].
     #[wasm_bindgen(js_name = weightsCsv)]
     pub fn weights_csv(&self, slot: &str) -> Result<String, JsError> {

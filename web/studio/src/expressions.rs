@@ -87,7 +87,7 @@ impl Workspace {
         Ok(told)
     }
 
-    fn put_expressions(
+    pub(crate) fn put_expressions(
         &mut self,
         from: &str,
         segments: Vec<TakeSegment>,
@@ -149,7 +149,7 @@ impl Workspace {
     }
 
     /// Frames and rate of the take.
-    fn length(&self) -> Result<(usize, f64), Problem> {
+    pub(crate) fn length(&self) -> Result<(usize, f64), Problem> {
         match &self.take {
             Some(Take::Markers { recording, .. }) => {
                 Ok((recording.capture.frames(), recording.capture.rate_hz))

@@ -16,6 +16,7 @@
 mod bindings;
 mod difference;
 mod expressions;
+mod labels;
 mod markers;
 mod method_fields;
 mod picture;

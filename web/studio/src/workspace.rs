@@ -15,6 +15,7 @@ use mimique_stimulus::{
 };
 use serde_json::{Value, json};
 
+use crate::labels::Labelling;
 use crate::solved::Solved;
 use crate::training::TrainingFiles;
 
@@ -44,6 +45,7 @@ pub struct Workspace {
     pub(crate) map: MarkerMap,
     pub(crate) solved: BTreeMap<String, Solved>,
     pub(crate) segments: Vec<TakeSegment>,
+    pub(crate) labels: Labelling,
     pub(crate) training: TrainingFiles,
 }
 
@@ -193,6 +195,7 @@ impl Workspace {
     fn put_take(&mut self, take: Take) -> Value {
         self.solved.clear();
         self.segments.clear();
+        self.labels.take_changed();
         let facts = match &take {
             Take::Markers { name, recording, .. } => {
                 let facts = CaptureFacts::of(recording);
