@@ -12,7 +12,7 @@ use mimique_session::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, SessionStarted, StartSession, Withdraw,
     Withdrawn,
 };
-use mimique_session::{Admission, Record, Standing};
+use mimique_session::{Admission, Standing};
 use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
 use mimique_study::{Multilingual as _, RepeatPrevention, Study};
 
@@ -295,8 +295,7 @@ pub(crate) async fn complete(
     };
     // A session may outlive its study's place on this server; its receipt stays good.
     if let Ok(study) = app.study(&completed.study_id) {
-        let events = app.storage.counted_events(completed.key).await?;
-        let record = Record::of(None, &events);
+        let record = app.storage.record_without_plays(completed.key, completed.stored).await?;
         let standing = record.standing;
         let admission = app.admissions.of(&app.storage, &token_hash).await?;
         // Who says to have finished has to have held a place, and to have been through what lies before.

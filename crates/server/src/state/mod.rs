@@ -30,7 +30,7 @@ use start_error::AppError;
 use crate::error::Error;
 use crate::files::assets::Assets;
 use crate::files::packs::PackStore;
-use crate::researcher::dashboard::overview::SessionViews;
+use crate::researcher::dashboard::kept::Sums;
 use crate::researcher::dashboard::pulse::Pulse;
 use crate::researcher::reports::Reports;
 use crate::{clock, secret};
@@ -55,7 +55,8 @@ pub struct App {
     pub(crate) stopping: Arc<AtomicBool>,
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
-    pub(crate) session_views: Arc<SessionViews>,
+    /// What the dashboard counts of each session.
+    pub(crate) sums: Arc<Sums>,
     pub(crate) access: Arc<Access>,
     pub(crate) pulse: Pulse,
     pub(crate) reports: Arc<Reports>,
@@ -99,7 +100,7 @@ impl App {
             last_ready: Arc::default(),
             stopping: Arc::default(),
             assets: Arc::new(assets),
-            session_views: Arc::default(),
+            sums: Arc::default(),
             access: Arc::default(),
             pulse: Pulse::new(storage.clone()),
             reports: Arc::default(),

@@ -465,6 +465,7 @@ pub async fn a_disabled_account_has_no_way_in(server: &TestServer) {
         purpose: mimique_storage::LinkPurpose::Reset,
         email: "analyst@example.org".into(),
         role: Role::Analyst,
+        study_id: None,
         expires_ms: i64::MAX,
     };
     server.storage.add_link(&crate::study::sha256(secret), &link, 0).await.unwrap();

@@ -20,6 +20,7 @@ async fn add_owner(url: &str) {
         purpose: LinkPurpose::FirstOwner,
         email: String::new(),
         role: Role::Owner,
+        study_id: None,
         expires_ms: i64::MAX,
     };
     storage.add_link("link", &link, 0).await.unwrap();

@@ -276,6 +276,18 @@ impl<'v> Statement<'v> {
         }
     }
 
+    /// Every row, one after the other, on a connection of its own.
+    pub fn stream_from(self, pool: &Pool) -> BoxStream<'_, Result<Row, StorageError>> {
+        match pool {
+            Pool::Sqlite(pool) => {
+                self.bound().fetch(pool).map_ok(Row::Sqlite).map_err(StorageError::from).boxed()
+            }
+            Pool::Postgres(pool) => {
+                self.bound().fetch(pool).map_ok(Row::Postgres).map_err(StorageError::from).boxed()
+            }
+        }
+    }
+
     /// The statement as one of the two databases takes it. Values are copied into it.
     fn bound<D: Database + HasStatementCache>(self) -> Query<'static, D, D::Arguments>
     where

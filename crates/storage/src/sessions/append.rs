@@ -3,12 +3,15 @@
 
 use std::collections::{HashMap, HashSet};
 
+use futures_util::stream::StreamExt as _;
 use mimique_session::wire::Acknowledged;
-use mimique_session::{Misfit, Record, SessionLimits, Standing};
+use mimique_session::{Misfit, SessionLimits, Standing};
 use sha2::{Digest, Sha256};
 
 use super::gaps::{first_gap, missing_between};
-use super::row::{COUNTED_EVENTS, SESSION_COLUMNS, event, session_record};
+use super::row::{
+    COUNTED_WITHOUT_PLAYS, SESSION_COLUMNS, counted_event, record_of, session_record,
+};
 use crate::database::{Builder, Transaction, Value, query, signed};
 use crate::error::StorageError;
 use crate::records::{Appended, SessionRecord, WrittenEvent};
@@ -219,10 +222,10 @@ async fn stand(
     transaction: &mut Transaction,
     session: &mut SessionRecord,
 ) -> Result<(), StorageError> {
-    let rows = query(COUNTED_EVENTS).bind(session.key).fetch_all(&mut *transaction).await?;
-    let events: Vec<_> =
-        rows.iter().map(|row| event(session.key, row)).collect::<Result<_, _>>()?;
-    session.standing = Record::of(None, &events).standing;
+    let (key, end) = (session.key, signed(session.next_sequence));
+    let rows = query(COUNTED_WITHOUT_PLAYS).bind(key).bind(end).stream(transaction);
+    let record = record_of(rows.map(move |row| counted_event(key, &row?))).await?;
+    session.standing = record.standing;
     if session.standing == Standing::Completed {
         session.slot_expires_ms = None;
     } else if !session.standing.is_open() {

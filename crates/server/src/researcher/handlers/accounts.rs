@@ -4,7 +4,7 @@ use axum::extract::{Extension, Path, Query, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use mimique_analysis::Language;
-use mimique_storage::{LinkPurpose, Role};
+use mimique_storage::{LinkPurpose, Role, StudyRole};
 use serde::Deserialize;
 
 use crate::accounts::audit::audit;
@@ -18,7 +18,7 @@ use crate::http::language::LANGUAGE_COOKIE;
 use crate::http::responses::{see, with_cookies};
 use crate::researcher::pages::entry;
 use crate::researcher::pages::frame::Frame;
-use crate::researcher::pages::people::{Done, account_page, log_page, people_page};
+use crate::researcher::pages::people::{Done, Everybody, account_page, log_page, people_page};
 use crate::secret;
 use crate::state::App;
 use crate::state::rate_limit::Peer;
@@ -177,7 +177,12 @@ pub(crate) async fn new_token(
     // A token that could make tokens could not be revoked.
     person_only(&who)?;
     let role = role(&form.role)?;
-    who.needs(role)?;
+    if role == Role::Nothing {
+        return Err(Error::NoSuchRole);
+    }
+    if role > who.most() {
+        return Err(Error::NotAllowed);
+    }
     let name: String = form.name.trim().chars().filter(|c| !c.is_control()).take(60).collect();
     if name.is_empty() {
         return Err(Error::NamelessToken);
@@ -214,6 +219,9 @@ pub(crate) async fn people(State(app): State<App>, who: Researcher) -> Result<Re
 pub(crate) struct Invitation {
     email: String,
     role: String,
+    /// The study in which the role is; empty: in all.
+    #[serde(default)]
+    study: String,
 }
 
 pub(crate) async fn invite(
@@ -225,9 +233,17 @@ pub(crate) async fn invite(
     person_only(&who)?;
     who.needs(Role::Owner)?;
     let role = role(&form.role)?;
-    let link = links::invite(&app, &form.email, role).await?;
+    if role == Role::Nothing {
+        return Err(Error::NoSuchRole);
+    }
+    let study = match form.study.as_str() {
+        "" => None,
+        id => Some(app.study(id)?.id().to_owned()),
+    };
+    let link = links::invite(&app, &form.email, role, study.clone()).await?;
     let whom = normal_email(&form.email).unwrap_or_default();
-    audit(&app, &who, "invite", "", &format!("{whom} ({})", role.word())).await?;
+    let subject = format!("{whom} ({})", role.word());
+    audit(&app, &who, "invite", study.as_deref().unwrap_or_default(), &subject).await?;
     let address = whole_address(&app, &headers, &link);
     everybodys_page(&app, &who, Some(Done::Link { whom, address })).await
 }
@@ -237,6 +253,8 @@ pub(crate) struct PersonAction {
     action: String,
     #[serde(default)]
     role: String,
+    #[serde(default)]
+    study: String,
 }
 
 pub(crate) async fn person(
@@ -252,12 +270,24 @@ pub(crate) async fn person(
     let account = account.ok_or(Error::NotFound)?;
     let mut done = None;
     let last = Error::LastOwner;
+    let mut study = String::new();
     let subject = match form.action.as_str() {
         "role" => {
             let role = role(&form.role)?;
             if !app.storage.set_role(key, role).await? {
                 return Err(last);
             }
+            format!("{} ({})", account.email, role.word())
+        }
+        "study-role" => {
+            let role = role(&form.role)?;
+            study = form.study.clone();
+            // A study that is hosted no more can still be taken from somebody.
+            if role > Role::Nothing {
+                app.study(&study)?;
+            }
+            let given = StudyRole { account_key: key, study_id: study.clone(), role };
+            app.storage.set_study_role(&given).await?;
             format!("{} ({})", account.email, role.word())
         }
         "disable" => {
@@ -273,14 +303,15 @@ pub(crate) async fn person(
         "reset" if account.disabled_ms.is_some() => return Err(Error::AccountDisabled),
         "reset" => {
             let purpose = LinkPurpose::Reset;
-            let link = links::new_link(&app.storage, purpose, &account.email, account.role).await?;
+            let (email, role) = (&account.email, account.role);
+            let link = links::new_link(&app.storage, purpose, email, role, None).await?;
             let address = whole_address(&app, &headers, &link);
             done = Some(Done::Link { whom: account.email.clone(), address });
             account.email.clone()
         }
         _ => return Err(Error::UnknownAction),
     };
-    audit(&app, &who, &format!("account: {}", form.action), "", &subject).await?;
+    audit(&app, &who, &format!("account: {}", form.action), &study, &subject).await?;
     match done {
         Some(done) => everybodys_page(&app, &who, Some(done)).await,
         None => Ok(see("/researcher/people")),
@@ -320,7 +351,7 @@ pub(crate) async fn language(
 async fn own_page(app: &App, who: &Researcher, done: Option<Done>) -> Result<Response, Error> {
     let tokens = app.storage.tokens().await?;
     let own: Vec<_> = tokens.iter().filter(|token| token.email == who.account.email).collect();
-    Ok(account_page(&Frame::new(app, who), &own, done.as_ref()))
+    Ok(account_page(&Frame::new(app, who), who, &own, done.as_ref()))
 }
 
 async fn everybodys_page(
@@ -331,7 +362,11 @@ async fn everybodys_page(
     who.needs(Role::Owner)?;
     let accounts = app.storage.accounts().await?;
     let tokens = app.storage.tokens().await?;
-    Ok(people_page(&Frame::new(app, who), &accounts, &tokens, done.as_ref()))
+    let roles = app.storage.study_roles().await?;
+    let studies: Vec<String> =
+        app.catalogue.studies().iter().map(|study| study.id().to_owned()).collect();
+    let everybody = Everybody { accounts: &accounts, roles: &roles, studies: &studies };
+    Ok(people_page(&Frame::new(app, who), &everybody, &tokens, done.as_ref()))
 }
 
 fn person_only(who: &Researcher) -> Result<(), Error> {
