@@ -12,6 +12,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use anyhow::{Context, Result, bail};
 
 use crate::bench_plot;
+use crate::bench_server;
 use crate::bench_stats;
 use crate::install;
 use crate::process::{cargo, output, root, say, show, target};
@@ -23,6 +24,12 @@ pub struct Args {
     /// The statistics beside SciPy and polars instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot"])]
     stats: bool,
+    /// The server with a study of a million events, on each database: exports, dashboard, restart
+    #[arg(long, conflicts_with_all = ["stats", "browser", "plot"])]
+    server: bool,
+    /// With --server: the study, by its name in study-config
+    #[arg(long, default_value = "demo", requires = "server")]
+    study: String,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -32,7 +39,8 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/measured/solver-benchmarks.md, or docs/measured/statistics-benchmarks.md
+    /// Write the figures into docs/measured: solver-benchmarks.md, statistics-benchmarks.md or
+    /// server-benchmarks.md
     #[arg(long)]
     record: bool,
 }
@@ -53,6 +61,9 @@ type Seconds = Vec<f64>;
 pub fn run(args: &Args) -> Result<()> {
     if args.stats {
         return bench_stats::run(args.rounds.max(1), args.record);
+    }
+    if args.server {
+        return bench_server::run_bench(&args.study, args.record);
     }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {

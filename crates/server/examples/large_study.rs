@@ -5,9 +5,17 @@
 //! cargo run --release -p mimique-server --example large_study -- DATABASE STUDY.json [events] [token]
 //! ```
 //!
+//! `DATABASE` is `sqlite:FILE`, `postgres://…`, or `postgres` for a cluster of its own in the temporary folder.
+//! It prints the database's address, then what it holds, and ends when its input does; the cluster ends with it.
+//! Where PostgreSQL is not installed it prints nothing.
+//!
 //! The participants are simulated ones (`mimique_analysis::Simulation`): each event is one of the page's
 //! own state machine, with the frames of its clips. The same study and number give the same answers.
 #![allow(clippy::print_stdout, reason = "it prints what it has stored")]
+
+#[path = "../tests/http/postgres.rs"]
+#[allow(dead_code)]
+mod postgres;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,6 +45,18 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         file: file.to_string(),
         clips: "{}".to_owned(),
     };
+    let cluster = match database.as_str() {
+        "postgres" => match postgres::Cluster::start_with("large_study", "") {
+            Some(cluster) => Some(cluster),
+            None => return Ok(()),
+        },
+        _ => None,
+    };
+    let database = match &cluster {
+        Some(cluster) => cluster.fresh_database("large_study").await,
+        None => database,
+    };
+    println!("{database}");
     let storage = Storage::open(&database).await?;
     storage.register_study(&version, BEGIN_MS).await?;
     if let Some(token) = arguments.next() {
@@ -68,6 +88,8 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         bytes as f64 / 1e6
     );
     storage.close().await;
+    // Whoever measures needs the cluster.
+    std::io::copy(&mut std::io::stdin(), &mut std::io::sink())?;
     Ok(())
 }
 

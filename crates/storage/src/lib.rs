@@ -54,7 +54,7 @@ pub use backup::scrub::scrub_backup;
 pub use error::{MOST_SEQUENCES_REPORTED, StorageError};
 pub use handle::Storage;
 pub use records::{
-    Appended, Completed, CountedEvent, CountedSo, Deletion, KeptSums, NewSession, Overdue,
-    RecruitmentEntry, Registered, SessionRecord, SessionState, StoredEvent, StudyVersion,
-    TimesSeen, Withdrawal, WrittenEvent, participant_id,
+    Appended, Completed, CountedEvent, CountedSo, Deletion, FIRST_SIGN_OF_LIFE_MS, KeptSums,
+    NewSession, Overdue, RecruitmentEntry, Registered, SessionRecord, SessionState, StoredEvent,
+    StudyVersion, TimesSeen, Withdrawal, WrittenEvent, participant_id,
 };

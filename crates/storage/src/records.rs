@@ -106,6 +106,10 @@ pub struct SessionRecord {
     pub receipt: Option<(String, u64)>,
 }
 
+/// Who has begun shows at once that a page is there, by its first events: until it has, a place is held for
+/// so long and no longer, milliseconds.
+pub const FIRST_SIGN_OF_LIFE_MS: i64 = 60_000;
+
 impl SessionRecord {
     /// What its sums are to be made of.
     pub fn counted(&self) -> CountedSo {
@@ -121,7 +125,10 @@ impl SessionRecord {
     /// When the next sign of life is due at the latest, milliseconds since 1970: after that the session
     /// is abandoned.
     pub fn sign_of_life_due_ms(&self) -> i64 {
-        self.last_event_ms.unwrap_or(self.started_ms).saturating_add(self.slot_lasts_ms)
+        match self.last_event_ms {
+            Some(last) => last.saturating_add(self.slot_lasts_ms),
+            None => self.started_ms.saturating_add(self.slot_lasts_ms.min(FIRST_SIGN_OF_LIFE_MS)),
+        }
     }
 }
 

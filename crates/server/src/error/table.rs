@@ -128,6 +128,9 @@ refusals! {
     UnknownWithdrawalCode = NOT_FOUND "unknown-withdrawal-code",
         en "no participant of this study has this withdrawal code"; "copy it as the last page showed it",
         fr "aucune personne de cette étude n’a ce code de retrait"; "recopiez-le tel que la dernière page l’a affiché";
+    TooManyStarts = TOO_MANY_REQUESTS "too-often",
+        en "too many sessions begin from one address"; "wait a moment and send it again",
+        fr "trop de sessions commencent depuis la même adresse"; "attendez un instant et renvoyez-la";
     AlreadyTookPart = FORBIDDEN "already-took-part",
         en "this person has already taken part"; "everybody can take part once",
         fr "cette personne a déjà participé"; "on ne participe qu’une fois";

@@ -24,10 +24,10 @@ use super::{Format, Options};
 const ON_A_PAGE: u32 = 256;
 /// Sessions that are looked at by one task for the columns of the wide form.
 const LOOKED_AT: usize = 32;
-/// Events of a session larger than [`LARGE`] in a piece: some of them may be as large as events can be.
-const EVENTS_IN_A_PIECE: u64 = 16;
 /// Bytes of a session's events that are one piece.
-const LARGE: u64 = 4 * 1024 * 1024;
+const LARGE: u64 = 1024 * 1024;
+/// Events of a larger session in a piece at most: all of them may be as large as events can be.
+const EVENTS_IN_A_PIECE: u64 = 16;
 
 /// The main file of an export in the making.
 pub(super) struct Pieces {
@@ -198,7 +198,9 @@ impl Reading {
 
     /// The part of a large session that begins there; what is behind it comes next.
     fn part(&mut self, session: SessionRecord, begin: u64) -> (SessionRecord, Range<u64>) {
-        let end = (begin + EVENTS_IN_A_PIECE).min(session.next_sequence);
+        let on_average = session.stored_bytes / session.event_count.max(1);
+        let events = (LARGE / on_average.max(1)).clamp(1, EVENTS_IN_A_PIECE);
+        let end = (begin + events).min(session.next_sequence);
         if end < session.next_sequence {
             self.large = Some((session.clone(), end));
         }

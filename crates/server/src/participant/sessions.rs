@@ -4,8 +4,10 @@
 //! the server, so that a repeated start finds the same session although only the token's hash is
 //! kept. The withdrawal code is derived from the token in the same way.
 
+use std::time::Instant;
+
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::{Extension, Path, State};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use mimique_session::wire::{
@@ -21,10 +23,12 @@ use crate::clock::now_ms;
 use crate::error::Error;
 use crate::http::cookies;
 use crate::http::extract::Body;
+use crate::http::rate_limit::caller_of;
 use crate::participant::withdrawal::withdrawal_hash;
 use crate::secret;
 use crate::state::App;
 use crate::state::hosted_study::{HostedStudy, Stage};
+use crate::state::rate_limit::Peer;
 
 /// Events in one session at most; a long study has some thousands.
 const MOST_EVENTS: u64 = 100_000;
@@ -59,15 +63,30 @@ pub(crate) async fn arrive(
 pub(crate) async fn start(
     State(app): State<App>,
     Path(study): Path<String>,
+    peer: Option<Extension<Peer>>,
     headers: HeaderMap,
     Body(request): Body<StartSession>,
 ) -> Result<Response, Error> {
     let study = app.study(&study)?;
     let study = study.as_ref();
+    let takes_part = !request.turned_away;
     let Arrival { session, token, browser_mark } = arrival(&app, study, &headers, request).await?;
-    let language = session.language.clone();
+    let (language, token_hash) = (session.language.clone(), session.token_hash.clone());
+    let address = caller_of(&app, &headers, peer.map(|Extension(peer)| peer));
+    let address = address.filter(|address| takes_part && !address.is_loopback());
+    if let Some(address) = address
+        && !has_begun(&app, &token).await?
+    {
+        if !app.starts.allow(address, app.settings.starts_per_minute, Instant::now()) {
+            return Err(Error::TooManyStarts);
+        }
+        app.starts.begun(&token_hash, address, Instant::now());
+    }
     let record = app.storage.start(session).await;
-    let record = record.map_err(|error| refused(study, error, &language))?;
+    let record = record.map_err(|error| {
+        app.starts.heard(&token_hash);
+        refused(study, error, &language)
+    })?;
     if record.is_deleted() {
         return Err(StorageError::Withdrawn.into());
     }
@@ -265,8 +284,12 @@ pub(crate) async fn append(
         .map(|event| written(event, admission.as_deref()))
         .collect::<Result<_, _>>()?;
     let sent = events.len() as u64;
+    let is_heard = events.iter().any(|event| event.misfit.is_none());
     let limits = admission.map(|admission| admission.limits());
     let appended = app.storage.append_written(&token_hash, events, limits, now_ms()).await?;
+    if is_heard {
+        app.starts.heard(&token_hash);
+    }
     let kept = sent - appended.conflicts.len() as u64;
     app.metrics.events.inc_by(kept);
     if appended.conflicts.is_empty() {

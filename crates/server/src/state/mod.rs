@@ -10,6 +10,7 @@ pub(crate) mod preparations;
 pub(crate) mod rate_limit;
 pub(crate) mod settings;
 pub(crate) mod start_error;
+pub(crate) mod starts;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,6 +27,7 @@ use mimique_storage::{Registered, Storage, StorageError, StudyVersion};
 use rate_limit::Limits;
 use settings::Settings;
 use start_error::AppError;
+use starts::Starts;
 
 use crate::error::Error;
 use crate::files::assets::Assets;
@@ -44,6 +46,8 @@ pub struct App {
     pub(crate) limits: Arc<Limits>,
     /// Attempts to log in.
     pub(crate) login_limits: Arc<Limits>,
+    /// Sessions begun.
+    pub(crate) starts: Arc<Starts>,
     /// Withdrawal codes tried.
     pub(crate) code_limits: Arc<Limits>,
     /// What the sessions' plans admit.
@@ -94,6 +98,7 @@ impl App {
             settings: Arc::default(),
             limits: Arc::default(),
             login_limits: Arc::default(),
+            starts: Arc::default(),
             code_limits: Arc::default(),
             admissions: Arc::default(),
             metrics: Arc::default(),

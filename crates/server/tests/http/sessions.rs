@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
+use mimique_server::export::{Format, Options, export};
 use mimique_session::Standing;
 use mimique_session::wire::{Acknowledged, Event, SessionStarted};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::client::{TestServer, event, events};
 use crate::study;
@@ -233,6 +234,16 @@ pub async fn a_session_has_so_much_and_no_more(server: &TestServer) {
     let resumed = server.resume(&session).await;
     assert_eq!(resumed.events.len(), 6);
     assert_eq!((&resumed.events[0], &resumed.events[5]), (&large(0), &event(5)));
+    // So does its export.
+    let options = Options::default();
+    let exported = export(&server.storage, Some("faces"), Format::Events, options).await.unwrap();
+    assert_eq!((exported.participants, exported.rows), (1, 6));
+    let lines = String::from_utf8(exported.files[0].1.clone()).unwrap();
+    for (line, event) in lines.lines().zip(&resumed.events) {
+        let line: Value = serde_json::from_str(line).unwrap();
+        assert_eq!((&line["sequence"], &line["body"]), (&event.sequence.into(), &event.body));
+    }
+    assert_eq!(lines.lines().count(), 6);
     // Others are not touched by it, in the same moment.
     let other = server.start(2).await.session;
     let (too_large, small) = ([large(6)], [event(0)]);

@@ -6,6 +6,7 @@ mod disk;
 mod faults;
 mod fuzz;
 mod kill;
+mod memory;
 mod people;
 #[path = "../http/postgres.rs"]
 mod postgres;

@@ -1,12 +1,13 @@
 //! A study file's stimuli in; packs in a folder, and where each clip's are, out.
 //!
 //! Every pack is a file named by the SHA-256 of its bytes. What was made before from the same
-//! inputs is taken from the folder; the weights are solved anew each time, by the function that the
-//! browsers run, so that their hash is that of this program.
+//! inputs is taken from the folder. The weights are solved by the function that the browsers run, once for each
+//! program: what this very program has prepared of the same stimuli and files is known by hash.
 
 mod avatar_key;
 mod builtin;
 mod cache;
+mod known;
 mod solved_clip;
 mod source_files;
 mod sources;
@@ -112,6 +113,12 @@ pub fn prepare(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Prepared, PrepareError> {
     let cache = Cache::open(&places.packs)?;
+    let key = known::key(study, places);
+    if let Some(known) = key.as_ref().and_then(|key| known::find(&cache, key)) {
+        let clips = known.clips.len();
+        progress(Progress { done: clips, total: clips, what: "packs" });
+        return Ok(known);
+    }
     let sources = Sources::new(study, places);
     let clips = study.clips();
     let mut ready = BTreeMap::new();
@@ -125,7 +132,11 @@ pub fn prepare(
     let mut warnings = remarks.warnings;
     let mut said = BTreeSet::new();
     warnings.retain(|warning| said.insert(warning.clone()));
-    Ok(Prepared { clips: ready, warnings })
+    let prepared = Prepared { clips: ready, warnings };
+    if let Some(key) = &key {
+        known::keep(&cache, key, sources.asked(), &prepared)?;
+    }
+    Ok(prepared)
 }
 
 /// What a clip is played from.

@@ -13,6 +13,7 @@ use mimique_study::{
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
+use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
@@ -25,12 +26,18 @@ pub(super) struct Sources<'a> {
     avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
+    asked: Asked,
 }
 
 impl<'a> Sources<'a> {
     pub fn new(study: &'a Study, places: &'a Places) -> Self {
-        let (avatars, captures, trainings) = Default::default();
-        Self { study, places, avatars, captures, trainings }
+        let (avatars, captures, trainings, asked) = Default::default();
+        Self { study, places, avatars, captures, trainings, asked }
+    }
+
+    /// The files that were asked for.
+    pub fn asked(&self) -> &Asked {
+        &self.asked
     }
 
     /// The avatar of that identifier.
@@ -333,8 +340,10 @@ impl<'a> Sources<'a> {
 
     /// The path of a file that the study names.
     fn path(&self, file: &str, at: &str) -> Result<PathBuf, PrepareError> {
-        resolve_path(file, &self.places.study, self.places.data.as_deref())
-            .map_err(|e| PrepareError::new(at, e))
+        let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
+            .map_err(|e| PrepareError::new(at, e))?;
+        self.asked.note(&path);
+        Ok(path)
     }
 
     /// The file that a path of the study names.

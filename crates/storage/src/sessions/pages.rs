@@ -2,7 +2,7 @@
 
 use sqlx::AssertSqlSafe;
 
-use super::row::{SESSION_COLUMNS, session_record, standing};
+use super::row::{DUE_MS, SESSION_COLUMNS, session_record, standing};
 use crate::database::{Row, query, signed};
 use crate::error::StorageError;
 use crate::handle::Storage;
@@ -69,15 +69,14 @@ impl Storage {
         study_id: &str,
         form: i64,
     ) -> Result<Vec<SessionState>, StorageError> {
-        let rows = query(
+        let rows = query(AssertSqlSafe(format!(
             "SELECT s.session_key, s.participant, s.config_hash, s.assigned_condition, s.status, \
-             s.deleted_ms, COALESCE(s.last_event_ms, s.started_ms) + s.slot_lasts_ms AS due_ms, \
-             s.event_count, s.receipt_events, v.event_count AS summed_events, \
+             s.deleted_ms, {DUE_MS} AS due_ms, s.event_count, s.receipt_events, v.event_count AS summed_events, \
              v.receipt_events AS summed_receipt \
              FROM sessions s LEFT JOIN session_sums v \
              ON v.session_key = s.session_key AND v.form = $2 \
-             WHERE s.study_id = $1 ORDER BY s.participant",
-        )
+             WHERE s.study_id = $1 ORDER BY s.participant"
+        )))
         .bind(study_id)
         .bind(form)
         .fetch_all(&self.readers)

@@ -15,6 +15,11 @@ pub(super) const SESSION_COLUMNS: &str = "session_key, study_id, participant, co
      event_count, next_sequence, receipt, receipt_events, slot, slot_expires_ms, slot_lasts_ms, \
      deleted_ms, assigned_condition, first_gap, stored_bytes";
 
+/// When the next sign of life is due: [`SessionRecord::sign_of_life_due_ms`], as SQL. The 60,000 milliseconds
+/// are [`crate::FIRST_SIGN_OF_LIFE_MS`].
+pub(super) const DUE_MS: &str = "CASE WHEN last_event_ms IS NOT NULL THEN last_event_ms + slot_lasts_ms \
+     WHEN slot_lasts_ms < 60000 THEN started_ms + slot_lasts_ms ELSE started_ms + 60000 END";
+
 /// A session as its row says.
 pub(super) fn session_record(row: &Row) -> Result<SessionRecord, StorageError> {
     const TABLE: &str = "sessions";
@@ -117,5 +122,16 @@ fn damaged(session_key: i64, problem: serde_json::Error) -> StorageError {
     StorageError::Damaged {
         table: "events",
         problem: format!("session key {session_key}: {problem}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::FIRST_SIGN_OF_LIFE_MS;
+
+    #[test]
+    fn the_statement_has_the_time_of_the_first_sign_of_life() {
+        assert_eq!(DUE_MS.matches(&FIRST_SIGN_OF_LIFE_MS.to_string()).count(), 2, "{DUE_MS}");
     }
 }
