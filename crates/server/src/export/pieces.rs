@@ -11,6 +11,7 @@ use std::sync::Arc;
 use mimique_session::rows::{Column, WideForm};
 use mimique_storage::{SessionRecord, Storage};
 use tokio::runtime::Handle;
+use tokio::sync::Semaphore;
 use tokio::task::JoinHandle;
 use tokio_stream::StreamExt as _;
 
@@ -28,6 +29,9 @@ const LOOKED_AT: usize = 32;
 const LARGE: u64 = 1024 * 1024;
 /// Events of a larger session in a piece at most: all of them may be as large as events can be.
 const EVENTS_IN_A_PIECE: u64 = 16;
+
+/// Connections that all exports together read by: participants need the others.
+static READERS: Semaphore = Semaphore::const_new(3);
 
 /// The main file of an export in the making.
 pub(super) struct Pieces {
@@ -334,7 +338,12 @@ fn in_thread<T: Send + 'static>(
     task: impl Future<Output = Result<T, ExportError>> + Send + 'static,
 ) -> JoinHandle<Result<T, ExportError>> {
     let runtime = Handle::current();
-    tokio::task::spawn_blocking(move || runtime.block_on(task))
+    let in_turn = async move {
+        let closed = |_| ExportError::Form("the queue of readers is closed".to_owned());
+        let _turn = READERS.acquire().await.map_err(closed)?;
+        task.await
+    };
+    tokio::task::spawn_blocking(move || runtime.block_on(in_turn))
 }
 
 fn joined<T>(

@@ -22,6 +22,9 @@ use sqlx::{
 pub(crate) use self::dialect::Dialect;
 use crate::error::StorageError;
 
+/// Connections that read: exports and the dashboard read for long, and participants do not wait for them.
+const READERS: u32 = 6;
+
 /// Connections to one database; cheap to clone.
 #[derive(Clone)]
 pub(crate) enum Pool {

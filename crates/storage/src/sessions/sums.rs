@@ -46,6 +46,7 @@ impl Storage {
             select.push_list("CAST({} AS BIGINT)", keys.iter().map(|key| Value::from(*key)));
             select.push(") AND form = ");
             select.push_list("CAST({} AS BIGINT)", [Value::from(form)]);
+            select.push(" ORDER BY session_key");
             for row in select.finish().once().fetch_all(&self.readers).await? {
                 found.push(kept(&row)?);
             }

@@ -335,6 +335,8 @@ CREATE TABLE study_roles (
 -- The study that an invitation is to; empty: to all.
 ALTER TABLE account_links ADD COLUMN study_id TEXT NOT NULL DEFAULT '';
 
+INSERT INTO accounts (email, role, password_hash, created_ms)
+VALUES ('analyst@example.org', 'none', 'no password', 1);
 INSERT INTO study_roles (account_key, study_id, role)
 SELECT MIN(account_key), 'faces', 'analyst' FROM accounts;
 INSERT INTO session_sums (session_key, form, event_count, receipt_events, sums)
