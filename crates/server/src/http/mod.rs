@@ -25,7 +25,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
 use crate::participant::{pages, withdrawal};
-use crate::researcher::handlers::{accounts, studies};
+use crate::researcher::handlers::{accounts, people, studies};
 use crate::state::App;
 use crate::uploads::handlers as uploads;
 
@@ -92,9 +92,9 @@ fn researchers(app: &App) -> Router<App> {
         .route("/researcher/account/password", post(accounts::password))
         .route("/researcher/tokens", post(accounts::new_token))
         .route("/researcher/tokens/{key}/revoke", post(accounts::revoke_token))
-        .route("/researcher/people", get(accounts::people))
-        .route("/researcher/people/invite", post(accounts::invite))
-        .route("/researcher/people/{key}", post(accounts::person))
+        .route("/researcher/people", get(people::people))
+        .route("/researcher/people/invite", post(people::invite))
+        .route("/researcher/people/{key}", post(people::person))
         .route("/researcher/log", get(accounts::log))
         .route(&format!("{STUDY}/stage"), post(uploads::stage))
         .route(&format!("{STUDY}/remove"), post(uploads::remove))

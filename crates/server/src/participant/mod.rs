@@ -1,6 +1,7 @@
 //! The participants' addresses: pages, studies, sessions.
 
 pub(crate) mod first_page;
+mod marks;
 pub(crate) mod pages;
 pub(crate) mod panics;
 mod resumed;

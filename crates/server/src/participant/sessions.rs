@@ -16,8 +16,9 @@ use mimique_session::wire::{
 };
 use mimique_session::{Admission, Standing};
 use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
-use mimique_study::{Multilingual as _, RepeatPrevention, Study};
+use mimique_study::{Multilingual as _, Study};
 
+use super::marks::{browser_mark, cookie_name, marks};
 use super::resumed::resumed;
 use crate::clock::now_ms;
 use crate::error::Error;
@@ -27,7 +28,7 @@ use crate::http::rate_limit::caller_of;
 use crate::participant::withdrawal::withdrawal_hash;
 use crate::secret;
 use crate::state::App;
-use crate::state::hosted_study::{HostedStudy, Stage};
+use crate::state::hosted_study::HostedStudy;
 use crate::state::rate_limit::Peer;
 
 /// Events in one session at most; a long study has some thousands.
@@ -37,7 +38,7 @@ const LARGEST_EVENT: usize = 1024 * 1024;
 /// What is kept of a browser: its name, its major version, the kind of system it runs on.
 const CLIENT_KEYS: [&str; 3] = ["browser", "version", "platform"];
 /// Hexadecimal digits of 128 bits.
-const TOKEN_DIGITS: usize = 32;
+pub(super) const TOKEN_DIGITS: usize = 32;
 
 /// Somebody who asks to begin.
 struct Arrival {
@@ -212,46 +213,6 @@ fn cannot_begin(study: &Study, code: &'static str, language: &str) -> Error {
     let words = study.words(language);
     let (message, remedy) = words.refusal(code).unwrap_or(("", ""));
     Error::CannotBegin { code, message: message.to_owned(), remedy: remedy.to_owned() }
-}
-
-/// What the browser keeps where the study takes each browser once. A pilot may be repeated.
-fn browser_mark(app: &App, study: &HostedStudy, token: &str) -> Option<String> {
-    let wanted = study.study().recruitment.repeat_prevention == RepeatPrevention::Browser
-        && study.stage() == Stage::Live;
-    wanted.then(|| hex::encode(&secret::derive(&app.token_key, &["browser", token])[..16]))
-}
-
-fn cookie_name(study: &HostedStudy) -> String {
-    format!("mimique-{}", study.id())
-}
-
-/// The keyed hashes that must not be there yet; `None` when the identifier is missing by which the
-/// study recognises people.
-fn marks(
-    app: &App,
-    study: &HostedStudy,
-    recruitment: &std::collections::BTreeMap<String, String>,
-    browser_mark: Option<&str>,
-    headers: &HeaderMap,
-) -> Option<Vec<String>> {
-    let keyed = |kind: &str, value: &str| {
-        hex::encode(secret::derive(&app.token_key, &["mark", kind, study.id(), value]))
-    };
-    let rules = &study.study().recruitment;
-    if rules.repeat_prevention == RepeatPrevention::RecruitmentIdentifier
-        && study.stage() == Stage::Live
-    {
-        let name = rules.url_parameters.first()?;
-        let value = recruitment.get(name).map(|value| value.trim()).filter(|v| !v.is_empty())?;
-        return Some(vec![keyed("identifier", value)]);
-    }
-    let Some(own) = browser_mark else { return Some(Vec::new()) };
-    let mut marks = vec![keyed("browser", own)];
-    let held = cookies::find(headers, &cookie_name(study));
-    if let Some(value) = held.filter(|value| secret::is_hex(value, TOKEN_DIGITS) && *value != own) {
-        marks.push(keyed("browser", value));
-    }
-    Some(marks)
 }
 
 pub(crate) async fn resume(

@@ -16,7 +16,13 @@ pub(super) fn participants(frame: &Frame, id: &str, listed: &Listed) -> Markup {
             h2 { (title) }
             (choice(frame, id, listed))
             @if listed.people.is_empty() {
-                p.soft { (frame.say("Nobody.", "Personne.")) }
+                p.soft {
+                    @if listed.wanted.standing.is_none() {
+                        (frame.say("Nobody yet.", "Personne pour l’instant."))
+                    } @else {
+                        (frame.say("Nobody stands so.", "Personne n’est dans cet état."))
+                    }
+                }
             } @else {
                 div.table-scroll tabindex="0" role="region" aria-label=(title) {
                     table {
