@@ -74,7 +74,7 @@ pub(crate) async fn start(
     let Arrival { session, token, browser_mark } = arrival(&app, study, &headers, request).await?;
     let (language, token_hash) = (session.language.clone(), session.token_hash.clone());
     let address = caller_of(&app, &headers, peer.map(|Extension(peer)| peer));
-    let address = address.filter(|address| takes_part && !address.is_loopback());
+    let address = address.filter(|address| takes_part && !app.settings.is_own(*address));
     if let Some(address) = address
         && !has_begun(&app, &token).await?
     {

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
-use mimique_storage::{SessionRecord, StorageError};
+use mimique_storage::{KeptSums, SessionRecord, StorageError};
 
 use super::session_sums::FORM;
 use crate::clock::now_ms;
@@ -58,26 +58,27 @@ impl Keeper {
             // Behind the last one it begins anew.
             *last = sessions.last().map_or(0, |session| session.key);
             found += sessions.len();
+            let mut kept = Vec::with_capacity(sessions.len());
             for session in sessions {
-                self.one(app, session).await?;
+                kept.extend(self.one(app, session).await);
             }
+            // One commit for all of them: participants' answers wait for the same disk.
+            app.storage.keep_sums(FORM, &kept).await?;
         }
         Ok(found)
     }
 
-    async fn one(&mut self, app: &App, session: SessionRecord) -> Result<(), StorageError> {
+    /// The sums of a session; none where they cannot be made.
+    async fn one(&mut self, app: &App, session: SessionRecord) -> Option<KeptSums> {
         let key = session.key;
         match app.sums.count_in_thread(&app.storage, vec![session]).await {
-            Ok(made) => {
-                let kept: Vec<_> = made.into_iter().map(|(kept, _)| kept).collect();
-                app.storage.keep_sums(FORM, &kept).await
-            }
+            Ok(made) => made.into_iter().next().map(|(kept, _)| kept),
             // Whoever looks at the dashboard is told.
             Err(error) => {
                 if self.told.insert(key) {
                     tracing::warn!("session key {key} cannot be counted: {error:?}");
                 }
-                Ok(())
+                None
             }
         }
     }
