@@ -132,6 +132,25 @@ pub enum AnnotateError {
         /// Takes that have it.
         takes: usize,
     },
+    /// A label stands in no take that is left to learn from.
+    #[error(
+        "label {label}: in take {take}, but in none that is not held out with it; mark it in others, \
+         or hold out otherwise"
+    )]
+    HeldOut {
+        /// Index of the label.
+        label: usize,
+        /// Index of the take.
+        take: usize,
+    },
+    /// No take of one expression, which the short paper's way of learning needs.
+    #[error(
+        "no take shows one expression beside the neutral face; give such takes, or learn from labels"
+    )]
+    NoneIsolated,
+    /// A model was changed since it was written.
+    #[error("model: its hash is not that of what it holds; learn it again, or take the file anew")]
+    Hash,
     /// A take's shapes are not the model's.
     #[error("shape {shape:?} is missing; give takes with the shapes of the model")]
     Shapes {

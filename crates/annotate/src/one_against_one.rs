@@ -136,6 +136,11 @@ impl Svm {
         Ok(scores.map(|(votes, s)| votes + s / (3.0 * (s.abs() + 1.0))).collect())
     }
 
+    /// The label that [`Svm::label`] gives, of the scores of a row: they are within 1/3 of the votes.
+    pub(crate) fn label_of_scores(scores: &[f64]) -> usize {
+        highest(&scores.iter().map(|score| score.round()).collect::<Vec<f64>>())
+    }
+
     /// Whether what was read is a classifier of that many labels.
     pub(crate) fn fits(&self, labels: usize) -> bool {
         let pair = |pair: &Pair| {
@@ -175,4 +180,34 @@ fn fit_pair(
         objective: optimum.objective,
         coefficients: coefficients.collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mimique_test_support::Random;
+
+    #[test]
+    fn scores_tell_the_label_that_the_votes_give() {
+        let mut random = Random::new(12);
+        let labels: Vec<usize> = (0..90).map(|i| i % 5).collect();
+        let values = labels.iter().flat_map(|&l| {
+            [(l as f64 * 1.3).sin(), (l as f64 * 1.3).cos()].map(|c| c + 1.5 * random.normal())
+        });
+        let rows = Rows::new(values.collect(), 2).unwrap();
+        let examples = Examples::new(rows, labels, 5).unwrap();
+        let mut tied = 0;
+        for kernel in [Kernel::Linear, Kernel::Rbf { gamma: 0.2 }] {
+            let svm = Svm::fit(&examples, &SvmOptions { kernel, ..SvmOptions::default() }).unwrap();
+            for step in 0..1000 {
+                let row = [f64::from(step % 40) / 10.0 - 2.0, f64::from(step / 40) / 6.0 - 2.0];
+                let votes = svm.votes(&svm.decisions(&row).unwrap());
+                let most = votes.iter().copied().fold(0.0, f64::max);
+                tied += usize::from(votes.iter().filter(|v| **v == most).count() > 1);
+                let scores = svm.scores(&row).unwrap();
+                assert_eq!(Svm::label_of_scores(&scores), svm.label(&row).unwrap());
+            }
+        }
+        assert!(tied > 0, "no tie was tried");
+    }
 }

@@ -67,10 +67,10 @@ pub use marker_map::{
 pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
-    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafSegments,
-    EafTier, LeftOut, SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment,
-    Timeline, TimelineSegment, bridge, cut, nearest_quantile, peaks, read_segments, study_segments,
-    suggest, write_segments,
+    Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,
+    EafSegments, EafTier, LeftOut, Literal, SegmentFileError, SuggestError, SuggestOptions,
+    Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
+    read_segments, stretches, study_segments, suggest, write_segments,
 };
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,

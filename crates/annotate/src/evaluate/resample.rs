@@ -39,20 +39,39 @@ pub fn interval(
     level: f64,
     score: impl Fn(&Scores) -> Option<f64>,
 ) -> Result<Option<[f64; 2]>, AnnotateError> {
+    Ok(intervals(takes, draws, level, &[&score])?[0])
+}
+
+/// The intervals of several scores, all of them over the same resamples.
+///
+/// # Errors
+/// As [`interval`].
+pub fn intervals(
+    takes: &[Counts],
+    draws: &[Vec<usize>],
+    level: f64,
+    scores: &[&dyn Fn(&Scores) -> Option<f64>],
+) -> Result<Vec<Option<[f64; 2]>>, AnnotateError> {
     above_zero("level", level)?;
     above_zero("1 - level", 1.0 - level)?;
-    let mut values = Vec::with_capacity(draws.len());
+    let mut values = vec![Vec::with_capacity(draws.len()); scores.len()];
     for (row, draw) in draws.iter().enumerate() {
         if let Some(&label) = draw.iter().find(|&&take| take >= takes.len()) {
             return Err(AnnotateError::Label { row, label, labels: takes.len() });
         }
-        let pooled = Counts::pooled(draw.iter().map(|&take| &takes[take]));
-        values.extend(pooled.and_then(|counts| score(&counts.scores())));
+        let Some(pooled) = Counts::pooled(draw.iter().map(|&take| &takes[take])) else { continue };
+        let pooled = pooled.scores();
+        for (values, score) in values.iter_mut().zip(scores) {
+            values.extend(score(&pooled));
+        }
     }
-    values.sort_unstable_by(f64::total_cmp);
     let tail = (1.0 - level) / 2.0;
-    let ends = [tail, 1.0 - tail].map(|share| quantile_sorted(&values, share));
-    Ok((!values.is_empty()).then_some(ends))
+    let of = |mut values: Vec<f64>| {
+        values.sort_unstable_by(f64::total_cmp);
+        let ends = [tail, 1.0 - tail].map(|share| quantile_sorted(&values, share));
+        (!values.is_empty()).then_some(ends)
+    };
+    Ok(values.into_iter().map(of).collect())
 }
 
 #[cfg(test)]

@@ -170,7 +170,11 @@ impl Hmm {
     /// [`AnnotateError::Count`] when the sequence has another width, [`AnnotateError::Impossible`]
     /// when no path gives it.
     pub fn posterior(&self, sequence: &Rows) -> Result<Posterior, AnnotateError> {
-        let lattice = Lattice::whole(self, &self.emissions_taken(sequence)?);
+        self.posterior_of(&self.emissions_taken(sequence)?)
+    }
+
+    pub(super) fn posterior_of(&self, emissions: &Emissions) -> Result<Posterior, AnnotateError> {
+        let lattice = Lattice::whole(self, emissions);
         if lattice.log_likelihood == f64::NEG_INFINITY {
             return Err(AnnotateError::Impossible { sequence: 0 });
         }

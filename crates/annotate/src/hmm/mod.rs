@@ -10,6 +10,7 @@
 mod baum_welch;
 mod composite;
 mod forward;
+mod isolation;
 mod topology;
 pub(crate) mod viterbi;
 
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 pub use baum_welch::{BaumWelch, Learnt};
 pub use composite::Composite;
 pub use forward::Posterior;
+pub(crate) use isolation::{Isolated, isolated};
 pub use topology::{Beginning, Topology};
 pub use viterbi::BestPath;
 
@@ -129,6 +131,15 @@ impl Hmm {
 
     pub(crate) fn emissions_taken(&self, sequence: &Rows) -> Result<Emissions, AnnotateError> {
         Ok(Emissions::of(self.emissions(sequence)?, self.states.len()))
+    }
+
+    /// The same, their logarithms times a factor.
+    pub(crate) fn tempered(&self, sequence: &Rows, by: f64) -> Result<Emissions, AnnotateError> {
+        let mut emissions = self.emissions(sequence)?;
+        if by != 1.0 {
+            emissions.iter_mut().for_each(|b| *b *= by);
+        }
+        Ok(Emissions::of(emissions, self.states.len()))
     }
 }
 

@@ -19,8 +19,11 @@ impl Hmm {
     /// [`AnnotateError::Count`] when the sequence has another width, [`AnnotateError::Impossible`]
     /// when no path gives it.
     pub fn best_path(&self, sequence: &Rows) -> Result<BestPath, AnnotateError> {
-        let emissions = self.emissions_taken(sequence)?;
-        best_path(&logs(&self.start), &logs(self.transition.values()), &emissions)
+        self.path_through(&self.emissions_taken(sequence)?)
+    }
+
+    pub(super) fn path_through(&self, emissions: &Emissions) -> Result<BestPath, AnnotateError> {
+        best_path(&logs(&self.start), &logs(self.transition.values()), emissions)
             .ok_or(AnnotateError::Impossible { sequence: 0 })
     }
 }

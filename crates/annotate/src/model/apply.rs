@@ -9,11 +9,43 @@ use crate::evaluate::Segment;
 use crate::features::mean;
 use crate::labels::check;
 use crate::numbers::highest;
+use crate::stretches::Segmentation;
 use crate::{AnnotateError, LabelPath, Mark, Marked, Rows, Take, runs};
 
-/// How the labels of frames become segments.
+/// How the labels of frames become segments, as a model keeps it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+pub enum Decoding {
+    /// Labels that stay: the most probable path.
+    Path(LabelPath),
+    /// Stretches of the take, each labelled by the mean of its frames (thesis 4.6).
+    Segments(Segmentation),
+    /// Each frame by itself.
+    Frames,
+}
+
+impl Default for Decoding {
+    fn default() -> Self {
+        Self::Path(LabelPath::default())
+    }
+}
+
+impl Decoding {
+    /// What it is for a take whose columns these shapes name.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Filter`] when the cut-off does not fit the rate.
+    pub fn of(&self, take: &Take, shapes: &[String]) -> Result<Decode, AnnotateError> {
+        Ok(match self {
+            Self::Path(path) => Decode::Path(*path),
+            Self::Segments(of) => Decode::Segments(of.stretches(take, shapes)?),
+            Self::Frames => Decode::Frames,
+        })
+    }
+}
+
+/// How the labels of a take's frames become segments.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Decode {
     /// Labels that stay: the most probable path.
     Path(LabelPath),
@@ -60,12 +92,29 @@ impl Model {
     /// [`AnnotateError::Interval`] for segments out of order or beyond the take, and
     /// [`AnnotateError::Setting`].
     pub fn label(&self, take: &Take, decode: &Decode) -> Result<Answer, AnnotateError> {
+        self.answer(take, &self.scores(take)?, decode)
+    }
+
+    /// The scores of a take's frames, a label a column, before the temperature.
+    ///
+    /// # Errors
+    /// As [`Model::label`].
+    pub fn scores(&self, take: &Take) -> Result<Rows, AnnotateError> {
         crate::error::as_many("shapes of a take", take.weights.width(), self.shapes.len())?;
         let sequential = matches!(self.classifier, Classifier::Hmm(_));
         if sequential && take.rate_hz != self.rate_hz {
             return Err(AnnotateError::Rate { found: take.rate_hz, expected: self.rate_hz });
         }
-        let scores = self.classifier.scores(&take.weights)?;
+        self.classifier.scores(&take.weights)
+    }
+
+    /// The answer that follows from the scores of a take.
+    pub(crate) fn answer(
+        &self,
+        take: &Take,
+        scores: &Rows,
+        decode: &Decode,
+    ) -> Result<Answer, AnnotateError> {
         let mut probabilities = scores.values().to_vec();
         let labels = self.labels.len();
         probabilities.chunks_exact_mut(labels).for_each(|row| self.temperature.apply(row));
@@ -76,9 +125,9 @@ impl Model {
                 probabilities = by_segment;
                 found
             }
-            Decode::Frames => of_runs(&self.classifier.labels(&take.weights)?),
+            Decode::Frames => of_runs(&self.classifier.labels(&take.weights, scores)?),
             Decode::Path(path) => of_runs(&match &self.classifier {
-                Classifier::Hmm(joined) => joined.labels(&take.weights)?,
+                Classifier::Hmm(joined) => joined.path(&take.weights)?,
                 _ => {
                     let tempered: Vec<f64> =
                         scores.values().iter().map(|s| s / self.temperature.value()).collect();
@@ -117,9 +166,10 @@ impl Model {
             } else {
                 let row = mean(&take.weights, segment.clone());
                 let row = Rows::new(row, take.weights.width())?;
-                let mut shares = self.classifier.scores(&row)?.values().to_vec();
+                let scores = self.classifier.scores(&row)?;
+                let mut shares = scores.values().to_vec();
                 self.temperature.apply(&mut shares);
-                (self.classifier.labels(&row)?[0], shares)
+                (self.classifier.labels(&row, &scores)?[0], shares)
             };
             let own = &mut by_segment[segment.start * width..segment.end * width];
             own.chunks_exact_mut(width).for_each(|row| row.copy_from_slice(&shares));

@@ -1,7 +1,6 @@
 //! Segments as a table: `label,first_frame,last_frame,expression_first,expression_last,start_s,end_s`.
 //!
-//! `last_frame` is the last one that is played. The first three columns are enough to read; a row
-//! whose label is `N` or `neutral` is left out.
+//! `last_frame` is the last one that is played. The first three columns are enough to read.
 
 use std::fmt::Write as _;
 
@@ -45,21 +44,27 @@ pub fn write_segments(segments: &[TakeSegment], rate_hz: f64) -> String {
     text
 }
 
-/// Read a table of segments.
+/// Read the expressions of a table of segments: all rows but those of the neutral face.
 ///
 /// # Errors
 /// [`SegmentFileError`] with the line.
 pub fn read_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
+    let mut segments = read_labelled_segments(text)?;
+    segments.retain(|segment| !segment.is_neutral());
+    Ok(segments)
+}
+
+/// Read a table of segments with all its rows: those of the neutral face and of transitions, too.
+///
+/// # Errors
+/// [`SegmentFileError`] with the line.
+pub fn read_labelled_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
     let mut records = records(text.trim_start_matches('\u{feff}')).into_iter();
     let (_, header) = records.next().unwrap_or_default();
     let columns = Columns::of(header)?;
     let mut segments = Vec::new();
     for (line, row) in records {
         if row.iter().all(|field| field.trim().is_empty()) {
-            continue;
-        }
-        let name = columns.label(&row);
-        if name.eq_ignore_ascii_case("n") || name.eq_ignore_ascii_case("neutral") {
             continue;
         }
         segments.push(columns.segment(line, &row)?);
@@ -204,6 +209,8 @@ mod tests {
     fn three_columns_are_enough_and_neutral_is_left_out() {
         let text = "\u{feff}label,first_frame,last_frame\r\nN,0,79\r\nanger1,80,309\r\n\r\n";
         assert_eq!(read_segments(text).unwrap(), [TakeSegment::new("anger1", 80..310)]);
+        let all = [TakeSegment::new("N", 0..80), TakeSegment::new("anger1", 80..310)];
+        assert_eq!(read_labelled_segments(text).unwrap(), all);
         let text = "label,first_frame,end_frame\na,80,310\n";
         assert_eq!(read_segments(text).unwrap(), [TakeSegment::new("a", 80..310)]);
     }

@@ -1,6 +1,6 @@
 //! `evaluate/`: scores of answers, their resamples, and calibration.
 
-use mimique_annotate::calibration::{brier, expected_error};
+use mimique_annotate::calibration::reliability;
 use mimique_annotate::evaluate::{
     Comparison, Counts, FrameScores, Scores, Segment, SegmentCounts, answered_segments, edit,
     interval, pairs, true_segments,
@@ -187,9 +187,9 @@ fn calibration(source: &Source<'_>) -> Result<Case, VerifyError> {
     let computed: Result<(), Stop> = (|| {
         let probability = case.get("probability")?.numbers()?;
         let right: Vec<bool> = case.get("right")?.numbers()?.iter().map(|&r| r == 1.0).collect();
-        let ece = expected_error(&probability, &right, case.get("bins")?.index()?);
-        checking.outcome("ece", NEAR, ece, number);
-        checking.outcome("brier", NEAR, brier(&probability, &right), number);
+        let found = reliability(&probability, &right, case.get("bins")?.index()?)?;
+        checking.member("ece", NEAR, optional(found.expected_error()));
+        checking.member("brier", NEAR, optional(found.brier()));
         let (logits, truth) = (rows(&case.get("logits")?)?, case.get("truth")?.indices()?);
         let temperature = Temperature::fit(&logits, &truth)?;
         checking.member("temperature", FITTED, number(temperature.value()));
