@@ -196,6 +196,11 @@ impl Temperature {
         softmax(scores);
     }
 
+    /// The score whose probability, beside others of the same kind, is `share`: T ln(share).
+    pub(crate) fn score_of(self, share: f64) -> f64 {
+        self.0 * libm::log(share.max(f64::MIN_POSITIVE))
+    }
+
     /// Mean log loss of softmax(scores / T).
     ///
     /// # Errors

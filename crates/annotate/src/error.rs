@@ -194,3 +194,11 @@ pub(crate) fn as_many(
 pub(crate) fn at_most(what: &'static str, found: usize, most: usize) -> Result<(), AnnotateError> {
     if found <= most { Ok(()) } else { Err(AnnotateError::Limit { what, found, most }) }
 }
+
+/// Rates are told by the times of frames, which files round: a thousandth of each other is the same.
+pub(crate) fn same_rate(found: f64, expected: f64) -> Result<(), AnnotateError> {
+    if (found - expected).abs() <= 1e-3 * expected {
+        return Ok(());
+    }
+    Err(AnnotateError::Rate { found, expected })
+}

@@ -6,13 +6,16 @@
 mod account;
 mod analyze;
 mod backup;
+mod border_options;
 mod capture_options;
 mod check;
+mod eaf_file;
 mod erase;
 mod export;
 mod export_site;
 mod import;
 mod inspect;
+mod motion;
 mod order;
 mod output;
 mod power;

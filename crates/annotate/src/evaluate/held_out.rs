@@ -19,10 +19,12 @@ use crate::{
 pub struct Candidate {
     /// What is learnt.
     pub lesson: Lesson,
-    /// How takes are cut.
-    pub cut: Cut,
+    /// How takes are cut: each way is told by itself.
+    pub cuts: Vec<Cut>,
     /// Learn only from takes of the person who is tested (thesis 4.4.3: each signer alone).
     pub own_person: bool,
+    /// Find a temperature from takes that are held out of those that are learnt from.
+    pub calibrated: bool,
 }
 
 /// How a take that is tested is cut.
@@ -53,6 +55,15 @@ pub struct Judged {
 const TOLERANCE_S: f64 = 0.15;
 
 impl Candidate {
+    /// Whether something can be learnt for every take: two labels at least, from takes of the same
+    /// person where persons are learnt by themselves.
+    pub fn can_learn(&self, takes: &[AnnotatedTake], folds: &[Fold]) -> bool {
+        let shown = |train: &[usize], label: usize| train.iter().any(|&t| takes[t].shows(label));
+        let labels = 0..self.lesson.labels.len();
+        let enough = |train: &[usize]| labels.clone().filter(|&l| shown(train, l)).count() > 1;
+        self.groups(takes, folds).iter().all(|(train, _)| enough(train))
+    }
+
     /// Which takes test what is learnt from which: of each fold, and of each person of it where persons
     /// are learnt by themselves.
     fn groups(&self, takes: &[AnnotatedTake], folds: &[Fold]) -> Vec<(Vec<usize>, Vec<usize>)> {
@@ -76,7 +87,8 @@ impl Candidate {
 }
 
 /// Every take that a fold tests, by a model and a temperature that have seen none of the fold's test
-/// takes; in order of the takes. `done` is called after each model, with how many there are.
+/// takes: for each of the candidate's cuts the takes in their order. `done` is called after each
+/// model, with how many there are.
 ///
 /// # Errors
 /// As [`Lesson::learn`] and [`Model::label`].
@@ -85,21 +97,27 @@ pub fn held_out(
     takes: &[AnnotatedTake],
     folds: &[Fold],
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<Judged>, AnnotateError> {
+) -> Result<Vec<Vec<Judged>>, AnnotateError> {
     let groups = candidate.groups(takes, folds);
+    let Candidate { lesson, cuts, calibrated, .. } = candidate;
+    // Of one group: the takes by each cut.
     let judge = |(train, test): &(Vec<usize>, Vec<usize>)| {
         let train: Vec<&AnnotatedTake> = train.iter().map(|&take| &takes[take]).collect();
-        let model = candidate.lesson.learn_calibrated_of(&train)?;
-        let own = test.iter().map(|&take| judged(&model, &candidate.cut, &takes[take], take));
-        let own = own.collect::<Result<Vec<Judged>, AnnotateError>>();
+        let learn = if *calibrated { Lesson::learn_calibrated_of } else { Lesson::learn_of };
+        let model = learn(lesson, &train)?;
+        let of = |cut: &Cut| test.iter().map(|&take| judged(&model, cut, &takes[take], take)).collect();
+        let own = cuts.iter().map(of).collect::<Result<Vec<Vec<Judged>>, AnnotateError>>();
         done(groups.len());
         own
     };
-    let each: Vec<Vec<Judged>> =
+    let each: Vec<Vec<Vec<Judged>>> =
         groups.par_iter().map(judge).collect::<Result<_, AnnotateError>>()?;
-    let mut all: Vec<Judged> = each.into_iter().flatten().collect();
-    all.sort_by_key(|judged| judged.take);
-    Ok(all)
+    let mut by_cut = vec![Vec::new(); cuts.len()];
+    for group in each {
+        by_cut.iter_mut().zip(group).for_each(|(all, own)| all.extend(own));
+    }
+    by_cut.iter_mut().for_each(|all| all.sort_by_key(|judged| judged.take));
+    Ok(by_cut)
 }
 
 /// What a model says of a take, the `number`-th, held against its truth.
@@ -113,12 +131,11 @@ pub fn judged(
     number: usize,
 ) -> Result<Judged, AnnotateError> {
     let AnnotatedTake { take, marked, .. } = annotated;
-    let scores = model.scores(take)?;
     let decode = match cut {
         Cut::Found(decoding) => decoding.of(take, &model.shapes)?,
         Cut::True => Decode::Segments(stable(marked)),
     };
-    let answer = model.answer(take, &scores, &decode)?;
+    let answer = model.label(take, &decode)?;
     let comparison = Comparison {
         labels: model.labels.len(),
         frames: take.frames(),
@@ -131,7 +148,7 @@ pub fn judged(
     let counts = comparison.counts(marked, &answer.segments.iter().map(said).collect::<Vec<_>>())?;
     let truth = by_frame(marked, take.frames());
     let reliability = [Temperature::default(), model.temperature]
-        .map(|temperature| reliability(&scores, temperature, &truth));
+        .map(|temperature| reliability(&answer.scores, temperature, &truth));
     let temperature = model.temperature;
     Ok(Judged { take: number, answer, counts, reliability, temperature })
 }

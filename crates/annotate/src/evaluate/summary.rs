@@ -154,7 +154,8 @@ mod tests {
             thinned_to_hz: Some(10.0),
             decoding: Decoding::default(),
         };
-        Candidate { cut: Cut::Found(lesson.decoding.clone()), lesson, own_person }
+        let cuts = vec![Cut::Found(lesson.decoding.clone())];
+        Candidate { lesson, cuts, own_person, calibrated: true }
     }
 
     #[test]
@@ -164,7 +165,9 @@ mod tests {
         let by_take: Vec<Fold> = leave_out(&[0, 1, 2, 3, 4, 5]).unwrap();
         check_folds(3, &takes, &by_take).unwrap();
         for own_person in [false, true] {
-            let judged = held_out(&candidate(own_person), &takes, &by_take, &|_| ()).unwrap();
+            let candidate = candidate(own_person);
+            assert!(candidate.can_learn(&takes, &by_take));
+            let judged = held_out(&candidate, &takes, &by_take, &|_| ()).unwrap().remove(0);
             let numbers: Vec<usize> = judged.iter().map(|judged| judged.take).collect();
             assert_eq!(numbers, [0, 1, 2, 3, 4, 5]);
             let found = summary(&takes, &judged, 3, false, 1).unwrap();
@@ -185,9 +188,10 @@ mod tests {
         // Three persons are too few for intervals, whoever is held out.
         let persons: Vec<&str> = takes.iter().map(|take| take.person.as_str()).collect();
         let folds = leave_out(&persons).unwrap();
-        let judged = held_out(&candidate(false), &takes, &folds, &|_| ()).unwrap();
+        let judged = held_out(&candidate(false), &takes, &folds, &|_| ()).unwrap().remove(0);
         assert_eq!(summary(&takes, &judged, 3, true, 1).unwrap().intervals, None);
         // Nobody is left to learn from.
+        assert!(!candidate(true).can_learn(&takes, &folds));
         assert!(held_out(&candidate(true), &takes, &folds, &|_| ()).is_err());
     }
 
@@ -195,14 +199,15 @@ mod tests {
     fn true_segments_are_labelled_as_a_whole_and_threads_do_not_matter() {
         let takes: Vec<AnnotatedTake> = (0..4).map(|number| take(0, number)).collect();
         let folds = leave_out(&[0, 1, 2, 3]).unwrap();
-        let candidate = Candidate { cut: Cut::True, ..candidate(false) };
+        let candidate =
+            Candidate { cuts: vec![Cut::True], calibrated: false, ..candidate(false) };
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| held_out(&candidate, &takes, &folds, &|_| ()).unwrap())
         };
         let found = on(1);
         assert_eq!(found, on(3));
-        let found = summary(&takes, &found, 3, false, 1).unwrap();
+        let found = summary(&takes, &found[0], 3, false, 1).unwrap();
         assert_eq!((found.scores.labelled.n, found.scores.labelled.accuracy), (12, Some(1.0)));
         assert_eq!(found.scores.segments.weighted_iou, Some(1.0));
     }

@@ -207,9 +207,7 @@ impl Lesson {
         for annotated in takes {
             let take = &annotated.take;
             crate::error::as_many("shapes of a take", take.weights.width(), width)?;
-            if take.rate_hz != rate_hz {
-                return Err(AnnotateError::Rate { found: take.rate_hz, expected: rate_hz });
-            }
+            crate::error::same_rate(take.rate_hz, rate_hz)?;
             let (frames, own) = self.stable_frames(annotated)?;
             values.extend_from_slice(take.weights.select(frames).values());
             labels.extend(own);

@@ -29,6 +29,17 @@ impl Default for Method {
     }
 }
 
+impl Method {
+    /// The same, learning the annotators' stretches whatever it learnt before: what a person has
+    /// confirmed is not to be cut anew.
+    pub fn of_labels(self) -> Self {
+        match self {
+            Self::Hmm(options) => Self::Hmm(HmmOptions { isolation: None, ..options }),
+            other => other,
+        }
+    }
+}
+
 /// What the user decides of hidden Markov models.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]

@@ -17,6 +17,7 @@ pub use learn::{AnnotatedTake, Lesson};
 pub use method::{HmmOptions, Isolation, Method};
 
 use crate::{AnnotateError, Temperature};
+use mimique_avatar::map_shapes;
 
 /// A model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,7 +91,8 @@ impl Model {
     }
 }
 
-/// The columns of a take that are these shapes, in this order, matched by name.
+/// The columns of a take that are these shapes, in this order, matched by name: the very same, else one
+/// that means the same in another rig's spelling (`EyeBlinkLeft`, `eyeBlink_L`).
 ///
 /// # Errors
 /// [`AnnotateError::Shapes`] with the first that the take lacks.
@@ -99,8 +101,17 @@ pub fn columns(
     shapes: &[impl AsRef<str>],
 ) -> Result<Vec<usize>, AnnotateError> {
     let place = |own: &String| shapes.iter().position(|shape| shape.as_ref() == own);
-    let of = |own: &String| place(own).ok_or_else(|| AnnotateError::Shapes { shape: own.clone() });
-    wanted.iter().map(of).collect()
+    let exact: Vec<Option<usize>> = wanted.iter().map(place).collect();
+    let meant = match exact.contains(&None) {
+        true => map_shapes(wanted, shapes).terms,
+        false => Vec::new(),
+    };
+    let of = |(k, column): (usize, Option<usize>)| match (column, meant.get(k).map(Vec::as_slice)) {
+        (Some(column), _) => Ok(column),
+        (None, Some(&[(column, 1.0)])) => Ok(column),
+        _ => Err(AnnotateError::Shapes { shape: wanted[k].clone() }),
+    };
+    exact.into_iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]
@@ -246,6 +257,11 @@ mod tests {
         let error = model.label(&slower, &Decode::default()).unwrap_err();
         assert_eq!(error, AnnotateError::Rate { found: 25.0, expected: 30.0 });
         assert_eq!(model.columns(&["frown", "x", "open", "smile"]).unwrap(), [3, 2, 0]);
+        let arkit = ["jawOpen", "eyeBlinkLeft", "smile"].map(str::to_owned);
+        let other = ["smile", "HeadYaw", "EyeBlink_L", "JawOpen"];
+        assert_eq!(columns(&arkit, &other).unwrap(), [3, 2, 0]);
+        // Half of it is not it.
+        assert!(columns(&["browInnerUp".to_owned()], &["browInnerUp_L", "browInnerUp_R"]).is_err());
         let missing = AnnotateError::Shapes { shape: "open".to_owned() };
         assert_eq!(model.columns(&["frown", "smile"]).unwrap_err(), missing);
         assert_eq!(lesson.check_takes(&takes), Ok(()));

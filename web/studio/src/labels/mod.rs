@@ -113,7 +113,7 @@ impl Workspace {
         let (shapes, columns, method) = match &labelling.model {
             Some(model) => {
                 let columns = model.columns(&all_shapes).map_err(said)?;
-                (model.shapes.clone(), columns, model.settings)
+                (model.shapes.clone(), columns, model.settings.of_labels())
             }
             None => (all_shapes.clone(), (0..all_shapes.len()).collect(), Method::default()),
         };
