@@ -56,7 +56,9 @@ mod take;
 mod weights;
 
 pub use avatar::{AvatarSkin, SplitError, VertexFrames, lock_shapes, split_shapes, surface_avatar};
-pub use built_in::{built_in_capture, built_in_map, built_in_training, built_in_weights};
+pub use built_in::{
+    built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
+};
 pub use checks::{
     BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
 };
@@ -70,7 +72,7 @@ pub use segments::{
     Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,
     EafSegments, EafTier, LeftOut, Literal, SegmentFileError, SuggestError, SuggestOptions,
     Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
-    read_segments, stretches, study_segments, suggest, write_segments,
+    read_segments, stretches, study_segments, suggest, write_segments, write_segments_with,
 };
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,

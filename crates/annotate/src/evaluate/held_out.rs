@@ -105,7 +105,8 @@ pub fn held_out(
         let train: Vec<&AnnotatedTake> = train.iter().map(|&take| &takes[take]).collect();
         let learn = if *calibrated { Lesson::learn_calibrated_of } else { Lesson::learn_of };
         let model = learn(lesson, &train)?;
-        let of = |cut: &Cut| test.iter().map(|&take| judged(&model, cut, &takes[take], take)).collect();
+        let of =
+            |cut: &Cut| test.iter().map(|&take| judged(&model, cut, &takes[take], take)).collect();
         let own = cuts.iter().map(of).collect::<Result<Vec<Vec<Judged>>, AnnotateError>>();
         done(groups.len());
         own
@@ -145,7 +146,8 @@ pub fn judged(
         frames: found.frames.clone(),
         mark: Mark::Stable(found.label),
     };
-    let counts = comparison.counts(marked, &answer.segments.iter().map(said).collect::<Vec<_>>())?;
+    let counts =
+        comparison.counts(marked, &answer.segments.iter().map(said).collect::<Vec<_>>())?;
     let truth = by_frame(marked, take.frames());
     let reliability = [Temperature::default(), model.temperature]
         .map(|temperature| reliability(&answer.scores, temperature, &truth));

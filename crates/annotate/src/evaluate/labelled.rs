@@ -68,7 +68,10 @@ mod tests {
         let counts = LabelledCounts::of(&truth, &answer, 2);
         assert_eq!(counts, LabelledCounts { truth: vec![1, 2], right: 2 });
         let scores = counts.scores();
-        assert_eq!((scores.n, scores.accuracy, scores.majority), (3, Some(2.0 / 3.0), Some(2.0 / 3.0)));
+        assert_eq!(
+            (scores.n, scores.accuracy, scores.majority),
+            (3, Some(2.0 / 3.0), Some(2.0 / 3.0))
+        );
         assert_eq!(LabelledCounts::of(&truth, &[], 2).scores().accuracy, None);
     }
 }

@@ -60,13 +60,11 @@ pub fn summary(
     for own in judged {
         of_person.entry(&takes[own.take].person).or_default().push(&own.counts);
     }
-    let pooled = |(person, own): (&str, Vec<&Counts>)| Some((person.to_owned(), Counts::pooled(own)?));
+    let pooled =
+        |(person, own): (&str, Vec<&Counts>)| Some((person.to_owned(), Counts::pooled(own)?));
     let persons: Vec<(String, Counts)> = of_person.into_iter().filter_map(pooled).collect();
-    let units = if by_person {
-        persons.iter().map(|(_, counts)| counts.clone()).collect()
-    } else {
-        all
-    };
+    let units =
+        if by_person { persons.iter().map(|(_, counts)| counts.clone()).collect() } else { all };
     let mut reliability = [Reliability::default(), Reliability::default()];
     for own in judged {
         reliability.iter_mut().zip(&own.reliability).for_each(|(sum, own)| sum.add(own));
@@ -177,7 +175,9 @@ mod tests {
             assert_eq!(label, 1);
             assert!((majority.frames.accuracy.unwrap() - 0.375).abs() < 1e-12);
             assert_eq!(majority.frames.kappa, Some(0.0));
-            assert!(majority.segments.f1[2].unwrap() < 0.01 && majority.borders.recall == Some(0.0));
+            assert!(
+                majority.segments.f1[2].unwrap() < 0.01 && majority.borders.recall == Some(0.0)
+            );
             assert_eq!(found.persons.len(), 3);
             let own = &found.intervals.unwrap()[0];
             let [low, high] = own.ends.unwrap();
@@ -199,8 +199,7 @@ mod tests {
     fn true_segments_are_labelled_as_a_whole_and_threads_do_not_matter() {
         let takes: Vec<AnnotatedTake> = (0..4).map(|number| take(0, number)).collect();
         let folds = leave_out(&[0, 1, 2, 3]).unwrap();
-        let candidate =
-            Candidate { cuts: vec![Cut::True], calibrated: false, ..candidate(false) };
+        let candidate = Candidate { cuts: vec![Cut::True], calibrated: false, ..candidate(false) };
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| held_out(&candidate, &takes, &folds, &|_| ()).unwrap())

@@ -160,8 +160,7 @@ impl Model {
         let rows = Rows::new(rows, take.weights.width())?;
         let scores = self.classifier.scores(&rows)?;
         let whole = 0..segments.len();
-        let labels =
-            self.classifier.labels(&rows.select(whole.clone()), &scores.select(whole))?;
+        let labels = self.classifier.labels(&rows.select(whole.clone()), &scores.select(whole))?;
         let found = segments.iter().cloned().zip(labels).collect();
         Ok((scores.select(row_of), found))
     }

@@ -64,7 +64,8 @@ pub(super) fn joined(
     let models: Vec<Hmm> = learnt.iter().map(|learnt| learnt.hmm.clone()).collect();
     let p_out = Composite::p_out(options.mean_stay_s, rate_hz);
     let names: Vec<usize> = classes.iter().map(|class| class.label).collect();
-    let joined = Composite::join(&models, p_out)?.labelled(names, labels)?.tempered(options.temper)?;
+    let joined =
+        Composite::join(&models, p_out)?.labelled(names, labels)?.tempered(options.temper)?;
     let report = classes.iter().zip(learnt).map(|(class, learnt)| LearntLabel {
         label: class.label,
         neutral_of: class.neutral_of,

@@ -96,10 +96,7 @@ impl Model {
 ///
 /// # Errors
 /// [`AnnotateError::Shapes`] with the first that the take lacks.
-pub fn columns(
-    wanted: &[String],
-    shapes: &[impl AsRef<str>],
-) -> Result<Vec<usize>, AnnotateError> {
+pub fn columns(wanted: &[String], shapes: &[impl AsRef<str>]) -> Result<Vec<usize>, AnnotateError> {
     let place = |own: &String| shapes.iter().position(|shape| shape.as_ref() == own);
     let exact: Vec<Option<usize>> = wanted.iter().map(place).collect();
     let meant = match exact.contains(&None) {

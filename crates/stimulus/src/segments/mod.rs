@@ -23,7 +23,9 @@ use std::ops::Range;
 
 pub use activity::{Activity, ActivityOptions, Channels, bridge};
 pub use borders::{BorderRule, stretches};
-pub use csv::{SegmentFileError, read_labelled_segments, read_segments, write_segments};
+pub use csv::{
+    SegmentFileError, read_labelled_segments, read_segments, write_segments, write_segments_with,
+};
 pub use eaf::{EafAnnotation, EafDocument, EafError, EafTier};
 pub use eaf_write::{EafSegments, LeftOut};
 pub use literal::Literal;
