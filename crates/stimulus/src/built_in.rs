@@ -85,9 +85,8 @@ mod tests {
         // Held at the apex, at rest outside: gaze and blinks left out.
         let n = take.shape_names.len();
         let moves = |k: usize| !take.shape_names[k].starts_with("eye");
-        let level = |f: usize| -> f64 {
-            (0..n).filter(|k| moves(*k)).map(|k| take.truth[f * n + k]).sum()
-        };
+        let level =
+            |f: usize| -> f64 { (0..n).filter(|k| moves(*k)).map(|k| take.truth[f * n + k]).sum() };
         let most = (0..take.frames()).map(level).fold(0.0, f64::max);
         for label in &labels {
             let middle = level((label.clip.start + label.clip.end) / 2);

@@ -111,7 +111,9 @@ impl Model {
                 let labels = match &self.classifier {
                     Classifier::Hmm(joined) => joined.path(&take.weights)?,
                     _ => {
-                        let by = self.temperature.value();
+                        // Below 1 it would take frames, which say the same thing again and again, for
+                        // more evidence than they are.
+                        let by = self.temperature.value().max(1.0);
                         let tempered: Vec<f64> = scores.values().iter().map(|s| s / by).collect();
                         path.labels(&tempered, self.labels.len(), take.rate_hz)?
                     }

@@ -11,6 +11,7 @@ use mimique_stimulus::{EafAnnotation, TakeSegment, write_segments_with};
 use serde_json::json;
 
 use super::decoding::DecodeOptions;
+use super::rounded;
 use crate::capture_options::CaptureOptions;
 use crate::eaf_file::{document, is_eaf};
 use crate::motion::{self, Motion};
@@ -151,19 +152,24 @@ fn table(args: &Args, model: &Model, take: &Take, answer: &Answer) -> String {
         answer.segments.iter().map(|found| segment(args, model, found)).collect();
     let beside = |found: &Suggested| {
         let (second, probability) = match found.second {
-            Some((label, probability)) => (model.labels[label].clone(), probability.to_string()),
+            Some((label, probability)) => (model.labels[label].clone(), shown(probability)),
             None => (String::new(), String::new()),
         };
-        [found.probability.to_string(), second, probability]
+        [shown(found.probability), second, probability]
     };
     let beside: Vec<[String; 3]> = answer.segments.iter().map(beside).collect();
     let names = ["probability", "second", "second_probability"];
     write_segments_with(&segments, take.rate_hz, &names, &beside)
 }
 
+/// A probability as tables have it.
+fn shown(probability: f64) -> String {
+    ((probability * 1e4).round() / 1e4).to_string()
+}
+
 /// The probability of each label at every frame as CSV.
 fn frames(model: &Model, take: &Take, answer: &Answer) -> String {
-    let values = answer.probabilities.values().to_vec();
+    let values = answer.probabilities.values().iter().map(|p| (p * 1e6).round() / 1e6).collect();
     WeightsTable::at_rate(model.labels.clone(), values, 0, take.rate_hz).to_csv()
 }
 
@@ -177,11 +183,11 @@ fn print(
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "{}: {} segments in {:.1} s at {:.4} Hz, suggested: look at them before they are used",
+        "{}: {} segments in {:.1} s at {} Hz, suggested: look at them before they are used",
         args.take.display(),
         answer.segments.len(),
         take.frames() as f64 / take.rate_hz,
-        take.rate_hz,
+        rounded(take.rate_hz),
     )?;
     for found in &answer.segments {
         let second = found.second.map_or_else(String::new, |(label, probability)| {

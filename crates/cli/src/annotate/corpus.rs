@@ -1,7 +1,7 @@
 //! Annotated takes, read: every file of `takes.csv` and what its words mean.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{anyhow, bail};
@@ -75,6 +75,26 @@ struct TakeFiles {
     intervals: Intervals,
 }
 
+/// What is said of the files of a take: file and note.
+fn notes(line: &TakeLine, motion: &Motion, intervals: &Intervals) -> Vec<(String, String)> {
+    let of = |file: &Path, note: &String| (file.display().to_string(), note.clone());
+    let of_motion = motion.notes.iter().map(|note| of(&line.weights, note));
+    of_motion.chain(intervals.note.iter().map(|note| of(&line.labels, note))).collect()
+}
+
+/// What is said of files, once where it is said of several.
+fn together(told: Vec<(String, String)>) -> Vec<String> {
+    let mut files: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (file, note) in told {
+        files.entry(note).or_default().push(file);
+    }
+    let said = files.into_iter().map(|(note, files)| match &files[..] {
+        [file] => format!("{file}: {note}"),
+        files => format!("{} files: {note}", files.len()),
+    });
+    said.collect()
+}
+
 impl CorpusOptions {
     /// Reads all files.
     pub fn read(&self) -> anyhow::Result<Corpus> {
@@ -102,8 +122,9 @@ impl CorpusOptions {
         };
         let rate_hz = files[0].motion.rate_hz;
         let mut unknown: BTreeMap<String, usize> = BTreeMap::new();
+        let mut told = Vec::new();
         for (line, TakeFiles { motion, intervals }) in lines.iter().zip(files) {
-            corpus.note(line, &motion, &intervals);
+            told.extend(notes(line, &motion, &intervals));
             let take = corpus.columns_of(line, motion, rate_hz)?;
             let written: Vec<_> = intervals
                 .intervals
@@ -124,6 +145,7 @@ impl CorpusOptions {
                 marked: read.marked,
             });
         }
+        corpus.notes = together(told);
         if !unknown.is_empty() {
             let told: Vec<String> =
                 unknown.iter().map(|(word, count)| format!("{word:?} ({count})")).collect();
@@ -168,12 +190,6 @@ impl CorpusOptions {
 }
 
 impl Corpus {
-    fn note(&mut self, line: &TakeLine, motion: &Motion, intervals: &Intervals) {
-        let file = line.weights.display();
-        self.notes.extend(motion.notes.iter().map(|note| format!("{file}: {note}")));
-        self.notes.extend(intervals.note.clone());
-    }
-
     /// The take with the columns of the first, matched by name.
     fn columns_of(&self, line: &TakeLine, motion: Motion, rate_hz: f64) -> anyhow::Result<Take> {
         let blame = |e: mimique_annotate::AnnotateError| {

@@ -38,7 +38,7 @@ pub fn read(file: &Path, tier: Option<&str>, rate_hz: f64) -> anyhow::Result<Int
         let segments = read_labelled_segments(&text).map_err(|e| blame(e.to_string()))?;
         EafSegments { segments, left_out: LeftOut::default() }
     };
-    let note = found.left_out.sentence().map(|said| format!("{}: {said}", file.display()));
+    let note = found.left_out.sentence();
     // Leads of neutral before and after an expression are not the expression.
     let of = |segment: TakeSegment| (segment.expression, segment.label);
     Ok(Intervals { intervals: found.segments.into_iter().map(of).collect(), note })

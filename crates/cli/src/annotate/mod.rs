@@ -65,6 +65,11 @@ fn named(error: AnnotateError, labels: &[String]) -> anyhow::Error {
     }
 }
 
+/// A rate as people read it: times of frames are rounded, and rates that are told by them are, too.
+fn rounded(rate_hz: f64) -> f64 {
+    (rate_hz * 1e3).round() / 1e3
+}
+
 /// Something that turns while people wait.
 fn spinner() -> ProgressBar {
     let progress = ProgressBar::new_spinner();

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::corpus::{Corpus, CorpusOptions};
 use super::decoding::DecodeOptions;
 use super::method::MethodOptions;
-use super::{named, spinner};
+use super::{named, rounded, spinner};
 use crate::output;
 
 /// Options.
@@ -70,12 +70,12 @@ fn print(args: &Args, corpus: &Corpus, model: &Model, bytes: usize) -> anyhow::R
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "{}: {}, {:.1} kB, from {} takes at {:.4} Hz",
+        "{}: {}, {:.1} kB, from {} takes at {} Hz",
         args.out.display(),
         learnt(model),
         bytes as f64 / 1000.0,
         corpus.takes.len(),
-        model.rate_hz,
+        rounded(model.rate_hz),
     )?;
     for (label, seconds) in model.labels.iter().zip(&model.learnt_from.seconds) {
         let index = model.labels.iter().position(|own| own == label).unwrap_or(0);
@@ -87,9 +87,8 @@ fn print(args: &Args, corpus: &Corpus, model: &Model, bytes: usize) -> anyhow::R
     {
         writeln!(
             out,
-            "out of bag {:.0} %: frames of takes that were learnt from; evaluate says what takes that \
-             were not give",
-            100.0 * share
+            "out-of-bag accuracy {share:.2}, of frames from takes that were learnt from: what other takes \
+             give, annotate evaluate tells"
         )?;
     }
     for own in &model.learnt_from.hmm {

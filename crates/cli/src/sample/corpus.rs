@@ -55,7 +55,7 @@ fn performance(actor: u64, number: u64) -> SyntheticTake {
     let spec = HeadSpec::actor(actor);
     let seed = 1000 * actor + number;
     let mut emotions = Emotion::ALL;
-    emotions.rotate_left((2 * number + actor) as usize % emotions.len());
+    emotions.rotate_left((2 * number + actor) as usize % Emotion::ALL.len());
     if number % 2 == 0 {
         emotions.reverse();
     }

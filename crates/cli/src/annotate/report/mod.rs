@@ -1,8 +1,10 @@
 //! The report of an evaluation: a document of the components that studies' reports have, `results.json`,
 //! and what is printed.
 
-mod figures;
+mod confusion;
+mod reliability;
 mod scores;
+mod timeline;
 mod words;
 
 use std::io::Write as _;
@@ -102,7 +104,7 @@ impl Writer<'_> {
     fn confusions(&mut self) {
         self.heading("Which labels are taken for which", "Quelles étiquettes sont confondues");
         for column in &self.of.columns {
-            self.blocks.push(Block::figure(figures::confusion(self.language, self.of, column)));
+            self.blocks.push(Block::figure(confusion::confusion(self.language, self.of, column)));
         }
     }
 
@@ -128,14 +130,14 @@ impl Writer<'_> {
         ));
         self.blocks.push(Block::Table(scores::calibration(language, of)));
         for column in of.columns.iter().filter(|column| column.calibrated) {
-            self.blocks.push(Block::figure(figures::reliability(language, column)));
+            self.blocks.push(Block::figure(reliability::reliability(language, column)));
         }
     }
 
     fn timelines(&mut self) {
         self.heading("Take by take", "Prise par prise");
         for take in 0..self.of.corpus.takes.len() {
-            self.blocks.push(Block::figure(figures::timeline(self.language, self.of, take)));
+            self.blocks.push(Block::figure(timeline::timeline(self.language, self.of, take)));
         }
     }
 
@@ -312,9 +314,7 @@ pub fn print(of: &Evaluation, folder: Option<&Path>, json: bool) -> anyhow::Resu
             let both = if interval.is_empty() { value } else { format!("{value} [{interval}]") };
             line += &format!("{both:<24}");
         }
-        if let Some((_, scores)) = majority {
-            line += &scores::value(language, score.of(scores));
-        }
+        line += &scores::majority(language, of, score);
         writeln!(out, "{}", line.trim_end())?;
     }
     for column in of.columns.iter().filter(|column| column.calibrated) {
@@ -325,7 +325,7 @@ pub fn print(of: &Evaluation, folder: Option<&Path>, json: bool) -> anyhow::Resu
             .map(|own| scores::value(language, own.expected_error()));
         writeln!(
             out,
-            "{}: calibration error {raw}, by the temperature {tempered}",
+            "{}: calibration error {raw} without temperature, {tempered} with it",
             words::column(language, column.kind).to_lowercase()
         )?;
     }

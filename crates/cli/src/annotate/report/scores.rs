@@ -23,6 +23,19 @@ pub fn interval(language: Language, summary: &Summary, score: Score) -> String {
     })
 }
 
+/// What always answering the commonest label would score; of segments as each candidate cuts them, which
+/// of several are told one after the other.
+pub fn majority(language: Language, of: &Evaluation, score: Score) -> String {
+    if score == Score::SegmentsRight {
+        let own = of.columns.iter().map(|column| column.summary.scores.labelled.majority);
+        return own.map(|own| value(language, own)).collect::<Vec<_>>().join(" / ");
+    }
+    match &of.columns[0].summary.majority {
+        Some((_, scores)) => value(language, score.of(scores)),
+        None => String::new(),
+    }
+}
+
 /// Every score: a column each candidate with its interval, and the majority's.
 pub fn scores(language: Language, of: &Evaluation) -> DataTable {
     let caption = language.pick(
@@ -55,8 +68,8 @@ pub fn scores(language: Language, of: &Evaluation) -> DataTable {
                 row.push(interval(language, &column.summary, score));
             }
         }
-        if let Some((_, scores)) = majority {
-            row.push(value(language, score.of(scores)));
+        if majority.is_some() {
+            row.push(self::majority(language, of, score));
         }
         table.row(row);
     }
@@ -144,10 +157,8 @@ pub fn calibration(language: Language, of: &Evaluation) -> DataTable {
         ["", "erreur de calibration", "Brier", "erreur de calibration", "Brier"],
     );
     let mut table = DataTable::new("calibration", caption, heading);
-    let groups = language.pick(
-        ["", "as the scores have it", "by the temperature"],
-        ["", "selon les scores", "selon la température"],
-    );
+    let [without, with] = words::temperature(language);
+    let groups = ["", without, with];
     table.groups = groups.into_iter().zip([1, 2, 2]).map(|(g, n)| (g.to_owned(), n)).collect();
     for column in of.columns.iter().filter(|column| column.calibrated) {
         let mut row = vec![words::column(language, column.kind).to_owned()];

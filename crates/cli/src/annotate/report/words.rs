@@ -20,6 +20,23 @@ pub fn column(language: Language, kind: ColumnKind) -> &'static str {
     }
 }
 
+/// The same beside a row of a figure.
+pub fn column_in_short(language: Language, kind: ColumnKind) -> &'static str {
+    match kind {
+        ColumnKind::Thesis => language.pick("thesis", "thèse"),
+        ColumnKind::ShortPaper => language.pick("short paper", "article court"),
+        ColumnKind::Recommended => language.pick("recommended", "recommandé"),
+        ColumnKind::Chosen => language.pick("chosen", "choisi"),
+        ColumnKind::Model => language.pick("model", "modèle"),
+    }
+}
+
+/// Without, and with a temperature.
+pub fn temperature(language: Language) -> [&'static str; 2] {
+    language
+        .pick(["without temperature", "with temperature"], ["sans température", "avec température"])
+}
+
 /// The name of a score.
 pub fn score(language: Language, score: Score) -> &'static str {
     match score {
@@ -41,13 +58,13 @@ pub fn score(language: Language, score: Score) -> &'static str {
 /// What each score is, for the notes.
 pub fn scores_explained(language: Language) -> &'static str {
     language.pick(
-        "Frames right, balanced accuracy, macro F1 and kappa count frames that the annotator gave a label; transitions \
+        "Blank on a timeline of the annotator is the way from one label to another, or nothing that is marked. Frames right, balanced accuracy, macro F1 and kappa count frames that the annotator gave a label; transitions \
          count in none. Segments right: a suggested segment’s truth is the label it shares most frames with, as the \
          thesis scores. F1@10, 25 and 50 count true segments that a suggestion of the same label overlaps by an IoU \
          (common frames over all frames of both) of 0.10, 0.25 and 0.50, a transition shared at its middle; IoU by length is \
          their mean IoU weighted by length, which ELAN calls overlap/extent. The edit score compares the order of the labels. \
          Borders count within 150 ms.",
-        "Images justes, exactitude équilibrée, F1 macro et kappa comptent les images auxquelles l’annotateur a donné une \
+        "Un blanc sur la ligne de l’annotateur est le passage d’une étiquette à une autre, ou rien d’annoté. Images justes, exactitude équilibrée, F1 macro et kappa comptent les images auxquelles l’annotateur a donné une \
          étiquette ; les transitions n’y comptent pas. Segments justes : la vérité d’un segment suggéré est l’étiquette avec \
          laquelle il partage le plus d’images, comme dans la thèse. F1@10, 25 et 50 comptent les segments vrais qu’une \
          suggestion de même étiquette recouvre avec un IoU (images communes sur toutes les images des deux) de 0,10, 0,25 \
