@@ -211,7 +211,8 @@ impl Temperature {
         let mut sum = 0.0;
         for (row, &label) in scores.iter().zip(truth) {
             cooled.iter_mut().zip(row).for_each(|(c, s)| *c = s / self.0);
-            sum += log_sum(&cooled) - cooled[label];
+            let own = cooled[label];
+            sum += log_sum(&mut cooled) - own;
         }
         Ok(sum / truth.len() as f64)
     }

@@ -81,6 +81,7 @@ mod rows;
 mod smo;
 pub mod stretches;
 mod take;
+mod tiles;
 mod tree;
 
 pub use calibration::Temperature;

@@ -87,6 +87,11 @@ impl Svm {
         Ok(Self { kernel: options.kernel, count: examples.count(), vectors, pairs })
     }
 
+    /// How many labels there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// The machines, by first label, then second.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
@@ -98,7 +103,8 @@ impl Svm {
     /// [`AnnotateError::Count`] when the row has another width.
     pub fn decisions(&self, row: &[f64]) -> Result<Vec<f64>, AnnotateError> {
         as_many("columns", row.len(), self.vectors.width())?;
-        let kernels: Vec<f64> = self.vectors.iter().map(|v| self.kernel.of(v, row)).collect();
+        let mut kernels = vec![0.0; self.vectors.len()];
+        self.kernel.of_all(self.vectors.values(), row, &mut kernels);
         let sum = |pair: &Pair| pair.coefficients.iter().map(|&(v, a)| a * kernels[v]).sum::<f64>();
         Ok(self.pairs.iter().map(|pair| sum(pair) + pair.bias).collect())
     }
@@ -165,8 +171,10 @@ fn fit_pair(
     let of = |row: &usize| labels.contains(&examples.labels()[*row]);
     let members: Vec<usize> = (0..examples.labels().len()).filter(of).collect();
     let own: Vec<usize> = members.iter().map(|&row| examples.labels()[row]).collect();
+    let rows = examples.rows().select(members.iter().copied());
     let problem = TwoClasses {
-        rows: members.iter().map(|&row| examples.rows().row(row)).collect(),
+        rows: rows.values(),
+        width: rows.width(),
         sign: own.iter().map(|&label| if label == labels[0] { 1.0 } else { -1.0 }).collect(),
         bound: own.iter().map(|&label| options.c * weights[label]).collect(),
         kernel: options.kernel,

@@ -1,13 +1,16 @@
-//! What Mimique's tests share: real data, Python and R outside the repository, and random numbers.
+//! What Mimique's tests and benchmarks share: real data, Python and R outside the repository, random
+//! numbers, a clock.
 //!
 //! Each finder gives its find, or says that the test is skipped and gives `None`. With
 //! `MIMIQUE_NO_SKIP=1` a test that would skip fails instead.
 
+mod clock;
 mod random;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+pub use clock::Clock;
 pub use random::Random;
 
 /// The folder of the real data: `MIMIQUE_DATA`, else `../shared/data` beside the repository.

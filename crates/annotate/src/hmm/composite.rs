@@ -117,7 +117,7 @@ impl Composite {
     /// # Errors
     /// As [`Hmm::best_path`].
     pub fn path(&self, sequence: &Rows) -> Result<Vec<usize>, AnnotateError> {
-        let path = self.hmm.path_through(&self.hmm.tempered(sequence, self.temper)?)?;
+        let path = self.hmm.path_through(self.hmm.tempered(sequence, self.temper)?)?;
         Ok(path.states.into_iter().map(|state| self.label_of_state(state)).collect())
     }
 

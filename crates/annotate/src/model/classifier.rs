@@ -64,40 +64,37 @@ impl Classifier {
     /// # Errors
     /// [`AnnotateError::Count`] when the rows have another width, [`AnnotateError::Impossible`].
     pub fn scores(&self, rows: &Rows) -> Result<Rows, AnnotateError> {
-        let (mut values, mut labels) = (Vec::new(), 1);
-        if let Self::Hmm(joined) = self {
-            let posterior = joined.posterior(rows)?;
-            values = posterior.values().iter().map(|&p| libm::log(p.max(LEAST))).collect();
-            return Rows::new(values, joined.labels());
-        }
-        let each = (0..rows.len()).into_par_iter().map(|row| self.row_scores(rows.row(row)));
-        for scores in each.collect::<Result<Vec<Vec<f64>>, AnnotateError>>()? {
-            labels = scores.len();
-            values.extend(scores);
-        }
-        Rows::new(values, labels)
-    }
-
-    fn row_scores(&self, row: &[f64]) -> Result<Vec<f64>, AnnotateError> {
-        let (mut shares, voters) = match self {
-            Self::Svm(svm) => return svm.scores(row),
-            Self::Knn(knn) => (knn.probabilities(row)?, Some(knn.k())),
-            Self::Forest(forest) => (forest.probabilities(row)?, Some(forest.trees().len())),
-            Self::Logistic(logistic) => (logistic.probabilities(row)?, None),
+        let values: Vec<f64> = match self {
             Self::Hmm(joined) => {
-                let row = Rows::new(row.to_vec(), row.len())?;
-                (joined.posterior(&row)?.row(0).to_vec(), None)
+                let posterior = joined.posterior(rows)?;
+                posterior.values().iter().map(|&p| libm::log(p.max(LEAST))).collect()
+            }
+            Self::Knn(knn) => {
+                let shares = knn.votes(rows)?.into_iter().flat_map(|vote| knn.shares(&vote));
+                logs_of_votes(shares, knn.k(), self.labels_count())
+            }
+            Self::Forest(forest) => {
+                let shares = forest.probabilities_of(rows)?;
+                logs_of_votes(shares.into_iter(), forest.trees().len(), self.labels_count())
+            }
+            Self::Svm(svm) => each_row(rows, |row| svm.scores(row))?,
+            Self::Logistic(logistic) => {
+                let shares = each_row(rows, |row| logistic.probabilities(row))?;
+                shares.into_iter().map(|share| libm::log(share.max(LEAST))).collect()
             }
         };
-        let labels = shares.len() as f64;
-        shares.iter_mut().for_each(|share| {
-            let share_seen = voters.map_or(*share, |voters| {
-                let voters = voters as f64;
-                (*share * voters + 0.5) / (voters + labels / 2.0)
-            });
-            *share = libm::log(share_seen.max(LEAST));
-        });
-        Ok(shares)
+        Rows::new(values, self.labels_count())
+    }
+
+    /// How many labels it tells apart.
+    fn labels_count(&self) -> usize {
+        match self {
+            Self::Knn(knn) => knn.count(),
+            Self::Svm(svm) => svm.count(),
+            Self::Logistic(logistic) => logistic.bias().len(),
+            Self::Forest(forest) => forest.count(),
+            Self::Hmm(joined) => joined.labels(),
+        }
     }
 
     /// The label of every row taken by itself: LIBSVM's vote, the neighbours' tie rule, else the
@@ -107,7 +104,7 @@ impl Classifier {
     /// As [`Classifier::scores`].
     pub fn labels(&self, rows: &Rows, scores: &Rows) -> Result<Vec<usize>, AnnotateError> {
         match self {
-            Self::Knn(knn) => rows.iter().map(|row| Ok(knn.vote(row)?.label)).collect(),
+            Self::Knn(knn) => Ok(knn.votes(rows)?.into_iter().map(|vote| vote.label).collect()),
             Self::Svm(_) => Ok(scores.iter().map(Svm::label_of_scores).collect()),
             _ => Ok(scores.iter().map(highest).collect()),
         }
@@ -139,4 +136,19 @@ impl Classifier {
             Self::Hmm(joined) => joined.fits(labels),
         }
     }
+}
+
+/// What a classifier says of every row, one after the other.
+fn each_row(
+    rows: &Rows,
+    of: impl Fn(&[f64]) -> Result<Vec<f64>, AnnotateError> + Sync,
+) -> Result<Vec<f64>, AnnotateError> {
+    let each = (0..rows.len()).into_par_iter().map(|row| of(rows.row(row)));
+    Ok(each.collect::<Result<Vec<Vec<f64>>, AnnotateError>>()?.concat())
+}
+
+/// ln((votes + 1/2) / (voters + K/2)) of shares of votes.
+fn logs_of_votes(shares: impl Iterator<Item = f64>, voters: usize, labels: usize) -> Vec<f64> {
+    let (voters, labels) = (voters as f64, labels as f64);
+    shares.map(|share| libm::log((share * voters + 0.5) / (voters + labels / 2.0))).collect()
 }
