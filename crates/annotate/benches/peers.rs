@@ -1,7 +1,7 @@
 //! The annotation beside scikit-learn and hmmlearn: one measurement a line of standard input.
 //!
-//! `peers FOLDER` writes there what `tests/peers/annotation.py` reads, then answers the names of
-//! measurements with a line of JSON: `{"seconds": 0.13, "answer": 0.97}`. `answer` is a number by which
+//! `peers FOLDER` writes there what `tests/peers/annotation.py` and `tests/wasm/label_speed.mjs` read, then
+//! answers the names of measurements with a line of JSON: `{"seconds": 0.13, "answer": 0.97}`. `answer` is a number by which
 //! both sides can be seen to have computed the same. Seconds are processor time; one thread is set by
 //! `RAYON_NUM_THREADS`. Without arguments (as `cargo bench` calls it) it does nothing.
 #![allow(missing_docs, clippy::print_stdout)]
@@ -42,7 +42,7 @@ fn frame(random: &mut Random, label: usize) -> [f64; SHAPES] {
     std::array::from_fn(|shape| {
         let belongs = shape % LABELS == label || (shape * shape) % 11 == label;
         let height = if belongs { 0.15 + 0.25 * ((shape * 7 % 5) as f64 / 5.0) } else { 0.02 };
-        (height + 0.14 * random.normal()).max(0.0)
+        (height + 0.22 * random.normal()).max(0.0)
     })
 }
 
@@ -109,6 +109,15 @@ impl Problem {
             let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
             std::fs::write(folder.join(name), bytes).expect("the bench folder is writable");
         };
+        let shapes = self.model.shapes.join(",");
+        let mut csv = format!("frame,time,{shapes}\n");
+        for (f, row) in self.ten_minutes.weights.iter().enumerate() {
+            let cells: Vec<String> = row.iter().map(|w| format!("{w:.4}")).collect();
+            csv += &format!("{f},{},{}\n", f as f64 / 60.0, cells.join(","));
+        }
+        std::fs::write(folder.join("ten-minutes.csv"), csv).expect("the bench folder is writable");
+        let model = self.model.to_json().expect("a model");
+        std::fs::write(folder.join("model.json"), model).expect("the bench folder is writable");
         put("train.f64", self.examples.rows().values());
         let labels: Vec<f64> = self.examples.labels().iter().map(|&label| label as f64).collect();
         put("labels.f64", &labels);

@@ -72,9 +72,9 @@ widest! {
                     }
                 }
             }
-            for a in 0..ASKED {
+            for (a, sums) in sums.iter().enumerate() {
                 let from = a * stride + place * SIDE;
-                out[from..from + SIDE].copy_from_slice(&sums[a]);
+                out[from..from + SIDE].copy_from_slice(sums);
             }
         }
     }

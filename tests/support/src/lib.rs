@@ -70,6 +70,27 @@ pub fn rscript(test: &str) -> Option<PathBuf> {
     None
 }
 
+/// The folder of a module of the pages, for node: what `cargo xtask web` has built, or
+/// `MIMIQUE_WEB_DIST`.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when node or the module is absent.
+pub fn web_module(test: &str, name: &str) -> Option<PathBuf> {
+    let target = std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| repository().join("target"), PathBuf::from);
+    let dist =
+        std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(|| target.join("web-dist"), PathBuf::from);
+    let file = format!("{name}_bg.wasm");
+    if !runs(Path::new("node"), &["--version"]) {
+        skip(test, "node is not installed");
+    } else if !dist.join(&file).is_file() {
+        skip(test, &format!("no {file} in {}; run cargo xtask web", dist.display()));
+    } else {
+        return Some(dist);
+    }
+    None
+}
+
 /// Says that a test is skipped and why.
 ///
 /// # Panics

@@ -17,7 +17,7 @@ pub use borders::{BorderCounts, BorderScores, answered_borders, true_borders};
 pub use frames::{Confusion, FrameScores, LabelScores, Majority};
 pub use held_out::{Candidate, Cut, Judged, held_out, judged};
 pub use labelled::{LabelledCounts, LabelledScores};
-pub use resample::{FEWEST, draws, interval, intervals};
+pub use resample::{FEWEST, draws, intervals};
 pub use score::Score;
 pub use segments::{
     OVERLAPS, Pairing, Segment, SegmentCounts, SegmentScores, answered_segments, edit, pairs,

@@ -2,7 +2,7 @@
 
 use mimique_stats::quantile_sorted;
 
-use super::{Counts, Scores};
+use super::{Counts, Score};
 use crate::AnnotateError;
 use crate::error::above_zero;
 use crate::random::Stream;
@@ -27,30 +27,18 @@ pub fn draws(takes: usize, resamples: usize, seed: u64) -> Result<Vec<Vec<usize>
     Ok((0..resamples).map(draw).collect())
 }
 
-/// The percentile interval of a score at a level (0.95), of resamples in which it is defined; none
-/// where it is in none. `takes` are the counts of each take, or of each person.
+/// The percentile intervals of scores at a level (0.95), all of them over the same resamples, each of
+/// those in which it is defined; none where it is in none. `takes` are the counts of each take, or of
+/// each person.
 ///
 /// # Errors
 /// [`AnnotateError::Setting`] for a level outside 0 to 1, [`AnnotateError::Label`] for a draw that
 /// names no take.
-pub fn interval(
-    takes: &[Counts],
-    draws: &[Vec<usize>],
-    level: f64,
-    score: impl Fn(&Scores) -> Option<f64>,
-) -> Result<Option<[f64; 2]>, AnnotateError> {
-    Ok(intervals(takes, draws, level, &[&score])?[0])
-}
-
-/// The intervals of several scores, all of them over the same resamples.
-///
-/// # Errors
-/// As [`interval`].
 pub fn intervals(
     takes: &[Counts],
     draws: &[Vec<usize>],
     level: f64,
-    scores: &[&dyn Fn(&Scores) -> Option<f64>],
+    scores: &[Score],
 ) -> Result<Vec<Option<[f64; 2]>>, AnnotateError> {
     above_zero("level", level)?;
     above_zero("1 - level", 1.0 - level)?;
@@ -62,7 +50,7 @@ pub fn intervals(
         let Some(pooled) = Counts::pooled(draw.iter().map(|&take| &takes[take])) else { continue };
         let pooled = pooled.scores();
         for (values, score) in values.iter_mut().zip(scores) {
-            values.extend(score(&pooled));
+            values.extend(score.of(&pooled));
         }
     }
     let tail = (1.0 - level) / 2.0;

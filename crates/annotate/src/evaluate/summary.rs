@@ -84,9 +84,7 @@ fn all_intervals(units: &[Counts], seed: u64) -> Result<Option<Vec<Interval>>, A
         return Ok(None);
     }
     let draws = draws(units.len(), RESAMPLES, seed)?;
-    let scores = Score::ALL.map(|score| move |scores: &Scores| score.of(scores));
-    let scores = scores.each_ref().map(|score| score as &dyn Fn(&Scores) -> Option<f64>);
-    let ends = intervals(units, &draws, LEVEL, &scores)?;
+    let ends = intervals(units, &draws, LEVEL, &Score::ALL)?;
     let all = Score::ALL.into_iter().zip(ends).map(|(score, ends)| Interval { score, ends });
     Ok(Some(all.collect()))
 }

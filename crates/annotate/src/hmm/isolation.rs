@@ -63,10 +63,10 @@ mod tests {
         // Five times rest, way up, peak, way down; 60 Hz.
         let mut random = Random::new(31);
         let height = |f: usize| match f % 120 {
-            f @ 0..40 | f @ 118.. if f < 40 || f >= 118 => 0.0,
             f @ 40..60 => (f - 40) as f64 / 20.0,
+            60..98 => 1.0,
             f @ 98..118 => (118 - f) as f64 / 20.0,
-            _ => 1.0,
+            _ => 0.0,
         };
         let values = (0..600).flat_map(|f| {
             let h = height(f);

@@ -153,11 +153,10 @@ impl Model {
             rows.extend(mean(&take.weights, segment.clone()));
             row_of[segment.clone()].fill(row);
         }
-        let mut next = segments.len();
-        for (frame, row) in row_of.iter_mut().enumerate().filter(|(_, row)| **row == usize::MAX) {
+        let outside = row_of.iter_mut().enumerate().filter(|(_, row)| **row == usize::MAX);
+        for (next, (frame, row)) in (segments.len()..).zip(outside) {
             rows.extend_from_slice(take.weights.row(frame));
             *row = next;
-            next += 1;
         }
         let rows = Rows::new(rows, take.weights.width())?;
         let scores = self.classifier.scores(&rows)?;

@@ -40,7 +40,8 @@ impl Literal {
         let least = self.share * nearest_quantile(&sorted, 0.95);
         let window = (self.window_s * rate_hz).round().max(0.0) as usize;
         let steepest = |f: usize| {
-            let near = f.saturating_sub(window)..f.saturating_add(window + 1).min(frames);
+            let near =
+                f.saturating_sub(window)..f.saturating_add(window).saturating_add(1).min(frames);
             slope[near].iter().copied().fold(0.0, f64::max)
         };
         (1..frames - 1)

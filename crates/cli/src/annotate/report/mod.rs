@@ -12,10 +12,10 @@ use std::path::Path;
 
 use mimique_analysis::components::{Block, Document, document_files};
 use mimique_analysis::{Language, ReportFile};
-use mimique_annotate::evaluate::{FEWEST, Judged, Score, Summary};
+use mimique_annotate::evaluate::{Judged, Score, Summary};
 use serde_json::{Value, json};
 
-use super::evaluate::{Column, Evaluation, Split};
+use super::evaluate::{Column, Evaluation};
 
 /// The files of a report.
 pub fn files(of: &Evaluation, language: Language) -> Vec<ReportFile> {
@@ -83,14 +83,7 @@ impl Writer<'_> {
         }
         self.blocks.push(Block::Table(scores::scores(language, of)));
         if of.columns[0].summary.intervals.is_none() {
-            let unit = match of.split {
-                Split::Person => language.pick("people", "personnes"),
-                _ => language.pick("takes", "prises"),
-            };
-            self.paragraph(language.pick(
-                format!("No intervals: there are fewer than {FEWEST} {unit} to resample."),
-                format!("Pas d’intervalles : il y a moins de {FEWEST} {unit} à rééchantillonner."),
-            ));
+            self.paragraph(words::no_intervals(language, of.split));
         }
         for column in &of.columns {
             self.paragraph(words::sentence(language, column));
@@ -328,6 +321,9 @@ pub fn print(of: &Evaluation, folder: Option<&Path>, json: bool) -> anyhow::Resu
             "{}: calibration error {raw} without temperature, {tempered} with it",
             words::column(language, column.kind).to_lowercase()
         )?;
+    }
+    if of.columns[0].summary.intervals.is_none() {
+        writeln!(out, "{}", words::no_intervals(language, of.split))?;
     }
     if let Some(page) = page {
         writeln!(out, "report: {}", page.display())?;

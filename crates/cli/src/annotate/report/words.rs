@@ -1,7 +1,7 @@
 //! The words of an evaluation, in each language of reports.
 
 use mimique_analysis::Language;
-use mimique_annotate::evaluate::Score;
+use mimique_annotate::evaluate::{FEWEST, Score};
 use mimique_annotate::{Decoding, Kernel, Lesson, Method};
 use mimique_stimulus::BorderRule;
 
@@ -227,4 +227,16 @@ pub fn split_caution(language: Language, split: Split) -> &'static str {
             "Ce qui est joué diffère entre apprentissage et test ; les personnes peuvent être les mêmes.",
         ),
     }
+}
+
+/// That there is too little to resample.
+pub fn no_intervals(language: Language, split: Split) -> String {
+    let unit = match split {
+        Split::Person => language.pick("people", "personnes"),
+        _ => language.pick("takes", "prises"),
+    };
+    language.pick(
+        format!("No intervals: there are fewer than {FEWEST} {unit} to resample."),
+        format!("Pas d’intervalles : il y a moins de {FEWEST} {unit} à rééchantillonner."),
+    )
 }
