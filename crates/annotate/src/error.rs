@@ -111,7 +111,7 @@ pub enum AnnotateError {
         known: u32,
     },
     /// A take's rate is not that of the others, or of the model.
-    #[error("take of {found} Hz among {expected} Hz; bring all takes to one rate")]
+    #[error("take of {} Hz among {} Hz; bring all takes to one rate", shown(*found), shown(*expected))]
     Rate {
         /// Its rate, Hz.
         found: f64,
@@ -171,6 +171,11 @@ pub enum AnnotateError {
         /// Column, from 1.
         column: usize,
     },
+}
+
+/// A rate as people read it: it is told by times that files round.
+fn shown(rate_hz: f64) -> f64 {
+    (rate_hz * 1e3).round() / 1e3
 }
 
 /// Refuses a setting that is not above 0 and finite.

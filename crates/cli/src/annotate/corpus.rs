@@ -9,6 +9,7 @@ use mimique_annotate::labels::UNKNOWN;
 use mimique_annotate::{AnnotatedTake, Take, Vocabulary, columns};
 
 use super::intervals::{self, Intervals};
+use super::rounded;
 use super::takes_table::{TakeLine, TakesTable};
 use crate::capture_options::CaptureOptions;
 use crate::motion::{self, Motion};
@@ -162,8 +163,8 @@ impl CorpusOptions {
                 self.takes.display(),
                 line.line,
                 line.weights.display(),
-                own.rate_hz,
-                first.rate_hz
+                rounded(own.rate_hz),
+                rounded(first.rate_hz)
             );
         }
         Ok(())
