@@ -11,6 +11,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
+use crate::bench_annotate;
 use crate::bench_plot;
 use crate::bench_server;
 use crate::bench_stats;
@@ -30,6 +31,9 @@ pub struct Args {
     /// With --server: the study, by its name in study-config
     #[arg(long, default_value = "demo", requires = "server")]
     study: String,
+    /// The annotation beside scikit-learn and hmmlearn instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "server"])]
+    annotate: bool,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -39,8 +43,7 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/measured: solver-benchmarks.md, statistics-benchmarks.md or
-    /// server-benchmarks.md
+    /// Write the figures into the document of docs/measured that holds them
     #[arg(long)]
     record: bool,
 }
@@ -64,6 +67,9 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if args.server {
         return bench_server::run_bench(&args.study, args.record);
+    }
+    if args.annotate {
+        return bench_annotate::run(args.rounds.max(1), args.record);
     }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {

@@ -7,6 +7,7 @@
 //! - `cargo xtask web`: build the wasm modules and the pages alone.
 
 mod bench;
+mod bench_annotate;
 mod bench_plot;
 mod bench_server;
 mod bench_stats;
