@@ -22,7 +22,7 @@ pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<()> {
 /// Refuses a folder that holds something else than a report.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn check(out: &Path) -> anyhow::Result<()> {
     if out.exists() && !is_replaceable(out)? {
         bail!(
