@@ -303,7 +303,7 @@ fn recorded(
 /// The method with the head's low-pass that the capture asks for where the method names none.
 fn with_lowpass(spec: &MethodSpec, performance: &Performance) -> MethodSpec {
     let mut spec = spec.clone();
-    if spec.method.uses(Group::Head) {
+    if spec.method.uses(Group::FrontEnd) {
         spec.head_lowpass_hz = spec.head_lowpass_hz.or(performance.head_lowpass_hz);
     }
     spec

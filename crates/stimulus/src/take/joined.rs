@@ -5,8 +5,9 @@ use std::ops::Range;
 use mimique_geometry::RigidMotion;
 use mimique_mocap::Capture;
 use mimique_solver::{
-    FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth, SurfaceResponse,
+    Adaptation, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite,
+    Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth,
+    SurfaceResponse,
 };
 
 use super::adjustments::{refuse_flat, scale_rule};
@@ -260,7 +261,7 @@ impl<'a> JoinedTake<'a> {
             &poses,
             self.neutral.clone(),
             avatar_markers,
-            depth,
+            Adaptation { depth, smoothing: spec.rbf_smoothing() },
         )
         .map_err(|e| self.by_label(e))?;
         let scales = self.scales(&front_end, &poses, operators, spec)?;
