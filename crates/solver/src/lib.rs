@@ -111,7 +111,9 @@ pub use layout::pivoted_qr::{PivotedQr, PivotedRow};
 pub use layout::slip::SkinGradients;
 #[cfg(feature = "surface")]
 pub use layout::surface_greedy::SurfaceGreedy;
-pub use layout::trajectory_rows::{STILL_M, TrajectoryRows, VertexTrajectories, WeightMotion};
+pub use layout::trajectory_rows::{
+    STILL_M, TrajectoryRows, VertexTrajectories, WeightMotion, motion_rows,
+};
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};
 pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};

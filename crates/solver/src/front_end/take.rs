@@ -22,6 +22,8 @@ pub struct FrontEnd {
     avatar_markers: Vec<Point>,
     avatar_from_actor: RigidMotion,
     rbf: Rbf,
+    /// Where the neutral face is when it is adapted: displacements begin here.
+    rest: Vec<Point>,
     depth: Option<SurfaceDepth>,
     smoothing: f64,
     scales: Option<MarkerScales>,
@@ -155,6 +157,11 @@ impl FrontEnd {
             }
         };
         let rbf = Rbf::smooth(&aligned, &avatar_markers, smoothing)?;
+        // A smooth function misses its values: the neutral face is at rest where it goes, not where it should.
+        let rest = match smoothing == 0.0 {
+            true => avatar_markers.clone(),
+            false => aligned.iter().map(|&p| rbf.apply(p)).collect(),
+        };
         Ok(FrontEnd {
             columns,
             head_reference,
@@ -162,6 +169,7 @@ impl FrontEnd {
             avatar_markers,
             avatar_from_actor,
             rbf,
+            rest,
             depth,
             smoothing,
             scales: None,
@@ -252,9 +260,9 @@ impl FrontEnd {
         head_poses(take, &self.columns, &self.head_reference, lowpass)
     }
 
-    /// d = RBF(M) - avatar markers of one frame, eq. 5.21, with depth and scale factors where there
-    /// are some: 3P numbers, metres; NaN for a marker that is not seen. Allocates nothing after the
-    /// first call with a scratch.
+    /// d = RBF(M) - avatar markers of one frame, eq. 5.21 (with smoothing RBF(M) - RBF(M0): the neutral face
+    /// is at rest), with depth and scale factors where there are some: 3P numbers, metres; NaN for a marker
+    /// that is not seen. Allocates nothing after the first call with a scratch.
     ///
     /// # Panics
     /// If `frame` or `out` is too short.
@@ -282,7 +290,7 @@ impl FrontEnd {
         let [px, py, pz] = &mut scratch.points;
         let [ox, oy, oz] = &mut scratch.adapted;
         self.rbf.apply_all([px, py, pz], [ox, oy, oz]);
-        for (marker, rest) in self.avatar_markers.iter().enumerate() {
+        for (marker, rest) in self.rest.iter().enumerate() {
             for a in 0..3 {
                 out[3 * marker + a] = scratch.adapted[a][marker] - rest[a];
             }

@@ -99,29 +99,34 @@ impl TrajectoryRows {
     /// If a covariance is not N x N.
     pub fn of_bank(deltas: &[f64], shape_count: usize, people: &[WeightMotion]) -> Self {
         let n = shape_count;
-        let factors: Vec<(Vec<f64>, f64)> = (people.iter())
-            .map(|person| (factor(&person.covariance, n), (person.frames as f64).sqrt()))
+        let takes: Vec<(Vec<f64>, f64)> = (people.iter())
+            .map(|person| {
+                let rows = motion_rows(deltas, n, &person.covariance);
+                (rows, (person.frames as f64).sqrt())
+            })
             .collect();
-        let width = 3 * n * factors.len();
-        let mut values = vec![0.0; deltas.len() / (3 * n).max(1) * width];
-        let rows = values.chunks_exact_mut(width.max(1)).zip(deltas.chunks_exact((3 * n).max(1)));
-        for (row, deltas) in rows {
-            let people = row.chunks_exact_mut(3 * n).zip(&factors);
-            for (person, (factor, length)) in people {
-                for (out, b) in person.chunks_exact_mut(n).zip(deltas.chunks_exact(n)) {
-                    for (i, x) in out.iter_mut().enumerate() {
-                        *x = dot(&factor[i * n + i..(i + 1) * n], &b[i..]);
-                    }
-                    let deviation = dot(out, out).sqrt();
-                    if deviation < STILL_M {
-                        out.fill(0.0);
-                    } else {
-                        out.iter_mut().for_each(|x| *x *= length / deviation);
-                    }
+        let vertices = deltas.len() / (3 * n).max(1);
+        let mut values = Vec::with_capacity(vertices * 3 * n * takes.len());
+        for vertex in 0..vertices {
+            for (rows, length) in &takes {
+                for row in rows[vertex * 3 * n..(vertex + 1) * 3 * n].chunks_exact(n) {
+                    let deviation = dot(row, row).sqrt();
+                    let factor = if deviation < STILL_M { 0.0 } else { length / deviation };
+                    values.extend(row.iter().map(|x| x * factor));
                 }
             }
         }
-        Self { width, values }
+        Self { width: 3 * n * takes.len(), values }
+    }
+
+    /// The same vertices with the columns of more people.
+    ///
+    /// # Panics
+    /// Unless both have as many rows.
+    pub fn beside(&self, other: &Self) -> Self {
+        assert_eq!(self.len(), other.len(), "rows of the same vertices");
+        let both = self.iter().zip(other.iter()).flat_map(|(a, b)| a.iter().chain(b));
+        Self { width: self.width + other.width, values: both.copied().collect() }
     }
 
     /// For each of `pairs` the row of the one joined with the row of the other, as K-means of mirrored
@@ -147,8 +152,26 @@ fn normalise(coordinates: &mut [f64]) {
     }
 }
 
+/// U b for each row b of N deltas, C = U^T U the covariance of the weights, N x N: its square is the mean
+/// square displacement along that row, and QR of such rows is QR of the modes of the motion, each scaled by
+/// its deviation.
+///
+/// # Panics
+/// If the covariance is not N x N.
+pub fn motion_rows(deltas: &[f64], shape_count: usize, covariance: &[f64]) -> Vec<f64> {
+    let n = shape_count;
+    let factor = factor(covariance, n);
+    let mut out = vec![0.0; deltas.len()];
+    for (row, b) in out.chunks_exact_mut(n).zip(deltas.chunks_exact(n)) {
+        for (i, x) in row.iter_mut().enumerate() {
+            *x = dot(&factor[i * n + i..(i + 1) * n], &b[i..]);
+        }
+    }
+    out
+}
+
 /// U of C = U^T U, n x n row-major; rows of 0 where a weight depends on those before it.
-pub(crate) fn factor(covariance: &[f64], n: usize) -> Vec<f64> {
+fn factor(covariance: &[f64], n: usize) -> Vec<f64> {
     assert_eq!(covariance.len(), n * n, "a covariance is N x N");
     let mut cholesky = Cholesky::default();
     cholesky.reset(n);
