@@ -43,6 +43,12 @@ pub use power::{
     power_csv, power_curve, power_markdown, power_runs,
 };
 pub use preregistration::{Preregistration, preregistration};
+/// What reports are made of, for reports of other things than studies.
+pub mod report_parts {
+    pub use crate::report::document::{Block, DataTable, Document, Figure};
+    pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
+    pub use crate::report::html::html;
+}
 pub use report::{Report, ReportFile, analyze};
 pub use simulate::{
     ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,

@@ -128,3 +128,8 @@ pub fn unseen_shapes(face: &Face<'_>, vertices: &[usize]) -> Vec<usize> {
     let unseen = |k: &usize| most[*k] < MOVED_M || turns_eyes(&face.skin.shape_names[*k]);
     (0..n).filter(unseen).collect()
 }
+
+/// The shapes that turn the eyes.
+pub fn gaze_shapes(face: &Face<'_>) -> Vec<usize> {
+    (0..face.shape_count()).filter(|&k| turns_eyes(&face.skin.shape_names[k])).collect()
+}

@@ -15,7 +15,9 @@ pub enum LayoutError {
     #[error(transparent)]
     Dense(#[from] DenseTakeError),
     /// No shape moves anything, so there is no motion to make a layout for.
-    #[error("avatar: no shape moves its skin by 1 mm; a layout needs blendshapes, or --take with a dense take")]
+    #[error(
+        "avatar: no shape moves its skin by 1 mm; a layout needs blendshapes, or --take with a dense take"
+    )]
     NoMotion,
     /// Nothing is left to put markers on.
     #[error(

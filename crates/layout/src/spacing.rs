@@ -77,7 +77,7 @@ impl<'a> Spacing<'a> {
         for &v in vertices {
             let rest = face.place(v);
             let places: Vec<Point> =
-                frames.iter().map(|frame| rest + motion.displacement(v, frame)).collect();
+                frames.iter().map(|frame| rest + motion.basis.displacement(v, frame)).collect();
             farthest[v] = places.iter().fold(0.0, |most, p| most.max((*p - rest).length()));
             moved[v] = places;
         }

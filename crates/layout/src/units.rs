@@ -144,8 +144,7 @@ impl<'a> Units<'a> {
         }
         while markers(&chosen) < wanted {
             let room = wanted - markers(&chosen);
-            let taken: Vec<usize> =
-                chosen.iter().flatten().chain(&self.kept).copied().collect();
+            let taken: Vec<usize> = chosen.iter().flatten().chain(&self.kept).copied().collect();
             let again = dropped.iter().position(|u| u.len() <= room && self.fits(u, &taken));
             if let Some(place) = again {
                 chosen.push(dropped.remove(place));

@@ -46,9 +46,21 @@ impl View {
 
 impl DepthPicture {
     /// Of a skin within a frame of heights (metres), `step` metres a point.
-    pub fn of(mesh: &SkinMesh, view: View, [low, high]: [f64; 2], step: f64) -> Self {
+    pub fn of(mesh: &SkinMesh, view: View, heights: [f64; 2], step: f64) -> Self {
+        Self::within(mesh, view, heights, [f64::NEG_INFINITY, f64::INFINITY], step)
+    }
+
+    /// The same within a frame across, too.
+    pub fn within(
+        mesh: &SkinMesh,
+        view: View,
+        [low, high]: [f64; 2],
+        [leftmost, rightmost]: [f64; 2],
+        step: f64,
+    ) -> Self {
         let seen: Vec<[f64; 3]> = mesh.positions.iter().map(|&p| view.project(p)).collect();
-        let inside = || seen.iter().filter(|p| p[1] >= low && p[1] <= high);
+        let across = |x: f64| x >= leftmost && x <= rightmost;
+        let inside = || seen.iter().filter(|p| p[1] >= low && p[1] <= high && across(p[0]));
         let left = inside().fold(f64::INFINITY, |least, p| least.min(p[0])) - 2.0 * step;
         let right = inside().fold(f64::NEG_INFINITY, |most, p| most.max(p[0])) + 2.0 * step;
         let top = inside().fold(f64::NEG_INFINITY, |most, p| most.max(p[1])) + 2.0 * step;

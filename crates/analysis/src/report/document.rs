@@ -2,15 +2,18 @@
 
 /// A report.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Document {
+pub struct Document {
+    /// Its title.
     pub title: String,
+    /// What stands below the title.
     pub subtitle: String,
+    /// Its parts, in order.
     pub blocks: Vec<Block>,
 }
 
 /// One part of a report.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Block {
+pub enum Block {
     /// Level 2 or 3.
     Heading(u8, String),
     /// Running text.
@@ -19,16 +22,22 @@ pub(crate) enum Block {
     Reading(String),
     /// What to mind.
     Caution(String),
+    /// A table.
     Table(DataTable),
+    /// A drawing.
     Figure(Figure),
 }
 
 /// A table of text cells; `id` names its file.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct DataTable {
+pub struct DataTable {
+    /// The name of its file, without ending.
     pub id: String,
+    /// What it shows.
     pub caption: String,
+    /// The headings.
     pub columns: Vec<String>,
+    /// The cells, row by row.
     pub rows: Vec<Vec<String>>,
     /// A first line of headings over groups of columns: text and number of columns.
     pub groups: Vec<(String, usize)>,
@@ -36,16 +45,22 @@ pub(crate) struct DataTable {
 
 /// A drawing with its caption, its description for those who do not see it, and its data.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Figure {
+pub struct Figure {
+    /// The name of its file, without ending.
     pub id: String,
+    /// What it shows.
     pub caption: String,
+    /// What it shows, for those who do not see it.
     pub alt: String,
+    /// The drawing.
     pub svg: String,
+    /// Its numbers.
     pub data: DataTable,
 }
 
 impl DataTable {
-    pub(crate) fn new(
+    /// A table without rows.
+    pub fn new(
         id: impl Into<String>,
         caption: impl Into<String>,
         columns: impl IntoIterator<Item = impl Into<String>>,
@@ -58,7 +73,8 @@ impl DataTable {
         }
     }
 
-    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
@@ -83,7 +99,7 @@ impl DataTable {
     }
 
     /// As CSV with commas.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         csv_text(std::iter::once(&self.full_columns()).chain(&self.rows))
     }
 }

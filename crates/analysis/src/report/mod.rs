@@ -6,7 +6,7 @@
 
 pub(crate) mod document;
 pub(crate) mod figure;
-mod html;
+pub(crate) mod html;
 mod latex;
 mod markdown;
 mod replay;

@@ -70,8 +70,8 @@ impl<'a> Face<'a> {
     pub fn of(skin: &'a AvatarSkin) -> Result<Self, FaceError> {
         let mirror = MirrorVertices::of(&skin.mesh)?;
         let openings = Openings::of(skin, &mirror.plane).map_err(FaceError::Opening)?;
-        let landmarks = Landmarks::of(&skin.mesh, &openings, &mirror.plane)
-            .map_err(|_| FaceError::Profile)?;
+        let landmarks =
+            Landmarks::of(&skin.mesh, &openings, &mirror.plane).map_err(|_| FaceError::Profile)?;
         let n = skin.shape_names.len();
         let mut deltas = vec![0.0; skin.mesh.positions.len() * 3 * n];
         let mut reach = vec![0.0_f64; skin.mesh.positions.len()];

@@ -80,9 +80,8 @@ fn opening(
         total += weight;
     }
     let centre = Point(sum / total);
-    let distance = |border: &&Vec<usize>| {
-        (centroid(border.iter().map(|&v| positions[v])) - centre).length()
-    };
+    let distance =
+        |border: &&Vec<usize>| (centroid(border.iter().map(|&v| positions[v])) - centre).length();
     let nearest = (borders.iter())
         .filter(|border| border.iter().all(here))
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))

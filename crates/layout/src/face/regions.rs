@@ -87,8 +87,9 @@ impl Excluded {
     pub fn mask(self, face: &Face<'_>) -> Vec<bool> {
         let marks = &face.landmarks;
         let positions = &face.skin.mesh.positions;
-        let each =
-            |of: &dyn Fn(Point) -> bool| -> Vec<bool> { positions.iter().map(|&p| of(p)).collect() };
+        let each = |of: &dyn Fn(Point) -> bool| -> Vec<bool> {
+            positions.iter().map(|&p| of(p)).collect()
+        };
         match self {
             Self::Lids => {
                 let blink = moved_by(face.skin, &["eyeBlinkLeft", "eyeBlinkRight"]);

@@ -144,14 +144,14 @@ impl Chosen {
 fn pivoted_qr(task: &Task<'_, '_>, wanted: usize) -> Vec<Vec<usize>> {
     let (units, motion) = (task.units, task.motion);
     let moment = motion.second_moment();
-    let rows = units.each.iter().map(|unit| {
-        unit.iter().flat_map(|&v| motion_rows(motion.deltas_of(v), motion.width, &moment)).collect()
-    });
-    let mut qr = PivotedQr::new(rows.collect(), motion.width);
+    let rows = units
+        .each
+        .iter()
+        .map(|unit| motion_rows(&motion.basis.at(unit), motion.basis.width, &moment));
+    let mut qr = PivotedQr::new(rows.collect(), motion.basis.width);
     one_by_one(units, wanted, |chosen, room| {
-        let found = qr.largest(&|u| {
-            units.each[u].len() <= room && units.fits(&units.each[u], chosen)
-        })?;
+        let found =
+            qr.largest(&|u| units.each[u].len() <= room && units.fits(&units.each[u], chosen))?;
         qr.take(found);
         Some(found)
     })
@@ -161,10 +161,11 @@ fn pivoted_qr(task: &Task<'_, '_>, wanted: usize) -> Vec<Vec<usize>> {
 fn shell(task: &Task<'_, '_>, wanted: usize) -> Result<Vec<Vec<usize>>, LayoutError> {
     let (units, motion) = (task.units, task.motion);
     let mesh = &units.face.skin.mesh;
-    let rows = motion_rows(&motion.deltas, motion.width, &motion.second_moment());
+    let (deltas, width) = (&motion.basis.deltas, motion.basis.width);
+    let rows = motion_rows(deltas, width, &motion.second_moment());
     let options = OperatorOptions::default();
     let held = mesh.unmoved(UNMOVED_M);
-    let mut surface = SurfaceGreedy::new(mesh, &held, &options, rows, 3 * motion.width)?;
+    let mut surface = SurfaceGreedy::new(mesh, &held, &options, rows, 3 * width)?;
     let mut failed = None;
     for &v in &units.kept {
         surface.take(v)?;
@@ -233,7 +234,7 @@ pub(super) fn one_by_one(
 
 /// The criterion of the greedy choice that lowers the expected error of the vertices.
 pub(super) fn expected_error(motion: &FaceMotion) -> Criterion {
-    Criterion::ExpectedError(motion.gram.clone())
+    Criterion::ExpectedError(motion.basis.gram.clone())
 }
 
 impl fmt::Display for Method {

@@ -31,11 +31,7 @@ pub(super) struct Clustered {
 const ROUNDS: usize = 8;
 
 /// Units of `wanted` markers, or a few more: pairs need fewer clusters than markers.
-pub(super) fn clustered(
-    task: &Task<'_, '_>,
-    wanted: usize,
-    options: &ClusterOptions,
-) -> Clustered {
+pub(super) fn clustered(task: &Task<'_, '_>, wanted: usize, options: &ClusterOptions) -> Clustered {
     let units = task.units;
     let (vertices, stands_for) = units.clustered();
     let every = task.motion.rows(&vertices);

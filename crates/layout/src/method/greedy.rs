@@ -69,10 +69,10 @@ fn marker_units(
     let moment = motion.second_moment();
     let slip = if options.slip { task.slip } else { 0.0 };
     let covariance = |&v: &usize| {
-        face.gradients.measurement_covariance(v, &motion.deltas, &moment, [task.noise, slip])
+        face.gradients.measurement_covariance(v, &motion.basis.deltas, &moment, [task.noise, slip])
     };
     let unit = |unit: &Vec<usize>| MarkerUnit {
-        deltas: unit.iter().flat_map(|&v| motion.deltas_of(v)).copied().collect(),
+        deltas: motion.basis.at(unit),
         covariances: unit.iter().map(covariance).collect(),
     };
     units.iter().map(unit).collect()

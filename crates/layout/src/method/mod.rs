@@ -6,6 +6,6 @@ mod greedy;
 mod reduce;
 mod rehearse;
 
-pub use chosen::{Chosen, Choice, Method, Task};
+pub use chosen::{Choice, Chosen, Method, Task};
 pub use clusters::ClusterOptions;
 pub use rehearse::RehearseOptions;

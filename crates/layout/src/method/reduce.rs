@@ -28,12 +28,17 @@ pub(super) fn reduce(
         let over = markers(&units) - count;
         // A pair is worth two markers; at the end only what fits may go.
         let without = |u: usize| {
-            let rest: Vec<usize> =
-                units.iter().enumerate().filter(|(i, _)| *i != u).flat_map(|(_, v)| v).copied().collect();
+            let rest: Vec<usize> = units
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| *i != u)
+                .flat_map(|(_, v)| v)
+                .copied()
+                .collect();
             let own = units[u].len() as f64;
-            task.rehearsal.mean_square(task.motion, &rest).map_or(f64::INFINITY, |e| e / own)
+            task.rehearsal.mean_square(&rest).map_or(f64::INFINITY, |e| e / own)
         };
-        let full = task.rehearsal.mean_square(task.motion, &units.concat()).unwrap_or(0.0);
+        let full = task.rehearsal.mean_square(&units.concat()).unwrap_or(0.0);
         let costs: Vec<(f64, usize)> = (0..units.len())
             .into_par_iter()
             .filter(|&u| units[u].len() <= over)
@@ -43,7 +48,8 @@ pub(super) fn reduce(
                 (cost / own, u)
             })
             .collect();
-        let least = costs.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best });
+        let least =
+            costs.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best });
         let Some((_, unit)) = least else {
             // Only pairs are left where one marker is too many: half of the pair that costs least goes.
             let last = units.pop().unwrap_or_default();

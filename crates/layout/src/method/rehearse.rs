@@ -55,12 +55,14 @@ pub(super) fn rehearse(
                     let mut tried = units.clone();
                     tried[place].clone_from(trial);
                     let markers = [kept.concat(), tried.concat()].concat();
-                    task.rehearsal.mean_square(task.motion, &markers).unwrap_or(f64::INFINITY)
+                    task.rehearsal.mean_square(&markers).unwrap_or(f64::INFINITY)
                 })
                 .collect();
-            let best = errors.iter().copied().enumerate().reduce(|best, next| {
-                if next.1 < best.1 { next } else { best }
-            });
+            let best = errors
+                .iter()
+                .copied()
+                .enumerate()
+                .reduce(|best, next| if next.1 < best.1 { next } else { best });
             if let Some((trial, error)) = best.filter(|(_, error)| *error < least) {
                 units[place].clone_from(&trials[trial]);
                 (least, better) = (error, true);
@@ -86,13 +88,15 @@ fn beginnings(
     let units = task.units;
     let wanted = units.wanted(count)?;
     task.progress.stage("begin", (options.clusterings + 3) as u64);
-    let by_clusters = |first: usize| clustered(task, wanted, &ClusterOptions { starts: 1, first }).units;
+    let by_clusters =
+        |first: usize| clustered(task, wanted, &ClusterOptions { starts: 1, first }).units;
     let by_greedy = [
         EXPECTED_ERROR,
         GreedyOptions { information: true, slip: true },
         GreedyOptions { information: false, slip: false },
     ];
-    let tried: Vec<Result<(f64, Vec<Vec<usize>>), LayoutError>> = (0..options.clusterings + by_greedy.len())
+    let tried: Vec<Result<(f64, Vec<Vec<usize>>), LayoutError>> = (0..options.clusterings
+        + by_greedy.len())
         .into_par_iter()
         .map(|number| {
             let chosen = match number.checked_sub(options.clusterings) {
@@ -103,7 +107,7 @@ fn beginnings(
             task.progress.step();
             let chosen = chosen?;
             let markers = [units.kept.clone(), chosen.concat()].concat();
-            Ok((task.rehearsal.mean_square(task.motion, &markers)?, chosen))
+            Ok((task.rehearsal.mean_square(&markers)?, chosen))
         })
         .collect();
     let mut failed = None;
@@ -133,8 +137,7 @@ fn trials(
         .copied()
         .collect();
     let own = &units[place];
-    let distance =
-        |unit: &[usize]| (all.face.place(unit[0]) - all.face.place(own[0])).length();
+    let distance = |unit: &[usize]| (all.face.place(unit[0]) - all.face.place(own[0])).length();
     let alike = |unit: &&Vec<usize>| unit.len() == own.len() && unit[0] != own[0];
     let (mut near, mut far): (Vec<&Vec<usize>>, Vec<&Vec<usize>>) =
         all.each.iter().filter(alike).partition(|unit| distance(unit) < NEAR_M);

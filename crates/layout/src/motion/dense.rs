@@ -111,8 +111,10 @@ impl Bank {
         if solve_linear(&self.gram, &mut right, n).is_none() {
             right.fill(0.0);
         }
-        let weights: Vec<f64> =
-            (0..frames).flat_map(|f| (0..n).map(move |k| (f, k))).map(|(f, k)| right[k * frames + f]).collect();
+        let weights: Vec<f64> = (0..frames)
+            .flat_map(|f| (0..n).map(move |k| (f, k)))
+            .map(|(f, k)| right[k * frames + f])
+            .collect();
         let mut left = displacements.clone();
         for (frame, weights) in left.chunks_exact_mut(width).zip(weights.chunks_exact(n)) {
             for (x, row) in frame.iter_mut().zip(face.deltas.chunks_exact(n)) {
@@ -214,9 +216,9 @@ pub(super) fn modes<'a>(takes: impl Iterator<Item = &'a InBank>, vertices: usize
     let mut fields: Vec<f64> = Vec::new();
     let mut count = 0;
     while count < MOST_MODES {
-        let largest = (0..left.len()).map(|i| (square(&left[i]), i)).reduce(|best, next| {
-            if next.0 > best.0 { next } else { best }
-        });
+        let largest = (0..left.len())
+            .map(|i| (square(&left[i]), i))
+            .reduce(|best, next| if next.0 > best.0 { next } else { best });
         let Some((size, place)) = largest.filter(|(size, _)| *size > enough) else { break };
         let field: Vec<f64> = left[place].iter().map(|x| x / size.sqrt()).collect();
         for other in &mut left {

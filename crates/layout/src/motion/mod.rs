@@ -9,6 +9,8 @@ mod moments;
 
 pub use dense::{DenseTake, DenseTakeError};
 
+use std::sync::Arc;
+
 use mimique_geometry::Displacement;
 use mimique_solver::{TrajectoryRows, VertexTrajectories, WeightMotion};
 use serde::Serialize;
@@ -53,21 +55,28 @@ pub enum MotionSource {
     IndependentShapes,
 }
 
-/// The motion of some people in one basis.
-#[derive(Debug, Clone)]
-pub struct FaceMotion {
-    /// Where it is from.
-    pub source: MotionSource,
-    /// The people, in order.
-    pub people: Vec<PersonMotion>,
-    /// The basis: vertices x 3 x width, metres. The first N columns are the shapes.
+/// What faces are made of: the shapes, then what dense takes have beside them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Basis {
+    /// Vertices x 3 x width, metres. The first N columns are the shapes.
     pub deltas: Vec<f64>,
-    /// Columns of the basis.
+    /// Columns.
     pub width: usize,
     /// N.
     pub shape_count: usize,
     /// Mean over the vertices of B^T B, width x width, square metres.
     pub gram: Vec<f64>,
+}
+
+/// The motion of some people in one basis.
+#[derive(Debug, Clone)]
+pub struct FaceMotion {
+    /// The basis.
+    pub basis: Arc<Basis>,
+    /// Where it is from.
+    pub source: MotionSource,
+    /// The people, in order.
+    pub people: Vec<PersonMotion>,
     /// Shapes that rest: their motion is left out, since nothing is to be told of it.
     pub rested: Vec<usize>,
 }
@@ -122,9 +131,8 @@ impl FaceMotion {
             true => MotionSource::IndependentShapes,
             false => MotionSource::Takes,
         };
-        let gram = gram(&deltas, width);
-        let rested = rested.to_vec();
-        Ok(Self { source, people, deltas, width, shape_count: n, gram, rested })
+        let basis = Arc::new(Basis::new(deltas, width, n));
+        Ok(Self { basis, source, people, rested: rested.to_vec() })
     }
 
     /// The same with other people.
@@ -132,23 +140,9 @@ impl FaceMotion {
         Self { people, ..self.clone() }
     }
 
-    /// The rows of a vertex in the basis: 3 x width, metres.
-    pub fn deltas_of(&self, vertex: usize) -> &[f64] {
-        &self.deltas[vertex * 3 * self.width..(vertex + 1) * 3 * self.width]
-    }
-
-    /// Where a vertex goes in a frame.
-    pub fn displacement(&self, vertex: usize, frame: &[f64]) -> Displacement {
-        let along = |axis: usize| -> f64 {
-            let row = &self.deltas_of(vertex)[axis * self.width..(axis + 1) * self.width];
-            row.iter().zip(frame).map(|(d, c)| d * c).sum()
-        };
-        Displacement::new(along(0), along(1), along(2))
-    }
-
     /// All frames of all people.
     pub fn frames(&self) -> impl Iterator<Item = &[f64]> {
-        self.people.iter().flat_map(|person| person.frames.chunks_exact(self.width))
+        self.people.iter().flat_map(|person| person.frames.chunks_exact(self.basis.width))
     }
 
     /// Frames that show how far the face goes: `evenly` spread over the takes, and those in which each shape
@@ -156,9 +150,9 @@ impl FaceMotion {
     pub fn telling_frames(&self, evenly: usize) -> Vec<Vec<f64>> {
         let all: Vec<&[f64]> = self.frames().collect();
         if all.is_empty() {
-            let moved = (0..self.shape_count).filter(|k| !self.rested.contains(k));
+            let moved = (0..self.basis.shape_count).filter(|k| !self.rested.contains(k));
             let alone = |k: usize| {
-                let mut frame = vec![0.0; self.width];
+                let mut frame = vec![0.0; self.basis.width];
                 frame[k] = 0.5;
                 frame
             };
@@ -166,10 +160,9 @@ impl FaceMotion {
         }
         let count = evenly.min(all.len());
         let mut chosen: Vec<usize> = (0..count).map(|i| i * all.len() / count).collect();
-        for k in 0..self.width {
-            let largest = (0..all.len()).max_by(|&a, &b| {
-                all[a][k].abs().total_cmp(&all[b][k].abs()).then(b.cmp(&a))
-            });
+        for k in 0..self.basis.width {
+            let largest = (0..all.len())
+                .max_by(|&a, &b| all[a][k].abs().total_cmp(&all[b][k].abs()).then(b.cmp(&a)));
             chosen.extend(largest.filter(|&frame| all[frame][k] != 0.0));
         }
         chosen.sort_unstable();
@@ -181,7 +174,7 @@ impl FaceMotion {
     /// standard deviation of 0.25 (a range of motion played more on one side gives layouts of one side);
     /// independent weights alone where no motion is known. Width x width.
     pub fn prior(&self) -> Vec<f64> {
-        let w = self.width;
+        let w = self.basis.width;
         let mut prior = vec![0.0; w * w];
         let share = if self.people.is_empty() { 0.0 } else { 0.5 / self.people.len() as f64 };
         for person in &self.people {
@@ -189,7 +182,7 @@ impl FaceMotion {
             prior.iter_mut().zip(&own).for_each(|(p, c)| *p += share * c);
         }
         let rest = if self.people.is_empty() { 1.0 } else { 0.5 };
-        for k in 0..self.shape_count {
+        for k in 0..self.basis.shape_count {
             let rests = self.rested.contains(&k);
             let deviation = if rests { UNSEEN_DEVIATION } else { INDEPENDENT_DEVIATION };
             prior[k * w + k] += rest * deviation * deviation;
@@ -202,7 +195,7 @@ impl FaceMotion {
         if self.people.is_empty() {
             return self.prior();
         }
-        let w = self.width;
+        let w = self.basis.width;
         let mut out = vec![0.0; w * w];
         for person in &self.people {
             let own = second_moment(&person.frames, w);
@@ -214,24 +207,23 @@ impl FaceMotion {
 
     /// The rows that vertices are clustered by (eq. 3.6), person after person.
     pub fn rows(&self, vertices: &[usize]) -> TrajectoryRows {
-        let w = self.width;
+        let w = self.basis.width;
         if self.people.is_empty() {
             let motion = WeightMotion { frames: 1, covariance: self.prior() };
-            return TrajectoryRows::of_bank(&self.deltas_at(vertices), w, &[motion]);
+            return TrajectoryRows::of_bank(&self.basis.at(vertices), w, &[motion]);
         }
         let mut rows: Option<TrajectoryRows> = None;
         for person in &self.people {
             let own = match &person.clustered {
                 Some(positions) => {
-                    let count = self.deltas.len() / (3 * w);
+                    let count = self.basis.vertices();
                     let take = VertexTrajectories { vertices: count, positions };
                     TrajectoryRows::of_trajectories(&[take], vertices)
                 }
                 None => {
                     let frames = person.frames.len() / w;
-                    let motion =
-                        WeightMotion { frames, covariance: covariance(&person.frames, w) };
-                    TrajectoryRows::of_bank(&self.deltas_at(vertices), w, &[motion])
+                    let motion = WeightMotion { frames, covariance: covariance(&person.frames, w) };
+                    TrajectoryRows::of_bank(&self.basis.at(vertices), w, &[motion])
                 }
             };
             rows = Some(match rows {
@@ -242,21 +234,17 @@ impl FaceMotion {
         rows.unwrap_or(TrajectoryRows { width: 0, values: Vec::new() })
     }
 
-    fn deltas_at(&self, vertices: &[usize]) -> Vec<f64> {
-        vertices.iter().flat_map(|&v| self.deltas_of(v)).copied().collect()
-    }
-
     /// The fastest that any of some vertices goes, metres per second; none where no rate is known.
     pub fn top_speed(&self, vertices: &[usize]) -> Option<f64> {
         let mut top: Option<f64> = None;
         for person in &self.people {
             let Some(rate) = person.rate_hz else { continue };
-            let frames: Vec<&[f64]> = person.frames.chunks_exact(self.width).collect();
+            let frames: Vec<&[f64]> = person.frames.chunks_exact(self.basis.width).collect();
             for pair in frames.windows(2) {
                 let step: Vec<f64> = pair[0].iter().zip(pair[1]).map(|(a, b)| b - a).collect();
                 let fastest = vertices
                     .iter()
-                    .map(|&v| self.displacement(v, &step).length() * rate)
+                    .map(|&v| self.basis.displacement(v, &step).length() * rate)
                     .fold(0.0, f64::max);
                 top = Some(top.map_or(fastest, |before| before.max(fastest)));
             }
@@ -282,8 +270,44 @@ impl PersonMotion {
     }
 }
 
+impl Basis {
+    fn new(deltas: Vec<f64>, width: usize, shape_count: usize) -> Self {
+        let gram = mean_products(&deltas, width);
+        Self { deltas, width, shape_count, gram }
+    }
+
+    /// The number of vertices.
+    pub fn vertices(&self) -> usize {
+        self.deltas.len() / (3 * self.width).max(1)
+    }
+
+    /// The rows of a vertex: 3 x width, metres.
+    pub fn of(&self, vertex: usize) -> &[f64] {
+        &self.deltas[vertex * 3 * self.width..(vertex + 1) * 3 * self.width]
+    }
+
+    /// The rows of some vertices.
+    pub fn at(&self, vertices: &[usize]) -> Vec<f64> {
+        vertices.iter().flat_map(|&v| self.of(v)).copied().collect()
+    }
+
+    /// Mean over some vertices of B^T B, width x width.
+    pub fn gram_of(&self, vertices: &[usize]) -> Vec<f64> {
+        mean_products(&self.at(vertices), self.width)
+    }
+
+    /// Where a vertex goes in a frame.
+    pub fn displacement(&self, vertex: usize, frame: &[f64]) -> Displacement {
+        let along = |axis: usize| -> f64 {
+            let row = &self.of(vertex)[axis * self.width..(axis + 1) * self.width];
+            row.iter().zip(frame).map(|(d, c)| d * c).sum()
+        };
+        Displacement::new(along(0), along(1), along(2))
+    }
+}
+
 /// Mean over the vertices of B^T B.
-fn gram(deltas: &[f64], width: usize) -> Vec<f64> {
+fn mean_products(deltas: &[f64], width: usize) -> Vec<f64> {
     let vertices = (deltas.len() / (3 * width).max(1)).max(1) as f64;
     let mut gram = moments::products(deltas, width);
     gram.iter_mut().for_each(|g| *g /= vertices);

@@ -3,8 +3,8 @@
 
 use mimique_clip::with_gaze_at_rest;
 use mimique_solver::{
-    Fit, Laplacian, MarkerSite, MethodSpec, OperatorOptions, OperatorParts, Operators, apply_shell,
-    shell_gram,
+    Fit, Laplacian, MarkerSite, Method, MethodSpec, OperatorOptions, OperatorParts, Operators,
+    apply_shell, shell_gram,
 };
 
 use crate::error::LayoutError;
@@ -27,6 +27,10 @@ impl BankSolver {
         let options = OperatorOptions::of(spec);
         let mesh = &face.skin.mesh;
         let n = face.shape_count();
+        if spec.method == Method::ThinShellSurface {
+            // It has no shapes: a surface is set up for each layout.
+            return Self { spec: spec.clone(), options, whole: Vec::new(), rows: Vec::new() };
+        }
         let laplacian = Laplacian::new(&mesh.positions, &mesh.triangles, options.laplacian);
         let whole = shell_gram(mesh, &laplacian, options.k_s, options.k_b, &[]);
         let count = mesh.positions.len();

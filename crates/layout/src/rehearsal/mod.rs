@@ -8,23 +8,27 @@
 mod bank_solver;
 mod person;
 mod put;
+mod surface;
 mod track;
 
 pub use bank_solver::BankSolver;
 pub use person::Person;
 
+use std::sync::Arc;
+
 use mimique_geometry::{Point, RigidMotion};
 use mimique_solver::{
-    Adaptation, FrontEnd, FrontEndScratch, Inference, MarkerColumns, Method, MethodSpec, Operators,
-    Regression, TrainingOptions,
+    Adaptation, Fit, FrontEnd, FrontEndScratch, Inference, MarkerColumns, Method, MethodSpec,
+    Operators, Regression, TrainingOptions,
 };
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::error::LayoutError;
 use crate::face::Face;
-use crate::motion::FaceMotion;
+use crate::motion::{Basis, FaceMotion};
 use put::TrianglesAround;
+use surface::{SurfaceGroup, SurfaceSolver};
 use track::SimulatedTake;
 
 /// What goes wrong in a simulated take.
@@ -55,13 +59,41 @@ impl Effort {
     pub const REPORT: Self = Self { takes: 10, frames: 100 };
 }
 
+/// Vertices whose error is told together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VertexGroup {
+    /// The vertices.
+    pub vertices: Vec<usize>,
+    /// Mean over them of B^T B in the motion's basis, width x width.
+    pub gram: Vec<f64>,
+}
+
+impl VertexGroup {
+    /// Of some vertices.
+    pub fn of(basis: &Basis, vertices: Vec<usize>) -> Self {
+        Self { gram: basis.gram_of(&vertices), vertices }
+    }
+
+    /// Of all vertices.
+    pub fn whole(basis: &Basis) -> Self {
+        Self { gram: basis.gram.clone(), vertices: (0..basis.vertices()).collect() }
+    }
+}
+
+/// What solves the takes of a layout.
+enum LayoutSolver {
+    Bank(Box<Fit>),
+    /// A regression, which learns in each take anew.
+    Learning(Operators),
+    Surface(SurfaceSolver, Vec<SurfaceGroup>),
+}
+
 /// Simulated takes of a face, and the method that solves them.
 pub struct Rehearsal<'a> {
     face: &'a Face<'a>,
-    solver: BankSolver,
-    /// Mean over the vertices of B^T B in the motion's basis.
-    gram: Vec<f64>,
-    width: usize,
+    solver: Arc<BankSolver>,
+    basis: Arc<Basis>,
+    whole: Vec<VertexGroup>,
     around: TrianglesAround,
     conditions: Conditions,
     seed: u64,
@@ -84,16 +116,20 @@ impl<'a> Rehearsal<'a> {
         effort: Effort,
         seed: u64,
     ) -> Self {
-        Self::with_solver(face, played, learnt, BankSolver::new(face, spec), conditions, effort, seed)
+        let solver = Arc::new(BankSolver::new(face, spec));
+        Self::with_solver(face, played, learnt, solver, conditions, effort, seed)
     }
 
     /// The same with a solver that is set up already.
-    #[allow(clippy::too_many_arguments, reason = "each is another thing that a rehearsal is made of")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each is another thing that a rehearsal is made of"
+    )]
     pub fn with_solver(
         face: &'a Face<'a>,
         played: &FaceMotion,
         learnt: Option<&FaceMotion>,
-        solver: BankSolver,
+        solver: Arc<BankSolver>,
         conditions: Conditions,
         effort: Effort,
         seed: u64,
@@ -114,101 +150,144 @@ impl<'a> Rehearsal<'a> {
             })
             .collect();
         let around = TrianglesAround::of(&face.skin.mesh);
-        let (gram, width) = (played.gram.clone(), played.width);
-        Self { face, solver, gram, width, around, conditions, seed, takes, training }
+        let basis = played.basis.clone();
+        let whole = vec![VertexGroup::whole(&basis)];
+        Self { face, solver, basis, whole, around, conditions, seed, takes, training }
     }
 
     /// The solver, to be used again.
-    pub fn solver(&self) -> &BankSolver {
+    pub fn solver(&self) -> &Arc<BankSolver> {
         &self.solver
     }
 
-    /// What the solve of each frame leaves: takes x frames x width, coefficients played less weights found.
+    /// Mean square errors of groups of vertices: for each group a number for each frame of all takes, square
+    /// metres.
     ///
     /// # Errors
     /// [`LayoutError`] where the markers cannot be laid on a face, or see no shape.
-    pub fn left(&self, motion: &FaceMotion, markers: &[usize]) -> Result<Vec<f64>, LayoutError> {
-        let operators = self.solver.operators(self.face, markers)?;
-        let one = |(number, take): (usize, &SimulatedTake)| {
-            self.left_of_take(motion, &operators, markers, number, take)
-        };
-        let parts: Vec<Vec<f64>> =
-            self.takes.par_iter().enumerate().map(one).collect::<Result<_, LayoutError>>()?;
-        Ok(parts.concat())
-    }
-
-    fn left_of_take(
+    pub fn square_errors(
         &self,
-        motion: &FaceMotion,
-        operators: &Operators,
         markers: &[usize],
-        number: usize,
-        take: &SimulatedTake,
-    ) -> Result<Vec<f64>, LayoutError> {
-        let n = motion.shape_count;
-        let tracks: Vec<&track::Track> = (markers.iter())
-            .map(|&v| take.track(v, || self.track(motion, v, number, take)))
-            .collect();
-        let neutral: Vec<Point> = tracks.iter().map(|track| track.neutral).collect();
-        let spec = self.solver.spec();
-        let adaptation = Adaptation { depth: None, smoothing: spec.rbf_smoothing() };
-        let columns = MarkerColumns { face: (0..markers.len()).collect(), head: None };
-        let places = markers.iter().map(|&v| self.face.place(v)).collect();
-        let front = FrontEnd::from_parts(columns, Vec::new(), neutral, places, adaptation)?;
-        let width = 3 * markers.len();
-        let frames = take.frames(self.width);
-        let mut displacements = vec![0.0; frames * width];
-        let mut scratch = FrontEndScratch::default();
-        let mut frame = vec![0.0; width];
-        for (f, out) in displacements.chunks_exact_mut(width).enumerate() {
-            for (m, track) in tracks.iter().enumerate() {
-                frame[3 * m..3 * m + 3].copy_from_slice(&track.positions[3 * f..3 * f + 3]);
-            }
-            front.displacements(&RigidMotion::IDENTITY, &frame, out, &mut scratch);
-        }
-        let played = frames - self.training;
-        let fit = match spec.method {
-            Method::Regression => {
-                let learnt = &take.coefficients[played * self.width..];
-                let weights: Vec<f64> =
-                    learnt.chunks_exact(self.width).flat_map(|row| &row[..n]).copied().collect();
-                let options = training_options(spec);
-                let inputs = &displacements[played * width..];
-                let model = Regression::train(inputs, width, &weights, n, &options)?;
-                self.solver.fit(&operators.clone().with_regression(model)?)?
-            }
-            _ => self.solver.fit(operators)?,
+        groups: &[VertexGroup],
+    ) -> Result<Vec<Vec<f64>>, LayoutError> {
+        let solver = self.solver_of(markers, groups)?;
+        let one = |(number, take): (usize, &SimulatedTake)| {
+            self.errors_of_take(&solver, markers, groups, number, take)
         };
-        let solved = fit.solve_take(&displacements[..played * width])?;
-        let mut left = take.coefficients[..played * self.width].to_vec();
-        for (left, found) in left.chunks_exact_mut(self.width).zip(solved.weights.chunks_exact(n)) {
-            left.iter_mut().zip(found).for_each(|(l, w)| *l -= w);
-        }
-        Ok(left)
+        let parts: Vec<Vec<Vec<f64>>> =
+            self.takes.par_iter().enumerate().map(one).collect::<Result<_, LayoutError>>()?;
+        let of_group = |g: usize| parts.iter().flat_map(|take| &take[g]).copied().collect();
+        Ok((0..groups.len()).map(of_group).collect())
     }
 
     /// Mean square error of a vertex over all frames, square metres.
     ///
     /// # Errors
-    /// As [`Self::left`].
-    pub fn mean_square(&self, motion: &FaceMotion, markers: &[usize]) -> Result<f64, LayoutError> {
-        let left = self.left(motion, markers)?;
-        let squares = square_errors(&left, &self.gram, self.width);
-        Ok(squares.iter().sum::<f64>() / squares.len().max(1) as f64)
+    /// As [`Self::square_errors`].
+    pub fn mean_square(&self, markers: &[usize]) -> Result<f64, LayoutError> {
+        let squares = self.square_errors(markers, &self.whole)?;
+        Ok(squares[0].iter().sum::<f64>() / squares[0].len().max(1) as f64)
+    }
+
+    /// What all takes share of a layout.
+    fn solver_of(
+        &self,
+        markers: &[usize],
+        groups: &[VertexGroup],
+    ) -> Result<LayoutSolver, LayoutError> {
+        if self.solver.spec().method == Method::ThinShellSurface {
+            let surface = SurfaceSolver::new(self.face, self.solver.spec(), markers)?;
+            let groups = groups.iter().map(|group| surface.group(&self.basis, group)).collect();
+            return Ok(LayoutSolver::Surface(surface, groups));
+        }
+        let operators = self.solver.operators(self.face, markers)?;
+        if self.solver.spec().method == Method::Regression {
+            return Ok(LayoutSolver::Learning(operators));
+        }
+        Ok(LayoutSolver::Bank(Box::new(self.solver.fit(&operators)?)))
+    }
+
+    fn errors_of_take(
+        &self,
+        solver: &LayoutSolver,
+        markers: &[usize],
+        groups: &[VertexGroup],
+        number: usize,
+        take: &SimulatedTake,
+    ) -> Result<Vec<Vec<f64>>, LayoutError> {
+        let (n, w) = (self.basis.shape_count, self.basis.width);
+        let displacements = self.displacements(markers, number, take)?;
+        let width = 3 * markers.len();
+        let played = take.frames(w) - self.training;
+        let (seen, learnt) = displacements.split_at(played * width);
+        let (frames, learnt_frames) = take.coefficients.split_at(played * w);
+        let weights = match solver {
+            LayoutSolver::Surface(surface, groups) => {
+                let moved = surface.solve(seen)?;
+                let pairs = || moved.chunks_exact(width).zip(frames.chunks_exact(w));
+                let of_group = |group: &SurfaceGroup| {
+                    pairs().map(|(moved, played)| group.square_error(moved, played)).collect()
+                };
+                return Ok(groups.iter().map(of_group).collect());
+            }
+            LayoutSolver::Bank(fit) => fit.solve_take(seen)?.weights,
+            LayoutSolver::Learning(operators) => {
+                let outputs: Vec<f64> =
+                    learnt_frames.chunks_exact(w).flat_map(|row| &row[..n]).copied().collect();
+                let options = training_options(self.solver.spec());
+                let model = Regression::train(learnt, width, &outputs, n, &options)?;
+                let operators = operators.clone().with_regression(model)?;
+                self.solver.fit(&operators)?.solve_take(seen)?.weights
+            }
+        };
+        let mut left = frames.to_vec();
+        for (left, found) in left.chunks_exact_mut(w).zip(weights.chunks_exact(n)) {
+            left.iter_mut().zip(found).for_each(|(l, found)| *l -= found);
+        }
+        Ok(groups.iter().map(|group| quadratic_forms(&left, &group.gram, w)).collect())
+    }
+
+    /// Where the markers of a take ask the avatar's skin to go, frames x 3P, metres.
+    fn displacements(
+        &self,
+        markers: &[usize],
+        number: usize,
+        take: &SimulatedTake,
+    ) -> Result<Vec<f64>, LayoutError> {
+        let tracks: Vec<&track::Track> =
+            (markers.iter()).map(|&v| take.track(v, || self.track(v, number, take))).collect();
+        let neutral: Vec<Point> = tracks.iter().map(|track| track.neutral).collect();
+        let smoothing = self.solver.spec().rbf_smoothing();
+        let adaptation = Adaptation { depth: None, smoothing };
+        let columns = MarkerColumns { face: (0..markers.len()).collect(), head: None };
+        let places = markers.iter().map(|&v| self.face.place(v)).collect();
+        let front = FrontEnd::from_parts(columns, Vec::new(), neutral, places, adaptation)?;
+        let width = 3 * markers.len();
+        let mut displacements = vec![0.0; take.frames(self.basis.width) * width];
+        let mut scratch = FrontEndScratch::default();
+        let mut frame = vec![0.0; width];
+        for (f, out) in displacements.chunks_exact_mut(width).enumerate() {
+            for (place, track) in frame.chunks_exact_mut(3).zip(&tracks) {
+                place.copy_from_slice(&track.positions[3 * f..3 * f + 3]);
+            }
+            front.displacements(&RigidMotion::IDENTITY, &frame, out, &mut scratch);
+        }
+        Ok(displacements)
     }
 
     /// What a marker meant for a vertex measures in a take.
-    fn track(&self, motion: &FaceMotion, v: usize, number: usize, take: &SimulatedTake) -> track::Track {
+    fn track(&self, v: usize, number: usize, take: &SimulatedTake) -> track::Track {
         let Conditions { noise, slip, .. } = self.conditions;
         let site = put::put(self.face, &self.around, v, slip, self.seed, number);
-        track::Track::of(self.face, motion, take, &site, (noise, self.seed, number, v))
+        track::Track::of(self.face, &self.basis, take, &site, (noise, self.seed, number, v))
     }
 }
 
 /// c^T G c of each row.
-pub fn square_errors(rows: &[f64], gram: &[f64], width: usize) -> Vec<f64> {
+fn quadratic_forms(rows: &[f64], gram: &[f64], width: usize) -> Vec<f64> {
     let of = |row: &[f64]| -> f64 {
-        let products = gram.chunks_exact(width).map(|g| g.iter().zip(row).map(|(g, x)| g * x).sum());
+        let products =
+            gram.chunks_exact(width).map(|g| g.iter().zip(row).map(|(g, x)| g * x).sum());
         products.zip(row).map(|(g, x): (f64, &f64)| g * x).sum()
     };
     rows.chunks_exact(width).map(of).collect()

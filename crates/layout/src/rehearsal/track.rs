@@ -8,7 +8,7 @@ use mimique_solver::MarkerSite;
 use super::{Effort, Person};
 use crate::draws::draws;
 use crate::face::Face;
-use crate::motion::FaceMotion;
+use crate::motion::{Basis, FaceMotion};
 
 /// Frames that the neutral face of a capture is the mean of.
 const NEUTRAL_FRAMES: f64 = 60.0;
@@ -52,17 +52,17 @@ impl Track {
     /// Of a marker that sits at a site; the noise has a stream of the take and the vertex.
     pub(super) fn of(
         face: &Face<'_>,
-        motion: &FaceMotion,
+        basis: &Basis,
         take: &SimulatedTake,
         site: &MarkerSite,
         (noise, seed, number, vertex): (f64, u64, usize, usize),
     ) -> Self {
-        let width = motion.width;
+        let width = basis.width;
         let on_avatar = site.position(&face.skin.mesh);
         // The rows of the site in the basis: 3 x width.
         let mut rows = vec![0.0; 3 * width];
         for (corner, weight) in site.parts() {
-            let own = motion.deltas_of(corner);
+            let own = basis.of(corner);
             rows.iter_mut().zip(own).for_each(|(r, d)| *r += weight * d);
         }
         let mut draws = draws(seed, &format!("noise {number} {vertex}"));
@@ -96,9 +96,9 @@ pub(super) fn played_frames(
     let all: Vec<&[f64]> = motion.frames().collect();
     if all.is_empty() {
         let mut draws = draws(seed, &format!("frames {take}"));
-        let mut frames = vec![0.0; effort.frames * motion.width];
-        for row in frames.chunks_exact_mut(motion.width) {
-            for (k, weight) in row.iter_mut().enumerate().take(motion.shape_count) {
+        let mut frames = vec![0.0; effort.frames * motion.basis.width];
+        for row in frames.chunks_exact_mut(motion.basis.width) {
+            for (k, weight) in row.iter_mut().enumerate().take(motion.basis.shape_count) {
                 let (plays, amount) = (draws.unit() < PLAYING, draws.unit());
                 if plays && !motion.rested.contains(&k) {
                     *weight = amount;

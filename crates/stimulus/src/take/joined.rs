@@ -14,7 +14,7 @@ use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
+use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
 
 /// Frames that a neutral should be the mean of.
 pub(crate) const NEUTRAL_FRAMES: usize = 60;
@@ -48,6 +48,7 @@ pub struct JoinedTake<'a> {
     pub(crate) first_frame: u64,
     pub(crate) repair: Option<String>,
     pub(crate) lids: Vec<JoinedLid>,
+    pub(crate) map_origin: MapOrigin,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -99,6 +100,7 @@ impl<'a> JoinedTake<'a> {
         };
         let mut joined = Self::of_markers(skin, capture, from, head, neutral, warnings)?;
         joined.repair = options.repair.clone();
+        joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
         Ok(joined)
     }
@@ -181,6 +183,7 @@ impl<'a> JoinedTake<'a> {
             first_frame: capture.first_frame,
             repair: None,
             lids: Vec::new(),
+            map_origin: MapOrigin::Unknown,
             warnings,
         })
     }
