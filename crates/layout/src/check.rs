@@ -8,7 +8,7 @@ use mimique_solver::{MarkerSite, Method, MethodSpec, head_error};
 use mimique_stimulus::BankDiagnosis;
 use serde::Serialize;
 
-use crate::candidates::MOVED_M;
+use crate::candidates::{MOVED_M, gaze_shapes, seen};
 use crate::curve::ExpectedCurve;
 use crate::error::LayoutError;
 use crate::face::{Face, FacePart};
@@ -63,7 +63,7 @@ pub struct PartSight {
     pub moves_mm: f64,
     /// What of that stays unknown with all markers, millimetres.
     pub unknown_mm: f64,
-    /// The moved vertex that is farthest from every marker, and how far that is, millimetres.
+    /// How far the moved and seen vertex that is farthest from every marker is from it, millimetres.
     pub farthest_mm: f64,
 }
 
@@ -109,7 +109,9 @@ pub struct PlacementSight {
 pub struct MapCheck {
     /// The rules of the bank at the markers.
     pub bank: BankDiagnosis,
-    /// Shapes of which the markers tell less than half, worst first.
+    /// Shapes that turn the eyes: no marker on skin tells a gaze.
+    pub gaze: Vec<String>,
+    /// Other shapes of which the markers tell less than half, worst first.
     pub hardly_told: Vec<ShapeSight>,
     /// The parts of the face.
     pub parts: Vec<PartSight>,
@@ -149,6 +151,7 @@ impl MapCheck {
         let trace = |gram: &[f64], s: &[f64]| gram.iter().zip(s).map(|(g, s)| g * s).sum::<f64>();
         let moved: Vec<usize> =
             (0..face.skin.mesh.positions.len()).filter(|&v| face.reach[v] >= MOVED_M).collect();
+        let seen = seen(face);
         let mut parts = Vec::new();
         for part in FacePart::ALL {
             let own: Vec<usize> = moved.iter().copied().filter(|&v| face.part(v) == part).collect();
@@ -160,16 +163,18 @@ impl MapCheck {
                 let far = |m: &usize| (face.place(*m) - face.place(v)).length();
                 vertices.iter().map(far).fold(f64::INFINITY, f64::min)
             };
+            let apart = own.iter().filter(|&&v| seen[v]).map(|&v| distance(v));
             parts.push(PartSight {
                 part,
                 markers: vertices.iter().filter(|&&v| face.part(v) == part).count(),
                 moves_mm: mm(trace(&gram, &before)),
                 unknown_mm: mm(trace(&gram, after)),
-                farthest_mm: 1e3 * own.iter().map(|&v| distance(v)).fold(0.0, f64::max),
+                farthest_mm: 1e3 * apart.fold(0.0, f64::max),
             });
         }
         Ok(Self {
             bank: BankDiagnosis::of(face.skin, Some(sites)),
+            gaze: gaze_shapes(face).iter().map(|&k| face.skin.shape_names[k].clone()).collect(),
             hardly_told: hardly_told(face, motion, &vertices, &before, after),
             parts,
             unknown_mm: mm(trace(&motion.basis.gram, after)),
@@ -190,12 +195,14 @@ fn hardly_told(
     after: &[f64],
 ) -> Vec<ShapeSight> {
     let (n, w) = (face.shape_count(), motion.basis.width);
+    let gaze = gaze_shapes(face);
     let length = |v: usize, k: usize| {
         let rows = face.deltas_of(v);
         let [x, y, z] = [rows[k], rows[n + k], rows[2 * n + k]];
         (x * x + y * y + z * z).sqrt()
     };
     let mut found: Vec<ShapeSight> = (0..n)
+        .filter(|k| !gaze.contains(k))
         .map(|k| {
             let skin = &face.skin.mesh.shapes[k].deltas;
             let most = |lengths: &mut dyn Iterator<Item = f64>| lengths.fold(0.0, f64::max);

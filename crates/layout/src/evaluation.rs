@@ -147,13 +147,26 @@ impl<'a> Judge<'a> {
         layouts
             .par_iter()
             .map(|by_fold| {
-                let squares = rehearsals
-                    .iter()
-                    .zip(by_fold)
-                    .map(|(rehearsal, markers)| rehearsal.square_errors(markers, &self.groups))
-                    .collect::<Result<Vec<_>, LayoutError>>();
+                let squares = self.squares(&rehearsals, by_fold);
                 progress.step();
                 squares.ok().map(|squares| self.summary(&squares))
+            })
+            .collect()
+    }
+
+    /// The squares of a layout in all folds; a regression's kernel is found in the first.
+    fn squares(
+        &self,
+        rehearsals: &[Rehearsal<'_>],
+        by_fold: &[&[usize]],
+    ) -> Result<Vec<Vec<Vec<f64>>>, LayoutError> {
+        let first = rehearsals.iter().zip(by_fold).next();
+        let kernel = first.map_or(Ok(None), |(rehearsal, markers)| rehearsal.kernel(markers))?;
+        rehearsals
+            .iter()
+            .zip(by_fold)
+            .map(|(rehearsal, markers)| {
+                rehearsal.square_errors_with(markers, &self.groups, kernel)
             })
             .collect()
     }

@@ -145,7 +145,7 @@ pub struct Heads {
 /// moves, seen from in front, off ears and neck, at a distance from each other and from `taken`.
 ///
 /// # Errors
-/// [`LayoutError::NoHead`] where fewer than three, or not so many, find room.
+/// [`LayoutError::TooFewHeads`] for fewer than three, [`LayoutError::NoHead`] where not so many find room.
 pub fn choose_heads(
     face: &Face<'_>,
     spacing: &Spacing<'_>,
@@ -153,6 +153,9 @@ pub fn choose_heads(
     count: usize,
     noise: f64,
 ) -> Result<Heads, LayoutError> {
+    if count < 3 {
+        return Err(LayoutError::TooFewHeads(count));
+    }
     let seen = seen(face);
     let neck = Excluded::Neck.mask(face);
     let may = |&v: &usize| {
@@ -166,7 +169,7 @@ pub fn choose_heads(
     let step = all.len().div_ceil(HEAD_PLACES).max(1);
     let places: Vec<usize> = all.iter().copied().step_by(step).collect();
     let none = LayoutError::NoHead { found: places.len(), wanted: count };
-    if count < 3 || places.len() < count {
+    if places.len() < count {
         return Err(none);
     }
     let points: Vec<Point> = places.iter().map(|&v| face.place(v)).collect();

@@ -125,7 +125,8 @@ impl<'a> Units<'a> {
     }
 
     /// Exactly `count` markers of units in their order: the last ones go, and where a single marker is missing
-    /// or units are, the free unit that is farthest from all others comes.
+    /// or units are, the free unit that is farthest from all others comes. Where what was chosen stands in the
+    /// way of so many, the last of it make room for markers packed closely.
     ///
     /// # Errors
     /// [`LayoutError::TooMany`] where so many do not fit.
@@ -134,55 +135,74 @@ impl<'a> Units<'a> {
         mut chosen: Vec<Vec<usize>>,
         count: usize,
     ) -> Result<Vec<Vec<usize>>, LayoutError> {
-        let markers = |units: &[Vec<usize>]| units.iter().map(Vec::len).sum::<usize>();
         let wanted = self.wanted(count)?;
-        // The last units go until no more than wanted are left; a single one in the middle may take the place of
-        // half a pair.
         let mut dropped: Vec<Vec<usize>> = Vec::new();
         while markers(&chosen) > wanted {
             dropped.extend(chosen.pop());
         }
+        let first = chosen.clone();
         while markers(&chosen) < wanted {
             let room = wanted - markers(&chosen);
             let taken: Vec<usize> = chosen.iter().flatten().chain(&self.kept).copied().collect();
             let again = dropped.iter().position(|u| u.len() <= room && self.fits(u, &taken));
-            if let Some(place) = again {
-                chosen.push(dropped.remove(place));
-                continue;
+            match again {
+                // A single one in the middle takes the place of half a pair.
+                Some(place) => chosen.push(dropped.remove(place)),
+                None => match self.farthest_from(&taken, room) {
+                    Some(unit) => chosen.push(unit.clone()),
+                    None => return self.packed(first, count),
+                },
             }
-            let distance = |unit: &Vec<usize>| {
-                let near = |v: usize| {
-                    let far = |t: &usize| (self.face.place(v) - self.face.place(*t)).length();
-                    taken.iter().map(far).fold(f64::INFINITY, f64::min)
-                };
-                unit.iter().map(|&v| near(v)).fold(f64::INFINITY, f64::min)
-            };
-            let free = self.each.iter().filter(|u| u.len() <= room && self.fits(u, &taken));
-            let farthest = free
-                .map(|unit| (distance(unit), unit))
-                .reduce(|best, next| if next.0 > best.0 { next } else { best });
-            let Some((_, unit)) = farthest else {
-                // What was chosen may stand in the way of more: the densest packing says how many fit.
-                let fit = self.most_that_fit(count).min(count - 1);
-                let millimetres = (1e4 * self.spacing.minimum()).round() / 10.0;
-                return Err(LayoutError::TooMany { fit, wanted: count, millimetres });
-            };
-            chosen.push(unit.clone());
         }
         Ok(chosen)
     }
 
-    /// How many markers fit, packed from the first unit on, each as near to the others as it may be.
-    fn most_that_fit(&self, enough: usize) -> usize {
-        let mut taken = self.kept.clone();
-        for unit in &self.each {
-            if taken.len() >= enough {
-                break;
-            }
-            if self.fits(unit, &taken) {
-                taken.extend(unit);
-            }
-        }
-        taken.len()
+    /// The free unit of at most `room` markers that is farthest from all that are taken, the first of equal ones.
+    fn farthest_from(&self, taken: &[usize], room: usize) -> Option<&Vec<usize>> {
+        let near = |v: usize| {
+            let far = |t: &usize| (self.face.place(v) - self.face.place(*t)).length();
+            taken.iter().map(far).fold(f64::INFINITY, f64::min)
+        };
+        let distance =
+            |unit: &Vec<usize>| unit.iter().map(|&v| near(v)).fold(f64::INFINITY, f64::min);
+        self.each
+            .iter()
+            .filter(|u| u.len() <= room && self.fits(u, taken))
+            .map(|unit| (distance(unit), unit))
+            .reduce(|best, next| if next.0 > best.0 { next } else { best })
+            .map(|(_, unit)| unit)
     }
+
+    /// As many of the first units as may stay, and the others packed: the first free one in the order of the
+    /// vertices, then the next.
+    fn packed(
+        &self,
+        chosen: Vec<Vec<usize>>,
+        count: usize,
+    ) -> Result<Vec<Vec<usize>>, LayoutError> {
+        let wanted = self.wanted(count)?;
+        let mut most = 0;
+        for keep in [3, 2, 1, 0].map(|quarters| quarters * chosen.len() / 4) {
+            let mut units = chosen[..keep].to_vec();
+            let mut taken: Vec<usize> = units.iter().flatten().chain(&self.kept).copied().collect();
+            for unit in &self.each {
+                let room = wanted - markers(&units);
+                if unit.len() <= room && self.fits(unit, &taken) {
+                    taken.extend(unit);
+                    units.push(unit.clone());
+                }
+            }
+            if markers(&units) == wanted {
+                return Ok(units);
+            }
+            most = most.max(taken.len());
+        }
+        let millimetres = (1e4 * self.spacing.minimum()).round() / 10.0;
+        Err(LayoutError::TooMany { fit: most, wanted: count, millimetres })
+    }
+}
+
+/// The markers of some units.
+fn markers(units: &[Vec<usize>]) -> usize {
+    units.iter().map(Vec::len).sum()
 }

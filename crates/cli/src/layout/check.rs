@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use mimique_geometry::Point;
 use mimique_layout::{CheckOptions, FaceMotion, MapCheck};
+use mimique_stimulus::ADVISED_SMOOTHING;
 use serde_json::Value;
 
 use super::HEAD_NOISE_M;
@@ -49,7 +50,7 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         noise: args.noise.0,
         slip: args.slip.0,
         head_noise: HEAD_NOISE_M,
-        smoothing: 0.1,
+        smoothing: ADVISED_SMOOTHING,
         seed: 1,
     };
     let check =
@@ -90,8 +91,7 @@ fn print(
     check: &MapCheck,
     heads: usize,
 ) -> std::io::Result<()> {
-    let bank = check.bank.at_markers.as_ref();
-    let markers = bank.map_or(0, |m| m.markers);
+    let markers = check.bank.at_markers.as_ref().map_or(0, |m| m.markers);
     writeln!(out, "{}: {markers} face markers, {heads} head markers", args.map.display())?;
     writeln!(
         out,
@@ -101,15 +101,32 @@ fn print(
         1e3 * args.noise.0,
         1e3 * args.slip.0
     )?;
+    parts(out, check)?;
+    shapes(out, check)?;
+    if let Some(pair) = &check.nearest {
+        let [a, b] = &pair.labels;
+        writeln!(out, "nearest markers: {a} and {b}, {:.1} mm", pair.at_rest_mm)?;
+    }
+    head(out, check, heads)?;
+    let Some(p) = &check.placement else { return Ok(()) };
+    let gain = 100.0 * (1.0 - p.smoothed_mm / p.put_mm);
+    let less = if gain >= 0.5 { format!(" ({gain:.0} % less)") } else { String::new() };
     writeln!(
         out,
-        "{:<10} {:>7} {:>10} {:>11} {:>22}",
-        "part", "markers", "moves, mm", "unknown, mm", "farthest marker, mm"
-    )?;
+        "rehearsed error: {:.2} mm a vertex with markers at their places, {:.2} mm beside them, {:.2} mm with \
+         rbfSmoothing {ADVISED_SMOOTHING}{less}",
+        p.exact_mm, p.put_mm, p.smoothed_mm
+    )
+}
+
+fn parts(out: &mut impl std::io::Write, check: &MapCheck) -> std::io::Result<()> {
+    let titles = ["part", "markers", "moves, mm", "unknown, mm", "farthest marker, mm"];
+    let [part, markers, moves, unknown, farthest] = titles;
+    writeln!(out, "{part:<10} {markers:>7} {moves:>10} {unknown:>11} {farthest:>19}")?;
     for part in &check.parts {
         writeln!(
             out,
-            "{:<10} {:>7} {:>10.2} {:>11.2} {:>22.0}",
+            "{:<10} {:>7} {:>10.2} {:>11.2} {:>19.0}",
             part.part.name().to_lowercase(),
             part.markers,
             part.moves_mm,
@@ -117,11 +134,18 @@ fn print(
             part.farthest_mm
         )?;
     }
-    if let Some(m) = bank {
+    Ok(())
+}
+
+fn shapes(out: &mut impl std::io::Write, check: &MapCheck) -> std::io::Result<()> {
+    if let Some(m) = &check.bank.at_markers {
         writeln!(out, "shapes: {} of {} told apart at the markers", m.rank, check.bank.shapes)?;
         if !m.unseen.is_empty() {
             writeln!(out, "no marker sees: {}", m.unseen.join(", "))?;
         }
+    }
+    if !check.gaze.is_empty() {
+        writeln!(out, "no marker on skin tells the gaze: {} shapes", check.gaze.len())?;
     }
     for sight in check.hardly_told.iter().take(NAMED) {
         writeln!(
@@ -135,20 +159,6 @@ fn print(
     }
     if check.hardly_told.len() > NAMED {
         writeln!(out, "and {} more; --json lists all", check.hardly_told.len() - NAMED)?;
-    }
-    if let Some(pair) = &check.nearest {
-        let [a, b] = &pair.labels;
-        writeln!(out, "nearest markers: {a} and {b}, {:.1} mm", pair.at_rest_mm)?;
-    }
-    head(out, check, heads)?;
-    if let Some(p) = &check.placement {
-        let gain = 100.0 * (1.0 - p.smoothed_mm / p.put_mm);
-        writeln!(
-            out,
-            "rehearsed error: {:.2} mm a vertex with markers at their places, {:.2} mm beside them, {:.2} mm with \
-             rbfSmoothing 0.1 ({gain:+.0} % less)",
-            p.exact_mm, p.put_mm, p.smoothed_mm
-        )?;
     }
     Ok(())
 }

@@ -6,7 +6,6 @@ use mimique_layout::{FacePart, MotionSource, Side};
 use serde_json::json;
 
 use super::args::Make;
-use super::report::main_curve;
 use super::{CountReason, Made, about};
 
 /// A few lines of text, or all of it as JSON.
@@ -33,7 +32,7 @@ pub(super) fn print(
         return Ok(());
     }
     let (markers, heads) = (&made.layout.markers, made.layout.head.len());
-    let method = if args.as_thesis { "kmeans as in the thesis" } else { made.method.word() };
+    let method = if args.as_thesis { "kmeans as in the thesis" } else { made.ground.method.word() };
     if let Some(path) = &args.out {
         let path = path.display();
         writeln!(
@@ -50,7 +49,7 @@ pub(super) fn print(
         .collect();
     writeln!(out, "places: {}", parts.join(", "))?;
     let middle = markers.iter().filter(|m| m.side == Side::Middle).count();
-    let counts = made.candidates.counts;
+    let counts = made.ground.candidates.counts;
     writeln!(
         out,
         "of {} vertices {} move by 1 mm, {} of these are seen, {} are allowed; {:.1} mm apart; {middle} in the middle",
@@ -58,11 +57,11 @@ pub(super) fn print(
         counts.moved,
         counts.seen,
         counts.allowed,
-        1e3 * made.distance
+        1e3 * made.ground.distance
     )?;
     writeln!(out, "motion: {}", motion(made))?;
     if let Some(error) = made.rehearsed_mm {
-        let conditions = made.conditions;
+        let conditions = made.ground.conditions;
         let put = if conditions.slip > 0.0 {
             format!(
                 "markers {:.1} mm beside their places, another face in every other take",
@@ -91,12 +90,12 @@ pub(super) fn print(
 }
 
 fn motion(made: &Made<'_, '_>) -> String {
-    if made.motion.source == MotionSource::IndependentShapes {
+    if made.ground.motion.source == MotionSource::IndependentShapes {
         return "every shape by itself".to_owned();
     }
-    let people: Vec<String> = (made.motion.people.iter())
+    let people: Vec<String> = (made.ground.motion.people.iter())
         .map(|person| {
-            format!("{} ({} frames)", person.name, person.frames.len() / made.motion.basis.width)
+            format!("{} ({} frames)", person.name, person.frames.len() / made.ground.motion.basis.width)
         })
         .collect();
     people.join(", ")
@@ -105,7 +104,7 @@ fn motion(made: &Made<'_, '_>) -> String {
 /// Why so many markers, and the curve.
 fn enough(out: &mut impl std::io::Write, args: &Make, made: &Made<'_, '_>) -> std::io::Result<()> {
     let Some(comparison) = &made.comparison else { return Ok(()) };
-    let curve = main_curve(comparison, made.method.word(), args.smoothing);
+    let curve = comparison.main_curve(made.ground.method.word());
     let points: Vec<String> = (curve.iter())
         .map(|row| format!("{}: {:.3}", row.markers, row.errors.per_vertex_mm))
         .collect();

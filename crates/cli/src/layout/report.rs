@@ -12,32 +12,6 @@ use super::figure::{Look, Series, bars, curves};
 use super::{CountReason, Made};
 use crate::output;
 
-/// Noise of the rows that curves are drawn of, millimetres.
-const NOISE_MM: f64 = 0.1;
-
-/// The rows of a layout by the first solver, with the usual noise and markers put beside their places, smoothed
-/// as advised (or at their places, where none are put beside them).
-pub(super) fn main_curve<'c>(
-    comparison: &'c Comparison,
-    layout: &str,
-    smoothing: f64,
-) -> Vec<&'c CurveRow> {
-    let rows = &comparison.recommended;
-    let Some(first) = rows.first().map(|row| row.trial.solver.as_str()) else { return Vec::new() };
-    let put = rows.iter().any(|row| row.trial.slip_mm > 0.0);
-    let wanted = |row: &&CurveRow| {
-        row.layout == layout
-            && row.trial.solver == first
-            && row.trial.noise_mm == NOISE_MM
-            && (row.trial.slip_mm > 0.0) == put
-            && (row.trial.smoothing == smoothing || !put)
-    };
-    let mut found: Vec<&CurveRow> = rows.iter().filter(wanted).collect();
-    found.sort_by_key(|row| row.markers);
-    found.dedup_by_key(|row| row.markers);
-    found
-}
-
 /// Writes `report.html`, its tables and `curves.json` into a folder.
 pub(super) fn write(
     folder: &Path,
@@ -83,7 +57,7 @@ fn document(args: &Make, made: &Made<'_, '_>, measures: &[Measures]) -> Document
     blocks.extend(worth(made));
     blocks.extend(places(measures));
     Document {
-        title: format!("Marker layout for {}", made.face.skin.name),
+        title: format!("Marker layout for {}", made.ground.face.skin.name),
         subtitle: format!("{count} face markers and {} head markers", made.layout.head.len()),
         blocks,
     }
@@ -98,7 +72,7 @@ fn sentence(text: &str) -> String {
 
 fn summary(args: &Make, made: &Made<'_, '_>) -> String {
     let count = made.layout.markers.len();
-    let method = if args.as_thesis { "K-means as in the thesis" } else { made.method.word() };
+    let method = if args.as_thesis { "K-means as in the thesis" } else { made.ground.method.word() };
     let why = match made.count {
         CountReason::Asked => format!("{count} markers were asked for"),
         CountReason::Enough => format!(
@@ -188,8 +162,8 @@ fn figure(id: &str, caption: String, alt: &str, series: Vec<Series>) -> Block {
 
 /// The curve of the recommended judgement.
 fn recommended(args: &Make, made: &Made<'_, '_>, comparison: &Comparison) -> Vec<Block> {
-    let method = made.method.word();
-    let curve = main_curve(comparison, method, args.smoothing);
+    let method = made.ground.method.word();
+    let curve = comparison.main_curve(method);
     let Some(first) = curve.first() else { return Vec::new() };
     let trial = &first.trial;
     let rows: Vec<&CurveRow> =
@@ -334,8 +308,8 @@ fn as_in_the_thesis(comparison: &Comparison) -> Vec<Block> {
 
 /// Sets that were used before beside the method's layouts of the same size.
 fn beside_sets(args: &Make, made: &Made<'_, '_>, comparison: &Comparison) -> Vec<Block> {
-    let method = made.method.word();
-    let curve = main_curve(comparison, method, args.smoothing);
+    let method = made.ground.method.word();
+    let curve = comparison.main_curve(method);
     let Some(first) = curve.first() else { return Vec::new() };
     let of_thesis = |layout: &str, markers: usize| {
         comparison

@@ -26,6 +26,7 @@ pub(super) fn reduce(
     task.progress.stage("reduce", (start.len() - count) as u64);
     while markers(&units) > count {
         let over = markers(&units) - count;
+        let kernel = task.rehearsal.kernel(&units.concat())?;
         // A pair is worth two markers; at the end only what fits may go.
         let without = |u: usize| {
             let rest: Vec<usize> = units
@@ -36,9 +37,9 @@ pub(super) fn reduce(
                 .copied()
                 .collect();
             let own = units[u].len() as f64;
-            task.rehearsal.mean_square(&rest).map_or(f64::INFINITY, |e| e / own)
+            task.rehearsal.mean_square_with(&rest, kernel).map_or(f64::INFINITY, |e| e / own)
         };
-        let full = task.rehearsal.mean_square(&units.concat()).unwrap_or(0.0);
+        let full = task.rehearsal.mean_square_with(&units.concat(), kernel).unwrap_or(0.0);
         let costs: Vec<(f64, usize)> = (0..units.len())
             .into_par_iter()
             .filter(|&u| units[u].len() <= over)

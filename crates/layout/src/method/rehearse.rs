@@ -45,6 +45,7 @@ pub(super) fn rehearse(
     let steps = (options.rounds * units.len()) as u64;
     task.progress.stage("rehearse", steps);
     let kept: Vec<Vec<usize>> = task.units.kept.iter().map(|&v| vec![v]).collect();
+    let kernel = task.rehearsal.kernel(&[kept.concat(), units.concat()].concat())?;
     for round in 0..options.rounds {
         let mut better = false;
         for place in 0..units.len() {
@@ -55,7 +56,7 @@ pub(super) fn rehearse(
                     let mut tried = units.clone();
                     tried[place].clone_from(trial);
                     let markers = [kept.concat(), tried.concat()].concat();
-                    task.rehearsal.mean_square(&markers).unwrap_or(f64::INFINITY)
+                    task.rehearsal.mean_square_with(&markers, kernel).unwrap_or(f64::INFINITY)
                 })
                 .collect();
             let best = errors

@@ -83,10 +83,14 @@ impl VertexGroup {
 /// What solves the takes of a layout.
 enum LayoutSolver {
     Bank(Box<Fit>),
-    /// A regression, which learns in each take anew.
-    Learning(Operators),
+    /// A regression, which learns in each take anew; its kernel stays.
+    Learning(Operators, KernelNumbers),
     Surface(SurfaceSolver, Vec<SurfaceGroup>),
 }
+
+/// Length scale, signal and noise of a regression's kernel; none for methods that learn nothing. Finding them
+/// takes ten times as long as learning with them, so that they are found once for a layout.
+pub type KernelNumbers = Option<[f64; 3]>;
 
 /// Simulated takes of a face, and the method that solves them.
 pub struct Rehearsal<'a> {
@@ -170,7 +174,20 @@ impl<'a> Rehearsal<'a> {
         markers: &[usize],
         groups: &[VertexGroup],
     ) -> Result<Vec<Vec<f64>>, LayoutError> {
-        let solver = self.solver_of(markers, groups)?;
+        self.square_errors_with(markers, groups, self.kernel(markers)?)
+    }
+
+    /// The same with a kernel that was found before.
+    ///
+    /// # Errors
+    /// As [`Self::square_errors`].
+    pub fn square_errors_with(
+        &self,
+        markers: &[usize],
+        groups: &[VertexGroup],
+        kernel: KernelNumbers,
+    ) -> Result<Vec<Vec<f64>>, LayoutError> {
+        let solver = self.solver_of(markers, groups, kernel)?;
         let one = |(number, take): (usize, &SimulatedTake)| {
             self.errors_of_take(&solver, markers, groups, number, take)
         };
@@ -185,8 +202,50 @@ impl<'a> Rehearsal<'a> {
     /// # Errors
     /// As [`Self::square_errors`].
     pub fn mean_square(&self, markers: &[usize]) -> Result<f64, LayoutError> {
-        let squares = self.square_errors(markers, &self.whole)?;
+        self.mean_square_with(markers, self.kernel(markers)?)
+    }
+
+    /// The same with a kernel that was found before.
+    ///
+    /// # Errors
+    /// As [`Self::square_errors`].
+    pub fn mean_square_with(
+        &self,
+        markers: &[usize],
+        kernel: KernelNumbers,
+    ) -> Result<f64, LayoutError> {
+        let squares = self.square_errors_with(markers, &self.whole, kernel)?;
         Ok(squares[0].iter().sum::<f64>() / squares[0].len().max(1) as f64)
+    }
+
+    /// The kernel that a regression finds for a layout in the first take.
+    ///
+    /// # Errors
+    /// [`LayoutError::Training`].
+    pub fn kernel(&self, markers: &[usize]) -> Result<KernelNumbers, LayoutError> {
+        let Some(take) = self.takes.first().filter(|_| self.training > 0) else { return Ok(None) };
+        let displacements = self.displacements(markers, 0, take)?;
+        let played = take.frames(self.basis.width) - self.training;
+        let learnt = &displacements[played * 3 * markers.len()..];
+        let given = training_options(self.solver.spec()).given;
+        let kernel = self.learn(markers, take, learnt, given)?.kernel;
+        Ok(Some([kernel.length, kernel.signal, kernel.noise]))
+    }
+
+    /// Learns from the last frames of a take.
+    fn learn(
+        &self,
+        markers: &[usize],
+        take: &SimulatedTake,
+        inputs: &[f64],
+        given: [Option<f64>; 3],
+    ) -> Result<Regression, LayoutError> {
+        let (n, w) = (self.basis.shape_count, self.basis.width);
+        let frames = &take.coefficients[(take.frames(w) - self.training) * w..];
+        let outputs: Vec<f64> =
+            frames.chunks_exact(w).flat_map(|row| &row[..n]).copied().collect();
+        let options = TrainingOptions { given, ..training_options(self.solver.spec()) };
+        Ok(Regression::train(inputs, 3 * markers.len(), &outputs, n, &options)?)
     }
 
     /// What all takes share of a layout.
@@ -194,6 +253,7 @@ impl<'a> Rehearsal<'a> {
         &self,
         markers: &[usize],
         groups: &[VertexGroup],
+        kernel: KernelNumbers,
     ) -> Result<LayoutSolver, LayoutError> {
         if self.solver.spec().method == Method::ThinShellSurface {
             let surface = SurfaceSolver::new(self.face, self.solver.spec(), markers)?;
@@ -202,7 +262,7 @@ impl<'a> Rehearsal<'a> {
         }
         let operators = self.solver.operators(self.face, markers)?;
         if self.solver.spec().method == Method::Regression {
-            return Ok(LayoutSolver::Learning(operators));
+            return Ok(LayoutSolver::Learning(operators, kernel));
         }
         Ok(LayoutSolver::Bank(Box::new(self.solver.fit(&operators)?)))
     }
@@ -220,7 +280,7 @@ impl<'a> Rehearsal<'a> {
         let width = 3 * markers.len();
         let played = take.frames(w) - self.training;
         let (seen, learnt) = displacements.split_at(played * width);
-        let (frames, learnt_frames) = take.coefficients.split_at(played * w);
+        let frames = &take.coefficients[..played * w];
         let weights = match solver {
             LayoutSolver::Surface(surface, groups) => {
                 let moved = surface.solve(seen)?;
@@ -231,11 +291,9 @@ impl<'a> Rehearsal<'a> {
                 return Ok(groups.iter().map(of_group).collect());
             }
             LayoutSolver::Bank(fit) => fit.solve_take(seen)?.weights,
-            LayoutSolver::Learning(operators) => {
-                let outputs: Vec<f64> =
-                    learnt_frames.chunks_exact(w).flat_map(|row| &row[..n]).copied().collect();
-                let options = training_options(self.solver.spec());
-                let model = Regression::train(learnt, width, &outputs, n, &options)?;
+            LayoutSolver::Learning(operators, kernel) => {
+                let given = kernel.map_or([None; 3], |kernel| kernel.map(Some));
+                let model = self.learn(markers, take, learnt, given)?;
                 let operators = operators.clone().with_regression(model)?;
                 self.solver.fit(&operators)?.solve_take(seen)?.weights
             }
