@@ -54,3 +54,5 @@ pub use simulate::{
     ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
     Rating, Recognition, SimulatedSession, Simulation, Times,
 };
+pub use trials::error::ExportError;
+pub use trials::reason::Reason;

@@ -2,6 +2,7 @@
 
 pub(crate) mod naming;
 
+use mimique_stats::Undefined;
 use mimique_study::text::primary_language;
 
 /// English or French.
@@ -37,6 +38,14 @@ impl Language {
         match self {
             Self::English => english,
             Self::French => french,
+        }
+    }
+
+    /// Why a statistic does not exist.
+    pub(crate) fn why_undefined(self, undefined: &Undefined) -> String {
+        match self {
+            Self::English => undefined.english(),
+            Self::French => undefined.french(),
         }
     }
 

@@ -14,10 +14,11 @@ pub(crate) mod results;
 pub(crate) mod section;
 pub(crate) mod tables;
 
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::Study;
 
 use crate::language::Language;
+use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use document::Block;
 
@@ -45,21 +46,10 @@ pub struct Report {
 
 /// Computes the report. Refuses an export without the columns of the tidy form or without any trial
 /// that can be used.
-pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, Refusal> {
+pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, ExportError> {
     let export = Export::read(table, study)?;
     if export.trials.is_empty() {
-        return Err(Refusal::column(
-            "trial_type",
-            format!(
-                "no trial is left: {} of {} people and {} of {} trials are left out{}",
-                export.flow.people - export.flow.people_used,
-                export.flow.people,
-                export.flow.trials - export.flow.trials_used,
-                export.flow.trials,
-                export.flow.why()
-            ),
-            "collect answers first, or look at the study's exclusions",
-        ));
+        return Err(export.flow.no_trial());
     }
     let section::Sections { document, results, readings, replay } =
         section::write(&export, study, language);
