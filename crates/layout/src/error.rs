@@ -72,7 +72,9 @@ pub enum LayoutError {
         wanted: usize,
     },
     /// Too few head markers for a pose.
-    #[error("head: {0} markers tell no pose; give 3 or more, or 0 for a headband that is not laid out here")]
+    #[error(
+        "head: {0} markers tell no pose; give 3 or more, or 0 for a headband that is not laid out here"
+    )]
     TooFewHeads(usize),
     /// Kept markers do not keep the distance, or are more than wanted.
     #[error("keep: {what}")]

@@ -165,9 +165,7 @@ impl<'a> Judge<'a> {
         rehearsals
             .iter()
             .zip(by_fold)
-            .map(|(rehearsal, markers)| {
-                rehearsal.square_errors_with(markers, &self.groups, kernel)
-            })
+            .map(|(rehearsal, markers)| rehearsal.square_errors_with(markers, &self.groups, kernel))
             .collect()
     }
 

@@ -166,8 +166,7 @@ pub fn choose_heads(
             && spacing.apart_from_all(v, taken)
     };
     let all: Vec<usize> = (0..face.skin.mesh.positions.len()).filter(may).collect();
-    let step = all.len().div_ceil(HEAD_PLACES).max(1);
-    let places: Vec<usize> = all.iter().copied().step_by(step).collect();
+    let places = thinned(face, &all);
     let none = LayoutError::NoHead { found: places.len(), wanted: count };
     if places.len() < count {
         return Err(none);
@@ -188,6 +187,19 @@ pub fn choose_heads(
     Ok(Heads { vertices, error })
 }
 
+/// At most [`HEAD_PLACES`] of some vertices, with the mirror image of each that is among them.
+fn thinned(face: &Face<'_>, all: &[usize]) -> Vec<usize> {
+    let mirror = &face.mirror;
+    let left: Vec<usize> = all.iter().copied().filter(|&v| mirror.from_middle[v] >= 0.0).collect();
+    let step = all.len().div_ceil(HEAD_PLACES).max(1);
+    let mut places: Vec<usize> = left.into_iter().step_by(step).collect();
+    let others: Vec<usize> = places.iter().map(|&v| mirror.of[v]).collect();
+    places.extend(others.into_iter().filter(|v| all.binary_search(v).is_ok()));
+    places.sort_unstable();
+    places.dedup();
+    places
+}
+
 /// The face that the error of a pose is told of: what the shapes move.
 pub fn face_moments(face: &Face<'_>) -> FaceMoments {
     let moved = |v: &usize| face.reach[*v] >= crate::candidates::MOVED_M;
@@ -196,12 +208,12 @@ pub fn face_moments(face: &Face<'_>) -> FaceMoments {
     FaceMoments::of(&points)
 }
 
-/// Whether a vertex is on an ear, which bends.
+/// Whether a vertex is on an ear, which bends, or hidden by one.
 fn on_an_ear(face: &Face<'_>, vertex: usize) -> bool {
     let (p, marks) = (face.place(vertex), &face.landmarks);
     let widest = face.mirror.plane.distance(marks.ear_bottom[0]).abs();
     let height = p.y - marks.ear_bottom[0].y.min(marks.ear_bottom[1].y);
-    face.mirror.plane.distance(p).abs() > 0.92 * widest
-        && p.z < marks.ear_front_z + 0.005
-        && (-0.005..0.075).contains(&height)
+    face.mirror.plane.distance(p).abs() > 0.6 * widest
+        && (-0.055..0.008).contains(&(p.z - marks.ear_front_z))
+        && (-0.008..0.075).contains(&height)
 }

@@ -37,7 +37,9 @@ pub use motion::{
     Basis, DenseTake, DenseTakeError, FaceMotion, MotionSource, PersonMotion, Take, TakeContent,
 };
 pub use progress::{Progress, Silent};
-pub use rehearsal::{BankSolver, Conditions, Effort, KernelNumbers, Person, Rehearsal, VertexGroup};
+pub use rehearsal::{
+    BankSolver, Conditions, Effort, KernelNumbers, Person, Rehearsal, VertexGroup,
+};
 pub use sets::{NamedSet, face_robot, mixed, mpeg4, random};
 pub use sheet::{AlongSkin, Measures, Sheet, SheetOptions, ToLandmark, face_height, face_width};
 pub use spacing::{Camera, Distance, Spacing};

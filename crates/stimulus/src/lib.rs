@@ -65,7 +65,10 @@ pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
     MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
+pub use prepare::{
+    AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
+    is_source, prepare,
+};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
     Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafSegments,

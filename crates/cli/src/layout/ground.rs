@@ -2,8 +2,8 @@
 
 use anyhow::anyhow;
 use mimique_layout::{
-    Candidates, Conditions, Distance, Excluded, Face, FaceMotion, Method, NamedSet, Where,
-    mixed, unseen_shapes,
+    Candidates, Conditions, Distance, Excluded, Face, FaceMotion, Method, NamedSet, Where, mixed,
+    unseen_shapes,
 };
 use mimique_solver::MarkerSite;
 

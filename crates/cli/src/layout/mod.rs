@@ -3,7 +3,6 @@
 mod about;
 mod args;
 mod check;
-mod figure;
 mod ground;
 mod inputs;
 mod print;

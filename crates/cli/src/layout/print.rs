@@ -80,7 +80,7 @@ pub(super) fn print(
         let error = 1e3 * heads.error;
         writeln!(out, "head: noise of 0.3 mm turns into {error:.2} mm on the face")?;
     }
-    enough(&mut out, args, made)?;
+    enough(&mut out, made)?;
     for path in [&args.sheet, &args.report].into_iter().flatten() {
         writeln!(out, "written: {}", path.display())?;
     }
@@ -95,14 +95,18 @@ fn motion(made: &Made<'_, '_>) -> String {
     }
     let people: Vec<String> = (made.ground.motion.people.iter())
         .map(|person| {
-            format!("{} ({} frames)", person.name, person.frames.len() / made.ground.motion.basis.width)
+            format!(
+                "{} ({} frames)",
+                person.name,
+                person.frames.len() / made.ground.motion.basis.width
+            )
         })
         .collect();
     people.join(", ")
 }
 
 /// Why so many markers, and the curve.
-fn enough(out: &mut impl std::io::Write, args: &Make, made: &Made<'_, '_>) -> std::io::Result<()> {
+fn enough(out: &mut impl std::io::Write, made: &Made<'_, '_>) -> std::io::Result<()> {
     let Some(comparison) = &made.comparison else { return Ok(()) };
     let curve = comparison.main_curve(made.ground.method.word());
     let points: Vec<String> = (curve.iter())

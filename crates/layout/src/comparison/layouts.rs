@@ -59,11 +59,8 @@ impl Entry {
 /// Entries of origins with every number of markers, the largest first.
 fn entries(origins: &[Origin], counts: &[usize]) -> Vec<Entry> {
     let of = |origin: &Origin| {
-        let entry = |&markers: &usize| Entry {
-            origin: origin.clone(),
-            markers,
-            by_fold: Vec::new(),
-        };
+        let entry =
+            |&markers: &usize| Entry { origin: origin.clone(), markers, by_fold: Vec::new() };
         counts.iter().rev().map(entry).collect::<Vec<_>>()
     };
     origins.iter().flat_map(of).collect()

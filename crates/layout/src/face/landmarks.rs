@@ -84,7 +84,11 @@ impl Landmarks {
         let glabella = find(nasion.y + 0.05 * size, nasion.y + 0.45 * size, &|p| p.z)?;
         let sublabiale = find(mouth_y - 0.45 * size, mouth_y - 0.12 * size, &|p| -p.z)?;
         let pogonion = find(sublabiale.y - 0.5 * size, sublabiale.y, &|p| p.z)?;
-        let gnathion = find(bottom.max(pogonion.y - 0.6 * size), pogonion.y, &|p| p.z - 3.0 * p.y)?;
+        // Where the chin turns back to the neck, whose own profile goes farther down: not far behind the chin.
+        let behind = pogonion.z - 0.35 * size;
+        let gnathion = find(bottom.max(pogonion.y - 0.6 * size), pogonion.y, &|p| {
+            if p.z < behind { f64::NEG_INFINITY } else { p.z - 2.0 * p.y }
+        })?;
         let stomion = profile.at(mouth_y).ok_or(NoProfile)?;
         let ears = Ears::of(mesh, plane, [subnasale.y, glabella.y]);
         let hair_y = glabella.y + 0.95 * (glabella.y - subnasale.y);

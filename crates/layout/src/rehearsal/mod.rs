@@ -242,8 +242,7 @@ impl<'a> Rehearsal<'a> {
     ) -> Result<Regression, LayoutError> {
         let (n, w) = (self.basis.shape_count, self.basis.width);
         let frames = &take.coefficients[(take.frames(w) - self.training) * w..];
-        let outputs: Vec<f64> =
-            frames.chunks_exact(w).flat_map(|row| &row[..n]).copied().collect();
+        let outputs: Vec<f64> = frames.chunks_exact(w).flat_map(|row| &row[..n]).copied().collect();
         let options = TrainingOptions { given, ..training_options(self.solver.spec()) };
         Ok(Regression::train(inputs, 3 * markers.len(), &outputs, n, &options)?)
     }

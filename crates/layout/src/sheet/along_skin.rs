@@ -139,7 +139,7 @@ mod tests {
         }
 
         // Half a sphere of radius 1 by latitude and longitude.
-        let (rows, columns) = (40, 80);
+        let (rows, columns) = (40_usize, 80_usize);
         let positions: Vec<Point> = (0..=rows * columns)
             .map(|i| {
                 let (row, column) = (i.div_ceil(columns), i % columns);

@@ -73,7 +73,12 @@ impl Sheet {
             .map(|v| gradients.normal(v).map_or(DVec3::ZERO, |n| n.0))
             .collect();
         let measures = Measures::of(face, layout, &mesh, &scaled);
-        let head = Head { face, mesh: &mesh, normals: &normals, scaled: &scaled };
+        let size = format!(
+            "face: {:.0} mm wide, {:.0} mm from nasion to chin",
+            1e3 * factors.x * face_width(face),
+            1e3 * factors.y * face_height(face)
+        );
+        let head = Head { face, mesh: &mesh, normals: &normals, size, scaled: &scaled };
         let mut pages: Vec<Page> =
             VIEWS.iter().map(|(name, degrees)| head.page(layout, name, *degrees)).collect();
         let count = measures.len().div_ceil(ROWS);
@@ -127,6 +132,8 @@ struct Head<'h> {
     face: &'h Face<'h>,
     mesh: &'h SkinMesh,
     normals: &'h [DVec3],
+    /// The face's own size in words.
+    size: String,
     scaled: &'h dyn Fn(Point) -> Point,
 }
 
@@ -155,6 +162,7 @@ impl Head<'_> {
             "{face} face markers, {heads} head markers (dark). Round: the person's left. Square: right. Diamond: middle."
         );
         page.text([10.0, 16.5], Anchor::Start, 3.2, words);
+        page.text([200.0, 288.0], Anchor::End, 3.2, self.size.clone());
         page.items.push(Item::Picture {
             at: corner,
             size,

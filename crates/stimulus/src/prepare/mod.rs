@@ -4,6 +4,7 @@
 //! inputs is taken from the folder; the weights are solved anew each time, by the function that the
 //! browsers run, so that their hash is that of this program.
 
+mod advice;
 mod avatar_key;
 mod builtin;
 mod cache;
@@ -20,6 +21,7 @@ use mimique_solver::{Group, Method, MethodSpec};
 use mimique_study::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
+pub use self::advice::{AdvisedMethod, advised_methods};
 pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};

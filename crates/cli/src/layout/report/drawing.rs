@@ -37,7 +37,7 @@ pub(super) fn curves(title: &str, series: &[Series]) -> String {
     let all = || series.iter().flat_map(|s| &s.points);
     let most = |axis: usize| all().map(|p| p[axis]).fold(0.0, f64::max);
     let across = Axis::new(0.0, most(0).max(1.0), LEFT, RIGHT);
-    let (top, bottom) = (head + 10.0, head + PLOT);
+    let (top, bottom) = (head + 24.0, head + PLOT);
     let up = Axis::new(0.0, most(1).max(1e-3), bottom, top);
     for &tick in &up.ticks {
         let y = up.place(tick);
@@ -50,7 +50,7 @@ pub(super) fn curves(title: &str, series: &[Series]) -> String {
         svg.text(x, bottom + 17.0, "small", Anchor::Middle, &format!("{tick:.0}"));
     }
     svg.text((LEFT + RIGHT) / 2.0, bottom + 33.0, "small", Anchor::Middle, "markers");
-    svg.text(4.0, head + 4.0, "small", Anchor::Start, "mm a vertex");
+    svg.text(4.0, head + 8.0, "small", Anchor::Start, "mm a vertex");
     let mut number = 0;
     for (row, s) in named.enumerate() {
         let y = 12.0 + LINE * row as f64;
@@ -64,7 +64,10 @@ pub(super) fn curves(title: &str, series: &[Series]) -> String {
             _ => String::new(),
         };
         draw(&mut svg, s.look, &places, &label);
-        draw(&mut svg, s.look, &[[14.0, y], [36.0, y]], &label);
+        match s.look {
+            Look::Numbered => draw(&mut svg, s.look, &[[25.0, y]], &label),
+            _ => draw(&mut svg, s.look, &[[14.0, y], [36.0, y]], &label),
+        }
         svg.text(48.0, y + 4.0, "small", Anchor::Start, &s.name);
     }
     svg.finish()
