@@ -42,6 +42,6 @@ pub use rehearsal::{
 };
 pub use sets::{NamedSet, face_robot, mixed, mpeg4, random};
 pub use sheet::{AlongSkin, Measures, Sheet, SheetOptions, ToLandmark, face_height, face_width};
-pub use spacing::{Camera, Distance, Spacing};
+pub use spacing::{Camera, Distance, Spacing, nearest_in_motion};
 pub use units::Units;
 pub use view::{DepthPicture, View};

@@ -7,7 +7,7 @@ use crate::face::Face;
 use crate::motion::FaceMotion;
 
 /// Frames that the distances are held against beside those in which each shape is largest.
-const EVENLY: usize = 24;
+const EVENLY: usize = 96;
 
 /// What keeps two markers apart in a camera's picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -55,6 +55,30 @@ impl Distance {
             }
         }
     }
+}
+
+/// The two of some vertices that come nearest to each other in any frame of a motion, and how near, metres; none
+/// of fewer than two.
+pub fn nearest_in_motion(
+    face: &Face<'_>,
+    motion: &FaceMotion,
+    vertices: &[usize],
+) -> Option<([usize; 2], f64)> {
+    let rest = vec![0.0; motion.basis.width];
+    let mut least: Option<([usize; 2], f64)> = None;
+    for frame in motion.frames().chain([&rest[..]]) {
+        let places: Vec<Point> =
+            vertices.iter().map(|&v| face.place(v) + motion.basis.displacement(v, frame)).collect();
+        for (i, p) in places.iter().enumerate() {
+            for (j, q) in places[..i].iter().enumerate() {
+                let apart = (*p - *q).length();
+                if least.is_none_or(|(_, distance)| apart < distance) {
+                    least = Some(([vertices[j], vertices[i]], apart));
+                }
+            }
+        }
+    }
+    least
 }
 
 /// Which vertices are far enough apart, on the neutral face and in the frames of its motion.

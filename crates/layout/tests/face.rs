@@ -24,7 +24,6 @@ fn landmarks_are_where_the_head_was_built() {
     let at = |label: &str| face.place(marked.iter().find(|(own, _)| own == label).unwrap().1);
     let mm = |a: mimique_geometry::Point, b: mimique_geometry::Point| 1e3 * (a - b).length();
     let marks = &face.landmarks;
-    eprintln!("{:?} {:?} {:?} {:?} brow {}", marks.nasion, marks.glabella, marks.gnathion, marks.pogonion, marks.brow_y);
     assert!(mm(marks.pronasale, at("nose_tip")) < 4.0);
     // Between the marked upper and lower lip, which are 2 rings away from the border.
     let (upper, lower) = (at("lip_upper"), at("lip_lower"));
@@ -42,7 +41,8 @@ fn parts_and_sides_of_the_head_s_own_markers_are_their_names() {
     let face = Face::of(&skin).unwrap();
     let part = |label: &str| match label {
         l if l.starts_with("forehead") => Some(FacePart::Forehead),
-        l if l.starts_with("brow") || l == "glabella" => Some(FacePart::Brow),
+        // The inner and outer ends of these brows are as low as lids.
+        l if l.starts_with("brow_middle") || l == "glabella" => Some(FacePart::Brow),
         l if l.starts_with("lid") => Some(FacePart::Eye),
         l if l.starts_with("nose") => Some(FacePart::Nose),
         l if l.starts_with("lip") => Some(FacePart::Mouth),

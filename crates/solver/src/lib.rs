@@ -114,6 +114,7 @@ pub use layout::surface_greedy::SurfaceGreedy;
 pub use layout::trajectory_rows::{
     STILL_M, TrajectoryRows, VertexTrajectories, WeightMotion, motion_rows,
 };
+pub use linear_algebra::exp::exp_all;
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};
 pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};

@@ -5,7 +5,7 @@
 pub struct Document {
     /// Its title.
     pub title: String,
-    /// What stands below the title.
+    /// What it is about, in a line.
     pub subtitle: String,
     /// Its parts, in order.
     pub blocks: Vec<Block>,
@@ -31,13 +31,13 @@ pub enum Block {
 /// A table of text cells; `id` names its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DataTable {
-    /// The name of its file, without ending.
+    /// Name of its file, a letter, digit or hyphen each.
     pub id: String,
     /// What it shows.
     pub caption: String,
-    /// The headings.
+    /// Headings of the columns.
     pub columns: Vec<String>,
-    /// The cells, row by row.
+    /// Cells, a row each.
     pub rows: Vec<Vec<String>>,
     /// A first line of headings over groups of columns: text and number of columns.
     pub groups: Vec<(String, usize)>,
@@ -46,16 +46,25 @@ pub struct DataTable {
 /// A drawing with its caption, its description for those who do not see it, and its data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// The name of its file, without ending.
+    /// Name of its file, a letter, digit or hyphen each.
     pub id: String,
     /// What it shows.
     pub caption: String,
-    /// What it shows, for those who do not see it.
+    /// The same for those who do not see it.
     pub alt: String,
     /// The drawing.
     pub svg: String,
-    /// Its numbers.
+    /// What it is drawn of.
     pub data: DataTable,
+}
+
+impl Block {
+    /// A figure whose own label is its description.
+    pub fn figure(mut figure: Figure) -> Self {
+        let label = |text: &str| format!("aria-label=\"{}\"", escape(text));
+        figure.svg = figure.svg.replacen(&label(&figure.caption), &label(&figure.alt), 1);
+        Self::Figure(figure)
+    }
 }
 
 impl DataTable {
@@ -125,7 +134,7 @@ where
 }
 
 /// Letters, digits and hyphens: part of a file name.
-pub(crate) fn slug(text: &str) -> String {
+pub fn slug(text: &str) -> String {
     let mut slug = String::new();
     for c in text.chars() {
         if c.is_ascii_alphanumeric() {

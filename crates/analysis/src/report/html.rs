@@ -5,8 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::language::Language;
 use crate::report::document::{Block, DataTable, Document, Figure, is_number};
 
-/// The document as a page.
-pub fn html(document: &Document, language: Language) -> String {
+pub(crate) fn html(document: &Document, language: Language) -> String {
     let code = language.code();
     let title = typeset(&document.title);
     let page = html! {

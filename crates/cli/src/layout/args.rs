@@ -116,7 +116,7 @@ pub(super) struct Make {
     /// Error of a vertex that is good enough: of a range the least number of markers that reaches it is taken
     #[arg(long, value_name = "LENGTH", help_heading = JUDGING)]
     pub(super) wanted_error: Option<Length>,
-    /// Folder for report.html with the curves, their tables as CSV, and curves.json
+    /// Folder for report.html with the curves, figures, tables as CSV, and results.json
     #[arg(long, value_name = "FOLDER", help_heading = JUDGING)]
     pub(super) report: Option<PathBuf>,
 

@@ -55,15 +55,16 @@ pub(super) fn search<'m, 'a>(
     let heads = heads(args, ground, &units, &vertices)?;
     let of_head = heads.as_ref().map_or(&[][..], |heads| &heads.vertices);
     progress.stage("worth", 1);
+    let layout = Layout::named(face, &chosen.units, of_head);
     Ok(Made {
         ground,
-        layout: Layout::named(face, &chosen.units, of_head),
         heads,
         rehearsed_mm: rehearsal.mean_square(&vertices).ok().map(|square| 1e3 * square.sqrt()),
         worth: if args.as_thesis { Vec::new() } else { worth(&rehearsal, &vertices) },
         comparison,
         count,
-        warnings: warnings::warnings(args, ground, &units, &chosen),
+        warnings: warnings::warnings(args, ground, &units, &chosen, &layout),
+        layout,
     })
 }
 

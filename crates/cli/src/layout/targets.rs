@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 
 use super::args::Make;
 use super::given;
+use crate::report_folder;
 
 /// The form of a placement sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,8 +40,8 @@ impl<'a> Targets<'a> {
             }
         });
         let report = args.report.as_deref();
-        if let Some(path) = report.filter(|path| path.exists() && !path.is_dir()) {
-            bail!("--report: {}: is a file; name a folder", path.display());
+        if let Some(path) = report {
+            report_folder::check(path).map_err(|e| anyhow!("--report: {}: {e}", path.display()))?;
         }
         Ok(Self { map, sheet: sheet.transpose()?, report })
     }

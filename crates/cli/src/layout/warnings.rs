@@ -1,6 +1,6 @@
 //! What should be looked at in a layout.
 
-use mimique_layout::{Chosen, MotionSource, Units};
+use mimique_layout::{Chosen, Layout, MotionSource, Units, nearest_in_motion};
 
 use super::args::Make;
 use super::ground::Ground;
@@ -11,6 +11,7 @@ pub(super) fn warnings(
     ground: &Ground<'_>,
     units: &Units<'_>,
     chosen: &Chosen,
+    layout: &Layout,
 ) -> Vec<String> {
     let (face, motion) = (ground.face, &ground.motion);
     let mut warnings = Vec::new();
@@ -37,6 +38,20 @@ pub(super) fn warnings(
             "clusters {} found no room at {:.1} mm: markers stand where others are farthest instead",
             names.join(", "),
             1e3 * units.spacing.minimum()
+        ));
+    }
+    // Choosing looks at the frames that tell most; what is chosen is held against every frame.
+    let nearest = nearest_in_motion(face, motion, &chosen.vertices());
+    if let Some((pair, apart)) = nearest.filter(|(_, apart)| *apart < 0.98 * units.spacing.minimum()) {
+        let label = |v: usize| {
+            let found = layout.markers.iter().find(|marker| marker.vertex == v);
+            found.map_or_else(|| v.to_string(), |marker| marker.label.clone())
+        };
+        warnings.push(format!(
+            "{} and {} come as near as {:.1} mm in the motion that is given",
+            label(pair[0]),
+            label(pair[1]),
+            1e3 * apart
         ));
     }
     if let (Some(rate), Some(speed)) = (args.capture_rate, motion.top_speed(&chosen.vertices())) {

@@ -80,8 +80,7 @@ impl Landmarks {
         // The lower side of the nose turns back to the lip: the corner farthest back and below the tip.
         let subnasale =
             find(mouth_y + 0.12 * size, pronasale.y - 0.04 * size, &|p| -p.z + 0.5 * p.y)?;
-        let nasion = find(eye_y - 0.15 * size, eye_y + 0.4 * size, &|p| -p.z)?;
-        let glabella = find(nasion.y + 0.05 * size, nasion.y + 0.45 * size, &|p| p.z)?;
+        let [nasion, glabella] = root(&profile, pronasale, eye_y, size).ok_or(NoProfile)?;
         let sublabiale = find(mouth_y - 0.45 * size, mouth_y - 0.12 * size, &|p| -p.z)?;
         let pogonion = find(sublabiale.y - 0.5 * size, sublabiale.y, &|p| p.z)?;
         // Where the chin turns back to the neck, whose own profile goes farther down: not far behind the chin.
@@ -129,6 +128,25 @@ impl Landmarks {
             ("cheilion right", self.cheilion[right]),
         ]
     }
+}
+
+/// The root of the nose and the foremost point between the brows, above eyes at a height; `size` is how far the
+/// eyes are above the mouth. Where the forehead only slopes back, neither deepest nor foremost point is there: the
+/// root is then the point farthest behind the line from the tip of the nose to the forehead.
+fn root(profile: &Profile, pronasale: Point, eye_y: f64, size: f64) -> Option<[Point; 2]> {
+    let [low, high] = [eye_y - 0.15 * size, eye_y + 0.4 * size];
+    let mut nasion = profile.most(low, high, |p| -p.z)?;
+    if nasion.y > high - 0.03 * size {
+        let forehead = profile.at(eye_y + 0.6 * size)?;
+        let slope = (forehead.z - pronasale.z) / (forehead.y - pronasale.y);
+        let behind = |p: Point| pronasale.z + slope * (p.y - pronasale.y) - p.z;
+        nasion = profile.most(low, eye_y + 0.2 * size, behind)?;
+    }
+    let from = nasion.y + 0.05 * size;
+    let foremost = profile.most(from, nasion.y + 0.45 * size, |p| p.z)?;
+    let slopes_back = foremost.y < from + 0.03 * size;
+    let glabella = if slopes_back { profile.at(nasion.y + 0.25 * size)? } else { foremost };
+    Some([nasion, glabella])
 }
 
 /// The extremes of an opening.

@@ -267,7 +267,7 @@ impl FacePart {
             Self::Forehead
         } else if p.y > marks.brow_y - 0.08 * size {
             Self::Brow
-        } else if aside < 0.24 * size && !above_lip {
+        } else if aside < 0.25 * size && !above_lip {
             Self::Nose
         } else if eye < 0.32 * size || p.y > marks.eye[0].y - 0.12 * size {
             Self::Eye

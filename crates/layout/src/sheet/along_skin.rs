@@ -46,12 +46,28 @@ impl<'a> AlongSkin<'a> {
 
     /// The distance of every vertex from one, metres; infinite where no way leads.
     pub fn from(&self, source: usize) -> Vec<f64> {
+        self.reached_from([(source, 0.0)])
+    }
+
+    /// The distance of every vertex from a point of the skin, metres; infinite where no way leads.
+    pub fn from_point(&self, point: Point) -> Vec<f64> {
+        let away = |v: usize| (self.mesh.positions[v] - point).length();
+        let nearest = (0..self.mesh.positions.len()).min_by(|&a, &b| away(a).total_cmp(&away(b)));
+        let corners = |&triangle: &usize| self.mesh.triangles[triangle].map(|v| v as usize);
+        let beside = nearest.into_iter().flat_map(|v| self.around[v].iter().flat_map(corners));
+        self.reached_from(beside.map(|v| (v, away(v))))
+    }
+
+    /// The distance of every vertex from the nearest of some that are at distances themselves.
+    fn reached_from(&self, sources: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
         let count = self.mesh.positions.len();
         let mut distance = vec![f64::INFINITY; count];
         let mut fixed = vec![false; count];
         let mut next = BinaryHeap::new();
-        distance[source] = 0.0;
-        next.push(Reached { distance: 0.0, vertex: source });
+        for (vertex, away) in sources {
+            distance[vertex] = away;
+            next.push(Reached { distance: away, vertex });
+        }
         while let Some(Reached { vertex, .. }) = next.pop() {
             if std::mem::replace(&mut fixed[vertex], true) {
                 continue;

@@ -45,14 +45,8 @@ impl Measures {
         scaled: &dyn Fn(Point) -> Point,
     ) -> Vec<Self> {
         let skin = AlongSkin::new(mesh);
-        let nearest = |p: Point| {
-            let square = |v: &usize| (mesh.positions[*v] - p).length_squared();
-            (0..mesh.positions.len())
-                .min_by(|a, b| square(a).total_cmp(&square(b)))
-                .unwrap_or_default()
-        };
         let landmarks: Vec<(&'static str, Vec<f64>)> = (face.landmarks.measured().into_iter())
-            .map(|(name, p)| (name, skin.from(nearest(scaled(p)))))
+            .map(|(name, p)| (name, skin.from_point(scaled(p))))
             .collect();
         let nasion = scaled(face.landmarks.nasion);
         let markers = layout.markers.iter().chain(&layout.head).enumerate();

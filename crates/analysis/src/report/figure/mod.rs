@@ -12,6 +12,7 @@ pub(crate) mod svg;
 
 pub(crate) use boxes::boxes;
 pub(crate) use confusion::confusion;
+pub use confusion::{ConfusionRow, ConfusionWords, confusion_matrix};
 pub(crate) use differences::differences;
 pub(crate) use likert::likert;
 pub(crate) use shares::shares;

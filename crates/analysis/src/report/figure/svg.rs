@@ -12,7 +12,6 @@ const LIGHTEST: [f64; 3] = [227.0, 238.0, 249.0];
 const DARKEST: [f64; 3] = [8.0, 48.0, 107.0];
 
 /// A drawing that grows downwards.
-#[derive(Debug)]
 pub struct Svg {
     body: String,
     height: f64,
@@ -20,23 +19,23 @@ pub struct Svg {
 }
 
 /// Where a text is anchored.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub enum Anchor {
-    /// At its beginning.
+    /// It begins there.
     Start,
-    /// In its middle.
+    /// Its middle is there.
     Middle,
-    /// At its end.
+    /// It ends there.
     End,
 }
 
 impl Svg {
-    /// An empty drawing of a height, with what it shows in words.
+    /// An empty drawing of a height; its title says what it shows.
     pub fn new(title: &str, height: f64) -> Self {
         Self { body: String::new(), height, title: title.to_owned() }
     }
 
-    /// A text; `class` is one of the style sheet.
+    /// A line of text.
     pub fn text(&mut self, x: f64, y: f64, class: &str, anchor: Anchor, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
@@ -70,7 +69,7 @@ impl Svg {
         );
     }
 
-    /// A rectangle of a class.
+    /// The same in a style of its own.
     pub fn class_rect(&mut self, [x, y, width, height]: [f64; 4], class: &str) {
         let _ = writeln!(
             self.body,
@@ -82,7 +81,7 @@ impl Svg {
         );
     }
 
-    /// A line of a class.
+    /// A straight line.
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], class: &str) {
         let _ = writeln!(
             self.body,
@@ -101,7 +100,7 @@ impl Svg {
         let _ = writeln!(self.body, r#"<path d="M{}" class="{class}"/>"#, points.join("L"));
     }
 
-    /// A circle of a class.
+    /// A filled circle.
     pub fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
             self.body,
@@ -112,8 +111,7 @@ impl Svg {
         );
     }
 
-    /// A diamond of a class.
-    pub fn diamond(&mut self, x: f64, y: f64, radius: f64, class: &str) {
+    pub(crate) fn diamond(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
             self.body,
             r#"<path d="M{} {}l{r} {r}l-{r} {r}l-{r} -{r}z" class="{class}"/>"#,
@@ -123,7 +121,7 @@ impl Svg {
         );
     }
 
-    /// The drawing as SVG that stands alone.
+    /// The drawing as text.
     pub fn finish(self) -> String {
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" class="mm-figure" aria-label="{title}">
@@ -181,7 +179,7 @@ pub(crate) fn short(value: f64) -> String {
 }
 
 /// Cuts a label to so many characters.
-pub(crate) fn clipped(text: &str, most: usize) -> String {
+pub fn clipped(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
     }
@@ -191,20 +189,19 @@ pub(crate) fn clipped(text: &str, most: usize) -> String {
 }
 
 /// An axis over a range of values: round ticks, and the place of a value between two edges.
-#[derive(Debug)]
 pub struct Axis {
     low: f64,
     high: f64,
     left: f64,
     right: f64,
-    /// Places of the ticks, in the unit of the values.
+    /// Round values from the lowest to the highest.
     pub ticks: Vec<f64>,
     /// Decimals of the ticks.
     pub decimals: usize,
 }
 
 impl Axis {
-    /// An axis that holds both values, between two edges.
+    /// An axis of values from `low` to `high` at least, between the edges `left` and `right`.
     pub fn new(low: f64, high: f64, left: f64, right: f64) -> Self {
         let span = if high > low { high - low } else { 1.0 };
         let raw = span / 5.0;

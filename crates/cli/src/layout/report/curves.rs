@@ -1,6 +1,6 @@
 //! Curves and tables of a comparison.
 
-use mimique_analysis::report_parts::{Block, DataTable};
+use mimique_analysis::components::{Block, DataTable};
 use mimique_layout::{Comparison, CurveRow, RowTrial};
 
 use super::drawing::{Look, Series, curves};

@@ -1,6 +1,6 @@
 //! What each marker is worth, and where it is put.
 
-use mimique_analysis::report_parts::{Block, DataTable};
+use mimique_analysis::components::{Block, DataTable};
 use mimique_layout::Measures;
 
 use super::curves::curves_figure;

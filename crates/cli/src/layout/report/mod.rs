@@ -6,48 +6,35 @@ mod markers;
 
 use std::path::Path;
 
-use anyhow::Context as _;
-use mimique_analysis::Language;
-use mimique_analysis::report_parts::{Block, DataTable, Document, Figure, html};
+use mimique_analysis::components::{Block, DataTable, Document, Figure, document_files};
+use mimique_analysis::{Language, ReportFile};
 use mimique_layout::{Measures, Method};
 
 use super::args::Make;
+use super::inputs::blame;
 use super::{CountReason, Made};
-use crate::output;
+use crate::report_folder;
 
-/// Writes `report.html`, its tables and `curves.json` into a folder.
+/// Writes the report into a folder: a document, every curve as a table, `results.json`.
 pub(super) fn write(
     folder: &Path,
     args: &Make,
     made: &Made<'_, '_>,
     measures: &[Measures],
 ) -> anyhow::Result<()> {
-    let document = document(args, made, measures);
-    let make = |path: &Path| {
-        std::fs::create_dir_all(path).with_context(|| {
-            format!("{}: make the folder; check its parent's permissions", path.display())
-        })
-    };
-    let tables = folder.join("tables");
-    make(&tables)?;
-    let in_page = document.blocks.iter().filter_map(|block| match block {
-        Block::Table(table) => Some(table),
-        Block::Figure(figure) => Some(&figure.data),
-        _ => None,
-    });
-    let beside = made.comparison.as_ref().map(|comparison| {
-        [
+    let mut files = document_files(&document(args, made, measures), Language::English);
+    let mut more = |path: String, text: String| files.push(ReportFile { path, text });
+    if let Some(comparison) = &made.comparison {
+        let tables = [
             curves::all_rows("recommended", &comparison.recommended),
             curves::all_rows("as-in-the-thesis", &comparison.as_in_the_thesis),
-        ]
-    });
-    for table in in_page.chain(beside.iter().flatten()) {
-        output::write(&tables.join(format!("{}.csv", table.id)), table.to_csv().as_bytes())?;
+        ];
+        for table in tables {
+            more(format!("tables/{}.csv", table.id), table.to_csv());
+        }
     }
-    let text = serde_json::to_string_pretty(&made.comparison)? + "\n";
-    output::write(&folder.join("curves.json"), text.as_bytes())?;
-    let page = html(&document, Language::English);
-    output::write(&folder.join("report.html"), page.as_bytes())
+    more("results.json".to_owned(), serde_json::to_string_pretty(&made.comparison)? + "\n");
+    report_folder::write(&files, folder).map_err(|e| blame(folder, e))
 }
 
 fn document(args: &Make, made: &Made<'_, '_>, measures: &[Measures]) -> Document {
@@ -61,7 +48,7 @@ fn document(args: &Make, made: &Made<'_, '_>, measures: &[Measures]) -> Document
         blocks.extend(curves::beside_sets(made, comparison));
         blocks.push(Block::Paragraph(
             "Every layout under every condition: tables/curves-recommended.csv and tables/curves-as-in-the-thesis.csv, \
-             or curves.json."
+             or results.json."
                 .to_owned(),
         ));
     }
