@@ -7,6 +7,7 @@
 
 mod bench;
 mod bench_annotate;
+mod bench_layout;
 mod bench_plot;
 mod bench_stats;
 mod budget;

@@ -82,7 +82,7 @@ fn summary(args: &Make, made: &Made<'_, '_>) -> String {
             "no number of the range reaches {wanted} mm; {count} markers are within a tenth of the best"
         ),
     };
-    let mut text = format!("{why}. Their places were chosen by {method}.");
+    let mut text = format!("{why}. Method: {method}.");
     if let Some(error) = made.rehearsed_mm {
         text += &format!(
             " In the simulated takes that they were sought with they leave {error:.2} mm a vertex."
