@@ -72,7 +72,8 @@ fn solve_reads_a_layout_as_it_is() {
     let (avatar, rom) = (text(&at("head.glb")), text(&at("weights.csv")));
     let out = text(&at("layout.json"));
     let common = ["layout", "--avatar", &avatar, "--rom", &rom, "--method", "greedy"];
-    let rest = ["--markers", "40", "--out", &out, "--sheet", &text(&at("sheet.svg"))].map(str::to_owned);
+    let rest =
+        ["--markers", "40", "--out", &out, "--sheet", &text(&at("sheet.svg"))].map(str::to_owned);
     let args: Vec<String> = common.into_iter().map(str::to_owned).chain(rest).collect();
     let said = ok(&args);
     assert!(said.contains("40 face markers and 6 head markers by greedy"), "{said}");
@@ -100,8 +101,21 @@ fn solve_reads_a_layout_as_it_is() {
     std::fs::write(at("take.csv"), csv + "\n").expect("a take");
     let [take, solved] = ["take.csv", "solved.csv"].map(|name| text(&at(name)));
     ok(&[
-        "solve", "--avatar", &avatar, "--mocap", &take, "--markers", &out, "--method", "lsts",
-        "--neutral", "0:20", "--head-lowpass", "none", "--out", &solved,
+        "solve",
+        "--avatar",
+        &avatar,
+        "--mocap",
+        &take,
+        "--markers",
+        &out,
+        "--method",
+        "lsts",
+        "--neutral",
+        "0:20",
+        "--head-lowpass",
+        "none",
+        "--out",
+        &solved,
     ]);
     let options = WeightOptions { rate_hz: Some(20.0), shape_names: &skin.shape_names };
     let table = read_weights_file(&at("solved.csv"), &options).expect("weights");

@@ -42,7 +42,9 @@ pub(super) fn warnings(
     }
     // Choosing looks at the frames that tell most; what is chosen is held against every frame.
     let nearest = nearest_in_motion(face, motion, &chosen.vertices());
-    if let Some((pair, apart)) = nearest.filter(|(_, apart)| *apart < 0.98 * units.spacing.minimum()) {
+    if let Some((pair, apart)) =
+        nearest.filter(|(_, apart)| *apart < 0.98 * units.spacing.minimum())
+    {
         let label = |v: usize| {
             let found = layout.markers.iter().find(|marker| marker.vertex == v);
             found.map_or_else(|| v.to_string(), |marker| marker.label.clone())

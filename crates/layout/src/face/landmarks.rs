@@ -145,7 +145,7 @@ fn root(profile: &Profile, pronasale: Point, eye_y: f64, size: f64) -> Option<[P
     let from = nasion.y + 0.05 * size;
     let foremost = profile.most(from, nasion.y + 0.45 * size, |p| p.z)?;
     let slopes_back = foremost.y < from + 0.03 * size;
-    let glabella = if slopes_back { profile.at(nasion.y + 0.4 * size)? } else { foremost };
+    let glabella = if slopes_back { profile.at(nasion.y + 0.25 * size)? } else { foremost };
     Some([nasion, glabella])
 }
 

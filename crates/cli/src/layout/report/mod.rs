@@ -70,8 +70,7 @@ fn sentence(text: &str) -> String {
 
 fn summary(args: &Make, made: &Made<'_, '_>) -> String {
     let count = made.layout.markers.len();
-    let method =
-        if args.as_thesis { "K-means as in the thesis" } else { said(made.ground.method) };
+    let method = if args.as_thesis { "K-means as in the thesis" } else { said(made.ground.method) };
     let why = match made.count {
         CountReason::Asked => format!("{count} markers were asked for"),
         CountReason::Enough => format!(
