@@ -12,6 +12,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use anyhow::{Context, Result, bail};
 
 use crate::bench_annotate;
+use crate::bench_layout;
 use crate::bench_plot;
 use crate::bench_server;
 use crate::bench_stats;
@@ -34,6 +35,9 @@ pub struct Args {
     /// The annotation beside scikit-learn and hmmlearn instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "server"])]
     annotate: bool,
+    /// Measure marker layouts beside scikit-learn and NumPy instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate"])]
+    layout: bool,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -70,6 +74,9 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if args.annotate {
         return bench_annotate::run(args.rounds.max(1), args.record);
+    }
+    if args.layout {
+        return bench_layout::run(args.rounds.max(1), args.record);
     }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {

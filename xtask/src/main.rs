@@ -8,6 +8,7 @@
 
 mod bench;
 mod bench_annotate;
+mod bench_layout;
 mod bench_plot;
 mod bench_server;
 mod bench_stats;

@@ -30,7 +30,7 @@ mod read_error;
 mod settings;
 
 pub use driven::{Driven, DrivenError};
-pub use glb::{GlbWriteError, read_gltf, write_glb};
+pub use glb::{GlbWriteError, WeightAnimation, read_gltf, read_weight_animation, write_glb};
 pub use obj::is_folder_of_poses;
 pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar, read_avatar_bytes};

@@ -4,8 +4,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use mimique_stimulus::{ADVISED_SMOOTHING, AdvisedMethod, Places, advised_methods};
 use mimique_study::text::template;
-use mimique_study::{Problem, Report, Severity, check, json_schema, resolve_path};
+use mimique_study::{Issue, Problem, Report, Severity, Study, check, json_schema, resolve_path};
 
 /// Options.
 #[derive(clap::Args)]
@@ -48,7 +49,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
         return Ok(());
     };
-    let report = check_file(&file)?;
+    let mut report = check_file(&file)?;
+    if let Some(checked) = &report.study {
+        let advised = advised(checked.study(), &file);
+        report.issues.extend(advised);
+    }
     if json {
         let text = serde_json::json!({
             "file": file.display().to_string(),
@@ -65,6 +70,24 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     // Everything was said above.
     anyhow::ensure!(report.study.is_some(), "");
     Ok(())
+}
+
+/// What the captures of a study gain by a smoothed adaptation of shape.
+fn advised(study: &Study, file: &Path) -> Vec<Issue> {
+    // Nothing is packed.
+    let places = Places::of(file, PathBuf::new());
+    let issue = |AdvisedMethod { pointer, capture, advice }| Issue {
+        pointer,
+        severity: Severity::Warning,
+        problem: Problem::SmoothingAdvised {
+            capture,
+            why: advice.reason.to_string(),
+            residual_mm: advice.residual_mm,
+            smoothed_mm: advice.smoothed_mm,
+            smoothing: ADVISED_SMOOTHING,
+        },
+    };
+    advised_methods(study, &places).into_iter().map(issue).collect()
 }
 
 /// Reads and checks a study file; files that it names are looked for on this machine.

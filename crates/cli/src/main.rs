@@ -16,6 +16,7 @@ mod export;
 mod export_site;
 mod import;
 mod inspect;
+mod layout;
 mod motion;
 mod order;
 mod output;
@@ -64,6 +65,8 @@ enum Command {
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
+    /// Choose how many markers a face needs, and where; or check a map
+    Layout(Box<layout::Args>),
     /// Repair a capture: swaps, spikes, gaps; filter, resample, hold the head still
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
@@ -113,6 +116,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(args, json),
         Command::Sample(args) => sample::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
+        Command::Layout(args) => layout::run(*args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
         Command::Annotate(args) => annotate::run(args, json),

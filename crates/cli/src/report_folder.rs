@@ -25,11 +25,9 @@ pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<()> {
 /// As [`write()`].
 pub fn check(out: &Path) -> anyhow::Result<()> {
     if out.exists() && !is_replaceable(out)? {
-        bail!(
-            "the folder holds something else than a report; give an empty or a new folder with --out"
-        );
+        bail!("the folder holds something else than a report; give an empty or a new folder");
     }
-    out.file_name().context("this is no name of a folder; give one with --out")?;
+    out.file_name().context("this is no name of a folder; give one")?;
     Ok(())
 }
 

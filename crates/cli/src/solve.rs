@@ -28,8 +28,8 @@ use crate::output;
 pub use self::args::Args;
 use self::method_options::method_spec;
 use self::print::print;
-pub(crate) use self::values::Span;
 use self::values::unique;
+pub(crate) use self::values::{Length, Named, Span};
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {

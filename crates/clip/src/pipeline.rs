@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use mimique_geometry::RigidMotion;
 use mimique_solver::{
-    Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns,
-    MarkerFrames, MarkerScales, MethodSpec, Operators, SurfaceDepth,
+    Adaptation, Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch,
+    MarkerColumns, MarkerFrames, MarkerScales, MethodSpec, Operators, SurfaceDepth,
 };
 
 use crate::gaze::{gaze_at_rest, with_gaze_at_rest};
@@ -138,7 +138,7 @@ pub fn marker_motion(
     spec: &MethodSpec,
 ) -> Result<MarkerMotion, PipelineError> {
     let MarkerTake { markers, rate_hz, played } = take;
-    let front_end = front_end(operators, markers)?;
+    let front_end = front_end(operators, markers, spec)?;
     let lowpass = spec.head_lowpass(*rate_hz).map_err(FrontEndError::Lowpass)?;
     let frames = MarkerFrames { positions: &markers.positions, columns: markers.labels.len() };
     let mut poses = front_end.segment_poses(frames, lowpass.as_ref())?;
@@ -158,7 +158,11 @@ pub fn marker_motion(
 }
 
 /// The front end that the take was fitted with, its face markers in the order of the operators.
-fn front_end(operators: &Operators, markers: &SegmentMarkers) -> Result<FrontEnd, PipelineError> {
+fn front_end(
+    operators: &Operators,
+    markers: &SegmentMarkers,
+    spec: &MethodSpec,
+) -> Result<FrontEnd, PipelineError> {
     let parts = operators.parts();
     let mut order = Vec::new();
     for label in &parts.marker_labels {
@@ -177,7 +181,7 @@ fn front_end(operators: &Operators, markers: &SegmentMarkers) -> Result<FrontEnd
         markers.head_reference.clone(),
         order.iter().map(|&i| markers.neutral[i]).collect(),
         parts.marker_positions.clone(),
-        depth,
+        Adaptation { depth, smoothing: spec.rbf_smoothing() },
     )?;
     Ok(front_end.with_scales(scales)?)
 }

@@ -34,8 +34,8 @@ pub use capture::{Capture, Event, LengthUnit, Recording, WeightOptions, WeightsT
 pub use error::{ReadError, WriteError};
 pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence, Stillest, stillest};
 pub use formats::{
-    C3dOptions, C3dStorage, Format, Processor, WIDE_CSV, formats, npy_header, write_c3d, write_csv,
-    write_trc,
+    C3dOptions, C3dStorage, Format, Processor, VertexArray, WIDE_CSV, formats, npy_header,
+    read_vertex_array, write_c3d, write_csv, write_trc,
 };
 pub use read::{
     CaptureFile, ReadOptions, read, read_bytes, read_recording, read_weights, read_weights_file,

@@ -66,6 +66,7 @@ mod fit;
 mod front_end;
 mod gaussian_process;
 mod kouadio;
+mod layout;
 mod linear_algebra;
 mod mesh;
 mod method;
@@ -91,15 +92,28 @@ pub use front_end::marker_scales::{
 };
 pub use front_end::rbf::{Rbf, RbfError};
 pub use front_end::surface_depth::{FanTriangle, SurfaceDepth};
-pub use front_end::take::{FrontEnd, FrontEndScratch};
+pub use front_end::take::{Adaptation, FrontEnd, FrontEndScratch};
 pub use gaussian_process::exact::{ExactProcess, Kernel, log_marginal_likelihood};
 pub use gaussian_process::hyper_parameters::maximise_likelihood;
+pub use gaussian_process::input_scale::InputScale;
 pub use gaussian_process::regression::{
     LEAST_TRAINING_FRAMES, MOST_EXACT_FRAMES, Regression, TrainingError, TrainingOptions,
 };
-pub use gaussian_process::sparse::SparseProcess;
+pub use gaussian_process::sparse::{Learning, SparseProcess};
 pub use kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 pub use kouadio::bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
+pub use layout::cluster_markers::{ClusterMarkers, StandsFor, stands_for_pairs};
+pub use layout::farthest::farthest_first;
+pub use layout::greedy::{Criterion, Greedy, MarkerUnit};
+pub use layout::head_spread::{FaceMoments, best_heads, head_error};
+pub use layout::kmeans::{KMeans, KMeansStep, spread_centres};
+pub use layout::pivoted_qr::{PivotedQr, PivotedRow};
+pub use layout::slip::SkinGradients;
+#[cfg(feature = "surface")]
+pub use layout::surface_greedy::SurfaceGreedy;
+pub use layout::trajectory_rows::{
+    STILL_M, TrajectoryRows, VertexTrajectories, WeightMotion, motion_rows,
+};
 pub use linear_algebra::exp::exp_all;
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};

@@ -60,13 +60,17 @@ pub use built_in::{
     built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
 };
 pub use checks::{
-    BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
+    ADVISED_SMOOTHING, BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem,
+    MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
 };
 pub use marker_map::{
-    Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
-    REACH_M, ScaleRule, TOLERANCE_M,
+    Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
+    MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
+pub use prepare::{
+    AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
+    is_source, prepare,
+};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
     Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,

@@ -511,6 +511,44 @@ fn swapped_labels_of_a_capture_are_said_once_at_their_capture() {
 }
 
 #[test]
+fn another_face_is_advised_to_be_smoothed_with_the_gain_on_its_take() {
+    let stimuli = |methods: serde_json::Value| {
+        json!({
+            "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+            "captures": {"take": {"file": "take.csv", "markers": "map.csv", "neutral": [0, 60]}},
+            "segments": [{"id": "a", "capture": "take", "first": 100, "end": 200},
+                         {"id": "b", "capture": "take", "first": 500, "end": 600}],
+            "methods": methods,
+        })
+    };
+    let folder = tempfile::tempdir().unwrap();
+    labelled_take(folder.path(), 0..0);
+    let packs = folder.path().join("packs");
+    let here = Places { study: folder.path().to_owned(), data: None, packs };
+    let advised = |methods| mimique_stimulus::advised_methods(&study(stimuli(methods)), &here);
+    let methods = json!({"lsts": {"method": "lsts"}, "said": {"method": "box", "rbfSmoothing": 0},
+                         "surface": {"method": "thin-shell-surface"}});
+    let found = advised(methods.clone());
+    assert_eq!(found.len(), 1, "{found:?}");
+    let (only, advice) = (&found[0], found[0].advice);
+    assert_eq!((only.pointer.as_str(), only.capture.as_str()), ("/stimuli/methods/lsts", "take"));
+    assert!(matches!(advice.reason, mimique_stimulus::SmoothingReason::OtherFace { distance_mm }
+        if distance_mm > 1.0));
+    assert!(advice.smoothed_mm < 0.98 * advice.residual_mm, "{advice:?}");
+    // The preparation says the same, once, at the capture.
+    let prepared = prepare(&study(stimuli(methods)), &here, &mut |_| {}).unwrap();
+    let said: Vec<_> =
+        prepared.warnings.iter().filter(|(_, w)| w.contains("rbfSmoothing 0.1 lowers")).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].1.starts_with(&advice.reason.to_string()), "{said:?}");
+    // Whoever has chosen is not asked again; files that are not there say nothing here.
+    assert_eq!(advised(json!({"lsts": {"method": "lsts", "rbfSmoothing": 0.1}})), []);
+    let gone = Places { study: folder.path().join("nowhere"), ..here.clone() };
+    let all = stimuli(json!({"lsts": {"method": "lsts"}}));
+    assert_eq!(mimique_stimulus::advised_methods(&study(all), &gone), []);
+}
+
+#[test]
 fn a_video_is_served_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let video = b"not looked into: browsers judge videos".to_vec();

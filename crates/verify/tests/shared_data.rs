@@ -88,3 +88,28 @@ fn annotation() {
     }
     assert!(values(&cases) > 20_000, "only {} values were compared", values(&cases));
 }
+
+#[test]
+fn layouts() {
+    let Some(cases) = all_right("layouts", "layouts") else { return };
+    for (begin, least) in [
+        ("open/kmeans_plane", 1),
+        ("open/kmeans_face", 1),
+        ("open/kmeans_symmetric", 1),
+        ("open/sogp_small", 1),
+        ("open/sogp_face", 1),
+        ("open/gp_face", 1),
+        ("open/curve_face/", 4),
+        ("open/greedy_face/", 5),
+        ("open/slip_face", 1),
+        ("open/qr_face", 1),
+        ("open/head_face", 1),
+        ("open/avatar_kmeans", 1),
+        ("open/avatar_greedy/", 2),
+        ("open/avatar_curve/", 4),
+    ] {
+        let found = of(&cases, begin).len();
+        assert!(found >= least, "{begin}: {found} cases");
+    }
+    assert!(values(&cases) > 7_000, "only {} values were compared", values(&cases));
+}

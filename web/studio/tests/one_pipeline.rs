@@ -243,8 +243,9 @@ fn solve_studio_and_study_give_the_same_weights() {
             MethodSpec { head_lowpass_hz: Some(cutoff_hz), ..lsts.clone() },
         );
     }
+    methods.insert("smoothed".to_owned(), MethodSpec { rbf_smoothing: Some(0.1), ..lsts.clone() });
     let clips = laboratory.study(&methods);
-    assert_eq!(clips.len(), Method::ALL.len() + 2);
+    assert_eq!(clips.len(), Method::ALL.len() + 3);
     let take = laboratory.capture("take.csv");
     assert_on_steps(&laboratory.path("packs"), &clips["all.lsts"], &take);
 

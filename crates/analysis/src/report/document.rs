@@ -108,7 +108,7 @@ impl DataTable {
     }
 
     /// As CSV with commas.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         csv_text(std::iter::once(&self.full_columns()).chain(&self.rows))
     }
 }

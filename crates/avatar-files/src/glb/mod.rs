@@ -3,10 +3,11 @@
 //! Read: every mesh of the scene with its morph targets (sparse accessors, normalised integers),
 //! node transforms, skeletons at the pose that the file has them in, base colours and their
 //! textures, `extras.targetNames`; KHR_mesh_quantization, KHR_texture_transform and, in native
-//! builds, EXT_meshopt_compression. Not read: animations, other textures; other compressions are
+//! builds, EXT_meshopt_compression; by itself, the animation of the morph targets. Not read: other textures; other compressions are
 //! refused by name.
 
 mod accessor;
+mod animation;
 mod container;
 mod material;
 mod meshopt;
@@ -15,6 +16,7 @@ mod skeleton;
 mod transform;
 mod write;
 
+pub use animation::{WeightAnimation, read_weight_animation};
 pub use write::{GlbWriteError, write_glb};
 
 use std::collections::HashMap;

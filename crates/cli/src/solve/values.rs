@@ -13,7 +13,7 @@ pub(crate) struct Span(pub(crate) Range<usize>);
 
 /// Metres, from `12mm`, `1.2cm` or `0.012m`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Length(pub(super) f64);
+pub(crate) struct Length(pub(crate) f64);
 
 /// A factor, or one for each of x, y, z.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ pub(super) struct Factors(pub(super) [f64; 3]);
 
 /// `NAME=VALUE`.
 #[derive(Debug, Clone)]
-pub(super) struct Named<T>(pub(super) String, pub(super) T);
+pub(crate) struct Named<T>(pub(crate) String, pub(crate) T);
 
 /// What is given by name, each name once.
 pub(super) fn unique<T: Clone>(

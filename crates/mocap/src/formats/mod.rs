@@ -24,7 +24,7 @@ mod wide_csv;
 pub use c3d::{C3dOptions, C3dStorage, Processor, write_c3d};
 pub use format::Format;
 pub(crate) use format::{Read, Recognise, Write};
-pub use npy::npy_header;
+pub use npy::{VertexArray, npy_header, read_vertex_array};
 pub use trc::write_trc;
 pub use wide_csv::{FORMAT as WIDE_CSV, write_csv};
 

@@ -105,6 +105,27 @@ pub(crate) fn dot4(rows: [&[f64]; 4], x: &[f64]) -> [f64; 4] {
     sums
 }
 
+/// Sum of (x_i - y_i)^2 in the order of [`dot`].
+#[inline(always)]
+pub(crate) fn squared_distance(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len();
+    let y = &y[..n];
+    let mut lanes = [0.0; 4];
+    let (xs, x_rest) = x.as_chunks::<4>();
+    let (ys, y_rest) = y.as_chunks::<4>();
+    for (a, b) in xs.iter().zip(ys) {
+        for k in 0..4 {
+            let d = a[k] - b[k];
+            lanes[k] += d * d;
+        }
+    }
+    let mut sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    for (a, b) in x_rest.iter().zip(y_rest) {
+        sum += (a - b) * (a - b);
+    }
+    sum
+}
+
 /// y += a x.
 #[inline(always)]
 pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {

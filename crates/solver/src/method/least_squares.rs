@@ -10,7 +10,7 @@ use crate::parameters::group::Group;
 pub(crate) const BOX: Definition = Definition {
     summary: "squared marker error, weights within 0 and 1",
     needs: Needs::Shapes,
-    uses: &[Group::Bounds, Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Bounds, Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| within(setup, setup.bounds(UNIT_INTERVAL)),
 };
@@ -19,7 +19,7 @@ pub(crate) const BOX: Definition = Definition {
 pub(crate) const NNLS: Definition = Definition {
     summary: "squared marker error, weights of 0 or more",
     needs: Needs::Shapes,
-    uses: &[Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| within(setup, setup.bounds(NOT_NEGATIVE)),
 };
@@ -28,7 +28,7 @@ pub(crate) const NNLS: Definition = Definition {
 pub(crate) const PSEUDO_INVERSE: Definition = Definition {
     summary: "squared marker error, weights without bounds",
     needs: Needs::Shapes,
-    uses: &[Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |_| Ok(Engine::PseudoInverse),
 };

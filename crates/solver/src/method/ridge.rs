@@ -20,7 +20,7 @@ pub(crate) const RIDGE: Definition = Definition {
         Group::Bounds,
         Group::Shapes,
         Group::Markers,
-        Group::Head,
+        Group::FrontEnd,
         Group::Frames,
     ],
     defaults: Defaults { alpha: 0.3, ..Defaults::USUAL },

@@ -29,8 +29,8 @@ pub enum Group {
     Shapes,
     /// The markers.
     Markers,
-    /// The head that the face sits on.
-    Head,
+    /// What happens before the solve: the head's pose, and the adaptation of shape.
+    FrontEnd,
     /// The frames of a take.
     Frames,
 }
@@ -50,7 +50,7 @@ impl Group {
             Group::Surface => "Surface (thin-shell-surface)",
             Group::GaussianProcess => "Gaussian process (regression)",
             Group::Shapes | Group::Markers => "Shapes and markers",
-            Group::Head => "Head",
+            Group::FrontEnd => "Front end",
             Group::Frames => "Frames",
         }
     }

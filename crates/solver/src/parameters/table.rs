@@ -296,9 +296,18 @@ parameters! {
     /// Cut-off of the zero-phase low-pass of the head's pose.
     head_lowpass_hz: Option<f64> as "headLowpassHz",
     {
-        group: Group::Head, label: "Head low-pass", range: Range::at_least(0.0),
+        group: Group::FrontEnd, label: "Head low-pass", range: Range::at_least(0.0),
         quantity: Quantity::Hertz, zero: Some("no filter"), zero_word: Some("none"),
         step: Some(0.1), option: Some("head-lowpass"), found_by: Some("10 from 25 frames per second on, else none"),
+    }
+
+    /// Smoothing of the adaptation of shape (eq. 5.18), on the diagonal of its system, for neutral markers
+    /// centred and scaled to a root mean square radius of 1. Markers that sit 1 to 2 mm beside their
+    /// places want 0.1.
+    rbf_smoothing: Option<f64> as "rbfSmoothing" = |_| 0.0,
+    {
+        group: Group::FrontEnd, label: "Smoothing of the adaptation", range: Range::between(0.0, 100.0),
+        zero: Some("every marker is met, as in the thesis"), step: Some(0.05),
     }
 
     /// What becomes of a take with frames that are not solved: it is refused, or their weights are

@@ -4,6 +4,7 @@
 //! inputs is taken from the folder. The weights are solved by the function that the browsers run, once for each
 //! program: what this very program has prepared of the same stimuli and files is known by hash.
 
+mod advice;
 mod avatar_key;
 mod builtin;
 mod cache;
@@ -21,6 +22,7 @@ use mimique_solver::{Group, Method, MethodSpec};
 use mimique_study::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
+pub use self::advice::{AdvisedMethod, advised_methods};
 pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
@@ -314,7 +316,7 @@ fn recorded(
 /// The method with the head's low-pass that the capture asks for where the method names none.
 fn with_lowpass(spec: &MethodSpec, performance: &Performance) -> MethodSpec {
     let mut spec = spec.clone();
-    if spec.method.uses(Group::Head) {
+    if spec.method.uses(Group::FrontEnd) {
         spec.head_lowpass_hz = spec.head_lowpass_hz.or(performance.head_lowpass_hz);
     }
     spec

@@ -183,8 +183,8 @@ fn take_key(wanted: &Wanted<'_>, markers: &str, scaled_by_bank: bool) -> Provena
         .json("locked", json!(locked))
 }
 
-/// Labels of a recorded capture that are swapped or stand at one place, looked for once for all its
-/// segments and methods. What the built-in actors do is labelled here.
+/// Labels of a recorded capture that are swapped or stand at one place, and what a smoothed adaptation of shape
+/// gains, looked for once for all its segments and methods. What the built-in actors do is labelled here.
 fn look_at_labels(
     wanted: &Wanted<'_>,
     joined: &JoinedTake<'_>,
@@ -196,7 +196,9 @@ fn look_at_labels(
         return Ok(());
     }
     if remarks.looked_over.insert([avatar.key.clone(), performance.take_key.clone()]) {
-        let said = joined.label_warnings(operators, spec).map_err(|e| wanted.error(e))?;
+        let mut said = joined.label_warnings(operators, spec).map_err(|e| wanted.error(e))?;
+        let advice = joined.smoothing_advice(operators, spec, None).map_err(|e| wanted.error(e))?;
+        said.extend(advice.map(|advice| advice.in_a_study()));
         let pointer = &performance.capture_pointer;
         remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
     }

@@ -5,15 +5,16 @@ use std::ops::Range;
 use mimique_geometry::RigidMotion;
 use mimique_mocap::Capture;
 use mimique_solver::{
-    FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth, SurfaceResponse,
+    Adaptation, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite,
+    Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth,
+    SurfaceResponse,
 };
 
 use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
+use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
 
 /// Frames that a neutral should be the mean of.
 pub(crate) const NEUTRAL_FRAMES: usize = 60;
@@ -47,6 +48,7 @@ pub struct JoinedTake<'a> {
     pub(crate) first_frame: u64,
     pub(crate) repair: Option<String>,
     pub(crate) lids: Vec<JoinedLid>,
+    pub(crate) map_origin: MapOrigin,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -98,6 +100,7 @@ impl<'a> JoinedTake<'a> {
         };
         let mut joined = Self::of_markers(skin, capture, from, head, neutral, warnings)?;
         joined.repair = options.repair.clone();
+        joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
         Ok(joined)
     }
@@ -180,6 +183,7 @@ impl<'a> JoinedTake<'a> {
             first_frame: capture.first_frame,
             repair: None,
             lids: Vec::new(),
+            map_origin: MapOrigin::Unknown,
             warnings,
         })
     }
@@ -260,7 +264,7 @@ impl<'a> JoinedTake<'a> {
             &poses,
             self.neutral.clone(),
             avatar_markers,
-            depth,
+            Adaptation { depth, smoothing: spec.rbf_smoothing() },
         )
         .map_err(|e| self.by_label(e))?;
         let scales = self.scales(&front_end, &poses, operators, spec)?;

@@ -6,7 +6,7 @@ use mimique_solver::{
 };
 use serde::Serialize;
 
-use crate::checks::{HeadMarker, LabelProblem};
+use crate::checks::{HeadMarker, LabelProblem, SmoothingAdvice};
 
 /// The seconds of each stage of a solve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -130,6 +130,9 @@ pub struct SolveReport {
     pub head_markers: Vec<HeadMarker>,
     /// Labels that are swapped or stand at one place.
     pub label_problems: Vec<LabelProblem>,
+    /// What a smoothed adaptation of shape would gain, where it is advised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<SmoothingAdvice>,
     /// SHA-256 of the weights.
     pub weights_hash: String,
     /// SHA-256 of all that the weights come from, and of the weights.

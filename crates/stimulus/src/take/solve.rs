@@ -11,7 +11,7 @@ use super::report::{
 };
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
+use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule, SmoothingAdvice};
 
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -106,6 +106,7 @@ pub fn solve_take(
 struct Checks {
     head_markers: Vec<HeadMarker>,
     label_problems: Vec<LabelProblem>,
+    smoothing: Option<SmoothingAdvice>,
 }
 
 impl Checks {
@@ -117,7 +118,9 @@ impl Checks {
     ) -> Result<Self, SolveError> {
         let label_problems =
             if is_fitted(spec) { joined.label_problems(operators, solution) } else { Vec::new() };
-        Ok(Self { head_markers: joined.head_markers()?, label_problems })
+        let residual = FrameStatistics::of(&solution.reports).residual_rms_mm;
+        let smoothing = joined.smoothing_advice(operators, spec, Some(residual))?;
+        Ok(Self { head_markers: joined.head_markers()?, label_problems, smoothing })
     }
 }
 
@@ -127,12 +130,13 @@ fn report(
     spec: &MethodSpec,
     operators: &Operators,
     solution: &MarkerSolution,
-    Checks { head_markers, label_problems }: Checks,
+    Checks { head_markers, label_problems, smoothing }: Checks,
 ) -> SolveReport {
     let summary = FrameStatistics::of(&solution.reports);
     let mut warnings = joined.warnings.clone();
     warnings.extend(moving_skin(&head_markers));
     warnings.extend(label_problems.iter().map(LabelProblem::sentence));
+    warnings.extend(smoothing.as_ref().map(SmoothingAdvice::sentence));
     warnings.extend(unseen_shapes(operators, spec));
     warnings.extend(summary.warnings(joined.first_frame));
     SolveReport {
@@ -154,6 +158,7 @@ fn report(
         regression: operators.parts().regression.as_ref().map(RegressionSummary::of),
         head_markers,
         label_problems,
+        smoothing,
         provenance: String::new(),
         weights_hash: weights_hash(&solution.weights),
         frames: FrameRow::of(&solution.reports, joined.first_frame),

@@ -320,6 +320,10 @@ LearnsNothing { method: String }: "not-needed",
 NoWeights: "no-weights",
     "no weights: nothing says what the take's frames are", "add \"weights\": \"weights.csv\"";
 BuiltinWeights: "not-needed", "a built-in actor brings the weights along", "remove weights";
+SmoothingAdvised { capture: String, why: String, residual_mm: f64, smoothed_mm: f64, smoothing: f64 }:
+    "smoothing-advised",
+    "{why}: rbfSmoothing {smoothing} lowers the residual of \"{capture}\" from {residual_mm:.3} to {smoothed_mm:.3} mm",
+    "add \"rbfSmoothing\": {smoothing} to the method, or 0 to keep the adaptation exact";
 FactorIsColumn { factor: String }: "name-taken",
     "\"{factor}\" is the name of a column of every export", "give the factor another name";
 FactorTwice { factor: String, here: &'static str, there: &'static str }: "factor-twice",

@@ -8,26 +8,28 @@ use crate::formats::source::{self, Source};
 
 /// What every array begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
-const REMEDY: &str = "save it with numpy.save(file, weights), float32 or float64, frames x shapes";
 /// Longest header: names and sizes of three keys take a hundred bytes.
 const LONGEST_HEADER: u64 = 1 << 16;
 
-/// The header of an array.
+/// The header of an array of R dimensions.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Header {
+pub(super) struct Header<const R: usize> {
     /// Bytes of a number: 4 or 8.
     pub(super) width: usize,
     pub(super) big_endian: bool,
     pub(super) fortran_order: bool,
-    pub(super) rows: usize,
-    pub(super) columns: usize,
+    pub(super) shape: [usize; R],
     /// Where the numbers begin, bytes from the start of the file.
     pub(super) data: u64,
 }
 
-/// Read and check the header.
-pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadError> {
-    let wrong = |at: u64, what: String| ReadError::at_byte(at, "header", what, REMEDY);
+/// Read and check the header; `remedy` is what to do about an array that is none of R dimensions.
+pub(super) fn header<const R: usize>(
+    file: &mut dyn Source,
+    length: u64,
+    remedy: &'static str,
+) -> Result<Header<R>, ReadError> {
+    let wrong = |at: u64, what: String| ReadError::at_byte(at, "header", what, remedy);
     let start = source::beginning(file, 12)?;
     let [_, _, _, _, _, _, major, minor, a, b, c, d] = start[..] else {
         return Err(wrong(length, format!("the file ends after {length} bytes")));
@@ -54,17 +56,19 @@ pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadE
         ">f8" => (8, true),
         other => return Err(wrong(text_at, format!("numbers of type {other:?}"))),
     };
-    let [rows, columns] = keys.shape[..] else {
-        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
-    };
-    if columns == 0 {
-        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
+    let other = || wrong(text_at, format!("an array of shape {:?}", keys.shape));
+    let shape: [usize; R] = keys.shape[..].try_into().map_err(|_| other())?;
+    if shape[1..].contains(&0) {
+        return Err(other());
     }
-    let wanted = rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).map(|n| n as u64);
+    let numbers = shape.iter().try_fold(1_usize, |all, n| all.checked_mul(*n));
+    let wanted = numbers.and_then(|n| n.checked_mul(width)).map(|n| n as u64);
     if wanted != Some(length - data) {
+        let counts: Vec<String> = shape.iter().map(ToString::to_string).collect();
         let what = format!(
-            "{} bytes of numbers, {rows} x {columns} of them at {width} bytes are {}",
+            "{} bytes of numbers, {} of them at {width} bytes are {}",
             length - data,
+            counts.join(" x "),
             wanted.map_or("beyond memory".to_owned(), |n| n.to_string())
         );
         return Err(ReadError::at_byte(
@@ -74,7 +78,7 @@ pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadE
             "copy the file again, or save one array per file",
         ));
     }
-    Ok(Header { width, big_endian, fortran_order: keys.fortran_order, rows, columns, data })
+    Ok(Header { width, big_endian, fortran_order: keys.fortran_order, shape, data })
 }
 
 /// The values of the header's three keys.

@@ -8,8 +8,10 @@
 mod header;
 #[cfg(test)]
 mod tests;
+mod vertices;
 
 pub use header::npy_header;
+pub use vertices::{VertexArray, read_vertex_array};
 
 use std::io::SeekFrom;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,7 @@ use super::format::{Format, Read, Recognise, Write};
 use super::source::{self, Source};
 use crate::{ReadError, WeightOptions, WeightsTable};
 
+const REMEDY: &str = "save it with numpy.save(file, weights), float32 or float64, frames x shapes";
 const BESIDE: &str = "write NAME.shapes.json beside NAME.npy: \
                       {\"shape_names\": [\"jawOpen\", ...], \"rate_hz\": 60}";
 pub(super) static FORMAT: Format = Format {
@@ -83,9 +86,9 @@ fn read(
     options: &WeightOptions<'_>,
 ) -> Result<WeightsTable, ReadError> {
     let length = source::length(file)?;
-    let header = header(file, length)?;
+    let header: Header<2> = header(file, length, REMEDY)?;
     let beside = path.map(Beside::read).transpose()?.flatten();
-    let columns = header.columns;
+    let columns = header.shape[1];
     let names = match &beside {
         Some(beside) => &beside.shape_names,
         None => options.shape_names,
@@ -120,30 +123,17 @@ fn read(
 /// The numbers, frame by frame.
 fn numbers(
     file: &mut dyn Source,
-    header: &Header,
+    header: &Header<2>,
     names: &[String],
 ) -> Result<Vec<f64>, ReadError> {
-    let Header { width, big_endian, rows, columns, data, .. } = *header;
-    file.seek(SeekFrom::Start(data)).map_err(ReadError::Read)?;
-    // The header was held against the length of the file: no more is asked for than there is.
-    let mut bytes = vec![0; rows * columns * width];
-    let filled = source::fill(file, &mut bytes)?;
-    bytes.truncate(filled);
-    let value = |place: usize| {
-        let here = bytes.get(place * width..(place + 1) * width)?;
-        Some(match (width, big_endian) {
-            (4, false) => f64::from(f32::from_le_bytes(here.try_into().ok()?)),
-            (4, true) => f64::from(f32::from_be_bytes(here.try_into().ok()?)),
-            (_, false) => f64::from_le_bytes(here.try_into().ok()?),
-            (_, true) => f64::from_be_bytes(here.try_into().ok()?),
-        })
-    };
+    let Header { shape: [rows, columns], data, width, .. } = *header;
+    let numbers = stored(file, header)?;
     let mut weights = Vec::with_capacity(rows * columns);
     for row in 0..rows {
         for (column, name) in names.iter().enumerate().take(columns) {
             let place =
                 if header.fortran_order { column * rows + row } else { row * columns + column };
-            let found = value(place);
+            let found = numbers.get(place).copied();
             weights.push(found.filter(|w| w.is_finite()).ok_or_else(|| {
                 let what = format!(
                     "row {row}, column {column} ({name}): {}",
@@ -155,6 +145,26 @@ fn numbers(
         }
     }
     Ok(weights)
+}
+
+/// The numbers of an array in the order of the file, as many as there are.
+fn stored<const R: usize>(
+    file: &mut dyn Source,
+    header: &Header<R>,
+) -> Result<Vec<f64>, ReadError> {
+    let (width, big_endian) = (header.width, header.big_endian);
+    file.seek(SeekFrom::Start(header.data)).map_err(ReadError::Read)?;
+    // The header was held against the length of the file: no more is asked for than there is.
+    let mut bytes = vec![0; header.shape.iter().product::<usize>() * width];
+    let filled = source::fill(file, &mut bytes)?;
+    bytes.truncate(filled);
+    let value = |here: &[u8]| match (width, big_endian) {
+        (4, false) => here.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b))),
+        (4, true) => here.try_into().map_or(f64::NAN, |b| f64::from(f32::from_be_bytes(b))),
+        (_, false) => here.try_into().map_or(f64::NAN, f64::from_le_bytes),
+        (_, true) => here.try_into().map_or(f64::NAN, f64::from_be_bytes),
+    };
+    Ok(bytes.chunks_exact(width).map(value).collect())
 }
 
 /// The array, and beside it its names, rate and first frame.
