@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod body_joints;
 mod capture;
 mod error;
 mod facts;
@@ -30,6 +31,7 @@ mod read;
 mod repair;
 mod write;
 
+pub use body_joints::{BodyJoint, BodyJoints, BodyJointsError};
 pub use capture::{Capture, Event, LengthUnit, Recording, WeightOptions, WeightsTable};
 pub use error::{ReadError, WriteError};
 pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence, Stillest, stillest};

@@ -9,6 +9,7 @@
 //! | statistics | `expected.json` with `cases` | `mimique-stats` |
 //! | solver | `toy.json`, `operators.json`, `frames/` | `mimique-solver`, `mimique-stimulus` |
 //! | annotation | `segmentation.json`, `features.json`, `classify/`, `hmm/`, `evaluate/`, `elan/` | `mimique-annotate` |
+//! | exertion | `work/`, `heart/`, `metabolism/`, `activity/`, `breathing/`, `svr/`, `train/`, `rules/`, `weights/`, `chain/`, `errors/` | `mimique-exertion`, `mimique-exertion-training` |
 //!
 //! A number that is wrong is a wrong [`Case`]; a file that cannot be read is a [`VerifyError`]. Names,
 //! values and, where a case has them, tolerances come from the files.
@@ -38,6 +39,7 @@ mod annotation;
 mod case;
 mod document;
 mod error;
+mod exertion;
 mod solver;
 mod statistics;
 
@@ -62,8 +64,8 @@ pub trait Family: Sync {
 }
 
 /// Every family.
-pub static FAMILIES: [&dyn Family; 3] =
-    [&statistics::Statistics, &solver::Solver, &annotation::Annotation];
+pub static FAMILIES: [&dyn Family; 4] =
+    [&statistics::Statistics, &solver::Solver, &annotation::Annotation, &exertion::Exertion];
 
 /// How many folders below the one that is named are looked into.
 const DEPTH: usize = 3;
