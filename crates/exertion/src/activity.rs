@@ -1,19 +1,16 @@
 //! Work without a skeleton: of power on a bicycle, of speed and grade on foot, of a heart rate (E13).
 
+use mimique_mocap::{Activity, ActivityColumn, Sport};
+
 use crate::error::{ExertionError, as_many, from_zero, within};
 use crate::heart::VO2_PER_WORK;
 use crate::metabolism::vo2;
 use crate::person::{Person, VO2_REST};
+use crate::samples::with_gaps_at_whole_seconds;
 
 /// Speed from which it is running, m/s.
 const RUNNING_MS: f64 = 2.0;
 const SECONDS_OF_A_MINUTE: f64 = 60.0;
-/// Grades that roads have, rise over run.
-const GRADES: [f64; 2] = [-1.0, 1.0];
-/// Speeds of people, m/s, and powers, W.
-const SPEEDS: [f64; 2] = [0.0, 15.0];
-const POWERS: [f64; 2] = [0.0, 3000.0];
-
 /// Uptake of oxygen on a bicycle, ml/kg/min: 10.8 W/kg + 7, at 0 W that of rest (ACSM).
 pub fn vo2_cycling(power_w: f64, mass_kg: f64) -> f64 {
     if power_w > 0.0 { 10.8 * power_w / mass_kg + 7.0 } else { VO2_REST }
@@ -44,7 +41,12 @@ pub fn w_of_power(person: &Person, power_w: &[f64]) -> Result<Vec<f64>, Exertion
     let of = |(second, power): (usize, &f64)| {
         let place = format!("powerW/{second}");
         from_zero(&place, *power)?;
-        within(&place, *power, POWERS, Some("W"))?;
+        within(
+            &place,
+            *power,
+            ActivityColumn::PowerW.range(),
+            Some(ActivityColumn::PowerW.unit()),
+        )?;
         Ok(w_of_vo2(vo2_cycling(*power, mass_kg)))
     };
     power_w.iter().enumerate().map(of).collect()
@@ -62,9 +64,10 @@ pub fn w_on_foot(speed_ms: &[f64], grade: &[f64]) -> Result<Vec<f64>, ExertionEr
     let of = |(second, speed): (usize, &f64)| {
         let place = format!("speed/{second}");
         from_zero(&place, *speed)?;
-        within(&place, *speed, SPEEDS, Some("m/s"))?;
+        within(&place, *speed, ActivityColumn::Speed.range(), Some(ActivityColumn::Speed.unit()))?;
         let own = grade.get(second).copied().unwrap_or(0.0);
-        within(&format!("grade/{second}"), own, GRADES, Some("(rise over run)"))?;
+        let unit = Some(ActivityColumn::Grade.unit());
+        within(&format!("grade/{second}"), own, ActivityColumn::Grade.range(), unit)?;
         Ok(w_of_vo2(vo2_on_foot(*speed, own)))
     };
     speed_ms.iter().enumerate().map(of).collect()
@@ -73,6 +76,57 @@ pub fn w_on_foot(speed_ms: &[f64], grade: &[f64]) -> Result<Vec<f64>, ExertionEr
 /// w of the share of the heart's reserve at every second, by the uptake of oxygen that goes with it.
 pub fn w_of_heart(person: &Person, rcn: &[f64]) -> Vec<f64> {
     rcn.iter().map(|share| w_of_vo2(vo2(person, *share))).collect()
+}
+
+/// A recorded activity, second by second.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActivityWork {
+    /// Work of every second, J/kg.
+    pub w: Vec<f64>,
+    /// The share of the heart's reserve, where the heart was recorded.
+    pub rcn: Option<Vec<f64>>,
+    /// What the work follows from.
+    pub from: ActivityColumn,
+}
+
+impl ActivityWork {
+    /// Of an activity: of its work where it has one; else of speed on foot, of power on a bicycle, of
+    /// whichever of these there is where the file does not say the sport (power first); else of the heart.
+    ///
+    /// # Errors
+    /// [`ExertionError`]: times that leave a gap of more than 5 s, in the file or in a column that is used
+    /// (`time/i`), values that no person has.
+    pub fn of(person: &Person, activity: &Activity) -> Result<Self, ExertionError> {
+        use ActivityColumn::{Grade, HeartRate, PowerW, Speed, Work};
+        let column = |column: ActivityColumn| -> Result<Option<Vec<f64>>, ExertionError> {
+            let Some(values) = activity.column(column) else { return Ok(None) };
+            with_gaps_at_whole_seconds(&activity.time_s, values, column.name()).map(Some)
+        };
+        let heart = column(HeartRate)?;
+        let rcn: Option<Vec<f64>> =
+            heart.map(|rates| rates.iter().map(|rate| person.heart_share(*rate)).collect());
+        let order = match activity.sport {
+            Some(Sport::OnFoot) => [Work, Speed, PowerW],
+            Some(Sport::Cycling) | None => [Work, PowerW, Speed],
+        };
+        let from = order.into_iter().find(|own| activity.column(*own).is_some());
+        let own = from.map(column).transpose()?.flatten();
+        let (w, from) = match (from, own) {
+            (Some(PowerW), Some(power)) => (w_of_power(person, &power)?, PowerW),
+            (Some(Speed), Some(speed)) => {
+                (w_on_foot(&speed, &column(Grade)?.unwrap_or_default())?, Speed)
+            }
+            (_, Some(work)) => (work, Work),
+            (_, None) => match &rcn {
+                Some(rcn) => (w_of_heart(person, rcn), HeartRate),
+                None => {
+                    let place = "power_w, work, speed, heart_rate".to_owned();
+                    return Err(ExertionError::Few { place, found: 0, least: 1 });
+                }
+            },
+        };
+        Ok(Self { w, rcn, from })
+    }
 }
 
 #[cfg(test)]
@@ -87,6 +141,37 @@ mod tests {
         assert_eq!(w_on_foot(&[0.0, 3.0], &[]).unwrap()[0], 0.0);
         assert_eq!(w_on_foot(&[3.0], &[-0.2]).unwrap(), w_on_foot(&[3.0], &[0.0]).unwrap());
         assert_eq!(w_of_heart(&person, &[0.0]), [0.0]);
+    }
+
+    #[test]
+    fn the_work_of_an_activity_follows_from_what_it_has() {
+        let person = Person::new(PersonSpec::default()).unwrap();
+        let of = |text: &str| {
+            let activity = mimique_mocap::read_activity_bytes(text.as_bytes()).unwrap();
+            ActivityWork::of(&person, &activity)
+        };
+        let ride =
+            of("time,speed,power_w,heart_rate\n0,5,200,100\n1,5,200,\n3,5,200,130\n").unwrap();
+        assert_eq!(ride.from, ActivityColumn::PowerW);
+        assert_eq!(ride.w, w_of_power(&person, &[200.0; 4]).unwrap());
+        assert_eq!(ride.rcn.unwrap(), [100.0, 110.0, 120.0, 130.0].map(|r| person.heart_share(r)));
+        let run = of("time,speed,grade\n0,3,0.1\n1,3,0.1\n").unwrap();
+        assert_eq!(
+            (run.from, run.w),
+            (ActivityColumn::Speed, w_on_foot(&[3.0; 2], &[0.1; 2]).unwrap())
+        );
+        let work = of("time,work,speed\n0,7,3\n1,9,3\n").unwrap();
+        assert_eq!((work.from, work.w), (ActivityColumn::Work, vec![7.0, 9.0]));
+        let heart = of("time,heart_rate\n0,130\n1,130\n").unwrap();
+        assert_eq!(
+            (heart.from, heart.w),
+            (ActivityColumn::HeartRate, w_of_heart(&person, &[0.5; 2]))
+        );
+        let gap = of("time,heart_rate,speed\n0,130,3\n3,,3\n6,,3\n9,130,3\n").unwrap_err();
+        assert_eq!(gap.place(), "time/3", "the heart was not seen for nine seconds");
+        let late = of("time,heart_rate,speed\n0,,3\n4,,3\n8,130,3\n9,130,3\n").unwrap_err();
+        assert_eq!(late.place(), "time/2");
+        assert_eq!(of("time,speed\n0,3\n").unwrap_err().place(), "time");
     }
 
     #[test]

@@ -80,7 +80,9 @@ mod shapes;
 mod support_vectors;
 mod work;
 
-pub use activity::{vo2_cycling, vo2_on_foot, w_of_heart, w_of_power, w_of_vo2, w_on_foot};
+pub use activity::{
+    ActivityWork, vo2_cycling, vo2_on_foot, w_of_heart, w_of_power, w_of_vo2, w_on_foot,
+};
 pub use body::{Body, BodyOptions, LOWPASS_HZ, PartEnergy, Scale, Up};
 pub use breathing::{Breathing, BreathingInput};
 pub use chain::{Clip, FRAMES_PER_SECOND, Face, Heart, Series, Start, Window};
@@ -93,7 +95,7 @@ pub use model::{ExpressionModel, Feature, MODEL_VERSION, model_json};
 pub use person::{Expressivity, LEVELS, Loads, Person, PersonSpec, Sex};
 pub use plan::{Part, Plan};
 pub use rules::{Curves, Features, rules};
-pub use samples::{LONGEST_GAP_S, at_whole_seconds, whole_seconds};
+pub use samples::{LONGEST_GAP_S, at_whole_seconds, whole_seconds, with_gaps_at_whole_seconds};
 pub use shapes::ShapeTable;
 pub use support_vectors::{SupportVectorParts, SupportVectors};
 pub use work::{Accumulated, BodyWork, Convention};

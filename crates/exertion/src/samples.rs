@@ -77,6 +77,43 @@ pub fn at_whole_seconds(
         .collect())
 }
 
+/// The same of a column that lacks values here and there (NaN): straight over what is missing, as long as the
+/// gap is bridged; before the first and after the last value, the nearest.
+///
+/// # Errors
+/// As [`at_whole_seconds`]; a column without a value (`NAME`).
+pub fn with_gaps_at_whole_seconds(
+    time: &[f64],
+    values: &[f64],
+    name: &str,
+) -> Result<Vec<f64>, ExertionError> {
+    whole_seconds(time)?;
+    as_many(name, values.len(), time.len())?;
+    let seen: Vec<usize> = (0..values.len()).filter(|&i| !values[i].is_nan()).collect();
+    let (Some(&first), Some(&last)) = (seen.first(), seen.last()) else {
+        return Err(ExertionError::Few { place: name.to_owned(), found: 0, least: 1 });
+    };
+    let ends = [0, values.len() - 1];
+    let known: Vec<usize> = std::iter::once(ends[0]).chain(seen).chain([ends[1]]).collect();
+    for pair in known.windows(2) {
+        let gap = time[pair[1]] - time[pair[0]];
+        if gap > LONGEST_GAP_S {
+            let place = format!("time/{}", pair[1]);
+            return Err(ExertionError::Gap {
+                place,
+                time: time[pair[1]],
+                gap,
+                most: LONGEST_GAP_S,
+            });
+        }
+    }
+    let mut filled = values.to_vec();
+    (filled[ends[0]], filled[ends[1]]) = (values[first], values[last]);
+    let kept: Vec<usize> = (0..filled.len()).filter(|&i| !filled[i].is_nan()).collect();
+    let of = |from: &[f64]| -> Vec<f64> { kept.iter().map(|&i| from[i]).collect() };
+    at_whole_seconds(&of(time), &of(&filled), name)
+}
+
 /// The value at a place between whole seconds, straight between them; at the ends the nearest.
 pub(crate) fn between_seconds(values: &[f64], t: f64) -> f64 {
     let last = values.len() - 1;

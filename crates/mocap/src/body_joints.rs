@@ -383,7 +383,7 @@ mod tests {
         (BodyJoints::find(&labels).unwrap(), labels)
     }
 
-    fn label_of<'a>(found: &'a (BodyJoints, Vec<String>), joint: BodyJoint) -> Option<&'a str> {
+    fn label_of(found: &(BodyJoints, Vec<String>), joint: BodyJoint) -> Option<&str> {
         found.0.marker(joint).map(|marker| found.1[marker].as_str())
     }
 
