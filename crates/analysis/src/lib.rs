@@ -43,7 +43,7 @@ pub use power::{
     power_csv, power_curve, power_markdown, power_runs,
 };
 pub use preregistration::{Preregistration, preregistration};
-pub use report::{Report, ReportFile, analyze};
+pub use report::{CoursePanel, Report, ReportFile, analyze, time_courses};
 pub use simulate::{
     ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
     Rating, Recognition, SimulatedSession, Simulation, Times,

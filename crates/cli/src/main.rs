@@ -9,6 +9,7 @@ mod backup;
 mod capture_options;
 mod check;
 mod erase;
+mod exertion;
 mod export;
 mod export_site;
 mod import;
@@ -55,7 +56,7 @@ enum Command {
     Order(order::Args),
     /// Tell what an avatar, a capture, a weight file, a pack or a study holds
     Inspect(inspect::Args),
-    /// Write an avatar, a capture and a marker map to try the commands on
+    /// Write an avatar, a capture, a marker map and motions of a body to try the commands on
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
@@ -63,6 +64,8 @@ enum Command {
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
     Segment(Box<segment::Args>),
+    /// Turn a body's motion, or what a watch recorded, into weights of a face that shows it
+    Exertion(Box<exertion::Args>),
     /// Recover a researcher's account; list the accounts
     Account(account::Args),
     /// Write the responses of a study to a file
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
         Command::Solve(args) => solve::run(*args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
+        Command::Exertion(args) => exertion::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),

@@ -59,10 +59,16 @@ fn a_model_learns_the_rules_back_and_finds_expressivity() {
 
     // What is written is what a chain reads, and it follows the rules.
     let model = ExpressionModel::of_text(&trained.file.to_string()).unwrap();
-    let states: Vec<Features> =
-        [(2.0, 2.0, 0.15, 0.5), (14.0, 14.0, 0.6, 6.0), (26.0, 26.0, 0.8, 12.0)]
-            .map(|(w, p, rcn, epoc)| Features { w, p, rcn, epoc })
-            .to_vec();
+    let LessonTake { person, plan, .. } = &takes[0];
+    let series = Series::of(person, plan, Heart::default(), Start::default()).unwrap();
+    let states: Vec<Features> = [15, 60, 100, 140, 180, 225, 260, 320]
+        .map(|second| Features {
+            w: series.w[second],
+            p: series.p[second],
+            rcn: series.rcn[second],
+            epoc: series.metabolism.epoc[second],
+        })
+        .to_vec();
     let learnt = Expression::Model(Box::new(model)).curves(&states, 5.0);
     for (state, learnt) in states.iter().zip(&learnt) {
         let taught = rules(state, 5.0);

@@ -60,6 +60,10 @@
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > y)` says what becomes of NaN")]
 
+/// What the numbers of a series and of weights follow from, for provenance: it changes when the same input
+/// gives other bits.
+pub const VERSION: &str = "1";
+
 mod activity;
 mod body;
 mod breathing;

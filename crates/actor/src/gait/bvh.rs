@@ -151,7 +151,7 @@ fn write_frame(text: &mut String, gait: &Gait, lengths: &Lengths, height: f64, t
         write([0.0, knee]);
         write([0.0, hip - knee - foot]);
         // The toes stay on the ground while the foot rolls over its ball.
-        write([0.0, foot.min(0.0).max(-30.0)]);
+        write([0.0, foot.clamp(-30.0, 0.0)]);
     }
     write([shoulder_turn - hip_turn, gait.lean]);
     write([-shoulder_turn, -gait.lean / 2.0]);

@@ -20,6 +20,7 @@ use mimique_study::Study;
 use crate::language::Language;
 use crate::trials::export::Export;
 use document::Block;
+pub use figure::{CoursePanel, time_courses};
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
