@@ -141,7 +141,7 @@ pub enum ExertionError {
     },
     /// A joint was not seen in a frame.
     #[error(
-        "{place}: not seen in frame {frame}; bridge the gap (mimique repair), or cut the capture"
+        "{place}: not seen in frame {frame}; bridge the gap with `mimique repair` or cut the capture"
     )]
     UnseenJoint {
         /// Where, ending in the joint.

@@ -94,7 +94,7 @@ pub(super) struct PersonOptions {
     #[arg(long, value_name = "FILE.json", help_heading = PERSON)]
     pub(super) person: Option<PathBuf>,
     /// Level of training, 0 to 10 [default: the person's, else 5]
-    #[arg(long, value_name = "NUMBER", help_heading = PERSON)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, help_heading = PERSON)]
     pub(super) level: Option<f64>,
     /// What is carried, kg: back=8,leftHand=2,rightHand=2
     #[arg(long, value_name = "PLACE=KG", value_delimiter = ',', help_heading = PERSON)]
@@ -160,7 +160,7 @@ pub(super) struct TrainOptions {
     #[arg(long, value_name = "FROM:TO", default_value = "-10:10", allow_hyphen_values = true)]
     pub(super) gamma: Exponents,
     /// Half the width of the tube in which an error costs nothing, per cent
-    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, default_value_t = 1.0)]
     pub(super) epsilon: f64,
     /// Contiguous blocks that are held out in turn
     #[arg(long, value_name = "NUMBER", default_value_t = 10)]
