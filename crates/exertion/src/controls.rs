@@ -1,7 +1,7 @@
 //! Controls of a face: curves times expressivity, moved by the breath (E15).
 
 use crate::breathing::Breathing;
-use crate::person::Expressivity;
+use crate::expressivity::Expressivity;
 use crate::rules::Curves;
 
 /// How far an open jaw follows the breath.

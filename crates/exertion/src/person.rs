@@ -2,8 +2,10 @@
 
 use serde_json::Value;
 
-use crate::error::{ExertionError, finite, from_zero, within};
+use crate::error::{ExertionError, from_zero, within};
+use crate::expressivity::Expressivity;
 use crate::json::{Object, number};
+use crate::loads::Loads;
 
 /// Sex, where a formula asks for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -12,61 +14,6 @@ pub enum Sex {
     Female,
     /// Male.
     Male,
-}
-
-/// What is carried, kg.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Loads {
-    /// In the left hand.
-    pub left_hand: f64,
-    /// In the right hand.
-    pub right_hand: f64,
-    /// On the back.
-    pub back: f64,
-}
-
-/// How strongly each of the five expressions shows: factors of the curves (table 3.2 of the thesis).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Expressivity {
-    /// The opening of the mouth.
-    pub mouth_open: f64,
-    /// The mouth of a strong exhalation.
-    pub mouth_exhale: f64,
-    /// The stretching of the mouth.
-    pub mouth_stretch: f64,
-    /// The narrowing of the eyes.
-    pub eyes: f64,
-    /// The brows.
-    pub brows: f64,
-}
-
-impl Default for Expressivity {
-    fn default() -> Self {
-        Self { mouth_open: 1.0, mouth_exhale: 1.0, mouth_stretch: 1.0, eyes: 1.0, brows: 1.0 }
-    }
-}
-
-impl Expressivity {
-    /// Names of the factors, in JSON and on the command line.
-    pub const NAMES: [&'static str; 5] =
-        ["mouthOpen", "mouthExhale", "mouthStretch", "eyes", "brows"];
-
-    /// The factor of a name.
-    pub fn by_name(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "mouthOpen" => &mut self.mouth_open,
-            "mouthExhale" => &mut self.mouth_exhale,
-            "mouthStretch" => &mut self.mouth_stretch,
-            "eyes" => &mut self.eyes,
-            "brows" => &mut self.brows,
-            _ => return None,
-        })
-    }
-
-    /// The factors in the order of [`Self::NAMES`].
-    pub fn factors(&self) -> [f64; 5] {
-        [self.mouth_open, self.mouth_exhale, self.mouth_stretch, self.eyes, self.brows]
-    }
 }
 
 /// What is known of a person; what is `None` follows from the rest ([`Person::new`]).
@@ -300,45 +247,6 @@ fn sex(place: &str, value: &Value) -> Result<Option<Sex>, ExertionError> {
             let needed = "\"female\", \"male\" or null";
             Err(ExertionError::Shape { place: place.to_owned(), needed })
         }
-    }
-}
-
-impl Expressivity {
-    /// Takes over the factors that a JSON object names.
-    fn read(&mut self, at: &str, value: &Value) -> Result<(), ExertionError> {
-        for (place, key, value) in Object::of(at, value)?.members() {
-            let Some(factor) = self.by_name(key) else {
-                return Err(ExertionError::Unknown { place, known: Self::NAMES.to_vec() });
-            };
-            *factor = finite(&place, number(&place, value)?)?;
-        }
-        Ok(())
-    }
-}
-
-impl Loads {
-    /// Names of the places, in JSON and on the command line.
-    pub const NAMES: [&'static str; 3] = ["leftHand", "rightHand", "back"];
-
-    /// The load of a name.
-    pub fn by_name(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "leftHand" => &mut self.left_hand,
-            "rightHand" => &mut self.right_hand,
-            "back" => &mut self.back,
-            _ => return None,
-        })
-    }
-
-    fn of_json(at: &str, value: &Value) -> Result<Self, ExertionError> {
-        let mut loads = Self::default();
-        for (place, key, value) in Object::of(at, value)?.members() {
-            let Some(load) = loads.by_name(key) else {
-                return Err(ExertionError::Unknown { place, known: Self::NAMES.to_vec() });
-            };
-            *load = number(&place, value)?;
-        }
-        Ok(loads)
     }
 }
 

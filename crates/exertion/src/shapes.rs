@@ -143,7 +143,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::person::Expressivity;
+    use crate::expressivity::Expressivity;
     use crate::rules::Curves;
 
     #[test]

@@ -1,6 +1,7 @@
 //! Mechanical work: from the energies of a body's parts to joules per kilogram over time.
 
-use crate::body::{Body, PartEnergy};
+use crate::body::Body;
+use crate::energy::PartEnergy;
 use crate::error::{ExertionError, as_many, from_zero};
 use crate::person::Person;
 

@@ -153,7 +153,7 @@ fn jitter_multiplies_work_and_the_low_pass_takes_it_away() {
     let mut random = Random::new(1);
     let mut jittered = still.clone();
     for place in &mut jittered.positions {
-        *place = *place + Displacement::from([0, 1, 2].map(|_| 0.002 * random.normal()));
+        *place += Displacement::from([0, 1, 2].map(|_| 0.002 * random.normal()));
     }
     let filtered = BodyOptions { lowpass_hz: Some(6.0), ..RAW };
     let [clean, raw, smooth] = [(&still, &RAW), (&jittered, &RAW), (&jittered, &filtered)]
