@@ -219,13 +219,8 @@ impl Report<'_> {
         })
     }
 
-    /// Prints what matters.
-    pub(super) fn print(&self, told: &Value, json: bool) -> anyhow::Result<()> {
-        let mut out = std::io::stdout().lock();
-        if json {
-            writeln!(out, "{}", serde_json::to_string_pretty(told)?)?;
-            return Ok(());
-        }
+    /// Who moves, and how body and face are at the window's end.
+    fn print_state(&self, told: &Value, out: &mut impl std::io::Write) -> std::io::Result<()> {
         let (person, series) = (self.person, self.series);
         writeln!(
             out,
@@ -263,7 +258,17 @@ impl Report<'_> {
             out,
             "face    mouth open {open:.0} %, stretched {stretch:.0} %, eyes {eyes:.0} %, brows {brows:.0} % ({})",
             self.args.model
-        )?;
+        )
+    }
+
+    /// Prints what matters.
+    pub(super) fn print(&self, told: &Value, json: bool) -> anyhow::Result<()> {
+        let mut out = std::io::stdout().lock();
+        if json {
+            writeln!(out, "{}", serde_json::to_string_pretty(told)?)?;
+            return Ok(());
+        }
+        self.print_state(told, &mut out)?;
         if let Some(file) = &self.args.out {
             writeln!(
                 out,
