@@ -124,10 +124,12 @@ export class Timeline {
   #draw() {
     const line = $("timeline");
     if (!$("expressions").open) return;
-    const canvas = made("canvas", { role: "img" });
     const boxes = this.#segments.map((segment, i) => this.#box(segment, i));
-    line.replaceChildren(canvas, ...boxes, this.#playhead);
-    if (this.#curve) draw(canvas, { lines: [{ name: "Distance from the neutral face", values: this.#curve.level }], unit: "" }, 0);
+    line.replaceChildren(...boxes, this.#playhead);
+    if (!this.#curve) return;
+    const canvas = made("canvas", { role: "img" });
+    line.prepend(canvas);
+    draw(canvas, { lines: [{ name: "Distance from the neutral face", values: this.#curve.level }], unit: "" }, 0);
   }
 
   #box({ label, expression, clip_s }, index) {

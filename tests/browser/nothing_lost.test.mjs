@@ -47,10 +47,10 @@ test(`nothing lost: ${sessions} sessions over a bad network`, { skip: unable, ti
         for (let guard = 0; guard < 60; guard++) {
           const here = await place(page);
           if (here.view === "end") break;
-          if (here.view === "receipt" || here.view === "opening") {
+          if (["receipt", "opening", "stuck"].includes(here.view)) {
             proxy.calm();
             // A request that was swallowed before is given up only after the page's patience.
-            await page.waitForFunction((view) => document.querySelector("main[data-view]")?.dataset.view !== view, here.view, { timeout: 200_000 });
+            await page.waitForFunction((view) => [...document.querySelectorAll("main[data-view]")].find((main) => main.checkVisibility())?.dataset.view !== view, here.view, { timeout: 200_000 });
             continue;
           }
           if (here.view === "failure") {

@@ -11,6 +11,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
+use crate::bench_annotate;
 use crate::bench_plot;
 use crate::bench_stats;
 use crate::install;
@@ -23,6 +24,9 @@ pub struct Args {
     /// The statistics beside SciPy and polars instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot"])]
     stats: bool,
+    /// The annotation beside scikit-learn and hmmlearn instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats"])]
+    annotate: bool,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -32,7 +36,7 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/measured/solver-benchmarks.md, or docs/measured/statistics-benchmarks.md
+    /// Write the figures into the document of docs/measured that holds them
     #[arg(long)]
     record: bool,
 }
@@ -53,6 +57,9 @@ type Seconds = Vec<f64>;
 pub fn run(args: &Args) -> Result<()> {
     if args.stats {
         return bench_stats::run(args.rounds.max(1), args.record);
+    }
+    if args.annotate {
+        return bench_annotate::run(args.rounds.max(1), args.record);
     }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {

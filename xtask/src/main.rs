@@ -6,6 +6,7 @@
 //! - `cargo xtask web`: build the wasm modules and the pages alone.
 
 mod bench;
+mod bench_annotate;
 mod bench_plot;
 mod bench_stats;
 mod budget;

@@ -32,6 +32,6 @@ pub use gait::{Gait, gait_bvh};
 pub use head::SHAPE_NAMES;
 pub use head::{Density, HeadSpec, Identity, MarkerSites, build_head, marker_sites};
 pub use performance::{
-    Clip, Emotion, HeadPose, NOISE_MM, Performance, Segment, SyntheticTake, performance_weights,
-    range_of_motion, range_of_motion_take, synthetic_take,
+    Clip, Emotion, HeadPose, NOISE_MM, Performance, Phases, Segment, SyntheticTake,
+    performance_weights, range_of_motion, range_of_motion_take, synthetic_take,
 };

@@ -120,6 +120,21 @@ fn two_people_are_too_few_and_that_is_said() {
     assert!(french.files[0].text.contains("Comme dans la thèse"));
 }
 
+/// Of one person no test of people is defined; a French report says why in French.
+#[test]
+fn reasons_are_said_in_the_language_of_the_report() {
+    let study = demo_study();
+    let table = export(&study, &Raters { people: 2, effect: 0.0, seed: 1 });
+    let table = Table::parse(table.as_bytes()).unwrap();
+    let report = |language| analyze(&table, &study, language).unwrap();
+    let (english, french) = (report(Language::English), report(Language::French));
+    let [english_words, french_words] =
+        ["one block only: Iman and Davenport", "le F d’Iman et Davenport n’existe pas"];
+    assert!(english.files[0].text.contains(english_words));
+    assert!(!french.files[0].text.contains(english_words));
+    assert!(french.files[0].text.contains(french_words));
+}
+
 #[test]
 fn an_export_without_trials_or_columns_is_refused() {
     let study = demo_study();

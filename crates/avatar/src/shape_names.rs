@@ -94,6 +94,12 @@ pub fn turns_eyes(name: &str) -> bool {
     actions(name).iter().any(|action| action.feature.starts_with("eyeLook"))
 }
 
+/// Whether a shape shuts the eyes: its name means one of ARKit's `eyeBlink` shapes or the action
+/// unit 43 or 45.
+pub fn blinks(name: &str) -> bool {
+    actions(name).iter().any(|action| action.feature == "eyeBlink")
+}
+
 /// Joins columns of recorded weights to an avatar's shapes by their names.
 ///
 /// A column of the very same name comes first, then one that means the same, then columns that
@@ -312,6 +318,10 @@ mod tests {
             assert!(!turns_eyes(name), "{name}");
         }
         assert_eq!(ARKIT_SHAPES.into_iter().filter(|name| turns_eyes(name)).count(), 8);
+        for name in ["eyeBlinkLeft", "eyeBlink_R", "AU45", "Face_EyeBlink_Left"] {
+            assert!(blinks(name), "{name}");
+        }
+        assert_eq!(ARKIT_SHAPES.into_iter().filter(|name| blinks(name)).count(), 2);
     }
 
     #[test]

@@ -10,7 +10,7 @@ mod values;
 use std::path::Path;
 
 use anyhow::{anyhow, bail};
-use mimique_analysis::time_courses;
+use mimique_analysis::components::time_courses;
 use mimique_exertion::{
     Clip, Expression, ExpressionModel, Face, Series, ShapeTable, Start, Window,
 };

@@ -5,20 +5,25 @@
 
 mod account;
 mod analyze;
+mod annotate;
 mod backup;
+mod border_options;
 mod capture_options;
 mod check;
+mod eaf_file;
 mod erase;
 mod exertion;
 mod export;
 mod export_site;
 mod import;
 mod inspect;
+mod motion;
 mod order;
 mod output;
 mod power;
 mod preview;
 mod repair;
+mod report_folder;
 mod restore;
 mod sample;
 mod segment;
@@ -64,6 +69,8 @@ enum Command {
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
     Segment(Box<segment::Args>),
+    /// Learn the labels of facial motion from annotated takes, suggest and evaluate them
+    Annotate(annotate::Args),
     /// Turn a body's motion, or what a watch recorded, into weights of a face that shows it
     Exertion(Box<exertion::Args>),
     /// Recover a researcher's account; list the accounts
@@ -111,6 +118,7 @@ fn main() -> ExitCode {
         Command::Solve(args) => solve::run(*args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
+        Command::Annotate(args) => annotate::run(args, json),
         Command::Exertion(args) => exertion::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use mimique_solver::exp_in_place;
+use mimique_solver::exp_all;
 
 use crate::error::{ExertionError, as_many, finite, from_zero};
 use crate::json::{Object, joined, list, number, numbers};
@@ -157,7 +157,7 @@ impl SupportVectors {
         for distance in scratch.iter_mut() {
             *distance *= -self.gamma;
         }
-        exp_in_place(scratch);
+        exp_all(scratch);
         let products = scratch.iter().zip(&self.coefficients).map(|(kernel, a)| kernel * a);
         self.b + products.sum::<f64>()
     }

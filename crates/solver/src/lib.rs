@@ -100,7 +100,7 @@ pub use gaussian_process::regression::{
 pub use gaussian_process::sparse::SparseProcess;
 pub use kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 pub use kouadio::bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
-pub use linear_algebra::exp::exp_in_place;
+pub use linear_algebra::exp::exp_all;
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};
 pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};

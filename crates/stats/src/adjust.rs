@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
 use crate::procedure::arguments::{Arguments, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
+use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::words::format_number;
 
@@ -128,11 +129,11 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
         !(0.0..=1.0).contains(&p) && !p.is_nan()
     };
     if let Some(row) = (0..table.rows()).find(wrong) {
-        return Err(Refusal::column(
-            arguments.needed("p")?,
-            format!("line {}: {} is no probability", table.line(row), column.values[row]),
-            "give numbers from 0 to 1",
-        ));
+        return Err(Refusal::NotAProbability {
+            column: arguments.needed("p")?.to_owned(),
+            line: table.line(row),
+            value: column.values[row],
+        });
     }
     Ok(Answer::of(&Outcome::Ok(adjust_all(&column.values)), words))
 }

@@ -23,9 +23,11 @@ mod estimate;
 mod outcome;
 mod procedure;
 mod ranks;
+mod refusal;
 mod summary;
 mod table;
 mod test;
+mod undefined;
 mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
@@ -35,11 +37,12 @@ pub use distributions::tail::{
 };
 pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
-pub use outcome::{Labelled, Outcome, Refusal};
+pub use outcome::{Labelled, Outcome};
 pub use procedure::arguments::{Arguments, Choice, ProcedureOption, Required, Takes};
 pub use procedure::row::{Term, TestNames, TestResult, TestRow};
 pub use procedure::{Answer, PROCEDURES, Procedure, Sample};
 pub use ranks::Ranks;
+pub use refusal::Refusal;
 pub use summary::confusion::{Confusion, confusion};
 pub use summary::describe::{Description, describe, median, moments, quantile_sorted};
 pub use table::blocks::Blocks;
@@ -57,4 +60,5 @@ pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, sche
 pub use test::sign::{Sign, sign};
 pub use test::spearman::{Spearman, spearman};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
+pub use undefined::Undefined;
 pub use words::{format_number, format_p};

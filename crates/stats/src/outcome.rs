@@ -1,84 +1,26 @@
-//! What a test gives back: a result, a stated impossibility, or a refusal of its input.
+//! What a test gives back: a result or a stated impossibility; and values by label.
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-/// Why an input cannot be tested at all. Names the column and what to do.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
-    /// A column has too few levels to compare.
-    #[error(
-        "column \"{column}\": {found} among the {rows} rows used, at least {needed} are needed; {remedy}"
-    )]
-    TooFewLevels {
-        /// The column.
-        column: String,
-        /// What was found, e.g. `only one level ("a")`.
-        found: String,
-        /// Rows left after dropping missing values.
-        rows: usize,
-        /// Levels needed.
-        needed: usize,
-        /// What to do.
-        remedy: String,
-    },
-    /// No row has a value in every used column.
-    #[error(
-        "column \"{column}\": no row is left after dropping {dropped} with missing values; check the column's name and its cells"
-    )]
-    NoRows {
-        /// The first used column.
-        column: String,
-        /// Rows dropped.
-        dropped: usize,
-    },
-    /// Anything else that a column can have wrong.
-    #[error("column \"{column}\": {problem}; {remedy}")]
-    Column {
-        /// The column.
-        column: String,
-        /// What is wrong, with the value.
-        problem: String,
-        /// What to do.
-        remedy: String,
-    },
-    /// Options that do not go together.
-    #[error("{problem}; {remedy}")]
-    Options {
-        /// What is wrong.
-        problem: String,
-        /// What to do.
-        remedy: String,
-    },
-}
-
-impl Refusal {
-    /// A problem of one column.
-    pub fn column(
-        column: impl Into<String>,
-        problem: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
-        Self::Column { column: column.into(), problem: problem.into(), remedy: remedy.into() }
-    }
-}
+use crate::undefined::Undefined;
 
 /// A test's answer. Serialises as the result's own fields with `status` `ok`, or as `status`
 /// `undefined` with `reason`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "status", rename_all = "lowercase")]
-pub enum Outcome<T> {
+pub enum Outcome<T, R = Undefined> {
     /// The numbers.
     Ok(T),
     /// The statistic does not exist for these data, and why.
     Undefined {
         /// Why.
-        reason: String,
+        reason: R,
     },
 }
 
-impl<T> Outcome<T> {
+impl<T, R> Outcome<T, R> {
     /// The stated impossibility.
-    pub fn undefined(reason: impl Into<String>) -> Self {
+    pub fn undefined(reason: impl Into<R>) -> Self {
         Self::Undefined { reason: reason.into() }
     }
 
@@ -91,7 +33,7 @@ impl<T> Outcome<T> {
     }
 
     /// Why there are none.
-    pub fn reason(&self) -> Option<&str> {
+    pub fn reason(&self) -> Option<&R> {
         match self {
             Self::Ok(_) => None,
             Self::Undefined { reason } => Some(reason),
@@ -99,10 +41,18 @@ impl<T> Outcome<T> {
     }
 
     /// The same with the numbers changed.
-    pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Outcome<U> {
+    pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Outcome<U, R> {
         match self {
             Self::Ok(value) => Outcome::Ok(change(value)),
             Self::Undefined { reason } => Outcome::Undefined { reason },
+        }
+    }
+
+    /// The same with the reason as part of a larger set of reasons.
+    pub fn map_reason<S>(self, change: impl FnOnce(R) -> S) -> Outcome<T, S> {
+        match self {
+            Self::Ok(value) => Outcome::Ok(value),
+            Self::Undefined { reason } => Outcome::Undefined { reason: change(reason) },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Groups of a factor. `mimique verify` holds the tests against the values of R and SciPy.
 
-use mimique_stats::{Factor, Outcome};
+use mimique_stats::{Factor, Outcome, Undefined};
 
 #[test]
 fn a_comparison_of_two_groups_is_what_restricting_the_factor_gives() {
@@ -9,6 +9,6 @@ fn a_comparison_of_two_groups_is_what_restricting_the_factor_gives() {
     assert_eq!(restricted.levels, ["c", "a"]);
     assert_eq!(restricted.codes, [Factor::MISSING, 1, 0]);
     assert!(factor.restricted(&["d".to_owned()]).unwrap_err().to_string().contains("\"d\""));
-    let outcome: Outcome<u8> = Outcome::undefined("why");
-    assert_eq!(outcome.reason(), Some("why"));
+    let outcome: Outcome<u8> = Outcome::undefined(Undefined::Unbalanced);
+    assert_eq!(outcome.reason(), Some(&Undefined::Unbalanced));
 }

@@ -56,7 +56,9 @@ mod take;
 mod weights;
 
 pub use avatar::{AvatarSkin, SplitError, VertexFrames, lock_shapes, split_shapes, surface_avatar};
-pub use built_in::{built_in_capture, built_in_map, built_in_training, built_in_weights};
+pub use built_in::{
+    built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
+};
 pub use checks::{
     BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
 };
@@ -67,10 +69,10 @@ pub use marker_map::{
 pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
-    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafSegments,
-    EafTier, LeftOut, SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment,
-    Timeline, TimelineSegment, bridge, cut, nearest_quantile, peaks, read_segments, study_segments,
-    suggest, write_segments,
+    Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,
+    EafSegments, EafTier, LeftOut, Literal, SegmentFileError, SuggestError, SuggestOptions,
+    Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
+    read_segments, stretches, study_segments, suggest, write_segments, write_segments_with,
 };
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,

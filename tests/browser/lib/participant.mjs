@@ -2,10 +2,10 @@
 
 import assert from "node:assert/strict";
 
-/** Where the page stands: its place among the steps, view, and on a trial the phase. Which clip it is, the page
-    does not show; `storedEvents` tell. */
+/** Where the page that is seen stands: its place among the steps, view, and on a trial the phase. Which clip it
+    is, the page does not show; `storedEvents` tell. */
 export async function place(page) {
-  return page.locator("main[data-view]").evaluate((main) => ({
+  return page.locator("main[data-view]:visible").evaluate((main) => ({
     step: main.dataset.step,
     view: main.dataset.view,
     phase: main.dataset.phase,

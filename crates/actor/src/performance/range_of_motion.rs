@@ -18,7 +18,8 @@ const GRIMACES: usize = 80;
 pub fn range_of_motion(shape_names: &[String], seed: u64, rate_hz: f64) -> Performance {
     let mut rng = Rng::new(seed ^ 0x726f_6d5f_6661_6365);
     let n = shape_names.len();
-    let mut out = Performance { rate_hz, shapes: n, weights: Vec::new(), head: Vec::new() };
+    let (weights, head) = (Vec::new(), Vec::new());
+    let mut out = Performance { rate_hz, shapes: n, weights, head, phases: None };
     let mut play = |peak: &[(usize, f64)], seconds: f64| {
         let frames = (seconds * rate_hz).round().max(2.0) as usize;
         for f in 0..frames {

@@ -1,7 +1,7 @@
 //! Synthetic motion capture: a built-in head performs clips with markers stuck to it.
 
 use super::range_of_motion::range_of_motion;
-use super::weights::{Clip, HeadPose, performance_weights};
+use super::weights::{Clip, HeadPose, Phases, performance_weights};
 use crate::MarkerSites;
 use crate::head::rng::Rng;
 use crate::head::vec3::{Vec3, v3};
@@ -41,6 +41,8 @@ pub struct Segment {
     pub emotion: String,
     /// 1 to 3.
     pub intensity: u8,
+    /// When the expression comes and goes, frames of the take; none of a range of motion.
+    pub phases: Option<Phases>,
 }
 
 impl SyntheticTake {
@@ -97,6 +99,7 @@ pub fn synthetic_take(
             end: first + played.frames(),
             emotion: emotion.to_string(),
             intensity: clip.intensity,
+            phases: played.phases.map(|phases| phases.later(first)),
         });
         first += played.frames();
     }
@@ -126,6 +129,7 @@ pub fn range_of_motion_take(
         end: NEUTRAL_FRAMES + played.frames(),
         emotion: "none".to_owned(),
         intensity: 0,
+        phases: None,
     });
     session.take
 }

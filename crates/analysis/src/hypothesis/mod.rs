@@ -9,8 +9,9 @@ pub(crate) mod reading;
 pub(crate) mod test_line;
 pub(crate) mod trial_level;
 pub(crate) mod two_way;
+pub(crate) mod undefined;
 
-use mimique_stats::{Factor, Labelled, Outcome};
+use mimique_stats::{Factor, Labelled};
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
 use serde::Serialize;
@@ -21,6 +22,7 @@ use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::asked_question::AskedQuestion;
@@ -51,11 +53,11 @@ pub(crate) struct HypothesisResult {
 }
 
 /// What both kinds of test give, or why neither can be computed.
-type Tested = Result<(Vec<Outcome<TestLine>>, PersonLevel), NotTested>;
+type Tests = Result<(Vec<TestOutcome>, PersonLevel), NotTested>;
 
 /// The tests of a hypothesis and what they say.
 struct Read {
-    trials: Vec<Outcome<TestLine>>,
+    trials: Vec<TestOutcome>,
     people: PersonLevel,
     reading: String,
 }
@@ -134,15 +136,15 @@ fn reading_of(
 
 /// In the place of tests, why there are none.
 fn not_tested(language: Language, why: &NotTested) -> Read {
-    let why = why.words(language);
-    let reading = language.pick(format!("Not tested: {why}."), format!("Non testée : {why}."));
+    let words = why.words(language);
+    let reading = language.pick(format!("Not tested: {words}."), format!("Non testée : {words}."));
     let people = PersonLevel {
         people: 0,
         incomplete: 0,
-        overall: vec![Outcome::undefined(&why)],
+        overall: vec![TestOutcome::undefined(why.clone())],
         pairs: Vec::new(),
     };
-    Read { trials: vec![Outcome::undefined(why)], people, reading }
+    Read { trials: vec![TestOutcome::undefined(why.clone())], people, reading }
 }
 
 /// Whether a test is about two factors and their interaction.
@@ -166,7 +168,7 @@ fn measure_of(
     }
 }
 
-fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tested {
+fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tests {
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let mut factors = Vec::new();
     for (place, name) in hypothesis.factors.iter().enumerate() {
@@ -242,7 +244,7 @@ fn within_people(
     hypothesis: &Hypothesis,
     measure: &Measure,
     factor: &Factor,
-) -> (Vec<Outcome<TestLine>>, PersonLevel) {
+) -> (Vec<TestOutcome>, PersonLevel) {
     let mut people = person_level::within(export, measure, factor);
     let rating = measure.kind != MeasureKind::Recognition;
     let trials = match hypothesis.test {
@@ -271,7 +273,7 @@ fn between_people(
     hypothesis: &Hypothesis,
     measure: &Measure,
     factor: &Factor,
-) -> (Vec<Outcome<TestLine>>, PersonLevel) {
+) -> (Vec<TestOutcome>, PersonLevel) {
     if hypothesis.test == TestName::Spearman {
         let x = as_numbers(factor);
         let people = person_level::correlation(&x, measure);

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
+use crate::hypothesis::undefined::TestOutcome;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
 
@@ -28,7 +29,7 @@ pub(crate) struct Pair {
     /// The smallest p that so many people can give.
     pub least_p: f64,
     /// Exact conditional Wilcoxon, Pratt.
-    pub wilcoxon: Outcome<TestLine>,
+    pub wilcoxon: TestOutcome,
     /// Hodges-Lehmann estimate of a - b, with its interval.
     pub difference: Option<HodgesLehmann>,
     /// Difference of each person.
@@ -43,7 +44,7 @@ pub(crate) struct PersonLevel {
     /// People without.
     pub incomplete: usize,
     /// Overall tests: Iman and Davenport's F of Friedman's test, or others.
-    pub overall: Vec<Outcome<TestLine>>,
+    pub overall: Vec<TestOutcome>,
     /// Pairs, Holm-corrected.
     pub pairs: Vec<Pair>,
 }
@@ -165,7 +166,7 @@ pub(crate) fn differences_by_trait(
     measure: &Measure,
     within: &Factor,
     about: &Factor,
-) -> Vec<Outcome<TestLine>> {
+) -> Vec<TestOutcome> {
     let means = measure.person_means_by_place(within);
     let overall = measure.overall_person_means();
     let rows: Vec<usize> = means
@@ -211,7 +212,7 @@ pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
 }
 
 /// Each person's own rho, then a signed rank test of them against zero.
-pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> Outcome<TestLine> {
+pub(crate) fn correlation_within_people(x: &Numbers, measure: &Measure) -> TestOutcome {
     let name = x.name.clone();
     let mut by_person: Vec<(Vec<f64>, Vec<f64>)> = vec![Default::default(); measure.people()];
     for (i, &person) in measure.person.iter().enumerate() {

@@ -10,6 +10,7 @@ use mimique_stats::{
 use serde::{Serialize, Serializer};
 
 use crate::hypothesis::call::{Call, Design};
+use crate::hypothesis::undefined::{TestOutcome, Why};
 
 /// What a test counts as one observation.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +113,7 @@ pub(crate) trait OutcomeP {
     fn p_that_counts(&self) -> Option<f64>;
 }
 
-impl OutcomeP for Outcome<TestLine> {
+impl OutcomeP for TestOutcome {
     fn p(&self) -> Option<f64> {
         match self {
             Self::Ok(line) => Some(line.row.p_value),
@@ -159,20 +160,21 @@ impl TestLine {
         result: Result<Outcome<T>, Refusal>,
         unit: &Unit,
         call: impl Fn(usize) -> Call,
-    ) -> Vec<Outcome<Self>> {
+    ) -> Vec<TestOutcome> {
         let rows = match result {
-            Err(refusal) => vec![Outcome::undefined(refusal.to_string())],
-            Ok(Outcome::Undefined { reason }) => vec![Outcome::Undefined { reason }],
+            Err(refusal) => vec![Outcome::undefined(refusal)],
+            Ok(Outcome::Undefined { reason }) => vec![Outcome::undefined(reason)],
             Ok(Outcome::Ok(result)) => result.rows(),
         };
         let line = |(place, row): (usize, Outcome<TestRow>)| {
-            row.map(|row| Self {
+            let row = row.map(|row| Self {
                 names: T::NAMES,
                 unit: unit.clone(),
                 row,
                 p_holm: None,
                 call: call(place),
-            })
+            });
+            row.map_reason(Why::from)
         };
         rows.into_iter().enumerate().map(line).collect()
     }
@@ -182,9 +184,9 @@ impl TestLine {
         result: Result<Outcome<T>, Refusal>,
         unit: &Unit,
         call: Call,
-    ) -> Outcome<Self> {
+    ) -> TestOutcome {
         let rows = Self::all(result, unit, |_| call.clone());
-        rows.into_iter().next().unwrap_or_else(|| Outcome::undefined("no row"))
+        rows.into_iter().next().unwrap_or_else(|| TestOutcome::undefined(Why::NoTest))
     }
 
     /// A test of independent groups.
@@ -193,7 +195,7 @@ impl TestLine {
         values: &Numbers,
         factor: &Factor,
         unit: &Unit,
-    ) -> Outcome<Self> {
+    ) -> TestOutcome {
         let call = Call::new(Design::Groups, T::NAMES.function)
             .text(&values.name)
             .text(&factor.name)
@@ -203,17 +205,17 @@ impl TestLine {
     }
 
     /// Kruskal-Wallis.
-    pub(crate) fn kruskal_wallis(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+    pub(crate) fn kruskal_wallis(values: &Numbers, factor: &Factor, unit: &Unit) -> TestOutcome {
         Self::groups::<KruskalWallis>(kruskal_wallis(values, factor), values, factor, unit)
     }
 
     /// Mann-Whitney.
-    pub(crate) fn mann_whitney(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+    pub(crate) fn mann_whitney(values: &Numbers, factor: &Factor, unit: &Unit) -> TestOutcome {
         Self::groups::<MannWhitney>(mann_whitney(values, factor), values, factor, unit)
     }
 
     /// Mann-Whitney of two groups, Kruskal-Wallis of more.
-    pub(crate) fn of_groups(values: &Numbers, factor: &Factor, unit: &Unit) -> Outcome<Self> {
+    pub(crate) fn of_groups(values: &Numbers, factor: &Factor, unit: &Unit) -> TestOutcome {
         if factor.levels.len() == 2 {
             Self::mann_whitney(values, factor, unit)
         } else {
@@ -222,7 +224,7 @@ impl TestLine {
     }
 
     /// Chi-square of a factor and answers, Yates for two by two.
-    pub(crate) fn chi_square(rows: &Factor, answers: &Factor) -> Outcome<Self> {
+    pub(crate) fn chi_square(rows: &Factor, answers: &Factor) -> TestOutcome {
         let result = Contingency::of(rows, answers).and_then(|table| chi_square(&table));
         let call = Call::new(Design::Groups, ChiSquare::NAMES.function)
             .text(&answers.name)
@@ -238,7 +240,7 @@ impl TestLine {
         options: WilcoxonOptions,
         unit: &Unit,
         call: Call,
-    ) -> (Outcome<Self>, Option<HodgesLehmann>) {
+    ) -> (TestOutcome, Option<HodgesLehmann>) {
         let result = wilcoxon(differences, options);
         let interval = match &result {
             Ok(Outcome::Ok(result)) => Some(result.hodges_lehmann_ci),
@@ -249,7 +251,7 @@ impl TestLine {
     }
 
     /// Spearman.
-    pub(crate) fn spearman(x: &Numbers, y: &Numbers, unit: &Unit) -> Outcome<Self> {
+    pub(crate) fn spearman(x: &Numbers, y: &Numbers, unit: &Unit) -> TestOutcome {
         let call = Call::new(Design::Columns, Spearman::NAMES.function)
             .text(&x.name)
             .text(&y.name)
@@ -259,7 +261,7 @@ impl TestLine {
     }
 
     /// Friedman with Iman and Davenport's F.
-    pub(crate) fn friedman(blocks: &Blocks, call: Call) -> Outcome<Self> {
+    pub(crate) fn friedman(blocks: &Blocks, call: Call) -> TestOutcome {
         Self::one::<Friedman>(Ok(friedman(blocks)), &Unit::MeansWithinPeople, call)
     }
 
@@ -268,7 +270,7 @@ impl TestLine {
         values: &Numbers,
         factors: [&Factor; 2],
         unit: &Unit,
-    ) -> Vec<Outcome<Self>> {
+    ) -> Vec<TestOutcome> {
         let result = scheirer_ray_hare(values, factors, SumsOfSquares::One);
         let call = |effect: usize| {
             two_factors(Design::TwoFactors, ScheirerRayHare::NAMES, values, factors)
@@ -283,7 +285,7 @@ impl TestLine {
         values: &Numbers,
         factors: [&Factor; 2],
         person: &Factor,
-    ) -> Vec<Outcome<Self>> {
+    ) -> Vec<TestOutcome> {
         let result = aligned_rank_transform(values, &factors, person);
         let call = |effect: usize| {
             two_factors(Design::Combinations, AlignedRankTransform::NAMES, values, factors)

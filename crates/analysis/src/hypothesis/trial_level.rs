@@ -1,10 +1,11 @@
 //! Tests as in the thesis: every trial counts as an independent observation.
 
-use mimique_stats::{Factor, Outcome, WilcoxonOptions, WilcoxonVariant};
+use mimique_stats::{Factor, WilcoxonOptions, WilcoxonVariant};
 use serde::Serialize;
 
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::test_line::{TestLine, Unit};
+use crate::hypothesis::undefined::{TestOutcome, Why};
 use crate::trials::export::Export;
 use crate::trials::measure::{Measure, MeasureKind};
 
@@ -14,17 +15,17 @@ pub(crate) struct TrialLevel {
     /// Always `independent observations`, which trials of one person are not.
     pub assumes: &'static str,
     /// The tests.
-    pub tests: Vec<Outcome<TestLine>>,
+    pub tests: Vec<TestOutcome>,
 }
 
 impl TrialLevel {
-    pub(crate) fn new(tests: Vec<Outcome<TestLine>>) -> Self {
+    pub(crate) fn new(tests: Vec<TestOutcome>) -> Self {
         Self { assumes: "independent observations", tests }
     }
 }
 
 /// Kruskal-Wallis of trials; for right and wrong answers the chi-square test.
-pub(crate) fn overall(measure: &Measure, factor: &Factor) -> Outcome<TestLine> {
+pub(crate) fn overall(measure: &Measure, factor: &Factor) -> TestOutcome {
     if measure.kind == MeasureKind::Recognition {
         let answers = Factor::from_cells(
             &measure.id,
@@ -37,7 +38,7 @@ pub(crate) fn overall(measure: &Measure, factor: &Factor) -> Outcome<TestLine> {
 }
 
 /// Chi-square of every answer against the factor.
-pub(crate) fn chi_square(measure: &Measure, factor: &Factor) -> Outcome<TestLine> {
+pub(crate) fn chi_square(measure: &Measure, factor: &Factor) -> TestOutcome {
     if measure.kind == MeasureKind::Recognition {
         return overall(measure, factor);
     }
@@ -51,10 +52,10 @@ pub(crate) fn chi_square(measure: &Measure, factor: &Factor) -> Outcome<TestLine
 }
 
 /// Wilcoxon as R of 2019 on matched trials of two levels.
-pub(crate) fn wilcoxon(export: &Export, measure: &Measure, factor: &Factor) -> Outcome<TestLine> {
+pub(crate) fn wilcoxon(export: &Export, measure: &Measure, factor: &Factor) -> TestOutcome {
     let blocks = measure.matched_trials(export, factor);
     if blocks.responses.is_empty() {
-        return Outcome::undefined("no trials of one person differ in this factor only");
+        return TestOutcome::undefined(Why::NoMatchedTrials);
     }
     let options = WilcoxonOptions { variant: WilcoxonVariant::Thesis, ..Default::default() };
     let call = Call::new(Design::MatchedTrials, "wilcoxon_thesis")
@@ -70,7 +71,7 @@ pub(crate) fn pairs(
     export: &Export,
     measure: &Measure,
     factor: &Factor,
-) -> Vec<(String, String, Outcome<TestLine>)> {
+) -> Vec<(String, String, TestOutcome)> {
     let mut pairs = Vec::new();
     for (place, a) in factor.levels.iter().enumerate() {
         for b in &factor.levels[place + 1..] {

@@ -7,8 +7,10 @@
 
 use mimique_stats::{Adjustment, Factor, Numbers, Outcome, Term};
 
+use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::person_level::{self, PersonLevel};
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
+use crate::hypothesis::undefined::TestOutcome;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
 
@@ -29,13 +31,13 @@ pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [Aspect<'_>; 
     let of_clips = match by_clip.overall.into_iter().next() {
         Some(overall) => overall,
         None => by_clip.pairs.into_iter().next().map_or_else(
-            || Outcome::undefined(format!("\"{}\" has fewer than two levels", within.name)),
+            || TestOutcome::undefined(NotTested::TooFewLevels { factor: within.name.clone() }),
             |pair| pair.wilcoxon,
         ),
     };
-    let named = |line: Outcome<TestLine>, term: Term| line.map(|line| line.with_term(term));
+    let named = |line: TestOutcome, term: Term| line.map(|line| line.with_term(term));
     let about_people = person_level::between(measure, about).overall.into_iter();
-    let mut overall: Vec<Outcome<TestLine>> =
+    let mut overall: Vec<TestOutcome> =
         about_people.map(|line| named(line, Term::factor(&about.name))).collect();
     overall.push(named(of_clips, Term::factor(&within.name)));
     if !about_is_first {
@@ -59,13 +61,13 @@ pub(crate) fn interaction(
     measure: &Measure,
     within: &Factor,
     about: &Factor,
-) -> Outcome<TestLine> {
+) -> TestOutcome {
     let lines = person_level::differences_by_trait(export, measure, within, about);
     let p: Vec<Option<f64>> = lines.iter().map(Outcome::p).collect();
     let known = p.iter().enumerate().filter_map(|(pair, p)| Some((pair, (*p)?)));
     let smallest = known.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(pair, _)| pair);
     lines.into_iter().zip(Adjustment::Holm.apply(&p)).nth(smallest).map_or_else(
-        || Outcome::undefined(format!("\"{}\" has fewer than two levels", within.name)),
+        || TestOutcome::undefined(NotTested::TooFewLevels { factor: within.name.clone() }),
         |(line, p_holm)| line.map(|line| TestLine { p_holm, ..line }),
     )
 }

@@ -18,7 +18,8 @@ use mimique_study::{Hypothesis, OrderError, Problem, Study};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::hypothesis::test_line::{OutcomeP, TestLine};
+use crate::hypothesis::test_line::OutcomeP;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::hypothesis::{is_two_way, of_pair, test_hypothesis};
 use crate::language::Language;
 use crate::language::naming::Naming;
@@ -303,7 +304,7 @@ fn one_run(
 
 /// The p that the thesis would have decided by: the interaction of two factors, the one test, or the
 /// smallest of several pairs (it did not correct them).
-fn thesis_p(hypothesis: &Hypothesis, tests: &[Outcome<TestLine>]) -> Option<f64> {
+fn thesis_p(hypothesis: &Hypothesis, tests: &[TestOutcome]) -> Option<f64> {
     if is_two_way(hypothesis.test) {
         return tests.last().and_then(Outcome::p);
     }

@@ -6,18 +6,18 @@ use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::reading;
-use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::trial_level::TrialLevel;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::report::document::DataTable;
 use crate::trials::measure::MeasureKind;
 
 /// Cells of one test: what was computed, p, effect.
-fn cells(language: Language, outcome: &Outcome<TestLine>, holm: bool) -> [String; 3] {
+fn cells(language: Language, outcome: &TestOutcome, holm: bool) -> [String; 3] {
     match outcome {
         Outcome::Undefined { reason } => [
-            language.pick(format!("undefined: {reason}"), format!("non défini : {reason}")),
+            format!("{}{}", language.pick("undefined: ", "non défini : "), reason.words(language)),
             String::new(),
             String::new(),
         ],
@@ -101,7 +101,7 @@ pub(crate) fn two_columns(
     ];
     let recommended = recommended_lines(naming, factor, kind, people);
     // With two levels the paired test of trials stands beside the pair.
-    let mut of_trials: Vec<&Outcome<TestLine>> = trials.tests.iter().collect();
+    let mut of_trials: Vec<&TestOutcome> = trials.tests.iter().collect();
     if people.overall.is_empty() {
         of_trials.reverse();
     }
@@ -136,7 +136,7 @@ fn recommended_lines<'p>(
     factor: &str,
     kind: MeasureKind,
     people: &'p PersonLevel,
-) -> Vec<(String, &'p Outcome<TestLine>, String)> {
+) -> Vec<(String, &'p TestOutcome, String)> {
     let overall = people
         .overall
         .iter()
@@ -193,7 +193,7 @@ pub(crate) fn many_pairs(
 }
 
 /// What a line is about: the factor, or the effect of two.
-fn term_of(naming: &Naming<'_>, factor: &str, outcome: &Outcome<TestLine>) -> String {
+fn term_of(naming: &Naming<'_>, factor: &str, outcome: &TestOutcome) -> String {
     match outcome {
         Outcome::Ok(line) if line.call.design != Design::Columns => match &line.row.term {
             Term::Whole => naming.factor(factor),

@@ -1,6 +1,8 @@
 //! A column of the tidy export: its cells as text or numbers, or why they are not.
 
-use mimique_stats::{Refusal, Table, parse_number};
+use mimique_stats::{Table, parse_number};
+
+use crate::trials::error::ExportError;
 
 /// The cells of a column, if the table has it.
 pub(crate) struct Column<'t> {
@@ -23,18 +25,18 @@ impl<'t> Column<'t> {
         self.table.cell(row, self.place?)
     }
 
-    pub(crate) fn needed(&self, row: usize) -> Result<&'t str, Refusal> {
-        self.text(row).ok_or_else(|| {
-            let problem = format!("line {}: the cell is blank", self.table.line(row));
-            Refusal::column(&self.name, problem, "export the study again")
+    pub(crate) fn needed(&self, row: usize) -> Result<&'t str, ExportError> {
+        self.text(row).ok_or_else(|| ExportError::Blank {
+            column: self.name.clone(),
+            line: self.table.line(row),
         })
     }
 
-    pub(crate) fn number(&self, row: usize) -> Result<Option<f64>, Refusal> {
+    pub(crate) fn number(&self, row: usize) -> Result<Option<f64>, ExportError> {
         let Some(cell) = self.text(row) else { return Ok(None) };
         parse_number(cell, true).map(Some).ok_or_else(|| {
-            let problem = format!("line {}: \"{cell}\" is not a number", self.table.line(row));
-            Refusal::column(&self.name, problem, "export the study again")
+            let (column, line) = (self.name.clone(), self.table.line(row));
+            ExportError::NotANumber { column, line, cell: cell.to_owned() }
         })
     }
 }

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use mimique_session::Standing;
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::{Exclusions, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 use crate::trials::combinations::Combinations;
+use crate::trials::error::ExportError;
 use crate::trials::reason::Reason;
 use crate::trials::sessions::{Sessions, about_people};
 use crate::trials::straight_lining::count_runs;
@@ -107,12 +108,16 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl Flow {
-    /// The reasons and their counts, in brackets; empty where there are none.
-    pub fn why(&self) -> String {
+    /// Why no trial is left.
+    pub(crate) fn no_trial(&self) -> ExportError {
         let reasons = self.people_left_out.iter().chain(&self.trials_left_out);
-        let words: Vec<String> =
-            reasons.map(|(reason, count)| format!("{}: {count}", reason.english())).collect();
-        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+        ExportError::NoTrial {
+            people_left_out: self.people - self.people_used,
+            people: self.people,
+            trials_left_out: self.trials - self.trials_used,
+            trials: self.trials,
+            reasons: reasons.map(|(&reason, &count)| (reason, count)).collect(),
+        }
     }
 }
 
@@ -163,13 +168,9 @@ impl Export {
     }
 
     /// Reads the tidy form and applies the study's exclusions.
-    pub(crate) fn read(table: &Table, study: &Study) -> Result<Self, Refusal> {
+    pub(crate) fn read(table: &Table, study: &Study) -> Result<Self, ExportError> {
         if let Some(missing) = NEEDED.iter().find(|name| !table.has(name)) {
-            return Err(Refusal::column(
-                *missing,
-                "there is no such column",
-                "give the tidy form that `mimique export --format csv` writes",
-            ));
+            return Err(ExportError::NoColumn { column: missing });
         }
         let mut sessions = Sessions::read(table)?;
         count_runs(table, study, &sessions.person_of_row, &mut sessions.people)?;
@@ -192,10 +193,10 @@ impl Export {
         table: &Table,
         study: &Study,
         person_of_row: &[usize],
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), ExportError> {
         let reader = TrialReader::new(table, study, self, person_of_row);
         let stretches = stretches(person_of_row).into_par_iter();
-        let parts: Vec<Result<TrialRows, Refusal>> =
+        let parts: Vec<Result<TrialRows, ExportError>> =
             stretches.map(|rows| reader.read(rows)).collect();
         for part in parts {
             let part = part?;

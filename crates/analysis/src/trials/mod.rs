@@ -3,6 +3,7 @@
 pub(crate) mod asked_question;
 pub(crate) mod column;
 pub(crate) mod combinations;
+pub(crate) mod error;
 pub(crate) mod export;
 pub(crate) mod measure;
 pub(crate) mod reason;

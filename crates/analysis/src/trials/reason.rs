@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 /// Why a person or a trial is left out. The order is that of the words, in which reasons are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Reason {
+pub enum Reason {
     /// A trial: answered sooner than `shortestRtMs`.
     AnsweredTooSoon,
     /// A person: more attention checks failed than allowed.

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::Study;
 use mimique_study::columns::ASSIGNED_CONDITION;
 
 use crate::trials::column::Column;
+use crate::trials::error::ExportError;
 use crate::trials::export::{EXCLUDED, Person};
 
 /// The people of an export before any is left out.
@@ -22,7 +23,7 @@ pub(super) struct Sessions<'t> {
 
 impl<'t> Sessions<'t> {
     /// Reads everybody who has a row.
-    pub(super) fn read(table: &'t Table) -> Result<Self, Refusal> {
+    pub(super) fn read(table: &'t Table) -> Result<Self, ExportError> {
         let [participant, status, stage, attention] =
             ["participant_id", "status", "stage", "attention_passed"]
                 .map(|name| Column::of(table, name));

@@ -3,10 +3,11 @@
 
 use std::collections::HashMap;
 
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::Study;
 
 use crate::trials::column::Column;
+use crate::trials::error::ExportError;
 use crate::trials::export::Person;
 
 /// Runs of equal answers of one person, response by response.
@@ -51,7 +52,7 @@ pub(super) fn count_runs(
     study: &Study,
     person_of_row: &[usize],
     people: &mut [Person],
-) -> Result<(), Refusal> {
+) -> Result<(), ExportError> {
     let responses = responses(study);
     if responses.is_empty() {
         return Ok(());

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::{Exclusions, Study};
 
 use crate::trials::column::Column;
+use crate::trials::error::ExportError;
 use crate::trials::export::{Answer, Beside, Export, Person, Trial, why_left_out};
 use crate::trials::reason::Reason;
 
@@ -108,7 +109,7 @@ impl<'t> TrialReader<'t> {
     }
 
     /// Reads a stretch that has all rows of its people.
-    pub(crate) fn read(&self, rows: Range<usize>) -> Result<TrialRows, Refusal> {
+    pub(crate) fn read(&self, rows: Range<usize>) -> Result<TrialRows, ExportError> {
         // A trial is left out for its first reason; the quickest answer decides for all of it.
         let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
         for row in rows.clone() {
@@ -175,7 +176,7 @@ impl<'t> TrialReader<'t> {
         Ok(read)
     }
 
-    fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, Refusal> {
+    fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
         let left = self.beside_side.text(row) == Some("left");
         Ok(Trial {

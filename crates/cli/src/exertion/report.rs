@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-use mimique_analysis::CoursePanel;
+use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
 use mimique_exertion::{
     Clip, Curves, Expression, Features, Heart, Person, Series, VERSION, WORK_LIMIT,

@@ -6,25 +6,27 @@
 
 /// Compile a function twice on x86-64, for the vectors that every processor has and for AVX's of
 /// twice the width, and choose at run time. Without the feature `fma` the bits are the same.
-/// `widest! { [FEATURES] fn ... }` names the features itself, the widest first.
+/// `widest! { [FEATURES] fn ... }` names the features itself, the widest first. Inside, loops are to be
+/// written out: a closure would be a call from code that is compiled for wider vectors.
+#[macro_export]
 macro_rules! widest {
     ([$($feature:tt),*] $(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*)
         $(-> $out:ty)? $body:block) => {
         $(#[$doc])*
         #[inline]
         #[allow(unsafe_code)]
-        pub(crate) fn $name($($arg: $type),*) $(-> $out)? {
+        pub fn $name($($arg: $type),*) $(-> $out)? {
             #[inline(always)]
             fn any($($arg: $type),*) $(-> $out)? $body
-            widest!(@choose any [$($feature),*] ($($arg: $type),*) ($($arg),*) ($($out)?));
+            $crate::widest!(@choose any [$($feature),*] ($($arg: $type),*) ($($arg),*) ($($out)?));
             any($($arg),*)
         }
     };
     ($(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*) $(-> $out:ty)? $body:block) => {
-        widest! { ["avx"] $(#[$doc])* fn $name($($arg: $type),*) $(-> $out)? $body }
+        $crate::widest! { ["avx"] $(#[$doc])* fn $name($($arg: $type),*) $(-> $out)? $body }
     };
     (@choose $any:ident [$($feature:tt),*] $taken:tt $given:tt $out:tt) => {
-        $(widest!(@one $any $feature $taken $given $out);)*
+        $($crate::widest!(@one $any $feature $taken $given $out);)*
     };
     (@one $any:ident $feature:tt ($($arg:ident: $type:ty),*) $given:tt ($($out:ty)?)) => {
         #[cfg(target_arch = "x86_64")]

@@ -14,12 +14,6 @@ widest! {
     }
 }
 
-/// Puts e to the power of each number in its place, to 2 units in the last place; 0 below -708, infinity
-/// above 709. The bits are the same natively and in the browser, whatever else is computed beside.
-pub fn exp_in_place(x: &mut [f64]) {
-    exp_all(x);
-}
-
 /// exp(x) = 2^k exp(r), k the nearest integer to x / ln 2, |r| <= ln 2 / 2.
 #[inline(always)]
 fn exp(x: f64) -> f64 {

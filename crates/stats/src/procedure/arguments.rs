@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::distributions::tail::Alternative;
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use crate::table::factor::Factor;
 use crate::table::{Numbers, Table};
 
@@ -159,10 +159,7 @@ impl Arguments {
 
     /// The value of an option that must be given.
     pub(crate) fn needed(&self, option: &str) -> Result<&str, Refusal> {
-        self.text(option).ok_or_else(|| Refusal::Options {
-            problem: format!("--{option} is missing"),
-            remedy: format!("give --{option} COLUMN"),
-        })
+        self.text(option).ok_or_else(|| Refusal::MissingOption { option: option.to_owned() })
     }
 
     /// The word that was chosen, or the default, by its first name.
@@ -171,12 +168,10 @@ impl Arguments {
         let Some(word) = self.text(option.name) else { return Ok(default) };
         let found =
             choices.iter().find(|choice| choice.name == word || choice.aliases.contains(&word));
-        found.map(|choice| Some(choice.name)).ok_or_else(|| Refusal::Options {
-            problem: format!("--{}: there is no \"{word}\"", option.name),
-            remedy: format!(
-                "give {}",
-                choices.iter().map(|choice| choice.name).collect::<Vec<_>>().join(", ")
-            ),
+        found.map(|choice| Some(choice.name)).ok_or_else(|| Refusal::NotAChoice {
+            option: option.name,
+            word: word.to_owned(),
+            choices: choices.iter().map(|choice| choice.name).collect(),
         })
     }
 

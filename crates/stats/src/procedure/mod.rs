@@ -10,7 +10,8 @@ pub(crate) mod row;
 
 use serde::Serialize;
 
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
+use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::test::{
     aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
@@ -107,7 +108,7 @@ impl Answer {
     ) -> Self {
         let rows = match outcome {
             Outcome::Ok(result) => result.rows(),
-            Outcome::Undefined { reason } => vec![Outcome::undefined(reason)],
+            Outcome::Undefined { reason } => vec![Outcome::undefined(reason.clone())],
         };
         Self { test: Some((T::NAMES, rows)), ..Self::of(outcome, words) }
     }

@@ -3,12 +3,14 @@
 
 use std::borrow::Cow;
 
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
 use crate::ranks::Ranks;
 use crate::ranks::tally::Tally;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
+use crate::undefined::Undefined;
 
 /// Groups times distinct values up to which a table of counts is kept.
 const TABLE: usize = 1 << 22;
@@ -38,7 +40,11 @@ impl<'a> Grouped<'a> {
         let values = rows.numbers(response);
         let ranks = Ranks::of(&values);
         if let [only] = ranks.values[..] {
-            return Ok(Outcome::undefined(equal_values(&response.name, values.len(), only)));
+            return Ok(Outcome::undefined(Undefined::EqualValues {
+                column: response.name.clone(),
+                n: values.len(),
+                value: only,
+            }));
         }
         let (k, distinct) = (group.levels.len(), ranks.values.len());
         let (mut sizes, mut doubled_sums) = (vec![0usize; k], vec![0u64; k]);
@@ -134,11 +140,6 @@ fn in_order(ranks: &Ranks, groups: &[u32], sizes: &[usize], doubled_sums: &mut [
         }
     });
     middles.into_iter().map(|(low, high)| low + 0.5 * (high - low)).collect()
-}
-
-/// Why ranks say nothing.
-pub(crate) fn equal_values(column: &str, n: usize, value: f64) -> String {
-    format!("column \"{column}\": all {n} values are equal ({value}), so ranks do not differ")
 }
 
 impl Tally {

@@ -3,11 +3,12 @@
 use serde::Serialize;
 
 use crate::estimate::proportion::{Proportion, proportion};
+use crate::outcome::Labelled;
 use crate::outcome::Outcome;
-use crate::outcome::{Labelled, Refusal};
 use crate::procedure::arguments::{Arguments, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
+use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::factor::{Factor, alphabetical};
 use crate::table::sample::complete_rows;

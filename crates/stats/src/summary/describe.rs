@@ -3,12 +3,14 @@
 use serde::Serialize;
 
 use crate::distributions::tail::t_quantile_upper;
+use crate::outcome::Labelled;
 use crate::outcome::Outcome;
-use crate::outcome::{Labelled, Refusal};
 use crate::procedure::arguments::{Arguments, ProcedureOption, RESPONSE};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
+use crate::refusal::Refusal;
 use crate::table::Table;
+use crate::undefined::Undefined;
 use crate::words::format_number;
 
 /// Result of [`describe`]. A field is none where it is not defined (spread of one value).
@@ -48,7 +50,7 @@ pub fn describe(values: &[f64]) -> Outcome<Description> {
     let missing = values.len() - sorted.len();
     let n = sorted.len();
     if n == 0 {
-        return Outcome::undefined(format!("no value is left, {missing} are missing"));
+        return Outcome::undefined(Undefined::NoValue { missing });
     }
     sorted.sort_unstable_by(f64::total_cmp);
     let (mean, variance) = moments(&sorted);

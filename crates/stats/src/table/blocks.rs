@@ -1,6 +1,6 @@
 //! Repeated measures: one response per block (a participant) and group.
 
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
@@ -36,17 +36,12 @@ impl Blocks {
         for (i, &row) in rows.iter().enumerate() {
             let place = &mut table[block.codes[i] as usize][group.codes[i] as usize];
             if !place.is_nan() {
-                let problem = format!(
-                    "\"{}\" has two responses for {} \"{}\"",
-                    block.levels[block.codes[i] as usize],
-                    group.name,
-                    group.levels[group.codes[i] as usize]
-                );
-                return Err(Refusal::column(
-                    &block.name,
-                    problem,
-                    "give one row a block and group, e.g. the mean of its rows",
-                ));
+                return Err(Refusal::RepeatedInBlock {
+                    column: block.name.clone(),
+                    block: block.levels[block.codes[i] as usize].clone(),
+                    group: group.name.clone(),
+                    level: group.levels[group.codes[i] as usize].clone(),
+                });
             }
             *place = response.values[row];
         }

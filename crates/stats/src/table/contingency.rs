@@ -1,6 +1,6 @@
 //! A table of counts: how often each level of one factor meets each level of another.
 
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
@@ -60,8 +60,8 @@ impl Contingency {
                 // A blank cell of a table of counts is a count of none.
                 let count = if value.is_nan() { 0.0 } else { value };
                 if count < 0.0 || count.fract() != 0.0 || count > 1e15 {
-                    let problem = format!("line {}: {count} is no count", table.line(row));
-                    return Err(Refusal::column(name, problem, "give whole numbers from 0"));
+                    let (column, line) = (name.clone(), table.line(row));
+                    return Err(Refusal::NotACount { column, line, value: count });
                 }
                 counts[row].push(count as u64);
             }

@@ -2,9 +2,8 @@
 
 use std::cmp::Ordering;
 
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use crate::table::coded::Coded;
-use crate::table::list_of_names;
 
 /// A column as a factor.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,15 +79,12 @@ impl Factor {
                     })
                 })
                 .ok_or_else(|| {
-                    Refusal::column(
-                        &self.name,
-                        format!("no row has the level \"{label}\""),
-                        format!("its levels are {}", list_of_names(&self.levels)),
-                    )
+                    let (column, levels) = (self.name.clone(), self.levels.clone());
+                    Refusal::NoLevel { column, level: label.to_owned(), levels }
                 })?;
             if new_code[old] != Self::MISSING {
-                let problem = format!("the level \"{label}\" is named twice");
-                return Err(Refusal::column(&self.name, problem, "name each level once"));
+                let (column, level) = (self.name.clone(), label.to_owned());
+                return Err(Refusal::RepeatedLevel { column, level });
             }
             new_code[old] = levels.len() as u32;
             levels.push(self.levels[old].clone());
@@ -161,14 +157,9 @@ impl Factor {
         }
         Err(Refusal::TooFewLevels {
             column: self.name.clone(),
-            found: match self.levels.as_slice() {
-                [] => "no level".to_owned(),
-                [one] => format!("only one level (\"{one}\")"),
-                more => format!("only {} levels ({})", more.len(), list_of_names(more)),
-            },
+            levels: self.levels.clone(),
             rows: self.codes.len(),
             needed,
-            remedy: "give a column that tells the groups apart".to_owned(),
         })
     }
 }

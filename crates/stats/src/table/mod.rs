@@ -18,7 +18,7 @@ use std::collections::HashMap;
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use cells::{Cells, Mistake, Records};
 use coded::Coded;
 use factor::Factor;
@@ -191,12 +191,9 @@ impl Table {
 
     /// Position of a column by name.
     pub fn position(&self, name: &str) -> Result<usize, Refusal> {
-        self.by_name.get(name.trim()).copied().ok_or_else(|| {
-            Refusal::column(
-                name,
-                "there is no such column",
-                format!("the columns are {}", list_of_names(&self.names)),
-            )
+        self.by_name.get(name.trim()).copied().ok_or_else(|| Refusal::NoColumn {
+            column: name.to_owned(),
+            columns: self.names.clone(),
         })
     }
 
@@ -239,9 +236,11 @@ impl Table {
             .collect();
         if let Some(row) = mistakes.into_iter().flatten().next() {
             let cell = self.cell(row, position).unwrap_or_default();
-            let problem = format!("line {}: \"{cell}\" is not a number", self.line(row));
-            let remedy = "give a number, or leave the cell blank or NA if it is missing";
-            return Err(Refusal::column(name, problem, remedy));
+            return Err(Refusal::NotANumber {
+                column: name.to_owned(),
+                line: self.line(row),
+                cell: cell.to_owned(),
+            });
         }
         Ok(Numbers { name: name.trim().to_owned(), values })
     }
@@ -294,16 +293,6 @@ fn text(bytes: &[u8]) -> &str {
 /// Line of a file, from 1, that a place is in.
 fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count()
-}
-
-/// At most twelve names, quoted.
-pub(crate) fn list_of_names(names: &[String]) -> String {
-    let mut text =
-        names.iter().take(12).map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-    if names.len() > 12 {
-        text.push_str(&format!(" and {} more", names.len() - 12));
-    }
-    text
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Differences of pairs: of two columns, of a column of differences, or of the rows of a long table.
 
-use crate::outcome::Refusal;
 use crate::procedure::arguments::{Arguments, ProcedureOption};
+use crate::refusal::Refusal;
 use crate::table::blocks::Blocks;
 use crate::table::{Numbers, Table};
 
@@ -36,18 +36,12 @@ pub(crate) fn differences(table: &Table, arguments: &Arguments) -> Result<Number
         return arguments.numbers(table, "difference");
     }
     if !has(&["response", "group", "pair"]) {
-        return Err(Refusal::Options {
-            problem: "no pairs are named".to_owned(),
-            remedy: "give --x X --y Y, or --difference D, or --response R --group G --levels A,B --pair P".to_owned(),
-        });
+        return Err(Refusal::NoPairs);
     }
     let group = arguments.groups(table)?;
     if group.levels.len() != 2 {
-        return Err(Refusal::column(
-            arguments.needed("group")?,
-            format!("{} levels, a pair has two sides", group.levels.len()),
-            "choose two with --levels A,B",
-        ));
+        let column = arguments.needed("group")?.to_owned();
+        return Err(Refusal::NotTwoLevels { column, levels: group.levels.len() });
     }
     let pair = table.combined_factor(arguments.needed("pair")?)?;
     Ok(Blocks::of(&arguments.numbers(table, "response")?, &group, &pair)?.differences(0, 1))

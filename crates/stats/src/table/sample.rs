@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::outcome::Refusal;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::factor::Factor;
 
@@ -50,10 +50,7 @@ pub fn complete_rows(numbers: &[&Numbers], factors: &[&Factor]) -> Result<Comple
     let first = numbers.first().map(|column| (column.values.len(), &column.name));
     let (total, name) = first
         .or_else(|| factors.first().map(|factor| (factor.codes.len(), &factor.name)))
-        .ok_or_else(|| Refusal::Options {
-            problem: "no column is named".to_owned(),
-            remedy: "name the columns to use".to_owned(),
-        })?;
+        .ok_or(Refusal::NoColumns)?;
     let all = numbers.iter().all(|column| column.values.iter().all(|value| value.is_finite()))
         && factors.iter().all(|factor| !factor.codes.contains(&Factor::MISSING));
     let whole = |row: &usize| {

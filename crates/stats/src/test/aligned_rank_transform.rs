@@ -10,16 +10,18 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use crate::distributions::tail::f_upper;
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
 use crate::procedure::arguments::{Arguments, ProcedureOption, RESPONSE};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::Ranks;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
+use crate::undefined::Undefined;
 
 /// One effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -68,10 +70,7 @@ pub fn aligned_rank_transform(
     block: &Factor,
 ) -> Result<Outcome<AlignedRankTransform>, Refusal> {
     if !(2..=3).contains(&factors.len()) {
-        return Err(Refusal::Options {
-            problem: format!("--factors names {} columns", factors.len()),
-            remedy: "name two or three, separated by commas".to_owned(),
-        });
+        return Err(Refusal::NumberOfFactors { named: factors.len(), least: 2, most: 3 });
     }
     let columns: Vec<&Factor> = factors.iter().copied().chain([block]).collect();
     let complete = complete_rows(&[response], &columns)?;
@@ -86,12 +85,11 @@ pub fn aligned_rank_transform(
     };
     let values: Vec<f64> = layout.rows.iter().map(|&i| response.values[rows[i]]).collect();
     if values.iter().all(|&value| value == values[0]) {
-        return Ok(Outcome::undefined(format!(
-            "column \"{}\": all {} values are equal ({})",
-            response.name,
-            values.len(),
-            values[0]
-        )));
+        return Ok(Outcome::undefined(Undefined::EqualValues {
+            column: response.name.clone(),
+            n: values.len(),
+            value: values[0],
+        }));
     }
     Ok(Outcome::Ok(AlignedRankTransform {
         test: "aligned-rank-transform",
@@ -139,10 +137,11 @@ impl Layout {
             (0..block.codes.len()).filter(|&i| complete[block.codes[i] as usize]).collect();
         let used_blocks = complete.iter().filter(|complete| **complete).count();
         if used_blocks < 2 {
-            return Outcome::undefined(format!(
-                "{used_blocks} of {} blocks have a response in each of the {cells} combinations, at least two are needed",
-                block.levels.len()
-            ));
+            return Outcome::undefined(Undefined::TooFewCompleteBlocks {
+                complete: used_blocks,
+                blocks: block.levels.len(),
+                combinations: cells,
+            });
         }
         let per_cell = rows.len() / (used_blocks * cells);
         let uneven = found
@@ -150,9 +149,7 @@ impl Layout {
             .filter(|((block, _), _)| complete[*block as usize])
             .any(|(_, &count)| count != per_cell);
         if uneven {
-            return Outcome::undefined(
-                "the combinations have different numbers of responses; the transform is for balanced designs",
-            );
+            return Outcome::undefined(Undefined::Unbalanced);
         }
         Outcome::Ok(Self {
             sizes,
@@ -350,7 +347,7 @@ impl TestResult for AlignedRankTransform {
         let row = |effect: &ArtEffect| {
             let (Some(f), Some(p_value), Some(ln_p)) = (effect.F, effect.p_value, effect.ln_p)
             else {
-                return Outcome::undefined(format!("{}: no residual is left", effect.term));
+                return Outcome::undefined(Undefined::NoResidual { term: effect.term.clone() });
             };
             let explained = f * effect.df1 as f64;
             Outcome::Ok(TestRow {

@@ -5,17 +5,19 @@ use serde::Serialize;
 
 use crate::adjust::Adjustment;
 use crate::distributions::tail::{chi_square_upper, f_upper};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{Arguments, GROUP, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::Ranks;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::blocks::Blocks;
 use crate::table::pairs::rounded;
 use crate::test::wilcoxon::{WilcoxonOptions, thesis_p_without_rounding, wilcoxon};
+use crate::undefined::Undefined;
 use crate::words::{format_number, format_p};
 
 /// Result of [`friedman`].
@@ -107,10 +109,8 @@ pub struct PairwiseHolm {
 pub fn friedman(blocks: &Blocks) -> Outcome<Friedman> {
     let (n, k) = (blocks.responses.len(), blocks.groups.len());
     if n == 0 {
-        return Outcome::undefined(format!(
-            "no block has a response for each of the {k} groups; {} blocks are incomplete",
-            blocks.incomplete
-        ));
+        let incomplete = blocks.incomplete;
+        return Outcome::undefined(Undefined::NoCompleteBlock { groups: k, incomplete });
     }
     // Means differ by 1e-16 noise, and that would break ties.
     let ranks: Vec<Ranks> =
@@ -124,9 +124,7 @@ pub fn friedman(blocks: &Blocks) -> Outcome<Friedman> {
         }
     }
     if within == 0.0 {
-        return Outcome::undefined(format!(
-            "in each of the {n} blocks all responses are equal, so ranks do not differ"
-        ));
+        return Outcome::undefined(Undefined::EqualWithinBlocks { blocks: n });
     }
     let (blocks_f, groups_f) = (n as f64, k as f64);
     let centre = blocks_f * (groups_f + 1.0) / 2.0;
@@ -176,14 +174,15 @@ fn iman_davenport(chi_square: f64, n: usize, k: usize) -> Option<ImanDavenport> 
     })
 }
 
+/// Why Iman and Davenport's F does not exist.
+fn without_f(blocks: usize) -> Undefined {
+    if blocks < 2 { Undefined::OneBlock } else { Undefined::BlocksAgree }
+}
+
 fn warnings(blocks: &Blocks, has_iman_davenport: bool) -> Vec<String> {
     let mut warnings = Vec::new();
     if !has_iman_davenport {
-        warnings.push(if blocks.responses.len() < 2 {
-            "one block only: Iman and Davenport's F does not exist".to_owned()
-        } else {
-            "all blocks agree perfectly: Iman and Davenport's F does not exist".to_owned()
-        });
+        warnings.push(without_f(blocks.responses.len()).english());
     }
     if blocks.incomplete > 0 {
         warnings.push(format!("{} incomplete blocks were left out", blocks.incomplete));
@@ -306,7 +305,7 @@ impl TestResult for Friedman {
     /// Iman and Davenport's F.
     fn rows(&self) -> Vec<Outcome<TestRow>> {
         vec![match &self.iman_davenport {
-            None => Outcome::undefined(self.warnings.join("; ")),
+            None => Outcome::undefined(without_f(self.n_blocks)),
             Some(f) => Outcome::Ok(TestRow {
                 variant: "Iman-Davenport".to_owned(),
                 term: Term::Whole,

@@ -9,13 +9,14 @@ use serde::Serialize;
 
 use crate::adjust::Adjustment;
 use crate::distributions::tail::{Alternative, chi_square_upper, normal_tail};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{Arguments, Choice, GROUP, ProcedureOption, RESPONSE};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::Ranks;
 use crate::ranks::grouped::Grouped;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;

@@ -5,12 +5,13 @@ use serde::Serialize;
 
 use crate::distributions::tail::{Alternative, Tail, normal_quantile_upper, normal_tail};
 use crate::estimate::hodges_lehmann::{LEVEL, cut_of, two_sample_interval};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{Arguments, GROUP, ProcedureOption, RESPONSE};
 use crate::procedure::lines::Lines;
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::grouped::Grouped;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;
@@ -64,8 +65,8 @@ pub fn mann_whitney(response: &Numbers, group: &Factor) -> Result<Outcome<MannWh
     };
     let used = &grouped.group;
     if used.levels.len() > 2 {
-        let problem = format!("{} levels, this test compares two", used.levels.len());
-        return Err(Refusal::column(&group.name, problem, "choose two with --levels A,B"));
+        let (column, levels) = (group.name.clone(), used.levels.len());
+        return Err(Refusal::NotTwoLevels { column, levels });
     }
     let (ranks, dropped) = (&grouped.ranks, grouped.dropped);
     let (x, y) = (grouped.tally(0), grouped.tally(1));

@@ -6,18 +6,19 @@
 use serde::{Serialize, Serializer};
 
 use crate::distributions::tail::chi_square_upper;
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
 use crate::procedure::arguments::{Arguments, Choice, ProcedureOption, RESPONSE};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::Ranks;
-use crate::ranks::grouped::equal_values;
 use crate::ranks::two_way::{Cells, TwoWaySums};
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
+use crate::undefined::Undefined;
 use crate::words::{format_number, format_p};
 
 /// Type of the sums of squares.
@@ -145,7 +146,11 @@ pub fn scheirer_ray_hare(
     let ranks = Ranks::of(&values);
     let n = values.len();
     if ranks.values.len() == 1 {
-        return Ok(Outcome::undefined(equal_values(&response.name, n, ranks.values[0])));
+        return Ok(Outcome::undefined(Undefined::EqualValues {
+            column: response.name.clone(),
+            n,
+            value: ranks.values[0],
+        }));
     }
     let cells = rank_sums(&ranks, &first, &second);
     let two_way = TwoWaySums::of(&cells, ranks.sum_of_squares());
@@ -162,10 +167,8 @@ pub fn scheirer_ray_hare(
             second.name
         ));
         if ss_type == SumsOfSquares::Three {
-            return Ok(Outcome::undefined(format!(
-                "type III sums of squares need every combination of \"{}\" and \"{}\"; {empty_cells} have no observation",
-                first.name, second.name
-            )));
+            let factors = [first.name.clone(), second.name.clone()];
+            return Ok(Outcome::undefined(Undefined::EmptyCells { factors, empty: empty_cells }));
         }
     }
     Ok(Outcome::Ok(ScheirerRayHare {
@@ -288,10 +291,7 @@ const SS: ProcedureOption = ProcedureOption::one_of(
 fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
     let factors = arguments.factors(table)?;
     let [first, second] = factors.as_slice() else {
-        return Err(Refusal::Options {
-            problem: format!("--factors names {} columns", factors.len()),
-            remedy: "name two, with a comma between".to_owned(),
-        });
+        return Err(Refusal::NumberOfFactors { named: factors.len(), least: 2, most: 2 });
     };
     let response = arguments.numbers(table, "response")?;
     let ss = arguments.chosen(&SS)?.map(SumsOfSquares::from_name).unwrap_or_default();
@@ -318,7 +318,7 @@ impl TestResult for ScheirerRayHare {
                 Some((table, table.H[effect]?, table.p[effect]?, table.ln_p[effect]?))
             });
             let Some((table, statistic, p_value, ln_p)) = known else {
-                return Outcome::undefined(format!("{name}: no degrees of freedom are left"));
+                return Outcome::undefined(Undefined::NoDegreesOfFreedom { term: name.clone() });
             };
             Outcome::Ok(TestRow {
                 variant: format!("type {}", self.ss_type.roman()),

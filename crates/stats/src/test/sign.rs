@@ -8,14 +8,16 @@ use serde::Serialize;
 
 use crate::distributions::tail::{Alternative, Tail, binomial_half_at_least};
 use crate::estimate::proportion::proportion;
-use crate::outcome::{Outcome, Refusal};
+use crate::outcome::Outcome;
 use crate::procedure::arguments::{ALTERNATIVE, Arguments};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
+use crate::refusal::Refusal;
 use crate::summary::describe::quantile_sorted;
 use crate::table::pairs::{PAIR_OPTIONS, differences, rounded};
 use crate::table::{Numbers, Table};
+use crate::undefined::Undefined;
 use crate::words::{format_number, format_p};
 
 /// Level of the interval of the median difference.
@@ -84,10 +86,10 @@ pub fn sign(differences: &Numbers, alternative: Alternative) -> Result<Outcome<S
     let negative = sorted.iter().filter(|&&d| d < 0.0).count();
     let used = positive + negative;
     if used == 0 {
-        return Ok(Outcome::undefined(format!(
-            "all differences are zero ({n} of \"{}\"), so none has a sign",
-            differences.name
-        )));
+        return Ok(Outcome::undefined(Undefined::AllDifferencesZero {
+            column: differences.name.clone(),
+            n,
+        }));
     }
     let greater = binomial_half_at_least(positive, used);
     let less = binomial_half_at_least(negative, used);
@@ -292,7 +294,8 @@ mod tests {
         assert!((result.p_greater - 0.5).abs() < 1e-14);
         assert!(result.warnings[0].contains("2 of 5 differences are zero"));
         let reason = of(&[0.0, 1e-12], Alternative::TwoSided);
-        assert!(reason.reason().unwrap().contains("all differences are zero (2 of \"d\")"));
+        let why = Undefined::AllDifferencesZero { column: "d".to_owned(), n: 2 };
+        assert_eq!(reason.reason(), Some(&why));
     }
 
     #[test]

@@ -3,16 +3,18 @@
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, normal_quantile_upper, normal_upper, t_two_sided};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{Arguments, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::Ranks;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::sample::complete_rows;
 use crate::test::kendall;
+use crate::undefined::Undefined;
 use crate::words::format_number;
 
 /// Up to this many pairs without ties all orders are enumerated.
@@ -66,10 +68,8 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
         rayon::join(|| Ranks::of(&rows.numbers(x)), || Ranks::of(&rows.numbers(y)));
     for (ranks, column) in [(&rank_x, x), (&rank_y, y)] {
         if ranks.values.len() == 1 {
-            return Ok(Outcome::undefined(format!(
-                "column \"{}\": all {n} values are equal ({}), so there is no correlation",
-                column.name, ranks.values[0]
-            )));
+            let (column, value) = (column.name.clone(), ranks.values[0]);
+            return Ok(Outcome::undefined(Undefined::EqualValues { column, n, value }));
         }
     }
     let (squares, kendall_tau_b) = squares_and_tau_b(&rank_x, &rank_y);
@@ -85,7 +85,7 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
     let significance = Significance::of(n, s, ties, t);
     let mut warnings = Vec::new();
     if perfect && significance.p().is_none() {
-        warnings.push("the correlation is perfect: t has no finite value, no p is given".into());
+        warnings.push(Undefined::PerfectCorrelation.english());
     }
     if n <= 3 {
         warnings.push(format!("{n} pairs are too few for an interval"));
@@ -324,7 +324,7 @@ impl TestResult for Spearman {
 
     fn rows(&self) -> Vec<Outcome<TestRow>> {
         vec![match self.p_value {
-            None => Outcome::undefined(self.warnings.join("; ")),
+            None => Outcome::undefined(Undefined::PerfectCorrelation),
             Some(p_value) => Outcome::Ok(TestRow {
                 variant: String::new(),
                 term: Term::Whole,

@@ -9,6 +9,7 @@ use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{TestLine, Unit};
+use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::measure::MeasureKind;
@@ -68,13 +69,14 @@ fn unit(language: Language, kind: MeasureKind) -> &'static str {
 
 fn overall_sentence(
     naming: &Naming<'_>,
-    outcome: &Outcome<TestLine>,
+    outcome: &TestOutcome,
     factor: &str,
     label: &str,
 ) -> String {
     let language = naming.language;
     let line = match outcome {
         Outcome::Undefined { reason } => {
+            let reason = reason.words(language);
             return language.pick(
                 format!("“{label}”: no test is defined ({reason})."),
                 format!("« {label} » : aucun test n’est défini ({reason})."),

@@ -13,6 +13,7 @@ pub(crate) mod svg;
 
 pub(crate) use boxes::boxes;
 pub(crate) use confusion::confusion;
+pub use confusion::{ConfusionRow, ConfusionWords, confusion_matrix};
 pub use courses::{CoursePanel, time_courses};
 pub(crate) use differences::differences;
 pub(crate) use likert::likert;

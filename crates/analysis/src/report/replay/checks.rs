@@ -7,6 +7,7 @@ use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::trial_level::TrialLevel;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::report::results::Results;
 
 /// One computation: a key, how it is called, and what came out.
@@ -180,7 +181,7 @@ impl Collector {
         self.close(&mut family);
     }
 
-    fn line(&mut self, key: String, outcome: &Outcome<TestLine>) {
+    fn line(&mut self, key: String, outcome: &TestOutcome) {
         let Outcome::Ok(line) = outcome else { return };
         let mut values = vec![
             ("statistic", line.row.statistic),

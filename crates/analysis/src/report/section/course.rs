@@ -4,7 +4,7 @@ use mimique_stats::{Factor, Numbers, Outcome, describe, proportion};
 use serde::Serialize;
 
 use crate::hypothesis::person_level;
-use crate::hypothesis::test_line::TestLine;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::report::document::{Block, slug};
 use crate::report::figure::people::{self, Part};
@@ -19,7 +19,7 @@ const PARTS: usize = 6;
 pub(crate) struct Course {
     pub measure: String,
     /// Wilcoxon of each person's correlation with the place of the trial.
-    pub trend: Outcome<TestLine>,
+    pub trend: TestOutcome,
 }
 
 impl Writer<'_> {
@@ -112,7 +112,7 @@ impl Writer<'_> {
 }
 
 /// Whether answers change with the place of the trial.
-fn trend_in_words(language: Language, label: &str, trend: &Outcome<TestLine>) -> String {
+fn trend_in_words(language: Language, label: &str, trend: &TestOutcome) -> String {
     match trend {
         Outcome::Ok(line) => {
             let p = language.p(line.row.p_value);
@@ -129,10 +129,13 @@ fn trend_in_words(language: Language, label: &str, trend: &Outcome<TestLine>) ->
                 )
             }
         }
-        Outcome::Undefined { reason } => language.pick(
-            format!("{label}: no test is defined ({reason})."),
-            format!("{label} : aucun test n’est défini ({reason})."),
-        ),
+        Outcome::Undefined { reason } => {
+            let reason = reason.words(language);
+            language.pick(
+                format!("{label}: no test is defined ({reason})."),
+                format!("{label} : aucun test n’est défini ({reason})."),
+            )
+        }
     }
 }
 

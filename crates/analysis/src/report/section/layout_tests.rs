@@ -6,10 +6,12 @@ use mimique_study::TableLayout;
 use mimique_study::columns::ASSIGNED_CONDITION;
 
 use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::person_level;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::trial_level;
 use crate::hypothesis::two_way;
+use crate::hypothesis::undefined::{TestOutcome, Why};
 use crate::report::document::DataTable;
 use crate::report::section::Writer;
 use crate::report::section::layouts::{Column, LayoutCell, Row};
@@ -28,7 +30,7 @@ impl Writer<'_> {
         let first = language.pick("hypothesis", "hypothèse");
         let mut table = self.layout_table(layout, [first, "", thesis, recommended]);
         for result in hypotheses {
-            let of_people: Vec<&Outcome<TestLine>> = if result.recommended.overall.is_empty() {
+            let of_people: Vec<&TestOutcome> = if result.recommended.overall.is_empty() {
                 result.recommended.pairs.iter().map(|pair| &pair.wilcoxon).collect()
             } else {
                 result.recommended.overall.iter().collect()
@@ -156,7 +158,7 @@ impl Writer<'_> {
         &self,
         measure: &Measure,
         columns: [&Column; 2],
-    ) -> Option<Outcome<TestLine>> {
+    ) -> Option<TestOutcome> {
         let [first, second] = columns;
         match columns.map(|column| column.about_people) {
             [true, true] => None,
@@ -188,10 +190,8 @@ impl Writer<'_> {
                     Some(self.influence(row, &column))
                 })
                 .collect();
-            let trials =
-                |pair: &Option<[Outcome<TestLine>; 2]>| pair.as_ref().map(|p| p[0].clone());
-            let people =
-                |pair: &Option<[Outcome<TestLine>; 2]>| pair.as_ref().map(|p| p[1].clone());
+            let trials = |pair: &Option<[TestOutcome; 2]>| pair.as_ref().map(|p| p[0].clone());
+            let people = |pair: &Option<[TestOutcome; 2]>| pair.as_ref().map(|p| p[1].clone());
             let mut line = vec![row.measure.label.clone(), "Z".to_owned()];
             line.extend(pairs.iter().map(|pair| self.statistic(trials(pair).as_ref())));
             table.row(line);
@@ -222,17 +222,17 @@ impl Writer<'_> {
     }
 
     /// As in the thesis, then recommended. Numbers are correlated, words are compared.
-    fn influence(&self, row: &Row<'_>, column: &Column) -> [Outcome<TestLine>; 2] {
+    fn influence(&self, row: &Row<'_>, column: &Column) -> [TestOutcome; 2] {
         let (measure, factor) = (&row.measure, &column.factor);
         if factor.levels.len() < 2 {
-            let reason = format!("\"{}\" has fewer than two levels", factor.name);
-            return [Outcome::undefined(reason.clone()), Outcome::undefined(reason)];
+            let why = NotTested::TooFewLevels { factor: factor.name.clone() };
+            return [why.clone(), why].map(TestOutcome::undefined);
         }
         // Conditions are names, even those of digits.
         let numeric = factor.name != ASSIGNED_CONDITION
             && factor.levels.iter().all(|level| level.parse::<f64>().is_ok());
         let recognition = measure.kind == MeasureKind::Recognition;
-        let undefined = || Outcome::undefined("no test is defined");
+        let undefined = || TestOutcome::undefined(Why::NoTest);
         match (column.about_people, numeric) {
             (true, true) => {
                 let x = as_numbers(factor);
@@ -265,7 +265,7 @@ impl Writer<'_> {
     }
 
     /// `χ² 0.645`.
-    fn statistic(&self, outcome: Option<&Outcome<TestLine>>) -> String {
+    fn statistic(&self, outcome: Option<&TestOutcome>) -> String {
         match outcome {
             Some(Outcome::Ok(line)) => {
                 let name = match line.names.statistic_symbol {
@@ -279,7 +279,7 @@ impl Writer<'_> {
         }
     }
 
-    fn p(&self, outcome: Option<&Outcome<TestLine>>, holm: bool) -> String {
+    fn p(&self, outcome: Option<&TestOutcome>, holm: bool) -> String {
         let language = self.language();
         match outcome {
             Some(Outcome::Ok(line)) => {

@@ -1,12 +1,12 @@
 //! Tables in the study's own layout: means, matrices, and the choice among all layouts.
 
-use mimique_stats::{Confusion, Factor, Outcome, confusion};
+use mimique_stats::{Confusion, Factor, confusion};
 use mimique_study::{AnswerOfPair, KindOfQuestion as _, Layout, Measure as What, TableLayout};
 use serde::Serialize;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::not_tested::of_pair_in_words;
-use crate::hypothesis::test_line::TestLine;
+use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
@@ -20,9 +20,9 @@ pub(crate) struct LayoutCell {
     pub row: String,
     pub column: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub as_in_the_thesis: Option<Outcome<TestLine>>,
+    pub as_in_the_thesis: Option<TestOutcome>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub recommended: Option<Outcome<TestLine>>,
+    pub recommended: Option<TestOutcome>,
     /// Recommended tests on pairs and parts are corrected by Holm's method within a row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub p_holm: Option<f64>,

@@ -98,7 +98,7 @@ impl Writer<'_> {
                         language.number(d.max)
                     ),
                 ),
-                Outcome::Undefined { reason } => reason.clone(),
+                Outcome::Undefined { reason } => language.why_undefined(reason),
             };
             return (AboutPeople::Numbers(description), words);
         }

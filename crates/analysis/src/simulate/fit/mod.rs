@@ -12,25 +12,22 @@ mod times;
 
 use std::collections::BTreeMap;
 
-use mimique_stats::{Refusal, Table};
+use mimique_stats::Table;
 use mimique_study::{KindOfQuestion as _, Scale, Study};
 
 use super::parameters::{ByLevel, Parameters, Rating, Recognition};
 use super::scales::all_scales;
+use crate::trials::error::ExportError;
 use crate::trials::export::{Answer, Export};
 use response::Data;
 
 impl Parameters {
     /// Fits parameters to a tidy export of the study, its exclusions applied. Refuses an export without
     /// the columns of the tidy form or without any trial.
-    pub fn fit(table: &Table, study: &Study) -> Result<Self, Refusal> {
+    pub fn fit(table: &Table, study: &Study) -> Result<Self, ExportError> {
         let export = Export::read(table, study)?;
         if export.answers.is_empty() {
-            return Err(Refusal::column(
-                "answer",
-                "no answer of a trial is left after the study's exclusions",
-                "give an export with answers",
-            ));
+            return Err(ExportError::NoAnswer);
         }
         let mut parameters = Self::for_study(study);
         let clips = study.clips();

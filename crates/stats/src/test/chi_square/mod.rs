@@ -6,11 +6,12 @@ mod independence;
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, chi_square_upper};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{Arguments, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
+use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::contingency::Contingency;
 use crate::words::{format_number, format_p};
@@ -93,13 +94,9 @@ fn require_levels(table: &Contingency) -> Result<(), Refusal> {
         if levels.len() < 2 {
             return Err(Refusal::TooFewLevels {
                 column: name.clone(),
-                found: match levels.first() {
-                    Some(one) => format!("only one level (\"{one}\")"),
-                    None => "no level".to_owned(),
-                },
+                levels: levels.clone(),
                 rows: table.counts.iter().flatten().sum::<u64>() as usize,
                 needed: 2,
-                remedy: "give a column with at least two levels".to_owned(),
             });
         }
     }

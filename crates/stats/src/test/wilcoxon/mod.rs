@@ -10,16 +10,18 @@ use serde::Serialize;
 
 use crate::distributions::tail::Alternative;
 use crate::estimate::hodges_lehmann::{HodgesLehmann, intervals};
-use crate::outcome::{Labelled, Outcome, Refusal};
+use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{ALTERNATIVE, Arguments, ProcedureOption};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::ranks::signed_rank::{Magnitudes, SignedRanks, Zeros};
 use crate::ranks::tally::Tally;
+use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::pairs::{PAIR_OPTIONS, differences, rounded};
+use crate::undefined::Undefined;
 use crate::words::{format_number, format_p};
 use tails::{Counts, Tails};
 use variant::{Chosen, EXACT_UP_TO, VARIANT};
@@ -94,10 +96,10 @@ pub fn wilcoxon(
     let nonzero = without_zeros.as_ref().unwrap_or(&all);
     let (n, n_used) = (all.total() as usize, nonzero.total() as usize);
     if n_used == 0 {
-        return Ok(Outcome::undefined(format!(
-            "all differences are zero ({n} of \"{}\"), so there is nothing to rank",
-            differences.name
-        )));
+        return Ok(Outcome::undefined(Undefined::AllDifferencesZero {
+            column: differences.name.clone(),
+            n,
+        }));
     }
     let alternative = options.alternative;
     let counts = Counts { all: n, used: n_used };

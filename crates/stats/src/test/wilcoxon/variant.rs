@@ -1,8 +1,8 @@
 //! Which of the p-values of Wilcoxon's test is the answer.
 
 use crate::distributions::tail::Alternative;
-use crate::outcome::Refusal;
 use crate::procedure::arguments::{Choice, ProcedureOption};
+use crate::refusal::Refusal;
 
 /// Up to this many non-zero differences the conditional distribution is computed exactly.
 pub(crate) const EXACT_UP_TO: usize = 200;
@@ -91,12 +91,7 @@ impl Chosen {
             if n_used <= EXACT_UP_TO {
                 return Ok(chosen);
             }
-            Err(Refusal::Options {
-                problem: format!(
-                    "the exact variant is computed up to {EXACT_UP_TO} non-zero differences, here are {n_used}"
-                ),
-                remedy: "take an asymptotic variant".to_owned(),
-            })
+            Err(Refusal::TooManyForExact { n: n_used, most: EXACT_UP_TO })
         };
         match options.variant {
             WilcoxonVariant::Automatic if n_used <= EXACT_UP_TO => Ok(Self::ExactPratt),

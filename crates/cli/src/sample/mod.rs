@@ -1,5 +1,7 @@
 //! `mimique sample`: files to try every command on, made from the built-in head, actor and body.
 
+mod corpus;
+
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -35,17 +37,21 @@ pub struct Args {
     /// How strong each emotion is, from 1 (slight) to 3 (strong)
     #[arg(long, value_name = "LEVEL", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=3))]
     intensity: u8,
+    /// Write takes of four actors with their known labels, to try annotate on, instead
+    #[arg(long, conflicts_with = "intensity")]
+    annotated: bool,
 }
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let person = HeadSpec::person(args.avatar);
+    if args.annotated {
+        return annotated(&args, &person, json);
+    }
     let take = performance(args.actor, args.intensity);
     let map = marker_map(&person, &take);
     let head = build_head(&person);
-    std::fs::create_dir_all(&args.out).with_context(|| {
-        format!("{}: make the folder; check its parent's permissions", args.out.display())
-    })?;
+    make_folder(&args)?;
     let mut files = vec![
         ("head.glb".to_owned(), glb(&head)?, "the avatar: the built-in head with its blendshapes"),
         (
@@ -97,6 +103,30 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 /// Some strides of a person of 1.75 m, ending as they began.
 fn bvh(gait: &Gait) -> Vec<u8> {
     gait_bvh(gait, STATURE_M, STRIDES / gait.stride_hz, MOTION_HZ).into_bytes()
+}
+
+fn make_folder(args: &Args) -> anyhow::Result<()> {
+    std::fs::create_dir_all(&args.out).with_context(|| {
+        format!("{}: make the folder; check its parent's permissions", args.out.display())
+    })
+}
+
+/// `--annotated`: takes with labels.
+fn annotated(args: &Args, person: &HeadSpec, json: bool) -> anyhow::Result<()> {
+    let files = corpus::files(person, args.actor)?;
+    make_folder(args)?;
+    corpus::write(&files, &args.out)?;
+    let mut out = std::io::stdout().lock();
+    if json {
+        let names: Vec<PathBuf> = files.iter().map(|(name, ..)| args.out.join(name)).collect();
+        let text = serde_json::json!({ "files": names });
+        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+        return Ok(());
+    }
+    for (name, _, what) in &files {
+        writeln!(out, "{}: {what}", args.out.join(name).display())?;
+    }
+    Ok(())
 }
 
 /// The six emotions one after the other, after a neutral start.

@@ -1,0 +1,65 @@
+//! Why an export cannot be analysed.
+
+use std::collections::BTreeMap;
+
+use crate::trials::reason::Reason;
+
+/// Why an export cannot be analysed. Its words name the column and what to do.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ExportError {
+    /// A column of the tidy form is absent.
+    #[error(
+        "column \"{column}\": there is no such column; give the tidy form that `mimique export --format csv` writes"
+    )]
+    NoColumn {
+        /// The column.
+        column: &'static str,
+    },
+    /// A cell that every row has is blank.
+    #[error("column \"{column}\": line {line}: the cell is blank; export the study again")]
+    Blank {
+        /// The column.
+        column: String,
+        /// Line of the file, from 1.
+        line: usize,
+    },
+    /// A cell of a column of numbers is none.
+    #[error("column \"{column}\": line {line}: \"{cell}\" is not a number; export the study again")]
+    NotANumber {
+        /// The column.
+        column: String,
+        /// Line of the file, from 1.
+        line: usize,
+        /// The cell.
+        cell: String,
+    },
+    /// Every trial is left out, or there is none.
+    #[error(
+        "column \"trial_type\": no trial is left: {people_left_out} of {people} people and {trials_left_out} of {trials} trials are left out{}; collect answers first, or look at the study's exclusions",
+        counted(reasons)
+    )]
+    NoTrial {
+        /// People left out.
+        people_left_out: usize,
+        /// All people.
+        people: usize,
+        /// Trials left out, of the people used.
+        trials_left_out: usize,
+        /// All trials of the people used.
+        trials: usize,
+        /// People and trials left out, by reason.
+        reasons: BTreeMap<Reason, usize>,
+    },
+    /// No trial that is left has an answer.
+    #[error(
+        "column \"answer\": no answer of a trial is left after the study's exclusions; give an export with answers"
+    )]
+    NoAnswer,
+}
+
+/// The reasons and their counts, in brackets; empty where there are none.
+fn counted(reasons: &BTreeMap<Reason, usize>) -> String {
+    let words: Vec<String> =
+        reasons.iter().map(|(reason, count)| format!("{}: {count}", reason.english())).collect();
+    if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+}
