@@ -4,6 +4,7 @@ mod args;
 mod inputs;
 mod plan;
 mod report;
+mod study;
 mod train;
 mod values;
 
@@ -27,6 +28,7 @@ use crate::output;
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     match args.command {
         Some(Command::Train(own)) => train::run(&own, json),
+        Some(Command::Study(own)) => study::run(&own, json),
         None => face(&args.options, json),
     }
 }

@@ -47,6 +47,7 @@
 mod avatar;
 mod built_in;
 mod checks;
+mod exertion_take;
 mod marker_map;
 mod prepare;
 mod provenance;
@@ -62,6 +63,7 @@ pub use built_in::{
 pub use checks::{
     BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
 };
+pub use exertion_take::{ExertionTake, ExertionTakeError, built_in_bvh, built_in_motion};
 pub use marker_map::{
     Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
     REACH_M, ScaleRule, TOLERANCE_M,

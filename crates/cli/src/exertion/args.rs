@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use mimique_exertion::FRAMES_PER_SECOND;
+use mimique_study::BuiltinMotion;
 
+use super::study::{Breath, activity};
 use super::values::{Cutoff, Duration, Named, Seconds};
 
 /// The heading of what is known of the person.
@@ -28,6 +30,8 @@ pub struct Args {
 pub(super) enum Command {
     /// Learn a model from recorded bodies, hearts and faces
     Train(Box<TrainOptions>),
+    /// Write a study file: faces of walks, runs and sprints, of people of several levels and expressivities
+    Study(Box<StudyOptions>),
 }
 
 /// Options of the face.
@@ -170,6 +174,49 @@ pub(super) struct TrainOptions {
     pub(super) shapes: Option<PathBuf>,
     #[command(flatten)]
     pub(super) motion: MotionOptions,
+}
+
+/// Options of the study.
+#[derive(clap::Args)]
+pub(super) struct StudyOptions {
+    /// Where the study file goes
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) out: PathBuf,
+    /// Motions of the built-in body: walk, run, sprint
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', default_value = "walk,run,sprint", value_parser = activity)]
+    pub(super) activities: Vec<BuiltinMotion>,
+    /// Levels of training, 0 to 10
+    #[arg(
+        long,
+        value_name = "NUMBER,NUMBER",
+        value_delimiter = ',',
+        default_value = "0,5,10",
+        allow_hyphen_values = true
+    )]
+    pub(super) levels: Vec<f64>,
+    /// Expressivities: names, and what every expression is multiplied by
+    #[arg(
+        long,
+        value_name = "NAME=FACTOR",
+        value_delimiter = ',',
+        default_value = "reserved=0.6,expressive=1.2"
+    )]
+    pub(super) expressivities: Vec<Named>,
+    /// What makes the face: rules, linear, a model file
+    #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',', default_value = "rules")]
+    pub(super) models: Vec<String>,
+    /// Whether the mouth moves with the breath
+    #[arg(long, value_name = "WORD,WORD", value_delimiter = ',', default_value = "with")]
+    pub(super) breaths: Vec<Breath>,
+    /// How long the body goes on before a clip ends [default: 5min of walk and run, 60 of sprint]
+    #[arg(long = "for", value_name = "DURATION")]
+    pub(super) duration: Option<Duration>,
+    /// How long a clip is
+    #[arg(long, value_name = "DURATION", default_value = "6")]
+    pub(super) clip: Duration,
+    /// Who it is, but for the level: JSON as of mimique exertion
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) person: Option<PathBuf>,
 }
 
 pub(super) use super::values::Exponents;

@@ -89,7 +89,7 @@ impl FromStr for Cutoff {
 
 /// `NAME=NUMBER`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Named(String, f64);
+pub(super) struct Named(pub(super) String, pub(super) f64);
 
 impl FromStr for Named {
     type Err = String;
@@ -103,7 +103,7 @@ impl FromStr for Named {
 }
 
 /// Takes over what is given by name.
-fn named(
+pub(super) fn named(
     option: &str,
     given: &[Named],
     known: &[&'static str],

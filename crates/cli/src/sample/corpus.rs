@@ -56,7 +56,7 @@ fn performance(actor: u64, number: u64) -> SyntheticTake {
     let seed = 1000 * actor + number;
     let mut emotions = Emotion::ALL;
     emotions.rotate_left((2 * number + actor) as usize % Emotion::ALL.len());
-    if number % 2 == 0 {
+    if number.is_multiple_of(2) {
         emotions.reverse();
     }
     let clips: Vec<Clip> = (0u64..)

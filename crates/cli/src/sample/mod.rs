@@ -7,20 +7,14 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
 use mimique_actor::{
-    Clip, Emotion, Gait, HeadSpec, NOISE_MM, SyntheticTake, build_head, gait_bvh, marker_sites,
+    Clip, Emotion, Gait, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites,
     synthetic_take,
 };
 use mimique_avatar::Avatar;
 use mimique_mocap::C3dOptions;
-use mimique_stimulus::{MarkerMap, built_in_capture, built_in_map, built_in_weights};
+use mimique_stimulus::{MarkerMap, built_in_bvh, built_in_capture, built_in_map, built_in_weights};
 
 use crate::output;
-
-/// The stature of who walks and runs, m.
-const STATURE_M: f64 = 1.75;
-/// Strides of a motion, and its frames per second.
-const STRIDES: f64 = 8.0;
-const MOTION_HZ: f64 = 60.0;
 
 /// Options.
 #[derive(clap::Args)]
@@ -75,7 +69,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         "the motion of a run, whole strides",
         "the motion of a sprint, whole strides",
     ]) {
-        files.push((format!("{}.bvh", gait.name), bvh(&gait), what));
+        files.push((format!("{}.bvh", gait.name), built_in_bvh(&gait).into_bytes(), what));
     }
     let mut out = std::io::stdout().lock();
     for (name, bytes, what) in &files {
@@ -98,11 +92,6 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
     }
     Ok(())
-}
-
-/// Some strides of a person of 1.75 m, ending as they began.
-fn bvh(gait: &Gait) -> Vec<u8> {
-    gait_bvh(gait, STATURE_M, STRIDES / gait.stride_hz, MOTION_HZ).into_bytes()
 }
 
 fn make_folder(args: &Args) -> anyhow::Result<()> {

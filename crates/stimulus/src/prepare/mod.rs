@@ -7,6 +7,7 @@
 mod avatar_key;
 mod builtin;
 mod cache;
+mod exertion;
 mod solved_clip;
 mod source_files;
 mod sources;

@@ -10,7 +10,7 @@ const LINES: [(&str, &str); 4] =
 const PANEL: f64 = 110.0;
 const GAP: f64 = 34.0;
 /// Width of a line's name with its key.
-const KEY: f64 = 74.0;
+const KEY: f64 = 79.0;
 /// More points than a figure can show are left out.
 const MOST_POINTS: usize = 600;
 
