@@ -82,9 +82,12 @@ fn designs_of_other_factors_have_their_hypotheses() {
         ok(&all);
         Study::from_text(&std::fs::read_to_string(&out).unwrap()).unwrap()
     };
-    let one = design(&["--activities", "run", "--levels", "5", "--expressivities", "plain=1"]);
-    assert_eq!((one.clips().len(), one.hypotheses.len()), (1, 1));
-    assert_eq!(one.stimuli.segments[0].factors.len(), 1);
+    // Both work alike: nothing is to be seen of the exertion.
+    let alike = design(&["--activities", "run", "--levels", "5"]);
+    assert_eq!((alike.clips().len(), alike.hypotheses.len()), (2, 1));
+    assert_eq!(alike.hypotheses[0].test, TestName::Wilcoxon);
+    let factors = &alike.stimuli.segments[0].factors;
+    assert_eq!(factors.keys().collect::<Vec<_>>(), ["expressivity"]);
     let faces = design(&[
         "--activities",
         "run",
@@ -125,6 +128,10 @@ fn designs_that_cannot_be_are_refused_and_nothing_is_written() {
         (&["--expressivities", "a=1,a=2"], "--expressivities: a is given twice"),
         (&["--expressivities", "a=-1"], "--expressivities: expressivity/mouthOpen: -1 is below 0"),
         (&["--expressivities", "a b=1"], "cannot be part of a clip's identifier"),
+        (
+            &["--activities", "run", "--levels", "5", "--expressivities", "a=1"],
+            "--levels: one clip alone, which nothing compares",
+        ),
         (&["--clip", "90", "--for", "60"], "--clip: 90 s of 60 s of walk; shorten it"),
         (&["--person", &person], "p.json: unknown field `weight`"),
     ] {

@@ -219,4 +219,11 @@ pub(super) struct StudyOptions {
     pub(super) person: Option<PathBuf>,
 }
 
+impl StudyOptions {
+    /// Whether clips differ in how hard the body works; expressivity, model and breath change the face alone.
+    pub(super) fn exertion_differs(&self) -> bool {
+        self.activities.len() > 1 || self.levels.len() > 1
+    }
+}
+
 pub(super) use super::values::Exponents;

@@ -86,6 +86,9 @@ pub(super) fn of(args: &StudyOptions) -> Vec<Hypothesis> {
             _ => add(TestName::Friedman, &[factor], statement),
         }
     }
+    if !args.exertion_differs() {
+        return all;
+    }
     add(
         TestName::Spearman,
         &["borg"],

@@ -74,8 +74,14 @@ pub(super) fn run(args: &StudyOptions, json: bool) -> anyhow::Result<()> {
     };
     let mut study = Study::from_text(FRAME)?;
     let mut borg = Vec::new();
-    for cell in cells(args) {
-        borg.push(add(&mut study, &cell, &person, args)?);
+    let cells = cells(args);
+    if cells.len() < 2 {
+        bail!(
+            "--levels: one clip alone, which nothing compares; give several levels, activities or expressivities"
+        );
+    }
+    for cell in &cells {
+        borg.push(add(&mut study, cell, &person, args)?);
     }
     if args.activities.len() > 1 {
         study.sequence.constraints = vec![Constraint {
@@ -167,8 +173,11 @@ fn add(
     let borg = borg_at_end(&own, args)?;
     let mut id = format!("{}-level{}-{name}", cell.activity.word(), cell.level).replace('.', "_");
     // Factors of one value alone would explain nothing.
-    let borg_rounded = FactorValue::Number((borg * 10.0).round() / 10.0);
-    let mut factors = Factors::from([("borg".to_owned(), borg_rounded)]);
+    let mut factors = Factors::new();
+    if args.exertion_differs() {
+        let rounded = FactorValue::Number((borg * 10.0).round() / 10.0);
+        factors.insert("borg".to_owned(), rounded);
+    }
     if args.activities.len() > 1 {
         let activity = cell.activity.word().to_owned();
         factors.insert("activity".to_owned(), FactorValue::Text(activity));
