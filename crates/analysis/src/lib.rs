@@ -43,7 +43,9 @@ pub mod components {
     pub use crate::report::document::{Block, DataTable, Document, Figure, slug};
     pub use crate::report::document_files;
     pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
-    pub use crate::report::figure::{ConfusionRow, ConfusionWords, confusion_matrix};
+    pub use crate::report::figure::{
+        ConfusionRow, ConfusionWords, CoursePanel, confusion_matrix, time_courses,
+    };
 }
 
 pub use language::Language;

@@ -1,4 +1,4 @@
-//! `mimique inspect`: what an avatar, a capture, a weight file, a marker map, a study or a pack
+//! `mimique inspect`: what an avatar, a capture, a weight file, an activity, a marker map, a study or a pack
 //! holds, told from the file's content.
 
 mod facts;
@@ -10,12 +10,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use mimique_avatar::pack::{decode_pack, pack_kind};
-use mimique_mocap::{CaptureFacts, ReadError, ReadOptions, WeightOptions, formats};
+use mimique_mocap::{
+    CaptureFacts, ReadError, ReadOptions, WeightOptions, activity_formats, formats,
+    read_activity_bytes, recognise_activity,
+};
 use mimique_stimulus::{AvatarSkin, BankDiagnosis, MarkerMap};
 use serde_json::{Value, json};
 
 use self::facts::{
-    avatar_facts, avatar_file, map_facts, operators_facts, study_facts, take_facts, weights_facts,
+    activity_facts, avatar_facts, avatar_file, map_facts, operators_facts, study_facts, take_facts,
+    weights_facts,
 };
 use self::opened::Opened;
 use self::text::{shorten_presence, tell};
@@ -23,7 +27,7 @@ use self::text::{shorten_presence, tell};
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Avatar (a file, or a folder of OBJ poses), capture, weight file, marker map, study or pack
+    /// Avatar (a file, or a folder of OBJ poses), capture, weight file, activity, marker map, study or pack
     file: PathBuf,
     /// Hold the avatar's bank of shapes against Kouadio's five rules
     #[arg(long)]
@@ -100,6 +104,9 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
     if file.is_dir() || is_archive || head.starts_with(b"glTF") {
         return avatar_file(file, &opened.bytes()?);
     }
+    if recognise_activity(head).is_some() {
+        return Ok(activity_facts(&read_activity_bytes(&opened.bytes()?)?));
+    }
     let mut capture = opened.capture()?;
     match capture.format() {
         Some(format) if format.holds_weights() => {
@@ -138,9 +145,12 @@ fn unknown(error: Option<ReadError>) -> anyhow::Error {
         None => String::new(),
     };
     let formats: Vec<&str> = formats().iter().map(|format| format.name).collect();
+    let activities: Vec<&str> = activity_formats().iter().map(|format| format.name).collect();
     anyhow!(
         "byte 0: not a file that Mimique knows{found}; give an avatar (.glb, .gltf, a folder or an archive of OBJ \
-         poses), a capture or weights ({}), a marker map (CSV with a column marker, or JSON), a study file or a pack",
-        formats.join(", ")
+         poses), a capture or weights ({}), an activity ({}), a marker map (CSV with a column marker, or JSON), a study file \
+         or a pack",
+        formats.join(", "),
+        activities.join(", ")
     )
 }

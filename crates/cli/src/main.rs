@@ -12,6 +12,7 @@ mod capture_options;
 mod check;
 mod eaf_file;
 mod erase;
+mod exertion;
 mod export;
 mod export_site;
 mod import;
@@ -61,7 +62,7 @@ enum Command {
     Order(order::Args),
     /// Tell what an avatar, a capture, a weight file, a pack or a study holds
     Inspect(inspect::Args),
-    /// Write an avatar, a capture and a marker map to try the commands on
+    /// Write an avatar, a capture, a marker map and motions of a body to try the commands on
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
@@ -73,6 +74,8 @@ enum Command {
     Segment(Box<segment::Args>),
     /// Learn the labels of facial motion from annotated takes, suggest and evaluate them
     Annotate(annotate::Args),
+    /// Turn a body's motion, or what a watch recorded, into weights of a face that shows it
+    Exertion(Box<exertion::Args>),
     /// Recover a researcher's account; list the accounts
     Account(account::Args),
     /// Write the responses of a study to a file
@@ -120,6 +123,7 @@ fn main() -> ExitCode {
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
         Command::Annotate(args) => annotate::run(args, json),
+        Command::Exertion(args) => exertion::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),

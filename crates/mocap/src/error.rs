@@ -39,6 +39,14 @@ pub enum ReadError {
         /// The names of the formats of weights that are read.
         readable: Vec<&'static str>,
     },
+    /// Not a file of an activity.
+    #[error("byte 0: no activity in a known format, {found}; give one of {}", names(readable))]
+    NotActivity {
+        /// What the file starts with.
+        found: String,
+        /// The names of the formats of activities that are read.
+        readable: Vec<&'static str>,
+    },
     /// What stands beside the file and belongs to it is wrong.
     #[error("{file}, beside it: {what}; {remedy}")]
     Beside {

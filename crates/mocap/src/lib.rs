@@ -1,5 +1,7 @@
 //! Marker trajectories: the capture vocabulary, readers and writers, repair and filters.
 //!
+//! [`read_activity`] reads what a watch or a bicycle computer records: power, speed, heart rate.
+//!
 //! A file of any known system comes in through [`CaptureFile`], read as a stream (or from bytes,
 //! [`read_bytes`]); what comes out is a [`Capture`]: labels, rate, unit and positions, a missing
 //! marker NaN in all three coordinates. The format is recognised by content, never by name.
@@ -22,6 +24,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod activity;
+mod body_joints;
 mod capture;
 mod error;
 mod facts;
@@ -30,6 +34,11 @@ mod read;
 mod repair;
 mod write;
 
+pub use activity::{
+    Activity, ActivityColumn, ActivityFormat, Sport, activity_formats, is_activity, read_activity,
+    read_activity_bytes, recognise_activity,
+};
+pub use body_joints::{BodyJoint, BodyJoints, BodyJointsError};
 pub use capture::{Capture, Event, LengthUnit, Recording, WeightOptions, WeightsTable};
 pub use error::{ReadError, WriteError};
 pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence, Stillest, stillest};

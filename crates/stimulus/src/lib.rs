@@ -47,6 +47,7 @@
 mod avatar;
 mod built_in;
 mod checks;
+mod exertion_take;
 mod marker_map;
 mod prepare;
 mod provenance;
@@ -63,6 +64,7 @@ pub use checks::{
     ADVISED_SMOOTHING, BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem,
     MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
 };
+pub use exertion_take::{ExertionTake, ExertionTakeError, built_in_bvh, built_in_motion};
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
     MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,

@@ -10,6 +10,7 @@
 //! | solver | `toy.json`, `operators.json`, `frames/` | `mimique-solver`, `mimique-stimulus` |
 //! | annotation | `segmentation.json`, `features.json`, `classify/`, `hmm/`, `evaluate/`, `elan/` | `mimique-annotate` |
 //! | layouts | `kmeans_*.json`, `greedy_*.json`, `avatar_*.json` … | `mimique-solver` |
+//! | exertion | `work/`, `heart/`, `metabolism/`, `activity/`, `breathing/`, `svr/`, `train/`, `rules/`, `weights/`, `chain/`, `errors/` | `mimique-exertion`, `mimique-exertion-training` |
 //!
 //! A number that is wrong is a wrong [`Case`]; a file that cannot be read is a [`VerifyError`]. Names,
 //! values and, where a case has them, tolerances come from the files.
@@ -39,6 +40,7 @@ mod annotation;
 mod case;
 mod document;
 mod error;
+mod exertion;
 mod layouts;
 mod solver;
 mod statistics;
@@ -64,8 +66,13 @@ pub trait Family: Sync {
 }
 
 /// Every family.
-pub static FAMILIES: [&dyn Family; 4] =
-    [&statistics::Statistics, &solver::Solver, &annotation::Annotation, &layouts::Layouts];
+pub static FAMILIES: [&dyn Family; 5] = [
+    &statistics::Statistics,
+    &solver::Solver,
+    &annotation::Annotation,
+    &exertion::Exertion,
+    &layouts::Layouts,
+];
 
 /// How many folders below the one that is named are looked into.
 const DEPTH: usize = 3;

@@ -113,3 +113,31 @@ fn layouts() {
     }
     assert!(values(&cases) > 7_000, "only {} values were compared", values(&cases));
 }
+
+#[test]
+fn exertion() {
+    let Some(cases) = all_right("exertion", "exertion") else { return };
+    let folder = real_file("exertion", "exertion/open").unwrap();
+    for (name, least) in [
+        ("work", 16),
+        ("heart", 15),
+        ("metabolism", 12),
+        ("activity", 3),
+        ("breathing", 13),
+        ("svr", 12),
+        ("train", 11),
+        ("rules", 3),
+        ("weights", 13),
+        ("chain", 4),
+    ] {
+        let found = of(&cases, &format!("open/{name}/")).len();
+        let files = std::fs::read_dir(folder.join(name)).unwrap().filter(|file| {
+            file.as_ref().unwrap().path().extension().is_some_and(|ending| ending == "json")
+        });
+        assert_eq!(found, files.count(), "{name}");
+        assert!(found >= least, "{name}: {found} cases");
+    }
+    let refusals = of(&cases, "open/errors/errors/").len();
+    assert!(refusals >= 25, "{refusals} refusals");
+    assert!(values(&cases) > 25_000, "only {} values were compared", values(&cases));
+}

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use mimique_avatar::Avatar;
 use mimique_clip::{TakeContent, decode_operators, decode_take, sha256_hex};
-use mimique_mocap::WeightsTable;
+use mimique_mocap::{Activity, ActivityColumn, Sport, WeightsTable};
 use mimique_solver::VertexAssociation;
 use mimique_stimulus::{AvatarSkin, MarkerMap};
 use mimique_study::Multilingual as _;
@@ -121,6 +121,38 @@ pub(super) fn weights_facts(format: &str, table: &WeightsTable) -> Value {
         "outside_0_1": format!("{:.2} %", 100.0 * outside as f64 / weights.len().max(1) as f64),
         "first_frame": table.frames.first(),
         "interpolated": interpolated,
+    })
+}
+
+/// Facts of a recorded activity.
+pub(super) fn activity_facts(activity: &Activity) -> Value {
+    let columns: Vec<String> = ActivityColumn::ALL
+        .into_iter()
+        .filter_map(|column| Some((column, activity.column(column)?)))
+        .map(|(column, values)| {
+            let seen = || values.iter().copied().filter(|value| !value.is_nan());
+            let (low, high) =
+                (seen().fold(f64::INFINITY, f64::min), seen().fold(f64::NEG_INFINITY, f64::max));
+            format!(
+                "{} ({low:.3} to {high:.3}, {} missing)",
+                column.name(),
+                values.len() - seen().count()
+            )
+        })
+        .collect();
+    let gaps = activity.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    json!({
+        "kind": "activity",
+        "format": activity.format.name,
+        "samples": activity.time_s.len(),
+        "seconds": activity.time_s.last(),
+        "longest_gap_s": gaps.fold(0.0, f64::max),
+        "sport": activity.sport.map(|sport| match sport {
+            Sport::Cycling => "cycling",
+            Sport::OnFoot => "on foot",
+        }),
+        "columns": columns.join(", "),
+        "notes": activity.notes,
     })
 }
 

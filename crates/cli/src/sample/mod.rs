@@ -1,4 +1,4 @@
-//! `mimique sample`: files to try every command on, made from the built-in head and actor.
+//! `mimique sample`: files to try every command on, made from the built-in head, actor and body.
 
 mod corpus;
 
@@ -7,11 +7,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
 use mimique_actor::{
-    Clip, Emotion, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites, synthetic_take,
+    Clip, Emotion, Gait, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites,
+    synthetic_take,
 };
 use mimique_avatar::Avatar;
 use mimique_mocap::C3dOptions;
-use mimique_stimulus::{MarkerMap, built_in_capture, built_in_map, built_in_weights};
+use mimique_stimulus::{MarkerMap, built_in_bvh, built_in_capture, built_in_map, built_in_weights};
 
 use crate::output;
 
@@ -45,16 +46,31 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let map = marker_map(&person, &take);
     let head = build_head(&person);
     make_folder(&args)?;
-    let files = [
-        ("head.glb", glb(&head)?, "the avatar: the built-in head with its blendshapes"),
-        ("take.c3d", c3d(&take)?, "the capture: another person performs the six emotions"),
-        ("markers.json", map.to_json().into_bytes(), "the marker map from the one to the other"),
+    let mut files = vec![
+        ("head.glb".to_owned(), glb(&head)?, "the avatar: the built-in head with its blendshapes"),
         (
-            "weights.csv",
+            "take.c3d".to_owned(),
+            c3d(&take)?,
+            "the capture: another person performs the six emotions",
+        ),
+        (
+            "markers.json".to_owned(),
+            map.to_json().into_bytes(),
+            "the marker map from the one to the other",
+        ),
+        (
+            "weights.csv".to_owned(),
             built_in_weights(&take).to_csv().into_bytes(),
             "the weights that the actor played",
         ),
     ];
+    for (gait, what) in Gait::ALL.into_iter().zip([
+        "the motion of a walk, whole strides",
+        "the motion of a run, whole strides",
+        "the motion of a sprint, whole strides",
+    ]) {
+        files.push((format!("{}.bvh", gait.name), built_in_bvh(&gait).into_bytes(), what));
+    }
     let mut out = std::io::stdout().lock();
     for (name, bytes, what) in &files {
         let path = args.out.join(name);
@@ -65,7 +81,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     }
     if json {
         let text = serde_json::json!({
-            "files": files.each_ref().map(|(name, ..)| args.out.join(name)),
+            "files": files.iter().map(|(name, ..)| args.out.join(name)).collect::<Vec<_>>(),
             "rate_hz": take.rate_hz,
             "frames": take.frames(),
             "neutral": take.neutral,

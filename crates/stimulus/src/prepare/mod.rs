@@ -8,6 +8,7 @@ mod advice;
 mod avatar_key;
 mod builtin;
 mod cache;
+mod exertion;
 mod known;
 mod solved_clip;
 mod source_files;

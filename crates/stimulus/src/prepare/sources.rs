@@ -6,16 +6,19 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use mimique_clip::sha256_hex;
-use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, read_weights_file};
+use mimique_mocap::{
+    Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable, read_weights_file,
+};
 use mimique_study::{
-    AvatarSource, CaptureSource, Clip, Segment, Span, Study, resolve_path, video_type,
+    AvatarSource, CaptureSource, Clip, ExertionCapture, Segment, Span, Study, resolve_path,
+    video_type,
 };
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
 use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
-use super::{Places, PrepareError, builtin, pointer};
+use super::{Places, PrepareError, builtin, exertion, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
 use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
 
@@ -27,12 +30,14 @@ pub(super) struct Sources<'a> {
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
     asked: Asked,
+    /// Weights of exertions, by their captures.
+    exertions: RefCell<BTreeMap<String, Rc<WeightsTable>>>,
 }
 
 impl<'a> Sources<'a> {
     pub fn new(study: &'a Study, places: &'a Places) -> Self {
-        let (avatars, captures, trainings, asked) = Default::default();
-        Self { study, places, avatars, captures, trainings, asked }
+        let (avatars, captures, trainings, exertions, asked) = Default::default();
+        Self { study, places, avatars, captures, trainings, exertions, asked }
     }
 
     /// The files that were asked for.
@@ -243,6 +248,10 @@ impl<'a> Sources<'a> {
                 let (table, frames) = builtin::performed(actor, what);
                 return Ok(Recording { pointer: at, table, frames });
             }
+            (Some(CaptureSource::Exertion(exertion)), Some(Span::Frames { first, end })) => {
+                let table = self.exertion(&segment.capture, exertion)?;
+                return cut(at, (*table).clone(), [first, end]);
+            }
             _ => {
                 let message = "the method recorded takes weights; name a CSV of weights";
                 return Err(PrepareError::new(pointer, message));
@@ -252,14 +261,20 @@ impl<'a> Sources<'a> {
         let table = read_weights_file(&path, &WeightOptions::default())
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
         match segment.span() {
-            Some(Span::Frames { first, end }) if end <= table.frames.len() => {
-                Ok(Recording { pointer: at, table, frames: first..end })
-            }
-            _ => Err(PrepareError::new(
-                at,
-                format!("give first and end within the {} frames of the file", table.frames.len()),
-            )),
+            Some(Span::Frames { first, end }) => cut(at, table, [first, end]),
+            _ => cut(at, table, [0, usize::MAX]),
         }
+    }
+
+    /// The weights of an exertion.
+    fn exertion(&self, id: &str, own: &ExertionCapture) -> Result<Rc<WeightsTable>, PrepareError> {
+        if let Some(found) = self.exertions.borrow().get(id) {
+            return Ok(found.clone());
+        }
+        let at = pointer(&["stimuli", "captures", id, "exertion"]);
+        let table = Rc::new(exertion::weights(own, &at, |file, at| self.path(file, at))?);
+        self.exertions.borrow_mut().insert(id.to_owned(), table.clone());
+        Ok(table)
     }
 
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
@@ -298,7 +313,7 @@ impl<'a> Sources<'a> {
                 (id.clone(), CaptureFile { repair, ..CaptureFile::new(key, capture) })
             }
             (None, _) => {
-                let message = "give exactly one of builtin and file";
+                let message = "give exactly one of builtin, file and exertion";
                 return Err(PrepareError::new(pointer(&["stimuli", "captures", id]), message));
             }
             _ => {
@@ -352,6 +367,17 @@ impl<'a> Sources<'a> {
         let bytes = std::fs::read(&path).map_err(|e| unread(&path, &e, at))?;
         Ok((path, bytes))
     }
+}
+
+/// Frames of recorded weights.
+fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording, PrepareError> {
+    let [first, end] = frames;
+    if end > table.frames.len() {
+        let frames = table.frames.len();
+        let message = format!("give first and end within the {frames} frames of the capture");
+        return Err(PrepareError::new(at, message));
+    }
+    Ok(Recording { pointer: at, table, frames: first..end })
 }
 
 /// A file that cannot be read.

@@ -286,8 +286,21 @@ MethodOnVideo { method: String }: "bad-video", "method \"{method}\" cannot anima
 PartOfClipId { name: String }: "bad-id",
     "\"{name}\" cannot be part of a clip's identifier", "use letters, digits, _ and -";
 NoSource: "one-source",
-    "neither builtin nor file", "give one: \"builtin\": {{}} or \"file\": \"...\"";
-TwoSources: "one-source", "both builtin and file", "give one: \"builtin\": {{}} or \"file\": \"...\"";
+    "neither builtin, file nor exertion",
+    "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
+SeveralSources: "one-source", "several of builtin, file and exertion",
+    "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
+NoMotion: "one-source", "neither builtin nor motion",
+    "give one: \"builtin\": \"run\" or \"motion\": \"run.bvh\"";
+TwoMotions: "one-source", "both builtin and motion",
+    "give one: \"builtin\": \"run\" or \"motion\": \"run.bvh\"";
+LengthOfExertion { seconds: f64 }: "out-of-range", "{seconds} seconds",
+    "write how long the body goes on, above 0 and at most 86400";
+ExertionMarkers: "not-needed", "the face of an exertion is computed, without markers",
+    "remove markers, head, unit, neutral and headLowpassHz";
+MethodOnExertion { method: String, capture: String }: "bad-exertion",
+    "method \"{method}\" solves markers; the exertion \"{capture}\" has weights",
+    "show it with a method {{\"method\": \"recorded\"}}: choose in /stimuli/clips";
 Unit { unit: String }: "unknown-word", "\"{unit}\" is not a unit", "write m, cm or mm";
 NeutralFrames { first: usize, end: usize }: "bad-range",
     "frames {first} to {end} are none", "write the first frame and the one after the last";
@@ -311,7 +324,7 @@ Intensity { intensity: u8 }: "out-of-range", "intensity {intensity}", "write 1, 
 CutOfActor: "bad-segment", "a cut of a built-in actor is a performance, not frames",
     "write \"performance\": {{\"expression\": \"joy\", \"intensity\": 2}} alone";
 CutOfFile: "bad-segment",
-    "a cut of a file is its frames", "write \"first\" and \"end\", and no performance";
+    "a cut of a file or of an exertion is its frames", "write \"first\" and \"end\", and no performance";
 Parameter { message: String, remedy: String }: "bad-parameter", "{message}", "{remedy}";
 NoTraining: "no-training", "no training: a regression learns from a range of motion",
     "add \"training\": {{\"capture\": \"...\", \"weights\": \"weights.csv\"}}";

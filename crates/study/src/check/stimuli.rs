@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::{FileLookup, Subject, avatars};
+use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
 use crate::study_file::{Capture, CaptureSource, Component, Sequence, SequenceItem};
@@ -23,11 +23,15 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
         identifier(name, &pointer, issues);
-        one_source(capture.builtin.is_some(), capture.file.is_some(), &pointer, issues);
+        one_source(capture, &pointer, issues);
         file(capture.file.as_deref(), &below(&pointer, "file"), lookup, issues);
         file(capture.markers.as_deref(), &below(&pointer, "markers"), lookup, issues);
         recorded(capture, &pointer, issues);
+        if let Some(own) = &capture.exertion {
+            exertion::examine(capture, own, &pointer, lookup, issues);
+        }
     }
+    exertion::methods(subject, issues);
     segments(subject, issues);
     for name in stimuli.methods.keys() {
         identifier(name, &below("/stimuli/methods", name), issues);
@@ -47,14 +51,20 @@ fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
     }
 }
 
-fn one_source(builtin: bool, file: bool, pointer: &str, issues: &mut Issues) {
-    if builtin == file {
-        let problem = if file { Problem::TwoSources } else { Problem::NoSource };
-        issues.error(pointer, problem);
+fn one_source(capture: &Capture, pointer: &str, issues: &mut Issues) {
+    if capture.source().is_none() {
+        let none =
+            capture.builtin.is_none() && capture.file.is_none() && capture.exertion.is_none();
+        issues.error(pointer, if none { Problem::NoSource } else { Problem::SeveralSources });
     }
 }
 
-fn file(path: Option<&str>, pointer: &str, lookup: &FileLookup<'_>, issues: &mut Issues) {
+pub(super) fn file(
+    path: Option<&str>,
+    pointer: &str,
+    lookup: &FileLookup<'_>,
+    issues: &mut Issues,
+) {
     if let Some(Err(problem)) = path.map(lookup) {
         issues.error(pointer, problem);
     }
@@ -122,12 +132,17 @@ fn segments(subject: &Subject<'_>, issues: &mut Issues) {
             (Some(CaptureSource::Builtin(_)), ..) => {
                 issues.error(pointer, Problem::CutOfActor);
             }
-            (Some(CaptureSource::File(_)), None, Some(first), Some(end)) => {
+            (
+                Some(CaptureSource::File(_) | CaptureSource::Exertion(_)),
+                None,
+                Some(first),
+                Some(end),
+            ) => {
                 if first >= end {
                     issues.error(pointer, Problem::SegmentFrames { first, end });
                 }
             }
-            (Some(CaptureSource::File(_)), ..) => {
+            (Some(CaptureSource::File(_) | CaptureSource::Exertion(_)), ..) => {
                 issues.error(pointer, Problem::CutOfFile);
             }
             (None, ..) => {}
@@ -175,6 +190,10 @@ fn training(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues)
         match (capture.source(), &training.weights) {
             (Some(CaptureSource::File(_)), None) => {
                 issues.error(place, Problem::NoWeights);
+            }
+            (Some(CaptureSource::Exertion(_)), _) => {
+                let (method, capture) = (method.word().to_owned(), training.capture.clone());
+                issues.error(place, Problem::MethodOnExertion { method, capture });
             }
             (Some(CaptureSource::Builtin(_)), Some(_)) => {
                 issues.error(below(&place, "weights"), Problem::BuiltinWeights);

@@ -8,6 +8,7 @@
 mod between;
 mod clips;
 mod conduct;
+mod exertion;
 mod general;
 mod hypotheses;
 mod languages;
@@ -30,6 +31,10 @@ pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
 pub use conduct::{
     AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,
     DeviceRules, FullscreenRule, ScreeningRule, StatedAnswers, StaticHosting, TimeLimit,
+};
+pub use exertion::{
+    BuiltinMotion, ExertionCapture, ExertionExpressivity, ExertionHeart, ExertionLoads,
+    ExertionPerson, ExertionSex, MotionSource,
 };
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,

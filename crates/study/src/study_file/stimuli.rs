@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
+use super::{BuiltinExpression, ExertionCapture, Factors, LocalText, MethodEntry};
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -136,7 +136,7 @@ pub fn video_type(path: &str) -> Option<&'static str> {
     }
 }
 
-/// A performance as markers: exactly one of `builtin` and `file`.
+/// A performance: exactly one of `builtin`, `file` and `exertion`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Capture {
@@ -146,6 +146,9 @@ pub struct Capture {
     /// A C3D, TRC or CSV file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The face of a body that exerts itself, computed from the body's motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exertion: Option<ExertionCapture>,
     /// Unit of the file's coordinates where the file does not say: `m`, `cm`, `mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
@@ -188,20 +191,23 @@ pub enum CaptureSource<'a> {
     Builtin(&'a BuiltinCapture),
     /// A file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
+    /// The face of a body that exerts itself.
+    Exertion(&'a ExertionCapture),
 }
 
 impl Capture {
     /// Where it comes from; `None` unless exactly one source is given.
     pub fn source(&self) -> Option<CaptureSource<'_>> {
-        match (&self.builtin, &self.file) {
-            (Some(builtin), None) => Some(CaptureSource::Builtin(builtin)),
-            (None, Some(file)) => Some(CaptureSource::File(file)),
+        match (&self.builtin, &self.file, &self.exertion) {
+            (Some(builtin), None, None) => Some(CaptureSource::Builtin(builtin)),
+            (None, Some(file), None) => Some(CaptureSource::File(file)),
+            (None, None, Some(exertion)) => Some(CaptureSource::Exertion(exertion)),
             _ => None,
         }
     }
 }
 
-/// A cut of a capture: `first` and `end` of a file, or `performance` of a built-in actor.
+/// A cut of a capture: `first` and `end` of a file or of an exertion, or `performance` of a built-in actor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Segment {
@@ -236,7 +242,7 @@ pub struct Performance {
 /// What a segment takes of its capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Span {
-    /// Frames `first..end` of a file.
+    /// Frames `first..end` of a file or of an exertion.
     Frames {
         /// First frame.
         first: usize,

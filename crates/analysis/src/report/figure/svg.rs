@@ -100,6 +100,17 @@ impl Svg {
         let _ = writeln!(self.body, r#"<path d="M{}" class="{class}"/>"#, points.join("L"));
     }
 
+    /// A line of a colour and dashes of its own.
+    pub fn coloured_path(&mut self, points: &[[f64; 2]], (colour, dashes): (&str, &str)) {
+        let points: Vec<String> =
+            points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        let _ = writeln!(
+            self.body,
+            r#"<path d="M{}" fill="none" stroke="{colour}" stroke-width="1.5" stroke-dasharray="{dashes}"/>"#,
+            points.join("L")
+        );
+    }
+
     /// A filled circle.
     pub fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
