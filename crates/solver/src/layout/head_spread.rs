@@ -112,7 +112,7 @@ fn spread(
 fn exchange(
     candidates: &[Point],
     face: &FaceMoments,
-    heads: &mut Vec<usize>,
+    heads: &mut [usize],
     fits: &dyn Fn(&[usize], usize) -> bool,
 ) -> Option<f64> {
     let error = |heads: &[usize]| {
