@@ -53,7 +53,7 @@ fn moved(skin: &AvatarSkin, weights: &[f64]) -> Vec<Point> {
     let mut positions = skin.mesh.positions.clone();
     for (shape, &weight) in skin.mesh.shapes.iter().zip(weights) {
         for (&v, &delta) in shape.vertices.iter().zip(&shape.deltas) {
-            positions[v as usize] = positions[v as usize] + delta * weight;
+            positions[v as usize] += delta * weight;
         }
     }
     positions

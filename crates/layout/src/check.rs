@@ -143,7 +143,7 @@ impl MapCheck {
         let mut curve = ExpectedCurve::new(motion, options.noise, options.slip);
         let errors = curve.of(face, motion, &vertices);
         let before = motion.prior();
-        if !(errors[0] > 0.0) {
+        if errors[0].is_nan() || errors[0] <= 0.0 {
             return Err(LayoutError::NoMotion);
         }
         let after = curve.covariance();

@@ -140,7 +140,7 @@ impl<'a> Judge<'a> {
                     trial.conditions,
                     self.effort,
                     // Other hands and other noise than those that layouts are sought with.
-                    self.seed ^ 0x6a75_6467_65,
+                    self.seed ^ 0x006a_7564_6765,
                 )
             })
             .collect();

@@ -1,4 +1,26 @@
-//! Marker layouts.
+//! Marker layouts: how many markers a face needs, and where.
+//!
+//! A [`Face`] has landmarks, parts and a mirror image; [`Candidates`] are where markers may be, [`FaceMotion`] is what
+//! is to be told of it. A [`Method`] chooses [`Units`] that keep a [`Spacing`]; a [`Rehearsal`] solves simulated takes
+//! of a layout with the real front end and solver, and [`Comparing`] draws curves of it. [`MapCheck`] tells what a
+//! marker map cannot see, [`Sheet`] shows where markers go.
+//!
+//! ```
+//! use mimique_actor::{Density, HeadSpec, build_head};
+//! use mimique_layout::{Candidates, ExpectedCurve, Face, FaceMotion, Where, unseen_shapes};
+//! use mimique_stimulus::AvatarSkin;
+//!
+//! let head = build_head(&HeadSpec { density: Density::nearest(4_000), ..HeadSpec::default() });
+//! let skin = AvatarSkin::of(&head)?;
+//! let face = Face::of(&skin)?;
+//! let places = Candidates::of(&face, &Where::default()).vertices;
+//! // No motion is given: every shape counts by itself.
+//! let motion = FaceMotion::of(&face, &[], &unseen_shapes(&face, &places))?;
+//! let mut curve = ExpectedCurve::new(&motion, 1e-4, 1.5e-3);
+//! let errors = curve.of(&face, &motion, &[places[0], places[200], places[400]]);
+//! assert!(errors.windows(2).all(|pair| pair[1] < pair[0]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod candidates;
 mod check;

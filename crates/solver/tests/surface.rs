@@ -387,7 +387,7 @@ fn markers_taken_one_by_one_leave_what_the_surface_of_all_of_them_leaves() {
     // Two smooth fields, at rest where the sheet is held.
     let field = |i: usize| {
         let (x, y) = ((i / 2 % WIDTH) as f64, (i / 2 / WIDTH) as f64);
-        (0.3 * x + 0.5 * y).sin() + if i % 2 == 0 { 0.5 } else { (0.6 * x).cos() }
+        (0.3 * x + 0.5 * y).sin() + if i.is_multiple_of(2) { 0.5 } else { (0.6 * x).cos() }
     };
     let motion: Vec<f64> =
         (0..2 * WIDTH * WIDTH).map(|i| if held[i / 2] { 0.0 } else { field(i) }).collect();

@@ -512,7 +512,7 @@ fn swapped_labels_of_a_capture_are_said_once_at_their_capture() {
 
 #[test]
 fn another_face_is_advised_to_be_smoothed_with_the_gain_on_its_take() {
-    let stimuli = |methods: serde_json::Value| {
+    let stimuli = |methods: Value| {
         json!({
             "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
             "captures": {"take": {"file": "take.csv", "markers": "map.csv", "neutral": [0, 60]}},

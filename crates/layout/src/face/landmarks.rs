@@ -57,7 +57,7 @@ impl Landmarks {
     /// Of a skin, its openings and its middle plane.
     ///
     /// # Errors
-    /// [`NoProfile`] where the middle plane does not cut a nose and a chin out of the skin.
+    /// `NoProfile` where the middle plane does not cut a nose and a chin out of the skin.
     pub fn of(
         mesh: &SkinMesh,
         openings: &Openings,

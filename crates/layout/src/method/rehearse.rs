@@ -80,6 +80,9 @@ pub(super) fn rehearse(
     Ok(Chosen { units: all, without_room: Vec::new() })
 }
 
+/// The mean square error of a layout in the simulated takes, square metres, and its units.
+type Tried = (f64, Vec<Vec<usize>>);
+
 /// The best of some layouts by K-means and greedy choice, with its mean square error.
 fn beginnings(
     task: &Task<'_, '_>,
@@ -96,8 +99,7 @@ fn beginnings(
         GreedyOptions { information: true, slip: true },
         GreedyOptions { information: false, slip: false },
     ];
-    let tried: Vec<Result<(f64, Vec<Vec<usize>>), LayoutError>> = (0..options.clusterings
-        + by_greedy.len())
+    let tried: Vec<Result<Tried, LayoutError>> = (0..options.clusterings + by_greedy.len())
         .into_par_iter()
         .map(|number| {
             let chosen = match number.checked_sub(options.clusterings) {

@@ -108,7 +108,7 @@ impl<'a> AlongSkin<'a> {
 /// the source; none where the straight way does not pass between them.
 fn front([a, b, c]: [Point; 3], [to_a, to_b]: [f64; 2]) -> Option<f64> {
     let base = (b - a).length();
-    if !(base > 0.0) {
+    if base.is_nan() || base <= 0.0 {
         return None;
     }
     // a at the origin, b on the first axis; the source below, c above.
