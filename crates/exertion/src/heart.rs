@@ -99,7 +99,7 @@ impl SteadyHeart {
     }
 }
 
-/// rcn, the share of the heart's reserve, at every second: w[j] is the work of the second that ends at
+/// rcn, the share of the heart's reserve, at every second: `w[j]` is the work of the second that ends at
 /// second j, `rcn0` the share at second 0.
 ///
 /// # Errors
