@@ -10,7 +10,7 @@ use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 16] = [
+const OF_OTHERS: [&str; 17] = [
     // cargo and its tests
     "--release",
     "--test",
@@ -27,6 +27,7 @@ const OF_OTHERS: [&str; 16] = [
     "--rounds",
     "--stats",
     "--annotate",
+    "--layout",
     "--runs",
     // chmod's long name, in a recipe
     "--chmod",
