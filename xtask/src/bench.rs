@@ -5,14 +5,15 @@
 //! measurement at a time, so that what else the machine does falls on all of them alike. Times are
 //! processor time; a ratio is the median of the ratios of the rounds.
 
-use std::io::{BufRead, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
 use crate::bench_annotate;
+use crate::bench_figures::{extremes, median, print, record};
 use crate::bench_layout;
+use crate::bench_partner::{Partner, number, text};
 use crate::bench_plot;
 use crate::bench_server;
 use crate::bench_stats;
@@ -51,18 +52,6 @@ pub struct Args {
     #[arg(long)]
     record: bool,
 }
-
-/// A process that answers lines with lines of JSON.
-pub struct Partner {
-    child: Child,
-    to: Option<ChildStdin>,
-    from: BufReader<ChildStdout>,
-    /// Its first line.
-    pub greeting: String,
-}
-
-/// Seconds of one measurement, and what they were spent on.
-type Seconds = Vec<f64>;
 
 /// Measures, prints, and records where asked.
 pub fn run(args: &Args) -> Result<()> {
@@ -327,106 +316,10 @@ fn figures(data: &Path) -> Command {
     command
 }
 
-impl Partner {
-    /// Starts it and waits for its greeting.
-    pub fn start(command: &mut Command) -> Result<Partner> {
-        let shown = show(command);
-        say(&shown);
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .with_context(|| format!("could not start: {shown}"))?;
-        let (to, from) = (child.stdin.take(), child.stdout.take());
-        let from = BufReader::new(from.context("no standard output")?);
-        let mut partner = Partner { child, to, from, greeting: String::new() };
-        partner.greeting = partner.line().with_context(|| format!("failed: {shown}"))?;
-        Ok(partner)
-    }
-
-    fn line(&mut self) -> Result<String> {
-        loop {
-            let mut line = String::new();
-            if self.from.read_line(&mut line)? == 0 {
-                bail!("it ended before it answered");
-            }
-            if line.starts_with('{') {
-                return Ok(line);
-            }
-        }
-    }
-
-    /// The answer to a line.
-    pub fn ask(&mut self, what: &str) -> Result<String> {
-        let to = self.to.as_mut().context("it takes no more questions")?;
-        writeln!(to, "{what}")?;
-        to.flush()?;
-        self.line().with_context(|| what.to_owned())
-    }
-
-    /// Units a second.
-    fn rate(&mut self, what: &str) -> Result<f64> {
-        let line = self.ask(what)?;
-        Ok(number(&line, "\"units\":")? / number(&line, "\"seconds\":")?)
-    }
-}
-
-impl Drop for Partner {
-    fn drop(&mut self) {
-        // The end of its input is its end.
-        drop(self.to.take());
-        let _ = self.child.wait();
-    }
-}
-
-/// The number after a key of one line of JSON that we write ourselves.
-pub fn number(line: &str, key: &str) -> Result<f64> {
-    let rest = line.split_once(key).with_context(|| format!("no {key} in {line}"))?.1;
-    let end = rest.find([',', '}', ']']).unwrap_or(rest.len());
-    rest[..end].trim().parse().with_context(|| format!("{key} in {line}"))
-}
-
-/// The text after a key of one line of JSON that we write ourselves.
-pub fn text<'l>(line: &'l str, key: &str) -> Result<&'l str> {
-    let rest = line.split_once(&format!("\"{key}\": \"")).with_context(|| format!("no {key}"))?.1;
-    Ok(rest.split('"').next().unwrap_or_default())
-}
-
-/// The least and the greatest of positive figures.
-pub fn extremes(values: &[f64]) -> [f64; 2] {
-    values.iter().fold([f64::MAX, 0.0], |[least, most], &value| [least.min(value), most.max(value)])
-}
-
-/// Median.
-pub fn median(mut values: Seconds) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
-}
-
 fn table(rows: &[[String; 4]]) -> String {
     let mut out = String::from("| measure | measured | beside | target |\n|---|---|---|---|\n");
     for [what, figure, beside, goal] in rows {
         out.push_str(&format!("| {what} | {figure} | {beside} | {goal} |\n"));
     }
     out
-}
-
-/// Prints a table.
-#[expect(clippy::print_stdout, reason = "xtask talks to the person at the terminal")]
-pub fn print(table: &str) {
-    println!("{table}");
-}
-
-/// Writes the figures between the marks of a document.
-pub fn record(document: &str, figures: &str) -> Result<()> {
-    let file = root().join(document);
-    let (start, end) = ("<!-- figures -->\n", "<!-- end of figures -->");
-    let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
-    let parts =
-        text.split_once(start).and_then(|(head, rest)| Some((head, rest.split_once(end)?.1)));
-    let (head, tail) = parts.with_context(|| format!("{document} has lost its marks"))?;
-    std::fs::write(&file, format!("{head}{start}{figures}{end}{tail}"))?;
-    say(&format!("recorded: {}", file.display()));
-    Ok(())
 }

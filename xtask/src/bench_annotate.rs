@@ -8,63 +8,91 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result};
 
-use crate::bench::{Partner, extremes, median, number, print, record, text};
-use crate::install;
-use crate::process::{cargo, root, say, target};
+use crate::bench_figures::{median, print, record};
+use crate::bench_partner::{Partner, text};
+use crate::bench_peers::{Measured, Peers, measurement};
+use crate::process::{root, target};
 use crate::web;
 
-/// What is measured, by its name in the partners; what it is; whom it is compared with; how many times as
-/// fast it must be.
-const MEASURED: [(&str, &str, &str, f64); 8] = [
-    ("viterbi", "Viterbi, 60 states of 20 Gaussians, 6,000 frames", "hmmlearn", 10.0),
-    ("posteriors", "posteriors, the same", "hmmlearn", 10.0),
-    ("baum-welch", "a Baum-Welch step, 5 states of 20, 3,000 frames", "hmmlearn", 5.0),
-    ("neighbours", "15 neighbours among 5,000, 6,000 frames", "scikit-learn", 0.5),
-    ("rbf fit", "RBF SVM, fit of 5,000 rows", "scikit-learn", 0.5),
-    ("rbf decisions", "its decisions, 6,000 frames", "scikit-learn", 1.0),
-    ("forest fit", "forest of 200 trees, fit of 5,000 rows", "scikit-learn", 1.0),
-    ("forest answers", "its answers, 6,000 frames", "scikit-learn", 1.0),
+/// What is measured.
+const MEASURED: [Measured; 8] = [
+    Measured {
+        name: "viterbi",
+        what: "Viterbi, 60 states of 20 Gaussians, 6,000 frames",
+        peer: "hmmlearn",
+        goal: 10.0,
+        same: SAME,
+    },
+    Measured {
+        name: "posteriors",
+        what: "posteriors, the same",
+        peer: "hmmlearn",
+        goal: 10.0,
+        same: SAME,
+    },
+    Measured {
+        name: "baum-welch",
+        what: "a Baum-Welch step, 5 states of 20, 3,000 frames",
+        peer: "hmmlearn",
+        goal: 5.0,
+        same: SAME,
+    },
+    Measured {
+        name: "neighbours",
+        what: "15 neighbours among 5,000, 6,000 frames",
+        peer: "scikit-learn",
+        goal: 0.5,
+        same: None,
+    },
+    Measured {
+        name: "rbf fit",
+        what: "RBF SVM, fit of 5,000 rows",
+        peer: "scikit-learn",
+        goal: 0.5,
+        same: None,
+    },
+    Measured {
+        name: "rbf decisions",
+        what: "its decisions, 6,000 frames",
+        peer: "scikit-learn",
+        goal: 1.0,
+        same: None,
+    },
+    Measured {
+        name: "forest fit",
+        what: "forest of 200 trees, fit of 5,000 rows",
+        peer: "scikit-learn",
+        goal: 1.0,
+        same: None,
+    },
+    Measured {
+        name: "forest answers",
+        what: "its answers, 6,000 frames",
+        peer: "scikit-learn",
+        goal: 1.0,
+        same: None,
+    },
 ];
 
 /// How near both sides' numbers are where they compute the same: the likelihoods of given models.
-const SAME: f64 = 1e-9;
+const SAME: Option<f64> = Some(1e-9);
 
 /// Measures, prints, and records where asked.
 pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     let folder = target().join("bench-annotate");
     std::fs::create_dir_all(&folder)?;
-    let mut ours = ours(&folder)?;
-    let mut peers = peers(&folder)?;
-    let mut table = String::from(
-        "| measure | Mimique, s | peer, s | times as fast | target |\n|---|---|---|---|---|\n",
-    );
-    for (name, what, peer, goal) in MEASURED {
-        let mut times = Vec::new();
-        for _ in 0..rounds {
-            let (own, other) = (measured(&mut ours, name)?, measured(&mut peers, name)?);
-            if goal > 1.0 && (own[1] / other[1] - 1.0).abs() > SAME {
-                bail!("{name}: {} where {peer} finds {}: nothing to compare", own[1], other[1]);
-            }
-            times.push([own[0], other[0]]);
-        }
-        let ratios: Vec<f64> = times.iter().map(|[own, other]| other / own).collect();
-        let [least, most] = extremes(&ratios);
-        let [own, other] = [0, 1].map(|side| median(times.iter().map(|t| t[side]).collect()));
-        let ratio = median(ratios);
-        table.push_str(&format!(
-            "| {what} | {own:.3} | {other:.3} ({peer}) | {ratio:.1}; rounds {least:.1} to {most:.1} | {goal} |\n"
-        ));
-        say(&format!("{name}: {ratio:.1} x {peer}"));
-    }
+    let mut peers = Peers::start("mimique-annotate", "annotation", &folder)?;
+    let table = peers.table(&MEASURED, rounds)?;
     let versions = format!(
         "hmmlearn {}, scikit-learn {}, NumPy {}; {rounds} rounds, processor time, one thread.",
-        text(&peers.greeting, "hmmlearn")?,
-        text(&peers.greeting, "sklearn")?,
-        text(&peers.greeting, "numpy")?,
+        text(&peers.theirs.greeting, "hmmlearn")?,
+        text(&peers.theirs.greeting, "sklearn")?,
+        text(&peers.theirs.greeting, "numpy")?,
     );
-    drop(peers);
+    let Peers { mut ours, theirs } = peers;
+    drop(theirs);
     let ten_minutes = ten_minutes(&mut ours, &folder, rounds)?;
     print(&format!("{table}\n{versions}\n\n{ten_minutes}"));
     if recorded {
@@ -72,32 +100,6 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
         record(document, &format!("{table}\n{versions}\n\n{ten_minutes}"))?;
     }
     Ok(())
-}
-
-/// The native side, one thread, built if need be.
-fn ours(folder: &std::path::Path) -> Result<Partner> {
-    let mut command = cargo();
-    command.args(["bench", "--quiet", "--package", "mimique-annotate", "--bench", "peers", "--"]);
-    Partner::start(command.arg(folder).env("RAYON_NUM_THREADS", "1"))
-}
-
-/// scikit-learn and hmmlearn, one thread.
-fn peers(folder: &std::path::Path) -> Result<Partner> {
-    let requirements = root().join("tests/peers/annotation-requirements.txt");
-    let python = match std::env::var_os("MIMIQUE_PYTHON") {
-        Some(python) => PathBuf::from(python),
-        None => install::python("python-annotate", &requirements)?.map_err(anyhow::Error::msg)?,
-    };
-    let one_thread = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"];
-    let script = root().join("tests/peers/annotation.py");
-    let mut command = Command::new(python);
-    Partner::start(command.arg(script).arg(folder).envs(one_thread.map(|name| (name, "1"))))
-}
-
-/// Seconds of a measurement, and the number that both sides find.
-fn measured(partner: &mut Partner, name: &str) -> Result<[f64; 2]> {
-    let line = partner.ask(name)?;
-    Ok([number(&line, "\"seconds\":")?, number(&line, "\"answer\":")?])
 }
 
 /// A take of ten minutes labelled natively and by the studio's module.
@@ -108,7 +110,8 @@ fn ten_minutes(ours: &mut Partner, folder: &std::path::Path, rounds: usize) -> R
         .context("run cargo xtask web first")?;
     let mut times = Vec::new();
     for _ in 0..rounds {
-        let (own, page) = (measured(ours, "ten minutes")?, measured(&mut wasm, "ten minutes")?);
+        let (own, page) =
+            (measurement(ours, "ten minutes")?, measurement(&mut wasm, "ten minutes")?);
         times.push([own[0], page[0]]);
     }
     let [own, page] = [0, 1].map(|side| median(times.iter().map(|t| t[side]).collect()));

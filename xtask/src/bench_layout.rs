@@ -4,20 +4,29 @@
 //! turns, a measurement at a time, so that what else the machine does falls on both alike. Times are processor
 //! time, one thread; a ratio is the median of the ratios of the rounds.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use anyhow::Result;
 
-use anyhow::{Result, bail};
+use crate::bench_figures::{median, print, record};
+use crate::bench_partner::{number, text};
+use crate::bench_peers::{Measured, Peers, measurement};
+use crate::process::{say, target};
 
-use crate::bench::{Partner, extremes, median, number, print, record, text};
-use crate::install;
-use crate::process::{cargo, root, say, target};
-
-/// What is measured, by its name in the partners; what it is; whom it is compared with; how many times as
-/// fast it must be.
-const MEASURED: [(&str, &str, &str, f64); 2] = [
-    ("k-means", "K-means, 40 clusters, 10 given starts", "scikit-learn's Elkan", 1.0),
-    ("greedy", "greedy by the expected error, 40 markers", "NumPy", 3.0),
+/// What is measured.
+const MEASURED: [Measured; 2] = [
+    Measured {
+        name: "k-means",
+        what: "K-means, 40 clusters, 10 given starts",
+        peer: "scikit-learn's Elkan",
+        goal: 1.0,
+        same: SAME,
+    },
+    Measured {
+        name: "greedy",
+        what: "greedy by the expected error, 40 markers",
+        peer: "NumPy",
+        goal: 3.0,
+        same: SAME,
+    },
 ];
 
 /// What is measured alone; what it is; the most seconds that it may take.
@@ -27,45 +36,24 @@ const ALONE: [(&str, &str, f64); 2] = [
 ];
 
 /// How near both sides' numbers are: mirrored vertices are ties, which rounding may break otherwise in NumPy.
-const SAME: f64 = 1e-4;
+const SAME: Option<f64> = Some(1e-4);
 
 /// Measures, prints, and records where asked.
 pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     let folder = target().join("bench-layout");
     std::fs::create_dir_all(&folder)?;
-    let mut ours = ours(&folder)?;
-    let mut peers = peers(&folder)?;
-    let mut out = String::from(
-        "| measure | Mimique, s | peer, s | times as fast | target |\n|---|---|---|---|---|\n",
-    );
-    for (name, what, peer, goal) in MEASURED {
-        let mut times = Vec::new();
-        for _ in 0..rounds {
-            let (own, other) = (measured(&mut ours, name)?, measured(&mut peers, name)?);
-            if (own[1] / other[1] - 1.0).abs() > SAME {
-                bail!("{name}: {} where {peer} finds {}: nothing to compare", own[1], other[1]);
-            }
-            times.push([own[0], other[0]]);
-        }
-        let ratios: Vec<f64> = times.iter().map(|[own, other]| other / own).collect();
-        let [least, most] = extremes(&ratios);
-        let [own, other] = [0, 1].map(|side| median(times.iter().map(|t| t[side]).collect()));
-        let ratio = median(ratios);
-        out.push_str(&format!(
-            "| {what} | {own:.3} | {other:.3} ({peer}) | {ratio:.1}; rounds {least:.1} to {most:.1} | {goal} |\n"
-        ));
-        say(&format!("{name}: {ratio:.1} x {peer}"));
-    }
+    let mut peers = Peers::start("mimique-layout", "layouts", &folder)?;
+    let mut out = peers.table(&MEASURED, rounds)?;
     out.push_str(&format!(
         "\n{} places; scikit-learn {}, NumPy {}; {rounds} rounds, processor time, one thread.\n\n",
-        number(&ours.greeting, "\"places\": ")?,
-        text(&peers.greeting, "sklearn")?,
-        text(&peers.greeting, "numpy")?,
+        number(&peers.ours.greeting, "\"places\": ")?,
+        text(&peers.theirs.greeting, "sklearn")?,
+        text(&peers.theirs.greeting, "numpy")?,
     ));
     out.push_str("| measure | seconds | target, at most |\n|---|---|---|\n");
     for (name, what, most) in ALONE {
         let times: Result<Vec<f64>> =
-            (0..rounds).map(|_| Ok(measured(&mut ours, name)?[0])).collect();
+            (0..rounds).map(|_| Ok(measurement(&mut peers.ours, name)?[0])).collect();
         let seconds = median(times?);
         out.push_str(&format!("| {what} | {seconds:.4} | {most} |\n"));
         say(&format!("{name}: {seconds:.4} s"));
@@ -75,30 +63,4 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
         record("docs/measured/layout-benchmarks.md", &out)?;
     }
     Ok(())
-}
-
-/// The native side, one thread, built if need be.
-fn ours(folder: &Path) -> Result<Partner> {
-    let mut command = cargo();
-    command.args(["bench", "--quiet", "--package", "mimique-layout", "--bench", "peers", "--"]);
-    Partner::start(command.arg(folder).env("RAYON_NUM_THREADS", "1"))
-}
-
-/// scikit-learn and NumPy, one thread.
-fn peers(folder: &Path) -> Result<Partner> {
-    let requirements = root().join("tests/peers/layouts-requirements.txt");
-    let python = match std::env::var_os("MIMIQUE_PYTHON") {
-        Some(python) => PathBuf::from(python),
-        None => install::python("python-layouts", &requirements)?.map_err(anyhow::Error::msg)?,
-    };
-    let one_thread = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"];
-    let mut command = Command::new(python);
-    command.arg(root().join("tests/peers/layouts.py")).arg(folder);
-    Partner::start(command.envs(one_thread.map(|name| (name, "1"))))
-}
-
-/// Seconds of a measurement, and the number that both sides find.
-fn measured(partner: &mut Partner, name: &str) -> Result<[f64; 2]> {
-    let line = partner.ask(name)?;
-    Ok([number(&line, "\"seconds\":")?, number(&line, "\"answer\":")?])
 }

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-use crate::bench::{print, record};
+use crate::bench_figures::{print, record};
 use crate::bench_stats::{best, peak};
 use crate::demo;
 use crate::process::{cargo, root, run, say, target};

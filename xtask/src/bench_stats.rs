@@ -12,7 +12,8 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::bench::{Partner, extremes, median, number, print, record, text};
+use crate::bench_figures::{extremes, median, print, record};
+use crate::bench_partner::{Partner, number, text};
 use crate::demo;
 use crate::install;
 use crate::process::{cargo, root, say, show, target};

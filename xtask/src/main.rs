@@ -8,7 +8,10 @@
 
 mod bench;
 mod bench_annotate;
+mod bench_figures;
 mod bench_layout;
+mod bench_partner;
+mod bench_peers;
 mod bench_plot;
 mod bench_server;
 mod bench_stats;

@@ -41,6 +41,7 @@ mod case;
 mod document;
 mod error;
 mod exertion;
+mod files;
 mod layouts;
 mod solver;
 mod statistics;
@@ -69,9 +70,9 @@ pub trait Family: Sync {
 pub static FAMILIES: [&dyn Family; 5] = [
     &statistics::Statistics,
     &solver::Solver,
-    &annotation::Annotation,
+    &annotation::ANNOTATION,
     &exertion::Exertion,
-    &layouts::Layouts,
+    &layouts::LAYOUTS,
 ];
 
 /// How many folders below the one that is named are looked into.

@@ -75,4 +75,25 @@ impl Measures {
             })
             .collect()
     }
+
+    /// The row of a table: number, label, side, height, straight, and skin and landmark twice.
+    pub fn cells(&self) -> [String; 9] {
+        let side = match self.left_mm {
+            x if x.abs() < 0.5 => "middle".to_owned(),
+            x if x > 0.0 => format!("{x:.0} left"),
+            x => format!("{:.0} right", -x),
+        };
+        let [first, second] = &self.along_skin;
+        [
+            self.number.to_string(),
+            self.label.clone(),
+            side,
+            format!("{:+.0}", self.above_nasion_mm),
+            format!("{:.0}", self.from_nasion_mm),
+            format!("{:.0}", first.mm),
+            first.landmark.to_owned(),
+            format!("{:.0}", second.mm),
+            second.landmark.to_owned(),
+        ]
+    }
 }

@@ -218,24 +218,7 @@ fn table(rows: &[Measures], number: usize, of: usize, avatar: &str) -> Page {
     page.line([10.0, top + 1.4], [200.0, top + 1.4], 0.3);
     for (row, m) in rows.iter().enumerate() {
         let y = top + 5.6 + 5.0 * row as f64;
-        let side = match m.left_mm {
-            x if x.abs() < 0.5 => "0 middle".to_owned(),
-            x if x > 0.0 => format!("{x:.0} left"),
-            x => format!("{:.0} right", -x),
-        };
-        let [first, second] = &m.along_skin;
-        let cells = [
-            m.number.to_string(),
-            m.label.clone(),
-            side,
-            format!("{:+.0}", m.above_nasion_mm),
-            format!("{:.0}", m.from_nasion_mm),
-            format!("{:.0}", first.mm),
-            first.landmark.to_owned(),
-            format!("{:.0}", second.mm),
-            second.landmark.to_owned(),
-        ];
-        for ((x, anchor, _), cell) in columns.into_iter().zip(cells) {
+        for ((x, anchor, _), cell) in columns.into_iter().zip(m.cells()) {
             page.text([x, y], anchor, 3.0, cell);
         }
         page.line([10.0, y + 1.5], [200.0, y + 1.5], 0.08);

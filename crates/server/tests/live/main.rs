@@ -7,6 +7,7 @@ mod faults;
 mod fuzz;
 mod kill;
 mod memory;
+mod owner;
 mod people;
 #[path = "../http/postgres.rs"]
 mod postgres;

@@ -5,10 +5,11 @@ use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use mimique_storage::{AccountLink, LinkPurpose, Role, Storage};
+use mimique_storage::Storage;
 use serde_json::{Value, json};
 
 use crate::child::Server;
+use crate::owner::add_owner;
 use crate::people::exchange;
 use crate::{block_on, study};
 
@@ -58,17 +59,7 @@ fn event(sequence: u64, bytes: usize) -> Value {
 /// A study of many sessions, and one that is large; gives the large one's token.
 async fn fill(url: &str) -> String {
     let storage = Storage::open(url).await.unwrap();
-    let link = AccountLink {
-        purpose: LinkPurpose::FirstOwner,
-        email: String::new(),
-        role: Role::Owner,
-        study_id: None,
-        expires_ms: i64::MAX,
-    };
-    storage.add_link("link", &link, 0).await.unwrap();
-    let owner = storage.use_link("link", "owner@example.org", "no password", 1).await.unwrap();
-    let hash = study::sha256(TOKEN);
-    storage.add_token(&hash, owner.unwrap().key, "memory", Role::Owner, 1).await.unwrap();
+    add_owner(&storage, TOKEN).await;
     let hosted = study::hosted();
     let version = mimique_storage::StudyVersion {
         study_id: hosted.id().to_owned(),

@@ -10,7 +10,7 @@ use mimique_solver::{
 use mimique_stimulus::AvatarSkin;
 use serde_json::{Value, json};
 
-use super::clusters::{clustered, markers, start_rows};
+use super::clusters::{clustered, compare_markers, start_rows};
 use super::order::{Placed, compare, criterion, plain, run};
 use super::{Deltas, EXACT, Source, apart, member, relative};
 use crate::case::{Tolerance, number, numbers};
@@ -130,11 +130,7 @@ pub(super) fn kmeans(source: &Source<'_>, each: &mut dyn FnMut(Case)) -> Result<
     for (place, wanted) in expected.get("markers")?.list()?.iter().enumerate() {
         let apart = head.apart(wanted.get("minimum_distance_mm")?.number()?);
         let chosen = ClusterMarkers::choose(&table, &vertices, &found, &stands_for, &apart);
-        let got = markers(&chosen);
-        for key in ["by_cluster", "without"] {
-            let field = format!("markers/{place}/{key}");
-            case.compare(&field, wanted.get(key)?.value(), &got[key], EXACT);
-        }
+        compare_markers(&mut case, place, wanted, &chosen)?;
     }
     each(case);
     Ok(())

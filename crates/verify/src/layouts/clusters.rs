@@ -87,10 +87,25 @@ pub(super) fn start_rows(
 }
 
 /// Markers by cluster, and the clusters without one, as cases write them.
-pub(super) fn markers(found: &ClusterMarkers) -> Value {
+fn markers(found: &ClusterMarkers) -> Value {
     let by_cluster: Map<String, Value> =
         found.chosen.iter().map(|(k, vertices)| (k.to_string(), json!(vertices[0]))).collect();
     json!({"by_cluster": by_cluster, "without": found.without})
+}
+
+/// Compares the markers of clusters with those that are expected at this place of the case.
+pub(super) fn compare_markers(
+    case: &mut Case,
+    place: usize,
+    wanted: &Part<'_>,
+    chosen: &ClusterMarkers,
+) -> Result<(), VerifyError> {
+    let got = markers(chosen);
+    for key in ["by_cluster", "without"] {
+        let field = format!("markers/{place}/{key}");
+        case.compare(&field, wanted.get(key)?.value(), &got[key], EXACT);
+    }
+    Ok(())
 }
 
 /// Trajectories of two people.
@@ -136,11 +151,7 @@ pub(super) fn face(source: &Source<'_>, each: &mut dyn FnMut(Case)) -> Result<()
         let minimum = wanted.get("minimum_distance_mm")?.number()?;
         let apart = apart(&neutral, minimum);
         let chosen = ClusterMarkers::choose(&table, &vertices, &found, &stands_for, &apart);
-        let got = markers(&chosen);
-        for key in ["by_cluster", "without"] {
-            let field = format!("markers/{place}/{key}");
-            case.compare(&field, wanted.get(key)?.value(), &got[key], EXACT);
-        }
+        compare_markers(&mut case, place, wanted, &chosen)?;
     }
     each(case);
     Ok(())

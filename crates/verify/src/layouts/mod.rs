@@ -6,69 +6,35 @@ mod clusters;
 mod order;
 mod processes;
 
-use std::path::Path;
-
 use mimique_geometry::Point;
 use mimique_solver::{SkinMesh, SparseDeltas};
 use serde_json::Value;
 
 use crate::case::Tolerance;
-use crate::document::{Document, Part};
-use crate::{Case, Family, VerifyError};
-
-/// What reads the cases of one file.
-type Read = fn(&Source<'_>, &mut dyn FnMut(Case)) -> Result<(), VerifyError>;
-
-/// The files of the family and what computes their cases.
-const FILES: [(&str, Read); 14] = [
-    ("kmeans_plane.json", clusters::plane),
-    ("kmeans_face.json", clusters::face),
-    ("kmeans_symmetric.json", clusters::symmetric),
-    ("sogp_small.json", processes::sparse),
-    ("sogp_face.json", processes::sparse),
-    ("gp_face.json", processes::exact),
-    ("curve_face.json", processes::curve),
-    ("greedy_face.json", order::greedy),
-    ("slip_face.json", order::slip),
-    ("qr_face.json", order::pivoted_qr),
-    ("head_face.json", order::heads),
-    ("avatar_kmeans.json", avatar::kmeans),
-    ("avatar_greedy.json", avatar::greedy),
-    ("avatar_curve.json", avatar::curve),
-];
-
-/// A file of cases.
-struct Source<'a> {
-    folder: &'a Path,
-    document: Document,
-    /// Its name without ending: `kmeans_face`.
-    name: &'a str,
-}
+use crate::document::Part;
+use crate::files::{FileFamily, Source};
+use crate::{Case, VerifyError};
 
 /// The family.
-pub(crate) struct Layouts;
-
-impl Family for Layouts {
-    fn name(&self) -> &'static str {
-        "layouts"
-    }
-
-    fn holds(&self, folder: &Path) -> bool {
-        FILES.iter().any(|(file, _)| folder.join(file).is_file())
-    }
-
-    fn run(&self, folder: &Path, each: &mut dyn FnMut(Case)) -> Result<(), VerifyError> {
-        for (file, read) in FILES {
-            let path = folder.join(file);
-            if path.is_file() {
-                let document = Document::read(&path)?;
-                let name = file.trim_end_matches(".json");
-                read(&Source { folder, document, name }, each)?;
-            }
-        }
-        Ok(())
-    }
-}
+pub(crate) static LAYOUTS: FileFamily = FileFamily {
+    name: "layouts",
+    files: &[
+        ("kmeans_plane.json", clusters::plane),
+        ("kmeans_face.json", clusters::face),
+        ("kmeans_symmetric.json", clusters::symmetric),
+        ("sogp_small.json", processes::sparse),
+        ("sogp_face.json", processes::sparse),
+        ("gp_face.json", processes::exact),
+        ("curve_face.json", processes::curve),
+        ("greedy_face.json", order::greedy),
+        ("slip_face.json", order::slip),
+        ("qr_face.json", order::pivoted_qr),
+        ("head_face.json", order::heads),
+        ("avatar_kmeans.json", avatar::kmeans),
+        ("avatar_greedy.json", avatar::greedy),
+        ("avatar_curve.json", avatar::curve),
+    ],
+};
 
 /// Exact: labels, orders, markers.
 const EXACT: Tolerance = Tolerance::Exact;

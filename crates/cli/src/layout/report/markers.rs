@@ -67,24 +67,8 @@ pub(super) fn places(measures: &[Measures]) -> Vec<Block> {
          line from the nasion, and along the skin to two landmarks",
         ["no.", "marker", "side", "height", "straight", "skin", "to", "skin", "to"],
     );
-    for m in measures {
-        let side = match m.left_mm {
-            x if x.abs() < 0.5 => "middle".to_owned(),
-            x if x > 0.0 => format!("{x:.0} left"),
-            x => format!("{:.0} right", -x),
-        };
-        let [first, second] = &m.along_skin;
-        table.row([
-            m.number.to_string(),
-            m.label.clone(),
-            side,
-            format!("{:+.0}", m.above_nasion_mm),
-            format!("{:.0}", m.from_nasion_mm),
-            format!("{:.0}", first.mm),
-            first.landmark.to_owned(),
-            format!("{:.0}", second.mm),
-            second.landmark.to_owned(),
-        ]);
+    for own in measures {
+        table.row(own.cells());
     }
     vec![Block::Heading(2, "Where to put them".to_owned()), Block::Table(table)]
 }
