@@ -35,7 +35,15 @@ fn the_built_in_actor_is_solved_without_any_file() {
     assert_eq!(facts["gaze_at_rest"].as_array().unwrap().len(), 8, "{facts}");
     let held = facts["held"].as_array().unwrap();
     assert!(held.contains(&"eyeLookInLeft".into()) && held.len() < 10, "{held:?}");
-    assert_eq!(facts["warnings"], serde_json::json!([]));
+    // Another person acts than the avatar shows: smoothing is advised with what it gains, until it is chosen.
+    let warnings = facts["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].as_str().unwrap().contains("rbfSmoothing 0.1 lowers"), "{warnings:?}");
+    for smoothing in ["0", "0.1"] {
+        let chosen = format!(r#"{{"method": "lsts", "alpha": 0.3, "rbfSmoothing": {smoothing}}}"#);
+        let chosen = workspace.solve("b", &chosen, false).unwrap();
+        assert_eq!(chosen["warnings"], serde_json::json!([]), "{smoothing}");
+    }
     let resting = workspace.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
     assert_eq!(resting["weights_hash"], facts["weights_hash"]);
     let asked = r#"{"method": "lsts", "alpha": 0.3, "gaze": "markers"}"#;

@@ -76,10 +76,10 @@ impl SmoothingAdvice {
         )
     }
 
-    /// The advice for a command line.
+    /// The advice for a take that is solved, by the command or in the studio.
     pub fn sentence(&self) -> String {
         format!(
-            "{}; give --rbf-smoothing {ADVISED_SMOOTHING}, or --rbf-smoothing 0 to keep it exact",
+            "{}; set rbfSmoothing (--rbf-smoothing) to {ADVISED_SMOOTHING}, or to 0 to keep the adaptation exact",
             self.measured()
         )
     }
