@@ -15,7 +15,8 @@ export class HeadPicture {
   #view = { yaw: 0, pitch: 0 };
   #key = null;
 
-  /// `parts`: {clip, section, canvas, overlay, view (a select of "yaw,pitch"), draw(overlay, camera)};
+  /// `parts`: {clip, section, canvas, overlay, view (a select of "yaw,pitch"), zoom (1 where it is left out),
+  /// draw(overlay, camera)};
   /// `page`: {avatarKey(), avatarShapes(), report(error)}
   constructor(parts, page) {
     [this.#parts, this.#page] = [parts, page];
@@ -50,7 +51,7 @@ export class HeadPicture {
 
   #turn(view) {
     this.#view = view;
-    this.#stage?.setView(view);
+    this.#stage?.setView({ ...view, zoom: this.#parts.zoom ?? 1 });
     if (!this.#parts.section.open || this.#key === null) return;
     this.#stage?.show(this.#parts.clip, 0).then(() => this.redraw(), this.#page.report);
   }

@@ -9,10 +9,12 @@ import { callWorker } from "./worker-calls.js";
 const $ = (id) => document.getElementById(id);
 /// How near to a marker's place it is taken hold of, CSS pixels.
 const REACH = 14;
+/// The plot begins where so many markers are on the face: fewer tell none, and hide what the others do.
+const FIRST = 4;
 /// The lines of the plot.
 const LINES = ["now", "as it was"];
 const EMPTY = { markers: [], head: [], steps: 0 };
-const mm = (value) => `${value.toFixed(Math.abs(value) < 0.1 ? 3 : 2)} mm`;
+const mm = (value) => `${value.toFixed(Math.abs(value) < 1 ? 3 : 2)} mm`;
 
 export class Layouts {
   #page;
@@ -27,7 +29,7 @@ export class Layouts {
     this.#page = page;
     const overlay = $("layout-overlay");
     this.#picture = new HeadPicture({
-      clip: "studio-layout", section: $("layouts"), canvas: $("layout-canvas"), overlay, view: $("layout-view"),
+      clip: "studio-layout", section: $("layouts"), canvas: $("layout-canvas"), overlay, view: $("layout-view"), zoom: 1.4,
       draw: (canvas, camera) => drawLayout(canvas, camera, this.#state, this.#chosen),
     }, page);
     overlay.tabIndex = 0;
@@ -73,7 +75,7 @@ export class Layouts {
   async #make() {
     const [count, heads] = [$("layout-count"), $("layout-heads")].map((input) => Number(input.value));
     const method = $("layout-method").value;
-    const words = method === "rehearse" ? "Rehearsing layouts: a minute or more" : "Choosing places";
+    const words = method === "rehearse" ? "Rehearsing layouts: ten seconds, or some minutes on a dense head" : "Choosing places";
     await this.#opened(words, () => callWorker("makeLayout", method, count, heads, $("layout-symmetric").checked));
   }
 
@@ -168,9 +170,9 @@ export class Layouts {
     const { curveMm, firstCurveMm, markers } = this.#state;
     if (!$("layouts").open || markers.length === 0) return;
     const plot = $("layout-plot");
-    const lines = [curveMm, firstCurveMm].map((values, i) => ({ name: LINES[i], values }));
-    draw(plot, { lines, unit: "mm", low: 0 }, this.#chosen < 0 ? 1 : (this.#chosen + 1.5) / curveMm.length);
-    plot.setAttribute("aria-label", `Expected error: ${mm(curveMm[0])} without markers, ${mm(curveMm[curveMm.length - 1])} with all ${markers.length}; as it was ${mm(firstCurveMm[firstCurveMm.length - 1])}`);
+    const lines = [curveMm, firstCurveMm].map((values, i) => ({ name: LINES[i], values: values.slice(FIRST) }));
+    draw(plot, { lines, unit: "mm", low: 0 }, this.#chosen < 0 ? 1 : Math.max(0, (this.#chosen + 1.5 - FIRST) / (curveMm.length - FIRST)));
+    plot.setAttribute("aria-label", `Expected error: ${mm(curveMm[FIRST])} with the first ${FIRST} markers, ${mm(curveMm[curveMm.length - 1])} with all ${markers.length}; as it was ${mm(firstCurveMm[firstCurveMm.length - 1])}`);
   }
 
   // The marker at a place of the picture: the nearest that faces the camera.

@@ -74,6 +74,7 @@ export function drawLayout(canvas, camera, { markers, head }, chosen) {
   }
   context.textAlign = "center";
   context.textBaseline = "middle";
+  const size = Math.min(1, width / 420);
   const each = markers.map((marker, index) => ({ ...marker, index }));
   // Those in front are drawn last, the chosen one on top.
   each.sort((a, b) => (a.index === chosen) - (b.index === chosen) || at(b.position)[2] - at(a.position)[2]);
@@ -81,9 +82,10 @@ export function drawLayout(canvas, camera, { markers, head }, chosen) {
     const place = at(position);
     const own = index === chosen;
     context.globalAlpha = own || !normal || facesCamera(camera, normal) ? 1 : 0.25;
-    dot(context, place, own ? 11 : 8.5, own ? "#b3001b" : "#ffd34d");
-    ring(context, place, own ? 11 : 8.5, allowed ? "rgb(0 0 0 / 70%)" : "#b3001b");
-    context.font = `600 ${own ? 12 : 10}px system-ui, sans-serif`;
+    const radius = size * (own ? 11 : 9);
+    dot(context, place, radius, own ? "#b3001b" : "#ffd34d");
+    ring(context, place, radius, allowed ? "rgb(0 0 0 / 70%)" : "#b3001b");
+    context.font = `600 ${size * (own ? 12.5 : 11)}px system-ui, sans-serif`;
     context.fillStyle = own ? "#ffffff" : "#000000";
     context.fillText(String(index + 1), place[0], place[1] + 0.5);
   }

@@ -7,11 +7,12 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Result, bail};
+use anyhow::{Context as _, Result, bail};
 
 use crate::bench::{Partner, extremes, median, number, print, record, text};
 use crate::install;
 use crate::process::{cargo, root, say, target};
+use crate::web;
 
 /// What is measured, by its name in the partners; what it is; whom it is compared with; how many times as
 /// fast it must be.
@@ -25,6 +26,10 @@ const ALONE: [(&str, &str, f64); 2] = [
     ("rehearse", "40 rehearsed markers, pairs, 6 takes", 15.0),
     ("drag", "curve of 40 markers after the first is dragged", 0.1),
 ];
+
+/// The same of the studio's module in node.
+const PAGE: (&str, &str, f64) =
+    ("drag", "a drag in the studio's module: vertex, curve, what each of 40 is worth", 0.1);
 
 /// How near both sides' numbers are: mirrored vertices are ties, which rounding may break otherwise in NumPy.
 const SAME: f64 = 1e-4;
@@ -63,13 +68,10 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
         text(&peers.greeting, "numpy")?,
     ));
     out.push_str("| measure | seconds | target, at most |\n|---|---|---|\n");
-    for (name, what, most) in ALONE {
-        let times: Result<Vec<f64>> =
-            (0..rounds).map(|_| Ok(measured(&mut ours, name)?[0])).collect();
-        let seconds = median(times?);
-        out.push_str(&format!("| {what} | {seconds:.4} | {most} |\n"));
-        say(&format!("{name}: {seconds:.4} s"));
+    for measure in ALONE {
+        out.push_str(&alone(&mut ours, measure, rounds)?);
     }
+    out.push_str(&alone(&mut page()?, PAGE, rounds)?);
     print(&out);
     if recorded {
         record("docs/measured/layout-benchmarks.md", &out)?;
@@ -77,11 +79,30 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     Ok(())
 }
 
+/// The line of what is measured alone.
+fn alone(
+    partner: &mut Partner,
+    (name, what, most): (&str, &str, f64),
+    rounds: usize,
+) -> Result<String> {
+    let times: Result<Vec<f64>> = (0..rounds).map(|_| Ok(measured(partner, name)?[0])).collect();
+    let seconds = median(times?);
+    say(&format!("{what}: {seconds:.4} s"));
+    Ok(format!("| {what} | {seconds:.4} | {most} |\n"))
+}
+
 /// The native side, one thread, built if need be.
 fn ours(folder: &Path) -> Result<Partner> {
     let mut command = cargo();
     command.args(["bench", "--quiet", "--package", "mimique-layout", "--bench", "peers", "--"]);
     Partner::start(command.arg(folder).env("RAYON_NUM_THREADS", "1"))
+}
+
+/// The studio's module.
+fn page() -> Result<Partner> {
+    let dist = std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(web::dist, PathBuf::from);
+    let script = root().join("tests/wasm/layout_speed.mjs");
+    Partner::start(Command::new("node").arg(script).arg(dist)).context("run cargo xtask web first")
 }
 
 /// scikit-learn and NumPy, one thread.

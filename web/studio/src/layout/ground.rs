@@ -17,7 +17,10 @@ pub(super) struct Ground {
     pub(super) mirror: MirrorVertices,
     pub(super) candidates: Candidates,
     pub(super) motion: FaceMotion,
+    /// Follows the markers as they are.
     pub(super) curve: ExpectedCurve,
+    /// Of the markers as they were made or opened.
+    pub(super) first_curve: ExpectedCurve,
 }
 
 impl Ground {
@@ -26,10 +29,12 @@ impl Ground {
         let unseen = unseen_shapes(face, &candidates.vertices);
         let motion = FaceMotion::of(face, takes, &unseen).map_err(|e| Problem::of(WHAT, e))?;
         let Conditions { noise, slip, .. } = Conditions::BY_HAND;
+        let curve = ExpectedCurve::new(&motion, noise, slip);
         Ok(Self {
             gradients: face.gradients.clone(),
             mirror: face.mirror.clone(),
-            curve: ExpectedCurve::new(&motion, noise, slip),
+            first_curve: curve.clone(),
+            curve,
             candidates,
             motion,
         })

@@ -17,9 +17,9 @@ impl LayoutDesk {
     }
 
     /// The curve of the markers as they were made or opened, millimetres.
-    fn first_curve(&self) -> Result<Vec<f64>, Problem> {
-        let ground = self.ground.as_ref().ok_or_else(none)?;
-        let curve = ground.curve.clone().of(&ground.gradients, &ground.motion, &self.first);
+    fn first_curve(&mut self) -> Result<Vec<f64>, Problem> {
+        let ground = self.ground.as_mut().ok_or_else(none)?;
+        let curve = ground.first_curve.of(&ground.gradients, &ground.motion, &self.first);
         Ok(curve.into_iter().map(|m| 1e3 * m).collect())
     }
 }
