@@ -96,7 +96,8 @@ export class Curves {
   }
 }
 
-function swatch(name, index) {
+/// A name with the colour of its line.
+export function swatch(name, index) {
   const item = document.createElement("span");
   item.textContent = name;
   item.style.setProperty("--swatch", style(index).colour);

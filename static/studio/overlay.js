@@ -58,6 +58,40 @@ export function drawMap(canvas, camera, markers, chosen) {
   }
 }
 
+/// Whether skin with this normal faces the picture's camera.
+export function facesCamera(camera, [x, y, z]) {
+  // The fourth row grows along the line of sight.
+  return camera[3] * x + camera[7] * y + camera[11] * z < 0;
+}
+
+/// A layout: numbered dots, those on the far side faint, head markers as dark ones without a number.
+export function drawLayout(canvas, camera, { markers, head }, chosen) {
+  const { context, width, height } = fitted(canvas);
+  const at = (position) => project(camera, position, width, height);
+  for (const { position } of head) {
+    dot(context, at(position), 5, "#1d3557");
+    ring(context, at(position), 5, "#ffffff");
+  }
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const size = Math.min(1, width / 420);
+  const each = markers.map((marker, index) => ({ ...marker, index }));
+  // Those in front are drawn last, the chosen one on top.
+  each.sort((a, b) => (a.index === chosen) - (b.index === chosen) || at(b.position)[2] - at(a.position)[2]);
+  for (const { position, normal, allowed, index } of each) {
+    const place = at(position);
+    const own = index === chosen;
+    context.globalAlpha = own || !normal || facesCamera(camera, normal) ? 1 : 0.25;
+    const radius = size * (own ? 11 : 9);
+    dot(context, place, radius, own ? "#b3001b" : "#ffd34d");
+    ring(context, place, radius, allowed ? "rgb(0 0 0 / 70%)" : "#b3001b");
+    context.font = `600 ${size * (own ? 12.5 : 11)}px system-ui, sans-serif`;
+    context.fillStyle = own ? "#ffffff" : "#000000";
+    context.fillText(String(index + 1), place[0], place[1] + 0.5);
+  }
+  context.globalAlpha = 1;
+}
+
 function dot(context, [x, y], radius, colour) {
   context.fillStyle = colour;
   context.beginPath();

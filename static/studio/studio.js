@@ -4,6 +4,7 @@ import { Curves } from "./curves.js";
 import { callWorker } from "./worker-calls.js";
 import { save, wireExports } from "./export.js";
 import { Labels } from "./labels.js";
+import { Layouts } from "./layouts.js";
 import { Matching } from "./matching.js";
 import { MethodPanel } from "./panel.js";
 import { Timeline } from "./timeline.js";
@@ -48,6 +49,7 @@ const page = {
   avatar: () => here.avatar,
   avatarShapes: () => here.avatar.shapes.length,
   faceMarkers: () => (here.map?.markers ?? []).filter(({ vertex }) => vertex !== null).map(({ label }) => label),
+  mapIsThere: () => (here.map?.markers ?? []).some(({ vertex }) => vertex !== null),
   trainingMissing: () => (here.training ? here.training.missing : "open a range of motion and its weights"),
   showMarkers: () => $("show-markers").checked,
   first: () => player.panels[0],
@@ -71,6 +73,7 @@ const page = {
   trainingChanged(state) {
     here.training = state;
     for (const panel of player.panels) panel.trainingChanged();
+    layouts.sourcesChanged().catch(report);
   },
   captureOptions: () => [$("take-unit").value || undefined, Number($("take-rate").value) || undefined],
   busy,
@@ -90,6 +93,7 @@ const page = {
 
 const curves = new Curves(page);
 const matching = new Matching(page);
+const layouts = new Layouts(page);
 const timeline = new Timeline({
   ...page,
   changed(segments) {
@@ -121,6 +125,7 @@ function mapFacts() {
   }
   $("map-facts").textContent = placed === 0 ? "none" : words.join("; ");
   $("map-save").disabled = placed === 0;
+  layouts.mapChanged();
 }
 
 async function avatarHere(facts) {
@@ -163,6 +168,7 @@ async function sourcesChanged() {
     await matching.show();
   } else here.map = null;
   mapFacts();
+  await layouts.sourcesChanged();
   if (!here.take) return;
   await methods;
   const recorded = here.take.kind === "weights";

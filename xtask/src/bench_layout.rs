@@ -4,12 +4,16 @@
 //! turns, a measurement at a time, so that what else the machine does falls on both alike. Times are processor
 //! time, one thread; a ratio is the median of the ratios of the rounds.
 
-use anyhow::Result;
+use std::path::PathBuf;
+use std::process::Command;
+
+use anyhow::{Context as _, Result};
 
 use crate::bench_figures::{median, print, record};
-use crate::bench_partner::{number, text};
+use crate::bench_partner::{Partner, number, text};
 use crate::bench_peers::{Measured, Peers, measurement};
-use crate::process::{say, target};
+use crate::process::{root, say, target};
+use crate::web;
 
 /// What is measured.
 const MEASURED: [Measured; 2] = [
@@ -35,6 +39,10 @@ const ALONE: [(&str, &str, f64); 2] = [
     ("drag", "curve of 40 markers after the first is dragged", 0.1),
 ];
 
+/// The same of the studio's module in node.
+const PAGE: (&str, &str, f64) =
+    ("drag", "a drag in the studio's module: vertex, curve, what each of 40 is worth", 0.1);
+
 /// How near both sides' numbers are: mirrored vertices are ties, which rounding may break otherwise in NumPy.
 const SAME: Option<f64> = Some(1e-4);
 
@@ -51,16 +59,45 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
         text(&peers.theirs.greeting, "numpy")?,
     ));
     out.push_str("| measure | seconds | target, at most |\n|---|---|---|\n");
-    for (name, what, most) in ALONE {
-        let times: Result<Vec<f64>> =
-            (0..rounds).map(|_| Ok(measurement(&mut peers.ours, name)?[0])).collect();
-        let seconds = median(times?);
-        out.push_str(&format!("| {what} | {seconds:.4} | {most} |\n"));
-        say(&format!("{name}: {seconds:.4} s"));
+    for measure in ALONE {
+        out.push_str(&alone(&mut peers.ours, measure, rounds)?);
     }
+    out.push_str(&alone(&mut page()?, PAGE, rounds)?);
     print(&out);
     if recorded {
         record("docs/measured/layout-benchmarks.md", &out)?;
     }
     Ok(())
+}
+
+/// The line of what is measured alone.
+fn alone(
+    partner: &mut Partner,
+    (name, what, most): (&str, &str, f64),
+    rounds: usize,
+) -> Result<String> {
+    let times: Result<Vec<f64>> = (0..rounds).map(|_| Ok(measurement(partner, name)?[0])).collect();
+    let seconds = median(times?);
+    say(&format!("{what}: {seconds:.4} s"));
+    Ok(format!("| {what} | {seconds:.4} | {most} |\n"))
+}
+
+/// The studio's module.
+fn page() -> Result<Partner> {
+    let dist = std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(web::dist, PathBuf::from);
+    let script = root().join("tests/wasm/layout_speed.mjs");
+    Partner::start(Command::new("node").arg(script).arg(dist)).context("run cargo xtask web first")
+}
+
+/// scikit-learn and NumPy, one thread.
+fn peers(folder: &Path) -> Result<Partner> {
+    let requirements = root().join("tests/peers/layouts-requirements.txt");
+    let python = match std::env::var_os("MIMIQUE_PYTHON") {
+        Some(python) => PathBuf::from(python),
+        None => install::python("python-layouts", &requirements)?.map_err(anyhow::Error::msg)?,
+    };
+    let one_thread = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"];
+    let mut command = Command::new(python);
+    command.arg(root().join("tests/peers/layouts.py")).arg(folder);
+    Partner::start(command.envs(one_thread.map(|name| (name, "1"))))
 }

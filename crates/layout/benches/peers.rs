@@ -142,10 +142,10 @@ impl<'a> Problem<'a> {
         let step = self.usual.vertices.len() / (MARKERS + 1);
         let mut markers: Vec<usize> = spread.step_by(step).take(MARKERS).collect();
         let mut curve = ExpectedCurve::new(&self.motion, NOISE_M, 1.5e-3);
-        curve.of(self.face, &self.motion, &markers);
+        curve.of(&self.face.gradients, &self.motion, &markers);
         markers[0] = self.usual.vertices[step / 2];
         let start = Clock::start();
-        let found = curve.of(self.face, &self.motion, &markers);
+        let found = curve.of(&self.face.gradients, &self.motion, &markers);
         (start.seconds(), 1e3 * found[found.len() - 1])
     }
 }

@@ -141,7 +141,7 @@ impl MapCheck {
     ) -> Result<Self, LayoutError> {
         let vertices: Vec<usize> = sites.iter().map(MarkerSite::vertex).collect();
         let mut curve = ExpectedCurve::new(motion, options.noise, options.slip);
-        let errors = curve.of(face, motion, &vertices);
+        let errors = curve.of(&face.gradients, motion, &vertices);
         let before = motion.prior();
         if errors[0].is_nan() || errors[0] <= 0.0 {
             return Err(LayoutError::NoMotion);

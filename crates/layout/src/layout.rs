@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use mimique_geometry::Point;
-use mimique_solver::{FaceMoments, best_heads, head_error};
+use mimique_solver::{FaceMoments, MarkerSite, SkinMesh, best_heads, head_error};
 use mimique_stimulus::{MappedMarker, MarkerMap, MarkerPlace};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -15,6 +15,8 @@ use crate::spacing::Spacing;
 
 /// Skin that no shape moves by more carries head markers, metres.
 pub const HEAD_STILL_M: f64 = 2e-4;
+/// Noise of head markers that the error of the head's pose is told for, metres.
+pub const HEAD_NOISE_M: f64 = 3e-4;
 /// Most places that head markers are sought among.
 const HEAD_PLACES: usize = 600;
 
@@ -139,6 +141,26 @@ pub struct Heads {
     pub vertices: Vec<usize>,
     /// Root mean square error on the face, in the unit of the noise.
     pub error: f64,
+}
+
+/// The places of a map's head markers, as far as they are known: those that are face markers, too, and those
+/// that a layout's own file names under `layout.head`; `text` is the file's.
+pub fn head_places(
+    labels: &[String],
+    sites: &[MarkerSite],
+    mesh: &SkinMesh,
+    text: &str,
+) -> Vec<(String, Point)> {
+    let file: Value = serde_json::from_str(text).unwrap_or(Value::Null);
+    let named = |label: &String| -> Option<(String, Point)> {
+        if let Some(site) = sites.iter().find(|site| site.label == *label) {
+            return Some((label.clone(), site.position(mesh)));
+        }
+        let place = &file["layout"]["head"][label]["position"];
+        let number = |axis: usize| place[axis].as_f64();
+        Some((label.clone(), Point::new(number(0)?, number(1)?, number(2)?)))
+    };
+    labels.iter().filter_map(named).collect()
 }
 
 /// The places of `count` head markers with the least error of the head's pose on the face: on skin that hardly

@@ -17,7 +17,7 @@
 //! // No motion is given: every shape counts by itself.
 //! let motion = FaceMotion::of(&face, &[], &unseen_shapes(&face, &places))?;
 //! let mut curve = ExpectedCurve::new(&motion, 1e-4, 1.5e-3);
-//! let errors = curve.of(&face, &motion, &[places[0], places[200], places[400]]);
+//! let errors = curve.of(&face.gradients, &motion, &[places[0], places[200], places[400]]);
 //! assert!(errors.windows(2).all(|pair| pair[1] < pair[0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -45,7 +45,7 @@ pub use candidates::{CandidateCounts, Candidates, MOVED_M, Where, gaze_shapes, u
 pub use check::{
     CheckOptions, HeadSight, MapCheck, NearestPair, PartSight, PlacementSight, ShapeSight,
 };
-pub use comparison::{Comparing, Comparison, CurveRow, MarkerWorth, RowTrial, worth};
+pub use comparison::{Comparing, Comparison, CurveRow, MarkerWorth, RowTrial, missed, worth};
 pub use curve::ExpectedCurve;
 pub use error::LayoutError;
 pub use evaluation::{Errors, Fold, Judge, Trial, enough, enough_for, folds};
@@ -53,7 +53,10 @@ pub use face::{
     Excluded, Face, FaceError, FacePart, Landmarks, MirrorVertices, MissingOpening, Openings,
     PARTNER_M,
 };
-pub use layout::{HEAD_STILL_M, Heads, Layout, LayoutMarker, Side, choose_heads, face_moments};
+pub use layout::{
+    HEAD_NOISE_M, HEAD_STILL_M, Heads, Layout, LayoutMarker, Side, choose_heads, face_moments,
+    head_places,
+};
 pub use method::{Choice, Chosen, ClusterOptions, Method, RehearseOptions, Task};
 pub use motion::{
     Basis, DenseTake, DenseTakeError, FaceMotion, MotionSource, PersonMotion, Take, TakeContent,
@@ -64,6 +67,6 @@ pub use rehearsal::{
 };
 pub use sets::{NamedSet, face_robot, mixed, mpeg4, random};
 pub use sheet::{AlongSkin, Measures, Sheet, SheetOptions, ToLandmark, face_height, face_width};
-pub use spacing::{Camera, Distance, Spacing, nearest_in_motion};
+pub use spacing::{Camera, DISTANCE_M, Distance, Spacing, nearest_in_motion};
 pub use units::Units;
 pub use view::{DepthPicture, View};

@@ -6,6 +6,8 @@ use serde::Serialize;
 use crate::face::Face;
 use crate::motion::FaceMotion;
 
+/// Distance of markers where nothing else is said, metres.
+pub const DISTANCE_M: f64 = 0.008;
 /// Frames that the distances are held against beside those in which each shape is largest.
 const EVENLY: usize = 96;
 

@@ -28,19 +28,31 @@ fn expected_curves_fall_and_a_dragged_marker_gives_the_curve_from_scratch() {
     let ground = Ground::of(&face);
     let markers = farthest(&ground, 25);
     let mut curve = ExpectedCurve::new(&ground.motion, PUT.noise, PUT.slip);
-    let first = curve.of(&face, &ground.motion, &markers);
+    let first = curve.of(&face.gradients, &ground.motion, &markers);
     assert_eq!(first.len(), 26);
     assert!(first.windows(2).all(|pair| pair[1] <= pair[0] + 1e-15), "{first:?}");
     // The sixth marker is dragged to another place, and another is dropped.
     let mut dragged = markers.clone();
     dragged[5] = *ground.candidates.vertices.iter().find(|v| !markers.contains(v)).unwrap();
     dragged.remove(20);
-    let followed = curve.of(&face, &ground.motion, &dragged);
-    let fresh =
-        ExpectedCurve::new(&ground.motion, PUT.noise, PUT.slip).of(&face, &ground.motion, &dragged);
-    assert_eq!(followed, fresh, "the same bits");
+    let followed = curve.of(&face.gradients, &ground.motion, &dragged);
+    let fresh = |markers: &[usize]| {
+        let mut curve = ExpectedCurve::new(&ground.motion, PUT.noise, PUT.slip);
+        curve.of(&face.gradients, &ground.motion, markers)
+    };
+    let (without, fresh_curve) = (curve.without_each(), fresh(&dragged));
+    assert_eq!(followed, fresh_curve, "the same bits");
     assert_eq!(first[..6], followed[..6]);
     assert_ne!(first[6], followed[6]);
+
+    // The error without each marker is that of the curve of the others.
+    for (place, without) in without.iter().enumerate() {
+        let mut others = dragged.clone();
+        others.remove(place);
+        let error = fresh(&others)[others.len()];
+        assert!((without - error).abs() < 1e-9 * error, "{place}: {without} {error}");
+        assert!(*without >= followed[dragged.len()]);
+    }
 }
 
 #[test]

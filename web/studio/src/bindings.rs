@@ -14,14 +14,14 @@ pub fn start() {
 #[wasm_bindgen]
 #[derive(Debug, Default)]
 pub struct Studio {
-    workspace: Workspace,
+    pub(crate) workspace: Workspace,
 }
 
-fn text(value: serde_json::Value) -> String {
+pub(crate) fn text(value: serde_json::Value) -> String {
     value.to_string()
 }
 
-fn error(problem: Problem) -> JsError {
+pub(crate) fn error(problem: Problem) -> JsError {
     JsError::new(&problem.0)
 }
 

@@ -17,6 +17,7 @@ mod bindings;
 mod difference;
 mod expressions;
 mod labels;
+mod layout;
 mod markers;
 mod method_fields;
 mod picture;

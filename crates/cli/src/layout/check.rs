@@ -5,11 +5,10 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use mimique_geometry::Point;
-use mimique_layout::{CheckOptions, FaceMotion, MapCheck};
+use mimique_layout::{CheckOptions, FaceMotion, HEAD_NOISE_M, MapCheck, head_places};
 use mimique_stimulus::ADVISED_SMOOTHING;
 use serde_json::Value;
 
-use super::HEAD_NOISE_M;
 use super::inputs::{self, MapFile, blame};
 use crate::solve::Length;
 
@@ -45,7 +44,8 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     let gaze = mimique_layout::gaze_shapes(&face);
     let motion = FaceMotion::of(&face, &takes, &gaze).map_err(|e| anyhow!("--rom: {e}"))?;
     let MapFile { map, sites, text } = inputs::map(&avatar.skin, &args.map)?;
-    let heads = head_places(&map.head, &sites, &avatar.skin, &text);
+    let heads = head_places(&map.head, &sites, &avatar.skin.mesh, &text);
+    let heads: Vec<Point> = heads.into_iter().map(|(_, place)| place).collect();
     let options = CheckOptions {
         noise: args.noise.0,
         slip: args.slip.0,
@@ -64,25 +64,6 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     }
     print(&mut out, args, &check, map.head.len())?;
     Ok(())
-}
-
-/// The places of head markers: those that are face markers, too, and those that a layout names.
-fn head_places(
-    labels: &[String],
-    sites: &[mimique_solver::MarkerSite],
-    skin: &mimique_stimulus::AvatarSkin,
-    text: &str,
-) -> Vec<Point> {
-    let layout: Value = serde_json::from_str(text).unwrap_or(Value::Null);
-    let named = |label: &String| -> Option<Point> {
-        if let Some(site) = sites.iter().find(|site| site.label == *label) {
-            return Some(site.position(&skin.mesh));
-        }
-        let place = &layout["layout"]["head"][label]["position"];
-        let number = |axis: usize| place[axis].as_f64();
-        Some(Point::new(number(0)?, number(1)?, number(2)?))
-    };
-    labels.iter().filter_map(named).collect()
 }
 
 fn print(

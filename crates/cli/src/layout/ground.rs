@@ -2,16 +2,13 @@
 
 use anyhow::anyhow;
 use mimique_layout::{
-    Candidates, Conditions, Distance, Excluded, Face, FaceMotion, Method, NamedSet, Where, mixed,
-    unseen_shapes,
+    Candidates, Conditions, DISTANCE_M, Distance, Excluded, Face, FaceMotion, Method, NamedSet,
+    Where, mixed, unseen_shapes,
 };
 use mimique_solver::MarkerSite;
 
 use super::args::Make;
 use super::inputs;
-
-/// Distance of markers where nothing else is said, metres.
-const DISTANCE_M: f64 = 0.008;
 
 /// A face with its motion, where markers may be, and what goes wrong.
 pub(super) struct Ground<'a> {

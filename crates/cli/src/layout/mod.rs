@@ -24,9 +24,6 @@ use crate::output;
 
 pub use self::args::Args;
 
-/// Noise of head markers, metres, that their error is told for.
-const HEAD_NOISE_M: f64 = 3e-4;
-
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if let Some(Command::Check(args)) = args.command {

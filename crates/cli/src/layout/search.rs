@@ -2,9 +2,9 @@
 
 use anyhow::{anyhow, bail};
 use mimique_layout::{
-    Choice, Comparing, Comparison, Effort, Heads, Layout, LayoutError, Method, NamedSet, Progress,
-    Rehearsal, Spacing, Task, Units, choose_heads, enough, enough_for, face_robot, mixed, mpeg4,
-    worth,
+    Choice, Comparing, Comparison, Effort, HEAD_NOISE_M, Heads, Layout, LayoutError, Method,
+    NamedSet, Progress, Rehearsal, Spacing, Task, Units, choose_heads, enough, enough_for,
+    face_robot, mixed, mpeg4, worth,
 };
 use mimique_solver::{Method as Solver, MethodSpec};
 
@@ -12,7 +12,7 @@ use super::args::Make;
 use super::ground::Ground;
 use super::inputs::blame;
 use super::values::Counts;
-use super::{CountReason, HEAD_NOISE_M, Made, given, warnings};
+use super::{CountReason, Made, given, warnings};
 
 /// Numbers of markers of the curves around a single number.
 const AROUND: [usize; 6] = [10, 15, 20, 30, 40, 60];

@@ -5,7 +5,7 @@
 mod layouts;
 mod worth;
 
-pub use worth::{MarkerWorth, worth};
+pub use worth::{MarkerWorth, missed, worth};
 
 use mimique_solver::{Inference, Method as Solver, MethodSpec};
 use rayon::prelude::*;

@@ -17,19 +17,29 @@ pub struct MarkerWorth {
 
 /// The worth of each marker of a layout, in its order.
 pub fn worth(rehearsal: &Rehearsal<'_>, vertices: &[usize]) -> Vec<MarkerWorth> {
-    let error =
-        |markers: &[usize]| rehearsal.mean_square(markers).ok().map(|square| 1e3 * square.sqrt());
-    let all = error(vertices);
-    (0..vertices.len())
+    let (_, missed) = missed(rehearsal, vertices);
+    missed
         .into_par_iter()
-        .map(|place| {
-            let mut others = vertices.to_vec();
-            others.remove(place);
-            let without = error(&others);
-            MarkerWorth {
-                with_those_before_mm: error(&vertices[..=place]),
-                missed_mm: without.zip(all).map(|(without, all)| without - all),
-            }
+        .enumerate()
+        .map(|(place, missed_mm)| MarkerWorth {
+            with_those_before_mm: error_mm(rehearsal, &vertices[..=place]),
+            missed_mm,
         })
         .collect()
+}
+
+/// The error with all markers of a layout, and how much it rises without each, millimetres; none where too few
+/// are left to tell a face.
+pub fn missed(rehearsal: &Rehearsal<'_>, vertices: &[usize]) -> (Option<f64>, Vec<Option<f64>>) {
+    let all = error_mm(rehearsal, vertices);
+    let without = |place: usize| {
+        let mut others = vertices.to_vec();
+        others.remove(place);
+        error_mm(rehearsal, &others).zip(all).map(|(without, all)| without - all)
+    };
+    (all, (0..vertices.len()).into_par_iter().map(without).collect())
+}
+
+fn error_mm(rehearsal: &Rehearsal<'_>, markers: &[usize]) -> Option<f64> {
+    rehearsal.mean_square(markers).ok().map(|square| 1e3 * square.sqrt())
 }

@@ -110,6 +110,17 @@ impl Greedy {
         self.units[unit].gain(self.criterion.gram().is_some())
     }
 
+    /// What the expected square error of the vertices would rise by if a unit that S already holds were taken
+    /// away again: tr((R - D S D^T)^-1 D S G S D^T), exactly, since S without it is
+    /// S + S D^T (R - D S D^T)^-1 D S. Of units that S does not hold it says nothing.
+    ///
+    /// # Panics
+    /// If there is no such unit, or the criterion is not the expected error.
+    pub fn loss(&self, unit: usize) -> f64 {
+        assert!(self.criterion.gram().is_some(), "the criterion is the expected error");
+        self.units[unit].loss()
+    }
+
     /// The unit that gains most, among those that are neither taken nor left out and that `may` be taken
     /// (equal gains: the earlier one), and its gain.
     pub fn best(&self, may: &dyn Fn(usize) -> bool) -> Option<(usize, f64)> {
@@ -201,6 +212,14 @@ impl Followed {
         let mut product = self.told;
         self.measured().solve_rows(&mut product, self.rows);
         (0..self.rows).map(|i| product[i * MOST + i]).sum::<f64>() / markers
+    }
+
+    fn loss(&self) -> f64 {
+        let mut left = self.noise;
+        left.iter_mut().zip(&self.spread).for_each(|(r, m)| *r -= m);
+        let mut product = self.told;
+        SmallCholesky::of(&left, self.rows).solve_rows(&mut product, self.rows);
+        (0..self.rows).map(|i| product[i * MOST + i]).sum()
     }
 
     /// With C = D S D_t^T and F = D S (K G)^T: D S -= C A^-1 K, D S D^T -= C A^-1 C^T, and
