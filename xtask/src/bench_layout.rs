@@ -88,16 +88,3 @@ fn page() -> Result<Partner> {
     let script = root().join("tests/wasm/layout_speed.mjs");
     Partner::start(Command::new("node").arg(script).arg(dist)).context("run cargo xtask web first")
 }
-
-/// scikit-learn and NumPy, one thread.
-fn peers(folder: &Path) -> Result<Partner> {
-    let requirements = root().join("tests/peers/layouts-requirements.txt");
-    let python = match std::env::var_os("MIMIQUE_PYTHON") {
-        Some(python) => PathBuf::from(python),
-        None => install::python("python-layouts", &requirements)?.map_err(anyhow::Error::msg)?,
-    };
-    let one_thread = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"];
-    let mut command = Command::new(python);
-    command.arg(root().join("tests/peers/layouts.py")).arg(folder);
-    Partner::start(command.envs(one_thread.map(|name| (name, "1"))))
-}
