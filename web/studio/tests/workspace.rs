@@ -43,13 +43,15 @@ fn the_built_in_actor_is_solved_without_any_file() {
         let chosen = format!(r#"{{"method": "lsts", "alpha": 0.3, "rbfSmoothing": {smoothing}}}"#);
         let chosen = workspace.solve("b", &chosen, false).unwrap();
         assert_eq!(chosen["warnings"], serde_json::json!([]), "{smoothing}");
+        assert_eq!(chosen["weights_hash"] == facts["weights_hash"], smoothing == "0");
     }
     let resting = workspace.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
     assert_eq!(resting["weights_hash"], facts["weights_hash"]);
     let asked = r#"{"method": "lsts", "alpha": 0.3, "gaze": "markers"}"#;
     let free = workspace.solve("b", asked, false).unwrap();
     assert_eq!(free["gaze_at_rest"], serde_json::json!([]));
-    assert!(free["warnings"][0].as_str().unwrap().contains("eyeLookInLeft"), "{free}");
+    let names = |warning: &Value| warning.as_str().unwrap().contains("eyeLookInLeft");
+    assert!(free["warnings"].as_array().unwrap().iter().any(names), "{free}");
 
     // Where the skin is and where it is asked to be agree with the residual.
     let frame = frames / 2;

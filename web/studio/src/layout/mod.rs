@@ -110,6 +110,7 @@ impl Workspace {
     }
 
     fn put_map(&mut self, name: &str, map: MarkerMap, text: &str) -> Result<Value, Problem> {
+        self.prepare_ground()?;
         let mesh = &self.face()?.skin.mesh;
         let sites = map.resolve(&self.face()?.skin).map_err(|e| Problem::of(name, e))?;
         if sites.len() < LEAST {
