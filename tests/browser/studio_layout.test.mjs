@@ -26,8 +26,19 @@ function shown(page) {
 /// The picture of the plot, to see whether it moves.
 const plotted = (page) => page.locator("#layout-plot").evaluate((canvas) => canvas.toDataURL());
 
-/// Where the chosen marker's dot is drawn, found by its colour: CSS pixels of the window.
-function chosenDot(page) {
+/// Where the chosen marker's dot is drawn, once that is where it should be: pictures come with the display's next frame.
+async function chosenDot(page, isThere = () => true) {
+  let dot = null;
+  for (let tries = 0; tries < 100; tries += 1) {
+    dot = await dotNow(page);
+    if (dot && isThere(dot)) break;
+    await page.waitForTimeout(100);
+  }
+  return dot;
+}
+
+/// Where it is drawn now, found by its colour: CSS pixels of the window.
+function dotNow(page) {
   return page.locator("#layout-overlay").evaluate((canvas) => {
     const { data, width, height } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     let [x, y, count] = [0, 0, 0];
@@ -85,9 +96,9 @@ test("studio: a layout is made, dragged, moved by keys, thinned, taken back and 
     }
     await changed(page, "#layout-note", first.note);
     await page.mouse.up();
-    await page.waitForTimeout(300);
-    const to = await chosenDot(page);
-    assert.ok(Math.hypot(to.x - from.x - 30, to.y - from.y + 18) < 12, `it went along with the pointer: ${JSON.stringify([from, to])}`);
+    const isThere = (dot) => Math.hypot(dot.x - from.x - 30, dot.y - from.y + 18) < 12;
+    const to = await chosenDot(page, isThere);
+    assert.ok(isThere(to), `it went along with the pointer: ${JSON.stringify([from, to])}`);
     const dragged = await shown(page);
     assert.match(dragged.note, /expected error 0\.\d+ mm a vertex \(0\.\d+ mm as it was\)/);
     assert.notEqual(await plotted(page), plotBefore);
@@ -99,8 +110,7 @@ test("studio: a layout is made, dragged, moved by keys, thinned, taken back and 
     await page.keyboard.press("ArrowLeft");
     await changed(page, "#layout-note", dragged.note);
     const nudged = await shown(page);
-    await page.waitForTimeout(100);
-    const left = await chosenDot(page);
+    const left = await chosenDot(page, (dot) => dot.x < to.x - 1);
     assert.ok(left.x < to.x - 1, `to the left: ${to.x} to ${left.x}`);
     await page.keyboard.press("Control+z");
     await changed(page, "#layout-note", nudged.note);
