@@ -1,5 +1,8 @@
 //! Captures of a study that are exertions: computed, repeatable, refused at their place.
 
+#[path = "support/study.rs"]
+mod study_of_stimuli;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -7,23 +10,16 @@ use mimique_clip::solve_packs;
 use mimique_stimulus::{Places, Prepared, built_in_bvh, prepare};
 use mimique_study::Study;
 use serde_json::{Value, json};
+use study_of_stimuli::study_of;
 
 /// A study of one exertion, cut at frames.
 fn study(exertion: &Value, [first, end]: [usize; 2]) -> Study {
-    Study::from_value(&json!({
-        "id": "test",
-        "studyMetadata": {"title": "Test", "version": "1"},
-        "languages": ["en"],
-        "components": {},
-        "sequence": {"order": "fixed", "components": []},
-        "stimuli": {
-            "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
-            "captures": {"body": {"exertion": exertion}},
-            "segments": [{"id": "end", "capture": "body", "first": first, "end": end}],
-            "methods": {"recorded": {"method": "recorded"}},
-        },
+    study_of(&json!({
+        "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+        "captures": {"body": {"exertion": exertion}},
+        "segments": [{"id": "end", "capture": "body", "first": first, "end": end}],
+        "methods": {"recorded": {"method": "recorded"}},
     }))
-    .unwrap()
 }
 
 fn places(folder: &Path) -> Places {

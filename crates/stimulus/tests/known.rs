@@ -1,21 +1,11 @@
 //! What was prepared before is known by the hash of what it was made of.
 
-use mimique_stimulus::{Places, prepare};
-use mimique_study::Study;
-use serde_json::{Value, json};
+#[path = "support/study.rs"]
+mod study_of_stimuli;
 
-/// A study of the given stimuli and nothing else.
-fn study_of(stimuli: &Value) -> Study {
-    Study::from_value(&json!({
-        "id": "test",
-        "studyMetadata": {"title": "Test", "version": "1"},
-        "languages": ["en"],
-        "components": {},
-        "sequence": {"order": "fixed", "components": []},
-        "stimuli": stimuli,
-    }))
-    .unwrap()
-}
+use mimique_stimulus::{Places, prepare};
+use serde_json::{Value, json};
+use study_of_stimuli::study_of;
 
 #[test]
 fn what_was_prepared_is_known_by_hash() {

@@ -1,5 +1,8 @@
 //! A study file's stimuli to packs: built-in ones and real ones, reuse, refusals.
 
+#[path = "support/study.rs"]
+mod study_of_stimuli;
+
 use std::path::{Path, PathBuf};
 
 use mimique_avatar::pack::decode_pack;
@@ -8,6 +11,7 @@ use mimique_stimulus::{Places, Prepared, prepare};
 use mimique_study::Study;
 use mimique_test_support::real_data;
 use serde_json::{Value, json};
+use study_of_stimuli::study_of;
 
 fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
@@ -15,15 +19,7 @@ fn repository() -> PathBuf {
 
 /// A study of the given stimuli and nothing else.
 fn study(stimuli: Value) -> Study {
-    Study::from_value(&json!({
-        "id": "test",
-        "studyMetadata": {"title": "Test", "version": "1"},
-        "languages": ["en"],
-        "components": {},
-        "sequence": {"order": "fixed", "components": []},
-        "stimuli": stimuli,
-    }))
-    .unwrap()
+    study_of(&stimuli)
 }
 
 fn builtin() -> Value {
