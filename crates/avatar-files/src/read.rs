@@ -109,9 +109,10 @@ impl ReadAvatar {
             scale(&mut avatar, unit_metres);
         }
         within_reach(&avatar)?;
-        let known = avatar.shape_names.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
-        if known < avatar.shape_names.len() {
-            let all = avatar.shape_names.len();
+        let face = avatar.face_shapes();
+        let known = face.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
+        if known < face.len() {
+            let all = face.len();
             notes.push(format!("{known} of {all} shapes are ARKit's by name, the rest are kept"));
         }
         let pairs = part_eyes(&mut avatar);

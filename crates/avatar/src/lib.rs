@@ -41,5 +41,7 @@ pub use avatar::{
     Avatar, Eyeball, Look, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, SparseShape, Texture, Textured,
 };
 pub use image::{Image, MOST_TEXTURE_SIDE};
-pub use shape_names::{ARKIT_SHAPES, ShapeMap, arkit_shapes, blinks, map_shapes, turns_eyes};
+pub use shape_names::{
+    ARKIT_SHAPES, BODY_SHAPES, ShapeMap, arkit_shapes, blinks, map_shapes, shows_body, turns_eyes,
+};
 pub use texture::TextureError;

@@ -24,6 +24,11 @@ pub const ARKIT_SHAPES: [&str; 52] = [
     "mouthUpperUpLeft", "mouthUpperUpRight", "noseSneerLeft", "noseSneerRight", "tongueOut",
 ];
 
+/// Shapes that show the body and no expression: how far the chest is filled, how red the skin is, how wet.
+/// The first moves neck and chest; the others move nothing, the stage shades the skin by them. No marker
+/// tells them: they rest unless recorded weights have columns of these names.
+pub const BODY_SHAPES: [&str; 3] = ["breath", "flush", "sweat"];
+
 /// FACS numbers and the features that they are. AU 23, 25 and others have none of their own in
 /// ARKit: shapes of those names stay what they are called.
 const ACTION_UNITS: [(u32, &[&str]); 28] = [
@@ -92,6 +97,11 @@ pub fn arkit_shapes(name: &str) -> Vec<&'static str> {
 /// units 61 to 64.
 pub fn turns_eyes(name: &str) -> bool {
     actions(name).iter().any(|action| action.feature.starts_with("eyeLook"))
+}
+
+/// Whether a shape shows the body and no expression: one of [`BODY_SHAPES`].
+pub fn shows_body(name: &str) -> bool {
+    BODY_SHAPES.contains(&name)
 }
 
 /// Whether a shape shuts the eyes: its name means one of ARKit's `eyeBlink` shapes or the action

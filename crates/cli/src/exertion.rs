@@ -1,6 +1,7 @@
 //! `mimique exertion`: from a body's motion, or what a watch recorded of it, to a face's weights.
 
 mod args;
+mod document;
 mod inputs;
 mod plan;
 mod report;
@@ -11,18 +12,19 @@ mod values;
 use std::path::Path;
 
 use anyhow::{anyhow, bail};
-use mimique_analysis::components::time_courses;
+use mimique_analysis::components::{document_files, time_courses};
+use mimique_analysis::{Language, ReportFile};
 use mimique_exertion::{
     Clip, Expression, ExpressionModel, Face, Series, ShapeTable, Start, Window,
 };
 use mimique_mocap::{WeightOptions, WeightsTable, read_weights_file, weights_files};
-use mimique_stimulus::sha256_of_file;
+use mimique_stimulus::{ExertionTake, sha256_of_file};
 
 pub use self::args::Args;
 use self::args::{Command, Options};
 use self::inputs::Inputs;
 use self::report::Report;
-use crate::output;
+use crate::{output, report_folder};
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
@@ -60,12 +62,12 @@ fn face(args: &Options, json: bool) -> anyhow::Result<()> {
     let window = window(args, inputs.plan.span_s(), over.as_ref())?;
     let clip = Clip::of(&person, &inputs.plan, &series, &window, &face)
         .map_err(|e| anyhow!("--window: {e}"))?;
-    let mut table = clip.table();
+    let take = ExertionTake { series, clip };
+    let mut table = take.clip.table();
     if let Some(over) = &over {
         table = joined(&table, over);
     }
-    let report =
-        Report { args, person: &person, inputs: &inputs, heart, series: &series, clip: &clip };
+    let report = Report { args, person: &person, inputs: &inputs, heart, take: &take };
 
     // Everything is computed before anything is written.
     let mut files: Vec<(std::path::PathBuf, Vec<u8>)> = Vec::new();
@@ -79,17 +81,28 @@ fn face(args: &Options, json: bool) -> anyhow::Result<()> {
     }
     if let Some(file) = &args.plot {
         let panels = report.panels(&face.expression)?;
-        let marked = Some(window.seconds).filter(|_| args.window.is_some());
         let title = format!("Heart rate, EPOC and curves of {}", inputs.name());
-        files.push((file.clone(), time_courses(&title, &panels, marked).into_bytes()));
+        files.push((file.clone(), time_courses(&title, &panels, report.marked()).into_bytes()));
     }
     let told = report.told(&table)?;
+    let mut pages = None;
     if let Some(file) = &args.report {
         let text = serde_json::to_string_pretty(&told)? + "\n";
-        files.push((file.clone(), text.into_bytes()));
+        if file.extension().is_some_and(|own| own.eq_ignore_ascii_case("json")) {
+            files.push((file.clone(), text.into_bytes()));
+        } else {
+            report_folder::check(file).map_err(|e| anyhow!("--report: {}: {e}", file.display()))?;
+            let document = document::document(&report, &face.expression, &told)?;
+            let mut all = document_files(&document, Language::English);
+            all.push(ReportFile { path: "results.json".to_owned(), text });
+            pages = Some((file, all));
+        }
     }
     for (file, bytes) in &files {
         output::write(file, bytes)?;
+    }
+    if let Some((folder, all)) = pages {
+        report_folder::write(&all, folder).map_err(|e| blame(folder, e))?;
     }
     report.print(&told, json)
 }
@@ -109,7 +122,7 @@ fn expression(args: &Options) -> anyhow::Result<Face> {
         None => ShapeTable::default(),
         Some(file) => ShapeTable::of_text(&text_of(file)?).map_err(|e| blame(file, e))?,
     };
-    Ok(Face { expression, shapes, breathing: !args.no_breath, seed: args.seed })
+    Ok(Face { expression, shapes, breathing: !args.no_breath, skin: args.skin, seed: args.seed })
 }
 
 /// The window: as asked for, else all of the plan, or as much of it as the other weights last.

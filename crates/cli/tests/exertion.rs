@@ -64,7 +64,36 @@ fn every_output_is_whole_and_recorded_reads_the_weights() {
         "--out",
         &text(&face),
     ]);
-    assert!(solved.contains("601 frames at 60.00 Hz, 23 of "), "{solved}");
+    assert!(solved.contains("601 frames at 60.00 Hz, 24 of "), "{solved}");
+}
+
+#[test]
+fn a_report_is_pages_and_the_skin_columns() {
+    let folder = sample();
+    let at = |name: &str| folder.path().join(name);
+    let (run, out, pages) = (at("run.bvh"), at("w.csv"), at("report"));
+    told(
+        &["--for", "3min", "--window", "170:180", "--skin"],
+        &[("", &run), ("--out", &out), ("--report", &pages)],
+    );
+    let weights = std::fs::read_to_string(&out).unwrap();
+    let head: Vec<&str> = weights.lines().next().unwrap().split(',').collect();
+    assert_eq!(head[head.len() - 3..], ["breath", "flush", "sweat"]);
+    let html = std::fs::read_to_string(pages.join("report.html")).unwrap();
+    for part in ["Whose is what", "Provenance", "cut at the end of its range", "<svg ", "EPOC"] {
+        assert!(html.contains(part), "{part}");
+    }
+    let told: Value =
+        serde_json::from_str(&std::fs::read_to_string(pages.join("results.json")).unwrap())
+            .unwrap();
+    assert!(html.contains(told["provenance"].as_str().unwrap()));
+    // A folder of something else stays as it is.
+    let other = at("other");
+    std::fs::create_dir(&other).unwrap();
+    std::fs::write(other.join("mine.txt"), "mine").unwrap();
+    let said = refused(&exertion_args(&["--for", "20"], &[("", &run), ("--report", &other)]));
+    assert!(said.contains("--report: ") && said.contains("something else than a report"), "{said}");
+    assert_eq!(std::fs::read_to_string(other.join("mine.txt")).unwrap(), "mine");
 }
 
 #[test]
@@ -178,7 +207,11 @@ fn jitter_a_wrong_rate_a_loop_and_a_strange_unit_are_told() {
     let child = folder.path().join("child.json");
     std::fs::write(&child, "{\"heightM\": 1.2}").unwrap();
     let small = told(&[], &[("", &walk), ("--person", &child)]);
-    assert!(said(&small).contains("the person would be 1.75 m tall (--unit)"), "{}", said(&small));
+    assert!(
+        said(&small).contains("the person would be 1.75 m tall; name the unit"),
+        "{}",
+        said(&small)
+    );
     let own = told(&["--unit", "cm"], &[("", &walk)]);
     assert_eq!(number(&own, "/parts/0/metresPerUnit"), 0.01);
 }

@@ -103,9 +103,16 @@ fn designs_of_other_factors_have_their_hypotheses() {
     assert_eq!(faces.clips().len(), 8);
     let factors: Vec<&str> = faces.hypotheses.iter().map(|own| own.factors[0].as_str()).collect();
     assert_eq!(factors, ["level", "model", "breath", "borg"]);
+    let of_thesis =
+        design(&["--activities", "run", "--levels", "5", "--expressivities", "a,c,e", "--skin"]);
+    let own = |id: &str| of_thesis.stimuli.captures[id].exertion.clone().unwrap();
+    let calm = own("run-level5-a").person.expressivity.unwrap();
+    assert_eq!((calm.mouth_open, calm.brows), (Some(0.86), Some(0.73)));
+    assert_eq!(own("run-level5-e").person.expressivity.unwrap().eyes, Some(1.15));
+    assert!(own("run-level5-c").skin);
     let still = &faces.stimuli.captures["run-level2_5-plain-model2-without"];
     let own = still.exertion.as_ref().unwrap();
-    assert_eq!((own.model.as_str(), own.breath, own.seconds), ("linear", false, 60.0));
+    assert_eq!((own.model.as_str(), own.breath, own.seconds), ("linear", false, Some(60.0)));
     assert_eq!(
         (faces.stimuli.segments[0].first, faces.stimuli.segments[0].end),
         (Some(3480), Some(3600))

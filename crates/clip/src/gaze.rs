@@ -10,9 +10,10 @@ use mimique_solver::{Gaze, Group, MethodSpec};
 /// The method with the shapes that turn the eyes held at 0, for a bank of these shapes.
 ///
 /// They stay free where the method asks for that by `gaze`, and those that its `bounds` name stay free.
+/// Patterns of `locked` and `bounds` are the names that they match ([`MethodSpec::with_names_of`]).
 /// What is locked already stays so; a method that does not solve for shapes is left as it is.
 pub fn with_gaze_at_rest(spec: &MethodSpec, shape_names: &[String]) -> MethodSpec {
-    let mut spec = spec.clone();
+    let mut spec = spec.with_names_of(shape_names, &[]);
     if !spec.method.uses(Group::Shapes) || spec.gaze() == Gaze::Markers {
         return spec;
     }

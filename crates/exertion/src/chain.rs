@@ -150,8 +150,11 @@ pub struct Face {
     pub expression: Expression,
     /// Which shapes the controls move.
     pub shapes: ShapeTable,
-    /// Whether the mouth moves with the breath.
+    /// Whether the mouth moves with the breath, and the chest: the weight `breath` is what is in the lungs,
+    /// times how hard the heart works.
     pub breathing: bool,
+    /// Whether the skin reddens and sweats: the weights `flush` and `sweat`, of the series' columns.
+    pub skin: bool,
     /// A seed where breaths are to be irregular.
     pub seed: Option<u64>,
 }
@@ -219,10 +222,13 @@ impl Clip {
         };
         let breath = breathing.as_ref().map(|breathing| (breathing, &rcn[..]));
         let controls = Controls::of(&curves, &person.spec().expressivity, breath);
-        let weights = face.shapes.weights(&controls);
+        let body = body_weights(breathing.as_ref(), &rcn, face.skin, |own| {
+            of_seconds(own(&series.metabolism))
+        });
+        let (shape_names, weights) = face.shapes.weights_with(&controls, &body);
         Ok(Self {
             rate_hz: window.rate_hz,
-            shape_names: face.shapes.names().to_vec(),
+            shape_names,
             times,
             features,
             curves,
@@ -237,6 +243,29 @@ impl Clip {
         let first = self.times.first().map_or(0.0, |t| t * self.rate_hz).round() as u64;
         WeightsTable::at_rate(self.shape_names.clone(), self.weights.clone(), first, self.rate_hz)
     }
+}
+
+/// Least that a chest moves with the breath, at rest; at the heart's maximum it moves by all.
+const CHEST_AT_REST: f64 = 0.3;
+
+/// Weights of the shapes that show the body, by their names, a value a frame each.
+fn body_weights(
+    breathing: Option<&Breathing>,
+    rcn: &[f64],
+    skin: bool,
+    of_seconds: impl Fn(fn(&Metabolism) -> &[f64]) -> Vec<f64>,
+) -> Vec<(&'static str, Vec<f64>)> {
+    let mut body = Vec::new();
+    if let Some(breathing) = breathing {
+        let depth = |rcn: &f64| CHEST_AT_REST + (1.0 - CHEST_AT_REST) * rcn;
+        let breath = breathing.volume.iter().zip(rcn).map(|(volume, rcn)| volume * depth(rcn));
+        body.push(("breath", breath.collect()));
+    }
+    if skin {
+        body.push(("flush", of_seconds(|all| &all.flush)));
+        body.push(("sweat", of_seconds(|all| &all.sweat)));
+    }
+    body
 }
 
 /// The times of a window's frames, s.

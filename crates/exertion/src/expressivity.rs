@@ -27,6 +27,21 @@ impl Default for Expressivity {
 }
 
 impl Expressivity {
+    /// The five of table 3.2 of Boukhalfi 2012 by their letters in its figure 3.7: from the calmest face to the
+    /// strongest.
+    pub const OF_THE_THESIS: [(&'static str, Self); 5] = [
+        ("a", Self::new([0.86, 0.95, 0.72, 0.96, 0.73])),
+        ("b", Self::new([0.94, 0.95, 0.93, 0.94, 0.95])),
+        ("c", Self::new([1.0, 1.0, 1.0, 1.0, 1.0])),
+        ("d", Self::new([1.05, 1.08, 1.08, 1.10, 1.05])),
+        ("e", Self::new([1.14, 1.02, 1.16, 1.15, 1.06])),
+    ];
+
+    /// Of factors in the order of [`Self::NAMES`].
+    pub const fn new([mouth_open, mouth_exhale, mouth_stretch, eyes, brows]: [f64; 5]) -> Self {
+        Self { mouth_open, mouth_exhale, mouth_stretch, eyes, brows }
+    }
+
     /// Names of the factors, in JSON and on the command line.
     pub const NAMES: [&'static str; 5] =
         ["mouthOpen", "mouthExhale", "mouthStretch", "eyes", "brows"];

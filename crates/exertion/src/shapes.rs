@@ -114,6 +114,29 @@ impl ShapeTable {
         weights
     }
 
+    /// The same with weights of shapes that no control moves, a list a frame each, in columns of their own
+    /// behind the others; with the names of all columns. A shape that the table has is left to it.
+    ///
+    /// # Panics
+    /// If a list is shorter than the controls.
+    pub fn weights_with(
+        &self,
+        controls: &Controls,
+        others: &[(&str, Vec<f64>)],
+    ) -> (Vec<String>, Vec<f64>) {
+        let own = self.weights(controls);
+        let others: Vec<&(&str, Vec<f64>)> =
+            others.iter().filter(|(name, _)| !self.names.iter().any(|own| own == name)).collect();
+        let mut names = self.names.clone();
+        names.extend(others.iter().map(|(name, _)| (*name).to_owned()));
+        let mut all = Vec::with_capacity(controls.frames() * names.len());
+        for frame in 0..controls.frames() {
+            all.extend_from_slice(&own[frame * self.names.len()..(frame + 1) * self.names.len()]);
+            all.extend(others.iter().map(|(_, values)| values[frame]));
+        }
+        (names, all)
+    }
+
     /// What of a control stands in weights by name: the least-squares fit of the control's own shares, at
     /// least 0. The way back from a face's capture to its controls.
     pub fn control_of(&self, control: Control, weight: impl Fn(&str) -> f64) -> f64 {

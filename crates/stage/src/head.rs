@@ -20,6 +20,8 @@ pub struct Head {
     pub(crate) landmarks: Landmarks,
     pub(crate) shape_count: usize,
     pub(crate) eyes: Vec<Eye>,
+    /// Places of the shapes `flush` and `sweat`, where the avatar has them.
+    body_shapes: [Option<usize>; 2],
     pub(crate) draws: Vec<Draw>,
     pub(crate) indices: Buffer,
     pub(crate) colours: Buffer,
@@ -169,6 +171,7 @@ impl Head {
             picture_groups,
             shape_count: geometry.shape_count,
             eyes: geometry.eyes,
+            body_shapes: ["flush", "sweat"].map(|name| avatar.shape_index(name)),
             draws: geometry.draws,
             indices: buffer(
                 "indices",
@@ -203,6 +206,15 @@ impl Head {
             };
         }
         pose
+    }
+
+    /// How red and how wet the skin is at the given weights, as `shade.wgsl` reads it.
+    pub(crate) fn body(&self, weights: &[f32]) -> [f32; 4] {
+        let [flush, sweat] = self.body_shapes.map(|shape| {
+            let weight = shape.and_then(|k| weights.get(k)).copied();
+            weight.filter(|w| w.is_finite()).map_or(0.0, |w| w.clamp(0.0, 1.0))
+        });
+        [flush, sweat, 0.0, 0.0]
     }
 
     /// The eyes' own frames at the given weights, as `shade.wgsl` reads them; `iris` colours those

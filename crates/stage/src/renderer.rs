@@ -283,6 +283,7 @@ impl Renderer {
             skin: with(self.look.skin_tint, self.look.skin_roughness),
             brows: with(self.look.brows, if self.look.paint { 1.0 } else { 0.0 }),
             light: [self.look.exposure, 0.0, 0.0, 0.0],
+            body: head.body(weights),
             gaze: head.gaze(weights, self.look.iris),
         }
     }

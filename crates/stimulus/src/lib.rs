@@ -47,7 +47,7 @@
 mod avatar;
 mod built_in;
 mod checks;
-mod exertion_take;
+mod exertion;
 mod marker_map;
 mod prepare;
 mod provenance;
@@ -64,7 +64,10 @@ pub use checks::{
     ADVISED_SMOOTHING, BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem,
     MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
 };
-pub use exertion_take::{ExertionTake, ExertionTakeError, built_in_bvh, built_in_motion};
+pub use exertion::{
+    ExertionPart, ExertionPartError, ExertionTake, ExertionWarning, MotionOptions, PartFacts,
+    PartNote, built_in_bvh, built_in_motion,
+};
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
     MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,

@@ -38,6 +38,66 @@ fn weights(prepared: &Prepared, folder: &Path, shape: &str) -> Vec<f64> {
     solved.weights.chunks_exact(shapes).map(|row| row[column]).collect()
 }
 
+/// A ride of 150 W of so many seconds, the heart on request.
+fn ride(seconds: usize, heart_rate: Option<f64>) -> String {
+    let (name, value) = match heart_rate {
+        Some(heart_rate) => (",heart_rate", format!(",{heart_rate}")),
+        None => ("", String::new()),
+    };
+    let rows = (0..=seconds).map(|second| format!("{second},150{value}\n"));
+    format!("time,power_w{name}\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn plans_and_recordings_are_exertions() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ride.csv"), ride(60, Some(170.0))).unwrap();
+    std::fs::write(folder.path().join("run.bvh"), built_in_bvh(&mimique_actor::Gait::RUN)).unwrap();
+    let jaw = |own: Value, cut: [usize; 2]| {
+        let prepared = prepare(&study(&own, cut), &places(folder.path()), &mut |_| ()).unwrap();
+        mean(&weights(&prepared, folder.path(), "jawOpen"))
+    };
+    // A recorded heart of 170 opens the mouth at once, a law has to get there.
+    let end = [3400, 3601];
+    let recorded = jaw(json!({"activity": "ride.csv"}), end);
+    let by_law = jaw(json!({"activity": "ride.csv", "heart": "thesis"}), end);
+    assert!(recorded > 0.05 && recorded > 2.0 * by_law, "{recorded} {by_law}");
+    // After the run's two minutes the rest closes it.
+    let plan = json!({"plan": [{"for": 30}, {"motion": "run.bvh", "for": 120}, {"for": 120}, {"work": 5, "for": 10}]});
+    let [rested, run, after] =
+        [[0, 301], [8500, 8801], [15000, 15301]].map(|cut| jaw(plan.clone(), cut));
+    assert!(run > 0.1 && rested < 0.02 && after < 0.6 * run, "{rested} {run} {after}");
+    // The file says a quarter of its rate: the work is another.
+    let slow = jaw(json!({"motion": "run.bvh", "for": 60, "motionRateHz": 15}), end);
+    let right = jaw(json!({"motion": "run.bvh", "for": 60}), end);
+    assert!(slow < 0.5 * right, "{slow} {right}");
+}
+
+#[test]
+fn chest_and_skin_show_the_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = |own: Value| {
+        let study = study(&own, [10_500, 10_801]);
+        let prepared = prepare(&study, &places(folder.path()), &mut |_| ()).unwrap();
+        assert!(prepared.warnings.is_empty(), "{:?}", prepared.warnings);
+        let shapes = mimique_avatar::BODY_SHAPES;
+        shapes.map(|shape| weights(&prepared, folder.path(), shape))
+    };
+    let run = json!({"builtin": "run", "for": 180, "heart": "thesis"});
+    let [breath, flush, sweat] = body(run.clone());
+    let deepest = breath.iter().copied().fold(0.0, f64::max);
+    assert!(deepest > 0.6 && deepest <= 1.0, "{deepest}");
+    assert!(breath.iter().copied().fold(1.0, f64::min) < 0.05);
+    assert!(flush.iter().chain(&sweat).all(|w| *w == 0.0), "off by default");
+    let mut own = run;
+    own["skin"] = json!(true);
+    let [_, flush, sweat] = body(own.clone());
+    assert!(mean(&flush) > 0.3 && mean(&flush) <= 1.0, "{}", mean(&flush));
+    assert!(mean(&sweat) > 0.1 && mean(&sweat) < mean(&flush), "{}", mean(&sweat));
+    own["breath"] = json!(false);
+    assert!(body(own)[0].iter().all(|w| *w == 0.0));
+}
+
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -67,6 +127,7 @@ fn exertions_are_computed_and_each_factor_shows() {
         ("model", json!("linear")),
         ("breath", json!(false)),
         ("seed", json!(4)),
+        ("skin", json!(true)),
     ] {
         let mut own = run.clone();
         own[key] = value;
@@ -99,6 +160,9 @@ fn exertions_that_cannot_be_are_refused_at_their_place() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("model.json"), "{\"version\": 9}").unwrap();
     std::fs::write(folder.path().join("run.bvh"), "HIERARCHY\n").unwrap();
+    std::fs::write(folder.path().join("own.bvh"), built_in_bvh(&mimique_actor::Gait::RUN)).unwrap();
+    std::fs::write(folder.path().join("map.json"), "{\"leftEar\": \"Head\"}").unwrap();
+    std::fs::write(folder.path().join("ride.csv"), ride(60, None)).unwrap();
     let refused = |own: &Value, cut: [usize; 2]| {
         prepare(&study(own, cut), &places(folder.path()), &mut |_| ()).unwrap_err()
     };
@@ -111,7 +175,16 @@ fn exertions_that_cannot_be_are_refused_at_their_place() {
         (json!({"motion": "gone.bvh", "for": 20}), "/motion", "gone.bvh: "),
         (json!({"builtin": "run", "for": 20, "model": "model.json"}), "/model", "version"),
         (json!({"builtin": "run", "for": 20, "model": "gone.json"}), "/model", "gone.json"),
-        (json!({"for": 20}), "", "exactly one of builtin and motion"),
+        (json!({"for": 20}), "", "exactly one source"),
+        (json!({"plan": [{"builtin": "run"}, {}]}), "/plan/1/for", "need a length"),
+        (
+            json!({"plan": [{"activity": "ride.csv", "for": 99}]}),
+            "/plan/0/activity",
+            "is not repeated",
+        ),
+        (json!({"activity": "ride.csv", "heart": "recorded"}), "/heart", "heart"),
+        (json!({"motion": "own.bvh", "joints": "map.json"}), "/joints", "map.json: "),
+        (json!({"motion": "own.bvh", "motionUnit": "feet"}), "/motionUnit", "feet"),
     ] {
         let error = refused(&own, [0, 60]);
         assert_eq!(error.pointer, format!("/stimuli/captures/body/exertion{pointer}"), "{error}");

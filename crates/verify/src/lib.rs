@@ -83,6 +83,9 @@ const DEPTH: usize = 3;
 /// # Errors
 /// [`VerifyError`]: files that cannot be read, or [`VerifyError::NoCase`].
 pub fn verify(folder: &Path, each: &mut dyn FnMut(Case)) -> Result<usize, VerifyError> {
+    if folder.is_file() {
+        return Err(VerifyError::NoFolder { file: folder.to_owned() });
+    }
     let mut count = 0;
     search(folder, "", DEPTH, &mut |case| {
         count += 1;

@@ -271,8 +271,12 @@ impl Workspace {
         }
         let avatar = solved.avatar.as_ref().unwrap_or(&self.face()?.read.avatar);
         let count = solved.table.shape_names.len();
-        let weights: Vec<f32> =
-            solved.table.weights[first * count..end * count].iter().map(|&w| w as f32).collect();
+        let mut weights = Vec::new();
+        for row in solved.table.weights[first * count..end * count].chunks_exact(count) {
+            weights.extend(row.iter().map(|&w| w as f32));
+            // The shapes of the body rest.
+            weights.resize(weights.len() + avatar.shape_names.len() - count, 0.0);
+        }
         mimique_avatar_files::write_glb(avatar, &weights, solved.rate_hz)
             .map_err(|e| Problem::of("animation", e))
     }
@@ -294,7 +298,7 @@ fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Va
         "markers": [],
         "head": [],
         "summary": null,
-        "warnings": names.warnings(),
+        "warnings": names.warnings(true),
         "weights_hash": weights_hash(&table.weights),
         "own_avatar": false,
     });

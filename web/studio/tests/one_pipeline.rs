@@ -260,7 +260,7 @@ fn solve_studio_and_study_give_the_same_weights() {
         assert_eq!(native, study.weights_hash, "{name}: solve and study");
         assert_eq!(native, laboratory.studio(&mut workspace, spec), "{name}: solve and studio");
         if spec.method.uses(Group::Shapes) {
-            assert_eyes_rest(&workspace.weights("a").unwrap(), &avatar.shape_names, name);
+            assert_eyes_rest(&workspace.weights("a").unwrap(), avatar.face_shapes(), name);
         }
         hashes.insert(native, name);
         let expected = match (spec.method, spec.head_lowpass_hz) {

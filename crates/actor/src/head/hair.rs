@@ -1,7 +1,7 @@
 //! Hair on the skull and the brows: layers over the skin, which carry the skin's own displacements.
 
 use super::identity::Identity;
-use super::muscles::SHAPE_NAMES;
+use super::muscles::HEAD_SHAPES;
 use super::sculpt::Landmarks;
 use super::topology::{Feature, Site, Topology};
 use super::vec3::{Vec3, bump, mix, smoothstep, v3};
@@ -351,7 +351,7 @@ pub(crate) fn add_knot(avatar: &mut Avatar, who: &Identity) {
         triangles,
         vertex_colours,
         base_colour: who.hair_colour,
-        shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        shapes: vec![SparseShape::default(); HEAD_SHAPES.len()],
         ..Mesh::default()
     });
 }

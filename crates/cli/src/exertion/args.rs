@@ -6,7 +6,7 @@ use mimique_exertion::FRAMES_PER_SECOND;
 use mimique_study::BuiltinMotion;
 
 use super::study::{Breath, activity};
-use super::values::{Cutoff, Duration, Named, Seconds};
+use super::values::{Cutoff, Duration, Named, NamedExpressivity, Seconds};
 
 /// The heading of what is known of the person.
 const PERSON: &str = "Person";
@@ -57,8 +57,8 @@ pub struct Options {
     /// Where a figure of heart rate, EPOC and curves goes: SVG
     #[arg(long, value_name = "FILE")]
     pub(super) plot: Option<PathBuf>,
-    /// Where the report goes: JSON
-    #[arg(long, value_name = "FILE")]
+    /// Where the report goes: FILE.json, or a folder with pages, tables and figures
+    #[arg(long, value_name = "FILE.json|FOLDER")]
     pub(super) report: Option<PathBuf>,
     /// The part of the plan that becomes weights, in seconds: 290:300 [default: all of it]
     #[arg(long, value_name = "FROM:TO")]
@@ -82,6 +82,9 @@ pub struct Options {
     /// Leave the breath out of the face
     #[arg(long, help_heading = FACE)]
     pub(super) no_breath: bool,
+    /// Let the skin redden and sweat: columns flush and sweat, which the built-in head has shapes for
+    #[arg(long, help_heading = FACE)]
+    pub(super) skin: bool,
     /// Breathe irregularly, by this seed
     #[arg(long, value_name = "NUMBER", conflicts_with = "no_breath", help_heading = FACE)]
     pub(super) seed: Option<u64>,
@@ -194,20 +197,24 @@ pub(super) struct StudyOptions {
         allow_hyphen_values = true
     )]
     pub(super) levels: Vec<f64>,
-    /// Expressivities: names, and what every expression is multiplied by
+    /// Expressivities: names and what every expression is multiplied by, or letters of table 3.2 of the thesis
+    /// (a,b,c,d,e)
     #[arg(
         long,
         value_name = "NAME=FACTOR",
         value_delimiter = ',',
         default_value = "reserved=0.6,expressive=1.2"
     )]
-    pub(super) expressivities: Vec<Named>,
+    pub(super) expressivities: Vec<NamedExpressivity>,
     /// What makes the face: rules, linear, a model file
     #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',', default_value = "rules")]
     pub(super) models: Vec<String>,
     /// Whether the mouth moves with the breath
     #[arg(long, value_name = "WORD,WORD", value_delimiter = ',', default_value = "with")]
     pub(super) breaths: Vec<Breath>,
+    /// Let the skin redden and sweat
+    #[arg(long)]
+    pub(super) skin: bool,
     /// How long the body goes on before a clip ends [default: 5min of walk and run, 60 of sprint]
     #[arg(long = "for", value_name = "DURATION")]
     pub(super) duration: Option<Duration>,

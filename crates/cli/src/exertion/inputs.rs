@@ -3,25 +3,15 @@
 use std::path::Path;
 
 use anyhow::{anyhow, bail};
-use mimique_exertion::{
-    Accumulated, ActivityWork, Body, BodyOptions, BodyWork, Convention, ExertionError, Part,
-    Person, Plan, Scale, Up,
-};
-use mimique_mocap::{
-    BodyJoints, Capture, CaptureFile, LengthUnit, ReadError, ReadOptions, is_activity,
-    read_activity,
-};
+use mimique_exertion::{Convention, ExertionError, Part, Person, Plan, Up};
+use mimique_mocap::{Capture, CaptureFile, ReadError, ReadOptions, is_activity, read_activity};
+use mimique_stimulus::{ExertionPart, ExertionPartError};
 use serde_json::{Value, json};
 
 use super::args::{MotionOptions, Options};
 use super::plan::{Written, parse};
 use super::{blame, hash_of, text_of};
 use crate::solve::length_unit;
-
-/// Work without the low-pass in works with it from which jitter is said.
-const JITTER: f64 = 1.5;
-/// How far the unit of a file may be from the one that fits the legs before it is said.
-const UNIT: f64 = 0.2;
 
 /// The plan, and what is to be said of its parts.
 pub(super) struct Inputs {
@@ -64,17 +54,8 @@ impl Inputs {
         let mut parts = Vec::new();
         for written in written {
             let part = match written {
-                Written::Rest(seconds) => {
-                    inputs.parts.push(json!({"kind": "rest", "seconds": seconds}));
-                    Part::rest(seconds)
-                }
-                Written::Work(w, seconds) => {
-                    inputs
-                        .parts
-                        .push(json!({"kind": "work", "seconds": seconds, "workPerSecond": w}));
-                    let work = Accumulated::of_phases(&[(w, seconds)])?;
-                    Part { work, seconds, rcn: None }
-                }
+                Written::Rest(seconds) => inputs.made(ExertionPart::rest(seconds))?,
+                Written::Work(w, seconds) => inputs.made(ExertionPart::work(w, seconds)?)?,
                 Written::File(file, seconds) => {
                     let read = part(&file, seconds, person, &args.motion)?;
                     inputs.notes.extend(read.notes);
@@ -87,6 +68,12 @@ impl Inputs {
         }
         inputs.plan = Plan::new(parts).map_err(|e| anyhow!("{}: {e}", args.planned_by()))?;
         Ok(inputs)
+    }
+
+    /// Notes a part that no file has.
+    fn made(&mut self, own: ExertionPart) -> anyhow::Result<Part> {
+        self.parts.push(serde_json::to_value(&own.facts)?);
+        Ok(own.part)
     }
 
     /// What it is, in the user's words.
@@ -134,27 +121,8 @@ pub(super) fn part(
 /// An activity: cut at `seconds`, where they are given.
 fn activity(file: &Path, seconds: Option<f64>, person: &Person) -> anyhow::Result<ReadPart> {
     let own = read_activity(file).map_err(|e| blame(file, e))?;
-    let found = ActivityWork::of(person, &own).map_err(|e| blame(file, e))?;
-    let work = Accumulated::of_seconds(&found.w).map_err(|e| blame(file, e))?;
-    let span = work.span_s();
-    let seconds = seconds.unwrap_or(span);
-    if seconds > span + 1e-9 {
-        bail!(
-            "{}: {span} s were recorded, {seconds} are asked for; ask for less: what was recorded is not repeated",
-            file.display()
-        );
-    }
-    if seconds <= 0.0 {
-        bail!("{}: less than a second was recorded; give a longer recording", file.display());
-    }
-    let told = json!({
-        "kind": "activity", "file": file, "format": own.format.name, "seconds": seconds,
-        "workFrom": found.from.name(), "heartRate": found.rcn.is_some(),
-        "workPerSecond": work.at(seconds) / seconds,
-    });
-    let mut notes = vec![format!("{}: read as {}", file.display(), own.format.name)];
-    notes.extend(own.notes.iter().map(|note| format!("{}: {note}", file.display())));
-    Ok(ReadPart { part: Part { work, seconds, rcn: found.rcn }, told, notes })
+    let part = ExertionPart::activity(&own, seconds, person).map_err(|e| blame(file, e))?;
+    ReadPart::of(file, part, &[format!("read as {}", own.format.name)])
 }
 
 /// A motion, repeated where `seconds` are longer.
@@ -164,87 +132,40 @@ fn motion(
     person: &Person,
     options: &MotionOptions,
 ) -> anyhow::Result<ReadPart> {
-    let read = Motion::read(file, person, options)?;
-    let body = read.body(options.lowpass.0)?;
-    let once = read.work(&body)?;
-    let span = once.span_s();
-    let seconds = seconds.unwrap_or(span);
-    let repeated = seconds > span;
-    let mut notes = read.notes.clone();
-    if repeated {
-        notes.push(format!(
-            "repeated {:.1} times: the work is repeated, not the motion, whose jump back would be work",
-            seconds / span
-        ));
-    }
-    notes.extend(unit_note(&read.capture, &body, options, person));
-    if options.lowpass.0.is_some() {
-        let ratio = read.work(&read.body(None)?)?.total() / once.total();
-        if ratio > JITTER {
-            notes.push(format!(
-                "the motion jitters: without the low-pass its work would be {ratio:.1} times as much"
-            ));
-        }
-    }
-    let told = json!({
-        "kind": "motion", "file": file, "seconds": seconds, "span": span, "repeated": repeated,
-        "rateHz": read.capture.rate_hz, "frames": read.capture.frames(), "naming": read.joints.naming,
-        "metresPerUnit": body.metres_per_unit(), "up": body.up().to_array(),
-        "segments": body.segment_names(), "convention": read.convention.name(),
-        "lowpassHz": options.lowpass.0, "workPerSecond": once.total() / span,
-    });
-    let notes = notes.iter().map(|note| format!("{}: {note}", file.display())).collect();
-    let part = Part { work: once.repeated(repeated), seconds, rcn: None };
-    Ok(ReadPart { part, told, notes })
-}
-
-/// A motion whose joints are known, and what the options make of it.
-struct Motion<'a> {
-    file: &'a Path,
-    person: &'a Person,
-    capture: Capture,
-    joints: BodyJoints,
-    convention: Convention,
-    scale: Scale,
-    up: Up,
-    notes: Vec<String>,
-}
-
-impl<'a> Motion<'a> {
-    fn read(file: &'a Path, person: &'a Person, options: &MotionOptions) -> anyhow::Result<Self> {
-        let (capture, taken_for) = capture(file, options)?;
-        let joints = match &options.joints {
-            None => BodyJoints::find(&capture.labels).map_err(|e| blame(file, e))?,
-            Some(map) => {
-                BodyJoints::of_json(&text_of(map)?, &capture.labels).map_err(|e| blame(map, e))?
+    let (capture, taken_for) = capture(file, options)?;
+    let convention = Convention::by_name(&options.convention)
+        .map_err(|e| anyhow!("--{}", e.to_string().replacen('/', " ", 1)))?;
+    let known = mimique_stimulus::MotionOptions {
+        convention,
+        lowpass_hz: options.lowpass.0,
+        up: up(options)?,
+        unit_is_known: options.unit.is_some(),
+        joints: options.joints.as_deref().map(text_of).transpose()?,
+    };
+    let part = ExertionPart::motion(&capture, seconds, person, &known).map_err(|error| {
+        match (&error, &options.joints) {
+            (ExertionPartError::JointMap(_), Some(map)) => blame(map, error),
+            (ExertionPartError::Exertion(own), _) if own.place() == "lowpassHz" => {
+                anyhow!("--lowpass: {error}")
             }
-        };
-        let convention = Convention::by_name(&options.convention)
-            .map_err(|e| anyhow!("--{}", e.to_string().replacen('/', " ", 1)))?;
-        let scale = match &options.unit {
-            None => Scale::ByStature,
-            Some(_) => Scale::MetresPerUnit(capture.unit.metres()),
-        };
-        let mut notes = vec![taken_for];
-        notes.extend(capture.notes.iter().cloned());
-        Ok(Self { file, person, capture, joints, convention, scale, up: up(options)?, notes })
-    }
-
-    fn body(&self, lowpass_hz: Option<f64>) -> anyhow::Result<Body> {
-        let options = BodyOptions { scale: self.scale, lowpass_hz, up: self.up };
-        Body::new(&self.capture, &self.joints, self.person, &options).map_err(|e| self.blame(e))
-    }
-
-    fn work(&self, body: &Body) -> anyhow::Result<Accumulated> {
-        let work = BodyWork::of(body, self.person, self.convention, false);
-        work.map(|work| work.accumulated).map_err(|e| self.blame(e))
-    }
-
-    fn blame(&self, error: ExertionError) -> anyhow::Error {
-        match error.place() {
-            "lowpassHz" => anyhow!("--lowpass: {error}"),
-            _ => blame(self.file, error),
+            _ => blame(file, error),
         }
+    })?;
+    let said: Vec<String> =
+        std::iter::once(taken_for).chain(capture.notes.iter().cloned()).collect();
+    ReadPart::of(file, part, &said)
+}
+
+impl ReadPart {
+    /// A part of a file, of which the reader said something already.
+    fn of(file: &Path, own: ExertionPart, said: &[String]) -> anyhow::Result<Self> {
+        let mut told = serde_json::to_value(&own.facts)?;
+        if let Value::Object(members) = &mut told {
+            members.insert("file".to_owned(), json!(file));
+        }
+        let notes = said.iter().cloned().chain(own.notes.iter().map(ToString::to_string));
+        let notes = notes.map(|note| format!("{}: {note}", file.display())).collect();
+        Ok(Self { part: own.part, told, notes })
     }
 }
 
@@ -277,28 +198,6 @@ fn up(options: &MotionOptions) -> anyhow::Result<Up> {
         Some("z") => Ok(Up::Z),
         Some(other) => bail!("--up: {other:?}; use x, y or z"),
     }
-}
-
-/// That the file's unit would make somebody of another stature.
-fn unit_note(
-    capture: &Capture,
-    body: &Body,
-    options: &MotionOptions,
-    person: &Person,
-) -> Option<String> {
-    if options.unit.is_some() {
-        return None;
-    }
-    let own = capture.unit.metres() / body.metres_per_unit();
-    let stature = person.spec().height_m;
-    ((own - 1.0).abs() > UNIT).then(|| {
-        format!(
-            "the legs are made those of a person of {stature} m; by the file's unit ({}) the person would be \
-             {:.2} m tall (--unit)",
-            LengthUnit::symbol(capture.unit),
-            stature * own
-        )
-    })
 }
 
 /// Whether a file is named that is none.

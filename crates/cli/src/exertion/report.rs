@@ -5,11 +5,9 @@ use std::io::Write as _;
 
 use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
-use mimique_exertion::{
-    Clip, Curves, Expression, Features, Heart, Person, Series, VERSION, WORK_LIMIT,
-};
+use mimique_exertion::{Curves, Expression, Features, Heart, Person, VERSION};
 use mimique_mocap::WeightsTable;
-use mimique_stimulus::Provenance;
+use mimique_stimulus::{ExertionTake, Provenance};
 use serde_json::{Value, json};
 
 use super::args::Options;
@@ -22,14 +20,13 @@ pub(super) struct Report<'a> {
     pub(super) person: &'a Person,
     pub(super) inputs: &'a Inputs,
     pub(super) heart: Heart,
-    pub(super) series: &'a Series,
-    pub(super) clip: &'a Clip,
+    pub(super) take: &'a ExertionTake,
 }
 
 impl Report<'_> {
     /// The series as CSV, a row a second.
     pub(super) fn series_csv(&self) -> String {
-        let (series, of) = (self.series, &self.series.metabolism);
+        let (series, of) = (&self.take.series, &self.take.series.metabolism);
         let mut text =
             String::from("t,w,p,rcn,hr,vo2,breaths,kcal,epoc,fatigue,flush,sweat,borg\n");
         for second in 0..series.seconds() {
@@ -57,7 +54,7 @@ impl Report<'_> {
 
     /// Heart rate, EPOC and curves, second by second.
     pub(super) fn panels(&self, expression: &Expression) -> anyhow::Result<Vec<CoursePanel>> {
-        let (series, of) = (self.series, &self.series.metabolism);
+        let (series, of) = (&self.take.series, &self.take.series.metabolism);
         let states: Vec<Features> = (0..series.seconds())
             .map(|second| Features {
                 w: series.w[second],
@@ -83,28 +80,25 @@ impl Report<'_> {
         ])
     }
 
-    fn warnings(&self, rows: usize) -> Vec<String> {
-        let mut all = Vec::new();
-        if let Some(second) = self.series.near_maximum {
-            all.push(format!(
-                "the heart passes nine tenths of its reserve at {second} s; the law of the thesis has no steady \
-                 state, constant work takes it to its maximum (--heart steady settles)"
-            ));
-        }
-        if let Some(first) = self.series.over_limit.first() {
-            all.push(format!(
-                "{} seconds, from {first} s on, have more than {WORK_LIMIT} J/kg, and count as that for the heart; \
-                 look for a fault of the motion, or of its rate (--rate)",
-                self.series.over_limit.len()
-            ));
-        }
-        let cut = self.clip.controls.cut_frames;
-        if cut > 0 {
-            all.push(format!(
-                "{cut} of {rows} frames have a curve that is cut at the end of its range"
-            ));
-        }
-        all
+    /// What it is, in the user's words.
+    pub(super) fn name(&self) -> &str {
+        self.inputs.name()
+    }
+
+    /// Mean work, J/kg in a second.
+    pub(super) fn mean_work(&self) -> f64 {
+        let plan = &self.inputs.plan;
+        plan.at(plan.span_s()) / plan.span_s()
+    }
+
+    /// The window, where it is not all of the plan.
+    pub(super) fn marked(&self) -> Option<[f64; 2]> {
+        let times = &self.take.clip.times;
+        self.args.window.as_ref().map(|_| [times[0], times[times.len() - 1]])
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.take.warnings().iter().map(ToString::to_string).collect()
     }
 
     fn heart_name(&self) -> String {
@@ -144,7 +138,7 @@ impl Report<'_> {
 
     /// The state at a second of the plan.
     fn state(&self, second: usize) -> Value {
-        let (series, of) = (self.series, &self.series.metabolism);
+        let (series, of) = (&self.take.series, &self.take.series.metabolism);
         json!({
             "second": second, "w": series.w[second], "rcn": series.rcn[second],
             "heartRate": series.heart_rate[second], "vo2": of.vo2[second],
@@ -156,7 +150,7 @@ impl Report<'_> {
     /// Everything as JSON.
     pub(super) fn told(&self, table: &WeightsTable) -> anyhow::Result<Value> {
         let args = self.args;
-        let (clip, series) = (self.clip, self.series);
+        let (clip, series) = (&self.take.clip, &self.take.series);
         let last = series.seconds() - 1;
         let ends = [clip.times[0], clip.times[clip.times.len() - 1]];
         let end = (ends[1].round() as usize).min(last);
@@ -177,6 +171,7 @@ impl Report<'_> {
             .json("model", self.model()?)
             .json("shapes", optional(&args.shapes)?)
             .json("breath", json!([!args.no_breath, args.seed]))
+            .json("skin", json!(args.skin))
             .json("over", optional(&args.over)?)
             .json("joints", optional(&args.motion.joints)?)
             .json("window", json!([ends, args.out_rate]));
@@ -199,7 +194,7 @@ impl Report<'_> {
             "curves_at_end": curves,
             "cut_frames": clip.controls.cut_frames,
             "seconds_over_limit": series.over_limit,
-            "warnings": self.warnings(clip.times.len()),
+            "warnings": self.warnings(),
             "notes": self.inputs.notes,
             "weights_hash": hash,
             "provenance": provenance.json("weights", hash.as_str()).hash(),
@@ -221,13 +216,13 @@ impl Report<'_> {
 
     /// Who moves, and how body and face are at the window's end.
     fn print_state(&self, told: &Value, out: &mut impl std::io::Write) -> std::io::Result<()> {
-        let (person, series) = (self.person, self.series);
+        let (person, series) = (self.person, &self.take.series);
         writeln!(
             out,
             "{}: {:.1} s, mean work {:.1} J/kg per second, {:.0} kcal",
             self.inputs.name(),
             self.inputs.plan.span_s(),
-            self.inputs.plan.at(self.inputs.plan.span_s()) / self.inputs.plan.span_s(),
+            self.mean_work(),
             told["kcal"].as_f64().unwrap_or(0.0),
         )?;
         writeln!(
@@ -238,8 +233,8 @@ impl Report<'_> {
             person.hr_max(),
             person.vo2_max(),
         )?;
-        let end =
-            (self.clip.times[self.clip.times.len() - 1].round() as usize).min(series.seconds() - 1);
+        let end = (self.take.clip.times[self.take.clip.times.len() - 1].round() as usize)
+            .min(series.seconds() - 1);
         let of = &series.metabolism;
         writeln!(
             out,
@@ -253,7 +248,7 @@ impl Report<'_> {
             of.borg[end],
         )?;
         let [open, stretch, eyes, brows] =
-            self.clip.curves.last().copied().unwrap_or_default().to_array();
+            self.take.clip.curves.last().copied().unwrap_or_default().to_array();
         writeln!(
             out,
             "face    mouth open {open:.0} %, stretched {stretch:.0} %, eyes {eyes:.0} %, brows {brows:.0} % ({})",
@@ -276,8 +271,8 @@ impl Report<'_> {
                 file.display(),
                 told["frames"],
                 self.args.out_rate,
-                self.clip.times[0],
-                self.clip.times[self.clip.times.len() - 1],
+                self.take.clip.times[0],
+                self.take.clip.times[self.take.clip.times.len() - 1],
                 told["shapes"].as_array().map_or(0, Vec::len),
             )?;
             let text = |key: &str| told[key].as_str().unwrap_or_default().to_owned();

@@ -102,6 +102,31 @@ impl FromStr for Named {
     }
 }
 
+/// An expressivity of a study's design: `NAME=FACTOR`, or a letter of table 3.2 of the thesis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct NamedExpressivity {
+    pub(super) name: String,
+    pub(super) factors: Expressivity,
+}
+
+impl FromStr for NamedExpressivity {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        if let Some((name, factors)) =
+            Expressivity::OF_THE_THESIS.iter().find(|(own, _)| *own == text)
+        {
+            return Ok(Self { name: (*name).to_owned(), factors: *factors });
+        }
+        let Named(name, factor) = text.parse().map_err(|_| {
+            "give NAME=FACTOR, or a letter from a to e of table 3.2 of the thesis, several joined by commas"
+                .to_owned()
+        })?;
+        Ok(Self { name, factors: Expressivity::new([factor; 5]) })
+    }
+}
+
 /// Takes over what is given by name.
 pub(super) fn named(
     option: &str,

@@ -52,7 +52,7 @@ pub(super) fn avatar_facts(kind: &str, avatar: &Avatar, bytes: &[u8]) -> Value {
             Value::Null
         }
     };
-    let still: Vec<&str> = (avatar.shape_names.iter().zip(&reach))
+    let still: Vec<&str> = (avatar.face_shapes().iter().zip(&reach))
         .filter(|(_, reach)| **reach < 1e-4)
         .map(|(name, _)| name.as_str())
         .collect();

@@ -47,7 +47,7 @@ pub(super) fn takes(
                 file.display()
             );
         }
-        let said = recorded.names.warnings();
+        let said = recorded.names.warnings(true);
         notes.extend(said.iter().map(|warning| format!("{}: {warning}", file.display())));
         takes.push(Take {
             name: name_of(file),

@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         )
         .json("weights", hash.as_str())
         .hash();
-    let warnings = names.warnings();
+    let warnings = names.warnings(true);
     let report = json!({
         "method": {"method": "recorded"},
         "avatar": avatar.avatar.name,

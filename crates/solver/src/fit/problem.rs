@@ -79,12 +79,13 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn new(operators: &Operators, spec: &MethodSpec) -> Result<Problem, FitError> {
+        let parts = operators.parts();
+        let spec = &spec.with_names_of(&parts.shape_names, &parts.marker_labels);
         spec.validate()?;
         let definition = spec.method.definition();
         if definition.needs == Needs::Weights {
             return Err(FitError::Recorded);
         }
-        let parts = operators.parts();
         check_options(&parts.options, spec)?;
         let n_all = operators.shape_count();
         let free = free_shapes(&parts.shape_names, spec)?;

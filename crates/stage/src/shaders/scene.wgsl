@@ -17,6 +17,7 @@ struct Scene {
     skin: vec4f,
     brows: vec4f,
     light: vec4f,
+    body: vec4f,
     gaze: array<Gaze, 16>,
 }
 

@@ -269,6 +269,52 @@ fn lash(at: vec4f) -> f32 {
     return select(band, lower, arm.y < 0.0);
 }
 
+// ---- skin of a body that works, placed in the neutral pose ----
+
+fn near(p: vec2f, centre: vec2f, radius: vec2f) -> f32 {
+    let d = (p - centre) / radius;
+    return exp(-dot(d, d));
+}
+
+// Where blood shows: cheeks and nose first, then ears, brow, chin and, in patches, the neck.
+fn flushed(albedo: vec3f, p: vec3f) -> vec3f {
+    let side = abs(p.x);
+    let front = smoothstep(-0.5, 0.2, p.z);
+    let cheek = near(vec2f(side, p.y), vec2f(0.62, -0.62), vec2f(0.46, 0.42));
+    let nose = near(vec2f(side, p.y), vec2f(0.0, -0.66), vec2f(0.22, 0.26));
+    let brow = near(vec2f(side, p.y), vec2f(0.0, 0.75), vec2f(0.8, 0.34));
+    let chin = near(vec2f(side, p.y), vec2f(0.0, -1.55), vec2f(0.3, 0.22));
+    let ear = smoothstep(1.05, 1.25, side) * (1.0 - smoothstep(0.25, 0.6, p.y)) * smoothstep(-1.3, -0.9, p.y);
+    let neck = (1.0 - smoothstep(-2.1, -1.75, p.y)) * smoothstep(0.40, 0.75, noise(p.xy * 3.1 + 5.0));
+    let face = 0.24 + 0.85 * cheek + 0.65 * nose + 0.22 * brow + 0.3 * chin;
+    let patches = 0.82 + 0.36 * noise(p.xy * 6.0);
+    let red = scene.body.x * patches * min(face * front + 0.8 * ear + 0.45 * neck, 1.0);
+    return albedo * mix(vec3f(1.0), vec3f(1.08, 0.52, 0.55), 0.72 * red);
+}
+
+// How wet the skin is: forehead, temples, nose and upper lip first.
+fn wetness(p: vec3f) -> f32 {
+    let side = abs(p.x);
+    let brow = near(vec2f(side, p.y), vec2f(0.0, 0.95), vec2f(0.95, 0.42));
+    let nose = near(vec2f(side, p.y), vec2f(0.0, -0.45), vec2f(0.20, 0.45));
+    let lip = near(vec2f(side, p.y), vec2f(0.0, -1.02), vec2f(0.34, 0.12));
+    let temple = near(vec2f(side, p.y), vec2f(1.02, 0.2), vec2f(0.3, 0.6));
+    let cheek = near(vec2f(side, p.y), vec2f(0.72, -0.7), vec2f(0.4, 0.5));
+    return min(0.30 + brow + nose + lip + 0.8 * temple + 0.45 * cheek, 1.0);
+}
+
+// Beads of sweat: how a bead tilts the skin across and up (xy), and how much of one is here (z).
+fn bead(p: vec3f, size: f32, often: f32) -> vec3f {
+    let q = vec2f(p.x + 0.31 * p.z, p.y) / size;
+    let cell = floor(q);
+    let centre = cell + 0.3 + 0.4 * vec2f(hash(cell), hash(cell + 17.0));
+    let radius = 0.16 + 0.16 * hash(cell + 41.0);
+    let d = (q - centre) / radius;
+    let inside = 1.0 - smoothstep(0.75, 1.0, length(d));
+    let there = inside * select(0.0, 1.0, hash(cell + 73.0) < often);
+    return vec3f(d * there, there);
+}
+
 // ---- picture ----
 
 // A film's response: a soft toe, a long shoulder (Narkowicz 2015, fitted to the ACES curve).
@@ -315,6 +361,16 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         f.specular = 0.028;
         f.wrap = vec3f(0.42, 0.20, 0.14);
         f.open = 0.25 + 0.75 * clamp(p.colour.a, 0.0, 1.0);
+        if !clay && scene.body.x + scene.body.y > 0.0 {
+            let at = (p.neutral.xyz - scene.eyes_middle.xyz) / scene.eyes_middle.w;
+            f.albedo = flushed(f.albedo, at);
+            let wet = scene.body.y * wetness(at);
+            let beads = bead(at, 0.050, 0.55 * wet * wet) + bead(at + 3.7, 0.031, 0.7 * wet * wet);
+            f.albedo *= 1.0 - 0.10 * wet;
+            f.roughness = mix(f.roughness, 0.27, wet) - 0.10 * min(beads.z, 1.0);
+            f.specular = mix(f.specular, 0.050, wet);
+            n = normalize(n + 0.55 * smoothstep(0.0, 0.5, at.z) * vec3f(beads.xy, 0.0));
+        }
     } else {
         if !front {
             n = -n;

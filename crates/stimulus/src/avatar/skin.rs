@@ -9,7 +9,7 @@ use mimique_solver::{Group, MeshError, MethodSpec, SkinMesh, SparseDeltas};
 pub struct AvatarSkin {
     /// The avatar's name.
     pub name: String,
-    /// The N shapes, in the avatar's order.
+    /// The N shapes of the face, in the avatar's order.
     pub shape_names: Vec<String>,
     /// The welded surface, S vertices.
     pub mesh: SkinMesh,
@@ -24,14 +24,14 @@ impl AvatarSkin {
     /// [`MeshError`] when there is no skin, or a damaged one.
     pub fn of(avatar: &Avatar) -> Result<Self, MeshError> {
         let mut open = SkinMesh {
-            shapes: vec![SparseDeltas::default(); avatar.shape_names.len()],
+            shapes: vec![SparseDeltas::default(); avatar.face_shapes().len()],
             ..SkinMesh::default()
         };
         avatar.meshes.iter().filter(|m| m.part == Part::Skin).for_each(|m| append(&mut open, m));
         let welded = open.weld()?;
         Ok(Self {
             name: avatar.name.clone(),
-            shape_names: avatar.shape_names.clone(),
+            shape_names: avatar.face_shapes().to_vec(),
             mesh: welded.mesh,
             welded_from_file: welded.index_of,
         })

@@ -299,7 +299,10 @@ fn recorded(
     let shape_names = &avatar.shape_names;
     let RecordedWeights { table, names } = RecordedWeights::of(&recording.table, shape_names)
         .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
-    warnings.extend(names.warnings().into_iter().map(|w| (recording.pointer.clone(), w)));
+    warnings.extend(recording.warnings.iter().cloned());
+    warnings.extend(
+        names.warnings(!recording.is_computed).into_iter().map(|w| (recording.pointer.clone(), w)),
+    );
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
     })?;

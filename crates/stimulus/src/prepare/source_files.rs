@@ -80,6 +80,10 @@ pub(super) struct Recording {
     pub table: WeightsTable,
     /// Frames played.
     pub frames: Range<usize>,
+    /// Whether they were computed, of which not every shape is expected.
+    pub is_computed: bool,
+    /// What should be said of where they come from, with the pointers.
+    pub warnings: Vec<(String, String)>,
 }
 
 impl FrameCount {

@@ -16,9 +16,10 @@ use mimique_study::{
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
+use super::exertion::{Exertion, ExertionWeights};
 use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
-use super::{Places, PrepareError, builtin, exertion, pointer};
+use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
 use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
 
@@ -31,7 +32,7 @@ pub(super) struct Sources<'a> {
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
     asked: Asked,
     /// Weights of exertions, by their captures.
-    exertions: RefCell<BTreeMap<String, Rc<WeightsTable>>>,
+    exertions: RefCell<BTreeMap<String, Rc<ExertionWeights>>>,
 }
 
 impl<'a> Sources<'a> {
@@ -246,11 +247,19 @@ impl<'a> Sources<'a> {
             // The performance itself, as the actor's own face made it.
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
                 let (table, frames) = builtin::performed(actor, what);
-                return Ok(Recording { pointer: at, table, frames });
+                return Ok(Recording {
+                    pointer: at,
+                    table,
+                    frames,
+                    is_computed: false,
+                    warnings: vec![],
+                });
             }
             (Some(CaptureSource::Exertion(exertion)), Some(Span::Frames { first, end })) => {
-                let table = self.exertion(&segment.capture, exertion)?;
-                return cut(at, (*table).clone(), [first, end]);
+                let own = self.exertion(&segment.capture, exertion)?;
+                let warnings = own.warnings.clone();
+                let cut = cut(at, own.table.clone(), [first, end])?;
+                return Ok(Recording { is_computed: true, warnings, ..cut });
             }
             _ => {
                 let message = "the method recorded takes weights; name a CSV of weights";
@@ -267,14 +276,19 @@ impl<'a> Sources<'a> {
     }
 
     /// The weights of an exertion.
-    fn exertion(&self, id: &str, own: &ExertionCapture) -> Result<Rc<WeightsTable>, PrepareError> {
+    fn exertion(
+        &self,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<Rc<ExertionWeights>, PrepareError> {
         if let Some(found) = self.exertions.borrow().get(id) {
             return Ok(found.clone());
         }
         let at = pointer(&["stimuli", "captures", id, "exertion"]);
-        let table = Rc::new(exertion::weights(own, &at, |file, at| self.path(file, at))?);
-        self.exertions.borrow_mut().insert(id.to_owned(), table.clone());
-        Ok(table)
+        let path = |file: &str, at: &str| self.path(file, at);
+        let weights = Rc::new(Exertion { exertion: own, at: &at, path }.weights()?);
+        self.exertions.borrow_mut().insert(id.to_owned(), weights.clone());
+        Ok(weights)
     }
 
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
@@ -377,7 +391,7 @@ fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording,
         let message = format!("give first and end within the {frames} frames of the capture");
         return Err(PrepareError::new(at, message));
     }
-    Ok(Recording { pointer: at, table, frames: first..end })
+    Ok(Recording { pointer: at, table, frames: first..end, is_computed: false, warnings: vec![] })
 }
 
 /// A file that cannot be read.
@@ -385,7 +399,7 @@ fn unread(path: &Path, error: &std::io::Error, at: &str) -> PrepareError {
     PrepareError::new(at, format!("{}: {error}; check the path", path.display()))
 }
 
-fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
+pub(super) fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
     match unit {
         None => Ok(None),
         Some("mm") => Ok(Some(LengthUnit::Millimetre)),

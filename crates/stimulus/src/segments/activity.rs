@@ -12,7 +12,7 @@
 //! velocity decides. On synthetic takes borders came nearest to the true ones by the velocity, below
 //! 4 Hz, without blinks and gaze, which is what stands here where nothing else is asked for.
 
-use mimique_avatar::{blinks, turns_eyes};
+use mimique_avatar::{blinks, shows_body, turns_eyes};
 use mimique_mocap::{FilterError, LowPass};
 use serde::{Deserialize, Serialize};
 
@@ -56,10 +56,12 @@ impl ActivityOptions {
 
     /// Which channels count; all of them where no other is left.
     fn counted(&self, take: &Channels<'_>) -> Vec<usize> {
-        let eyes = |channel: usize| {
-            take.names.get(channel).is_some_and(|name| blinks(name) || turns_eyes(name))
+        let is = |channel: usize, of: &dyn Fn(&str) -> bool| {
+            take.names.get(channel).is_some_and(|name| of(name))
         };
-        let all = 0..take.count;
+        let eyes = |channel: usize| is(channel, &|name| blinks(name) || turns_eyes(name));
+        // A breath is no expression, whatever is asked for.
+        let all = (0..take.count).filter(|&channel| !is(channel, &shows_body));
         let counted: Vec<usize> =
             all.clone().filter(|&channel| self.blinks_and_gaze || !eyes(channel)).collect();
         if counted.is_empty() { all.collect() } else { counted }

@@ -290,10 +290,20 @@ NoSource: "one-source",
     "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
 SeveralSources: "one-source", "several of builtin, file and exertion",
     "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
-NoMotion: "one-source", "neither builtin nor motion",
-    "give one: \"builtin\": \"run\" or \"motion\": \"run.bvh\"";
-TwoMotions: "one-source", "both builtin and motion",
-    "give one: \"builtin\": \"run\" or \"motion\": \"run.bvh\"";
+NoMotion: "one-source", "none of builtin, motion, activity and plan",
+    "give one: \"builtin\": \"run\", \"motion\": \"run.bvh\", \"activity\": \"ride.fit\" or \"plan\": [...]";
+TwoMotions: "one-source", "several of builtin, motion, activity and plan",
+    "give one: \"builtin\": \"run\", \"motion\": \"run.bvh\", \"activity\": \"ride.fit\" or \"plan\": [...]";
+SeveralMotions: "one-source", "several of builtin, motion, activity and work in one part",
+    "give one in each part of the plan, or none for rest";
+PartWithoutLength: "wrong-length", "a part that nothing tells the length of",
+    "add \"for\": 60, the seconds of rest or work";
+PlanHasLength: "not-needed", "a plan is as long as its parts", "write \"for\" in the parts of the plan";
+ConstantWork { work: f64 }: "out-of-range", "{work} J/kg in a second",
+    "write 0 for rest, 5 for a walk, 15 for a run; at most 120";
+PastExertion { end: usize, frames: usize }: "bad-range",
+    "the segment ends at frame {end}, the exertion has {frames}",
+    "write first and end within its frames, 60 per second, or let the body go on for longer (\"for\")";
 LengthOfExertion { seconds: f64 }: "out-of-range", "{seconds} seconds",
     "write how long the body goes on, above 0 and at most 86400";
 ExertionMarkers: "not-needed", "the face of an exertion is computed, without markers",

@@ -32,6 +32,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         }
     }
     exertion::methods(subject, issues);
+    exertion::segments(subject, issues);
     segments(subject, issues);
     for name in stimuli.methods.keys() {
         identifier(name, &below("/stimuli/methods", name), issues);

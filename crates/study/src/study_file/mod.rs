@@ -34,7 +34,7 @@ pub use conduct::{
 };
 pub use exertion::{
     BuiltinMotion, ExertionCapture, ExertionExpressivity, ExertionHeart, ExertionLoads,
-    ExertionPerson, ExertionSex, MotionSource,
+    ExertionPerson, ExertionPlanPart, ExertionSex, ExertionSource, WrittenPart,
 };
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,

@@ -150,7 +150,8 @@ pub(super) fn chain(asked: &Asked<'_>, answers: &mut Answers<'_>) -> Result<(), 
     let phase: Vec<f64> =
         breathing.map(|own| frames.iter().map(|f| own.phase[*f]).collect()).unwrap_or_default();
     answers.numbers("phase", &phase);
-    shapes(answers, &clip.shape_names, &clip.weights, &frames);
+    // What shows the body stands behind the shapes of the face, and no case has it.
+    shapes(answers, face.shapes.names(), &face.shapes.weights(&clip.controls), &frames);
     Ok(())
 }
 

@@ -6,8 +6,10 @@ mod hypotheses;
 use std::io::Write as _;
 
 use anyhow::{anyhow, bail};
-use mimique_exertion::{FRAMES_PER_SECOND, Face, HeartModel, Person, PersonSpec};
-use mimique_stimulus::{ExertionTake, built_in_motion};
+use mimique_exertion::{
+    FRAMES_PER_SECOND, Heart, HeartModel, Person, PersonSpec, Plan, Series, Start,
+};
+use mimique_stimulus::{ExertionPart, MotionOptions, built_in_motion};
 use mimique_study::{
     BuiltinMotion, Capture, Constraint, ExertionCapture, ExertionExpressivity, ExertionHeart,
     ExertionPerson, FactorValue, Factors, Segment, Severity, Study, check,
@@ -15,7 +17,7 @@ use mimique_study::{
 use serde_json::json;
 
 use super::args::StudyOptions;
-use super::values::{Named, named};
+use super::values::NamedExpressivity;
 use super::{blame, text_of};
 use crate::output;
 
@@ -26,7 +28,7 @@ const FRAME: &str = include_str!("frame.json");
 struct Cell<'a> {
     activity: BuiltinMotion,
     level: f64,
-    expressivity: &'a Named,
+    expressivity: &'a NamedExpressivity,
     model: &'a str,
     breath: Breath,
 }
@@ -153,7 +155,11 @@ fn refuse_repeated(args: &StudyOptions) -> anyhow::Result<()> {
     if let Some(breath) = repeated(&args.breaths) {
         bail!("--breaths: {} is given twice; give it once", breath.word());
     }
-    named("--expressivities", &args.expressivities, &[], |_, _| true)
+    let names: Vec<&str> = args.expressivities.iter().map(|own| &own.name[..]).collect();
+    if let Some(name) = repeated(&names) {
+        bail!("--expressivities: {name} is given twice; give it once");
+    }
+    Ok(())
 }
 
 /// Adds the clip of a cell; returns its exertion on the scale from 6 to 20 at the clip's end.
@@ -168,8 +174,8 @@ fn add(
     if clip > seconds {
         bail!("--clip: {clip} s of {seconds} s of {}; shorten it", cell.activity.word());
     }
-    let Named(name, _) = cell.expressivity;
-    let own = exertion(cell, person, seconds);
+    let name = &cell.expressivity.name;
+    let own = exertion(cell, person, seconds, args);
     let borg = borg_at_end(&own, args)?;
     let mut id = format!("{}-level{}-{name}", cell.activity.word(), cell.level).replace('.', "_");
     // Factors of one value alone would explain nothing.
@@ -212,29 +218,41 @@ fn add(
 }
 
 /// The exertion of a cell, in the study file's words.
-fn exertion(cell: &Cell<'_>, person: &ExertionPerson, seconds: f64) -> ExertionCapture {
-    // What a person's own face does strongly is kept: the factor of the design multiplies it.
+fn exertion(
+    cell: &Cell<'_>,
+    person: &ExertionPerson,
+    seconds: f64,
+    args: &StudyOptions,
+) -> ExertionCapture {
+    // What a person's own face does strongly is kept: the factors of the design multiply it.
     let given = person.expressivity.clone().unwrap_or_default();
-    let scaled = |own: Option<f64>| Some(own.unwrap_or(1.0) * cell.expressivity.1);
+    let factors = cell.expressivity.factors;
+    let scaled = |own: Option<f64>, factor: f64| Some(own.unwrap_or(1.0) * factor);
     let expressivity = ExertionExpressivity {
-        mouth_open: scaled(given.mouth_open),
-        mouth_exhale: scaled(given.mouth_exhale),
-        mouth_stretch: scaled(given.mouth_stretch),
-        eyes: scaled(given.eyes),
-        brows: scaled(given.brows),
+        mouth_open: scaled(given.mouth_open, factors.mouth_open),
+        mouth_exhale: scaled(given.mouth_exhale, factors.mouth_exhale),
+        mouth_stretch: scaled(given.mouth_stretch, factors.mouth_stretch),
+        eyes: scaled(given.eyes, factors.eyes),
+        brows: scaled(given.brows, factors.brows),
     };
     ExertionCapture {
         builtin: Some(cell.activity),
         motion: None,
-        seconds,
+        activity: None,
+        plan: vec![],
+        seconds: Some(seconds),
+        joints: None,
+        motion_rate_hz: None,
+        motion_unit: None,
         person: ExertionPerson {
             level: Some(cell.level),
             expressivity: Some(expressivity),
             ..person.clone()
         },
-        heart: ExertionHeart::default(),
+        heart: Some(ExertionHeart::Thesis),
         model: cell.model.to_owned(),
         breath: cell.breath == Breath::With,
+        skin: args.skin,
         seed: None,
     }
 }
@@ -251,8 +269,10 @@ fn borg_at_end(own: &ExertionCapture, args: &StudyOptions) -> anyhow::Result<f64
         }
     })?;
     let motion = built_in_motion(own.builtin.unwrap_or(BuiltinMotion::Walk));
-    let law = HeartModel::by_name(own.heart.word()).unwrap_or_default();
-    let take = ExertionTake::of(&motion, own.seconds, &person, law, &Face::default())
+    let part = ExertionPart::motion(&motion, own.seconds, &person, &MotionOptions::default());
+    let plan = Plan::of(part?.part).map_err(|error| anyhow!("--for: {error}"))?;
+    let heart = Heart::Law(HeartModel::Thesis);
+    let series = Series::of(&person, &plan, heart, Start::default())
         .map_err(|error| anyhow!("--for: {error}"))?;
-    Ok(take.series.metabolism.borg.last().copied().unwrap_or(6.0))
+    Ok(series.metabolism.borg.last().copied().unwrap_or(6.0))
 }

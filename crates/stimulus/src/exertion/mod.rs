@@ -1,0 +1,15 @@
+//! The face of a body that exerts itself: motions and recorded activities in, weights out.
+//!
+//! ```text
+//! motion of a capture --+
+//!                       +--> ExertionPart --> Plan --> ExertionTake: a series of seconds, a clip
+//! recorded activity ----+
+//! ```
+
+mod built_in;
+mod part;
+mod take;
+
+pub use built_in::{built_in_bvh, built_in_motion};
+pub use part::{ExertionPart, ExertionPartError, MotionOptions, PartFacts, PartNote};
+pub use take::{ExertionTake, ExertionWarning};
