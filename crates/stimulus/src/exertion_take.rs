@@ -2,10 +2,10 @@
 
 use mimique_actor::{Gait, gait_bvh};
 use mimique_exertion::{
-    Body, BodyOptions, BodyWork, Clip, Convention, ExertionError, FRAMES_PER_SECOND, Face, Heart,
-    HeartModel, Part, Person, Plan, Series, Start, Window,
+    BodyOptions, Clip, Convention, ExertionError, FRAMES_PER_SECOND, Face, Heart, HeartModel,
+    MotionWork, Person, Plan, Series, Start, Window,
 };
-use mimique_mocap::{BodyJoints, BodyJointsError, Capture, WeightsTable, read_bytes};
+use mimique_mocap::{BodyJoints, BodyJointsError, Capture, read_bytes};
 use mimique_study::BuiltinMotion;
 
 /// The stature of the built-in body, m.
@@ -32,10 +32,14 @@ pub fn built_in_motion(motion: BuiltinMotion) -> Capture {
 /// What a body does for a while, and its face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExertionTake {
+    /// The body and its work.
+    pub motion: MotionWork,
+    /// How long it goes on, s.
+    pub span_s: f64,
     /// What the body does, second after second.
     pub series: Series,
-    /// The weights of the face from the beginning on, 60 per second.
-    pub table: WeightsTable,
+    /// The face from the beginning on, 60 frames per second.
+    pub clip: Clip,
 }
 
 /// The face of an exertion cannot be computed.
@@ -64,14 +68,13 @@ impl ExertionTake {
         face: &Face,
     ) -> Result<Self, ExertionTakeError> {
         let joints = BodyJoints::find(&motion.labels)?;
-        let body = Body::new(motion, &joints, person, &BodyOptions::default())?;
-        let work = BodyWork::of(&body, person, Convention::Segments, false)?.accumulated;
-        let repeated = seconds > work.span_s();
-        let part = Part { work: work.repeated(repeated), seconds, rcn: None };
-        let plan = Plan::of(part)?;
+        let options = BodyOptions::default();
+        let motion = MotionWork::of(motion, &joints, person, &options, Convention::Segments)?;
+        let plan = Plan::of(motion.part(seconds))?;
         let series = Series::of(person, &plan, Heart::Law(law), Start::default())?;
-        let window = Window { seconds: [0.0, plan.span_s()], rate_hz: FRAMES_PER_SECOND };
-        let table = Clip::of(person, &plan, &series, &window, face)?.table();
-        Ok(Self { series, table })
+        let span_s = plan.span_s();
+        let window = Window { seconds: [0.0, span_s], rate_hz: FRAMES_PER_SECOND };
+        let clip = Clip::of(person, &plan, &series, &window, face)?;
+        Ok(Self { motion, span_s, series, clip })
     }
 }

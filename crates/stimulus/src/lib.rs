@@ -47,6 +47,7 @@
 mod avatar;
 mod built_in;
 mod checks;
+mod exertion_drawing;
 mod exertion_take;
 mod marker_map;
 mod prepare;
@@ -64,6 +65,7 @@ pub use checks::{
     ADVISED_SMOOTHING, BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem,
     MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
 };
+pub use exertion_drawing::{Drawn, DrawnCourse, DrawnLine, ExertionDrawing};
 pub use exertion_take::{ExertionTake, ExertionTakeError, built_in_bvh, built_in_motion};
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
@@ -71,7 +73,7 @@ pub use marker_map::{
 };
 pub use prepare::{
     AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
-    is_source, prepare,
+    exertion_drawing, is_source, prepare,
 };
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{

@@ -4,24 +4,19 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use mimique_exertion::{
-    Accumulated, ActivityWork, Body, BodyOptions, BodyWork, Convention, ExertionError, Part,
+    Accumulated, ActivityWork, BodyOptions, Convention, ExertionError, Finding, MotionWork, Part,
     Person, Plan, Scale, Up,
 };
 use mimique_mocap::{
-    BodyJoints, Capture, CaptureFile, LengthUnit, ReadError, ReadOptions, is_activity,
-    read_activity,
+    BodyJoints, Capture, CaptureFile, ReadError, ReadOptions, is_activity, read_activity,
 };
 use serde_json::{Value, json};
 
 use super::args::{MotionOptions, Options};
 use super::plan::{Written, parse};
+use super::report::words;
 use super::{blame, hash_of, text_of};
 use crate::solve::length_unit;
-
-/// Work without the low-pass in works with it from which jitter is said.
-const JITTER: f64 = 1.5;
-/// How far the unit of a file may be from the one that fits the legs before it is said.
-const UNIT: f64 = 0.2;
 
 /// The plan, and what is to be said of its parts.
 pub(super) struct Inputs {
@@ -165,37 +160,26 @@ fn motion(
     options: &MotionOptions,
 ) -> anyhow::Result<ReadPart> {
     let read = Motion::read(file, person, options)?;
-    let body = read.body(options.lowpass.0)?;
-    let once = read.work(&body)?;
-    let span = once.span_s();
+    let own = read.work()?;
+    let span = own.once.span_s();
     let seconds = seconds.unwrap_or(span);
-    let repeated = seconds > span;
+    let mut findings: Vec<Finding> = own.repetition(seconds).into_iter().collect();
+    if options.unit.is_none() {
+        findings.extend(Finding::of_unit(&read.capture, &own.body, person));
+    }
+    findings.extend(read.jitter(&own)?);
     let mut notes = read.notes.clone();
-    if repeated {
-        notes.push(format!(
-            "repeated {:.1} times: the work is repeated, not the motion, whose jump back would be work",
-            seconds / span
-        ));
-    }
-    notes.extend(unit_note(&read.capture, &body, options, person));
-    if options.lowpass.0.is_some() {
-        let ratio = read.work(&read.body(None)?)?.total() / once.total();
-        if ratio > JITTER {
-            notes.push(format!(
-                "the motion jitters: without the low-pass its work would be {ratio:.1} times as much"
-            ));
-        }
-    }
+    notes.extend(findings.into_iter().map(words));
     let told = json!({
-        "kind": "motion", "file": file, "seconds": seconds, "span": span, "repeated": repeated,
+        "kind": "motion", "file": file, "seconds": seconds, "span": span,
+        "repeated": own.is_repeated(seconds),
         "rateHz": read.capture.rate_hz, "frames": read.capture.frames(), "naming": read.joints.naming,
-        "metresPerUnit": body.metres_per_unit(), "up": body.up().to_array(),
-        "segments": body.segment_names(), "convention": read.convention.name(),
-        "lowpassHz": options.lowpass.0, "workPerSecond": once.total() / span,
+        "metresPerUnit": own.body.metres_per_unit(), "up": own.body.up().to_array(),
+        "segments": own.body.segment_names(), "convention": read.convention.name(),
+        "lowpassHz": options.lowpass.0, "workPerSecond": own.once.total() / span,
     });
     let notes = notes.iter().map(|note| format!("{}: {note}", file.display())).collect();
-    let part = Part { work: once.repeated(repeated), seconds, rcn: None };
-    Ok(ReadPart { part, told, notes })
+    Ok(ReadPart { part: own.part(seconds), told, notes })
 }
 
 /// A motion whose joints are known, and what the options make of it.
@@ -205,8 +189,7 @@ struct Motion<'a> {
     capture: Capture,
     joints: BodyJoints,
     convention: Convention,
-    scale: Scale,
-    up: Up,
+    options: BodyOptions,
     notes: Vec<String>,
 }
 
@@ -227,17 +210,18 @@ impl<'a> Motion<'a> {
         };
         let mut notes = vec![taken_for];
         notes.extend(capture.notes.iter().cloned());
-        Ok(Self { file, person, capture, joints, convention, scale, up: up(options)?, notes })
+        let options = BodyOptions { scale, lowpass_hz: options.lowpass.0, up: up(options)? };
+        Ok(Self { file, person, capture, joints, convention, options, notes })
     }
 
-    fn body(&self, lowpass_hz: Option<f64>) -> anyhow::Result<Body> {
-        let options = BodyOptions { scale: self.scale, lowpass_hz, up: self.up };
-        Body::new(&self.capture, &self.joints, self.person, &options).map_err(|e| self.blame(e))
+    fn work(&self) -> anyhow::Result<MotionWork> {
+        let Self { capture, joints, person, options, convention, .. } = self;
+        MotionWork::of(capture, joints, person, options, *convention).map_err(|e| self.blame(e))
     }
 
-    fn work(&self, body: &Body) -> anyhow::Result<Accumulated> {
-        let work = BodyWork::of(body, self.person, self.convention, false);
-        work.map(|work| work.accumulated).map_err(|e| self.blame(e))
+    fn jitter(&self, own: &MotionWork) -> anyhow::Result<Option<Finding>> {
+        let Self { capture, joints, person, options, convention, .. } = self;
+        own.jitter(capture, joints, person, options, *convention).map_err(|e| self.blame(e))
     }
 
     fn blame(&self, error: ExertionError) -> anyhow::Error {
@@ -277,28 +261,6 @@ fn up(options: &MotionOptions) -> anyhow::Result<Up> {
         Some("z") => Ok(Up::Z),
         Some(other) => bail!("--up: {other:?}; use x, y or z"),
     }
-}
-
-/// That the file's unit would make somebody of another stature.
-fn unit_note(
-    capture: &Capture,
-    body: &Body,
-    options: &MotionOptions,
-    person: &Person,
-) -> Option<String> {
-    if options.unit.is_some() {
-        return None;
-    }
-    let own = capture.unit.metres() / body.metres_per_unit();
-    let stature = person.spec().height_m;
-    ((own - 1.0).abs() > UNIT).then(|| {
-        format!(
-            "the legs are made those of a person of {stature} m; by the file's unit ({}) the person would be \
-             {:.2} m tall (--unit)",
-            LengthUnit::symbol(capture.unit),
-            stature * own
-        )
-    })
 }
 
 /// Whether a file is named that is none.

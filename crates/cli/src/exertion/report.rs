@@ -1,12 +1,11 @@
 //! What is told: the series, the figure, the report.
 
-use std::fmt::Write as _;
 use std::io::Write as _;
 
 use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
 use mimique_exertion::{
-    Clip, Curves, Expression, Features, Heart, Person, Series, VERSION, WORK_LIMIT,
+    Clip, Course, Curves, Expression, Finding, Heart, Person, Series, VERSION,
 };
 use mimique_mocap::WeightsTable;
 use mimique_stimulus::Provenance;
@@ -27,84 +26,14 @@ pub(super) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// The series as CSV, a row a second.
-    pub(super) fn series_csv(&self) -> String {
-        let (series, of) = (self.series, &self.series.metabolism);
-        let mut text =
-            String::from("t,w,p,rcn,hr,vo2,breaths,kcal,epoc,fatigue,flush,sweat,borg\n");
-        for second in 0..series.seconds() {
-            let _ = write!(text, "{second}");
-            for column in [
-                &series.w,
-                &series.p,
-                &series.rcn,
-                &series.heart_rate,
-                &of.vo2,
-                &of.breaths,
-                &of.kcal_min,
-                &of.epoc,
-                &of.fatigue,
-                &of.flush,
-                &of.sweat,
-                &of.borg,
-            ] {
-                let _ = write!(text, ",{}", column[second]);
-            }
-            text.push('\n');
-        }
-        text
-    }
-
     /// Heart rate, EPOC and curves, second by second.
-    pub(super) fn panels(&self, expression: &Expression) -> anyhow::Result<Vec<CoursePanel>> {
-        let (series, of) = (self.series, &self.series.metabolism);
-        let states: Vec<Features> = (0..series.seconds())
-            .map(|second| Features {
-                w: series.w[second],
-                p: series.p[second],
-                rcn: series.rcn[second],
-                epoc: of.epoc[second],
-            })
-            .collect();
-        let curves = expression.curves(&states, self.person.spec().level);
-        let line = |k: usize| curves.iter().map(|own| own.to_array()[k]).collect();
-        let words = ["open", "stretched", "eyes", "brows"];
-        let alone = |label: &str, values: &[f64]| CoursePanel {
-            label: label.to_owned(),
-            lines: vec![(String::new(), values.to_vec())],
-        };
-        Ok(vec![
-            alone("beats per minute", &series.heart_rate),
-            alone("EPOC, ml/kg", &of.epoc),
-            CoursePanel {
-                label: "face, %".to_owned(),
-                lines: (0..words.len()).map(|k| (words[k].to_owned(), line(k))).collect(),
-            },
-        ])
+    pub(super) fn panels(&self, expression: &Expression) -> Vec<CoursePanel> {
+        let curves = self.series.curves(self.person, expression);
+        Course::PLOTTED.map(|course| panel(self.series, course, &curves)).into()
     }
 
-    fn warnings(&self, rows: usize) -> Vec<String> {
-        let mut all = Vec::new();
-        if let Some(second) = self.series.near_maximum {
-            all.push(format!(
-                "the heart passes nine tenths of its reserve at {second} s; the law of the thesis has no steady \
-                 state, constant work takes it to its maximum (--heart steady settles)"
-            ));
-        }
-        if let Some(first) = self.series.over_limit.first() {
-            all.push(format!(
-                "{} seconds, from {first} s on, have more than {WORK_LIMIT} J/kg, and count as that for the heart; \
-                 look for a fault of the motion, or of its rate (--rate)",
-                self.series.over_limit.len()
-            ));
-        }
-        let cut = self.clip.controls.cut_frames;
-        if cut > 0 {
-            all.push(format!(
-                "{cut} of {rows} frames have a curve that is cut at the end of its range"
-            ));
-        }
-        all
+    fn warnings(&self) -> Vec<String> {
+        Finding::of_clip(self.series, self.clip).into_iter().map(words).collect()
     }
 
     fn heart_name(&self) -> String {
@@ -199,7 +128,7 @@ impl Report<'_> {
             "curves_at_end": curves,
             "cut_frames": clip.controls.cut_frames,
             "seconds_over_limit": series.over_limit,
-            "warnings": self.warnings(clip.times.len()),
+            "warnings": self.warnings(),
             "notes": self.inputs.notes,
             "weights_hash": hash,
             "provenance": provenance.json("weights", hash.as_str()).hash(),
@@ -290,6 +219,24 @@ impl Report<'_> {
         }
         Ok(())
     }
+}
+
+/// A course as a panel of a figure.
+fn panel(series: &Series, course: Course, curves: &[Curves]) -> CoursePanel {
+    let lines = series.lines(course, curves).into_iter();
+    let lines = lines.map(|(name, values)| (name.to_owned(), values)).collect();
+    CoursePanel { label: course.label().to_owned(), lines }
+}
+
+/// A finding with the option that changes it.
+pub(super) fn words(finding: Finding) -> String {
+    let option = match finding {
+        Finding::NearMaximum { .. } => " (--heart steady settles)",
+        Finding::OverLimit { .. } => " (--rate)",
+        Finding::OtherUnit { .. } => " (--unit)",
+        Finding::CutFrames { .. } | Finding::Repeated { .. } | Finding::Jitter { .. } => "",
+    };
+    format!("{finding}{option}")
 }
 
 fn largest(values: &[f64]) -> f64 {

@@ -29,7 +29,7 @@ use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
-use crate::RecordedWeights;
+use crate::{ExertionDrawing, RecordedWeights};
 use crate::provenance::Provenance;
 
 /// Whether what a study names is there: a file, or a folder of an avatar's poses.
@@ -140,6 +140,19 @@ pub fn prepare(
         known::keep(&cache, key, sources.asked(), &prepared)?;
     }
     Ok(prepared)
+}
+
+/// What the preview of a study draws of a clip whose capture is an exertion: what its weights were made of,
+/// computed anew. None for other clips.
+///
+/// # Errors
+/// [`PrepareError`]: a file that is absent or damaged, frames that are not there.
+pub fn exertion_drawing(
+    study: &Study,
+    clip: &Clip,
+    places: &Places,
+) -> Result<Option<ExertionDrawing>, PrepareError> {
+    Sources::new(study, places).exertion_drawing(clip)
 }
 
 /// What a clip is played from.

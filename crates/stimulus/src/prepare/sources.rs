@@ -20,7 +20,9 @@ use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, exertion, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
-use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
+use crate::{
+    ExertionDrawing, MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes,
+};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -271,10 +273,34 @@ impl<'a> Sources<'a> {
         if let Some(found) = self.exertions.borrow().get(id) {
             return Ok(found.clone());
         }
-        let at = pointer(&["stimuli", "captures", id, "exertion"]);
-        let table = Rc::new(exertion::weights(own, &at, |file, at| self.path(file, at))?);
+        let table = Rc::new(self.computed(id, own)?.weights());
         self.exertions.borrow_mut().insert(id.to_owned(), table.clone());
         Ok(table)
+    }
+
+    fn computed(
+        &self,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<exertion::Computed, PrepareError> {
+        let at = pointer(&["stimuli", "captures", id, "exertion"]);
+        exertion::computed(own, &at, |file, at| self.path(file, at))
+    }
+
+    /// The exertion that a clip shows, as pages draw it; none where it shows something else.
+    pub fn exertion_drawing(&self, clip: &Clip) -> Result<Option<ExertionDrawing>, PrepareError> {
+        let (segment, at) = self.segment(&clip.segment)?;
+        let capture = self.study.stimuli.captures.get(&segment.capture);
+        let (Some(CaptureSource::Exertion(own)), Some(Span::Frames { first, end })) =
+            (capture.and_then(|capture| capture.source()), segment.span())
+        else {
+            return Ok(None);
+        };
+        let drawing = self.computed(&segment.capture, own)?.drawing(first..end);
+        drawing.map(Some).ok_or_else(|| {
+            let message = format!("frames {first} to {end}: not all of them are there; correct them");
+            PrepareError::new(at, message)
+        })
     }
 
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
