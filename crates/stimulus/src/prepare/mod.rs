@@ -143,16 +143,24 @@ pub fn prepare(
 }
 
 /// What the preview of a study draws of a clip whose capture is an exertion: what its weights were made of,
-/// computed anew. None for other clips.
+/// computed anew. None for other clips. Where it is not known where the study's files are, only what names none
+/// can be computed.
 ///
 /// # Errors
 /// [`PrepareError`]: a file that is absent or damaged, frames that are not there.
 pub fn exertion_drawing(
     study: &Study,
     clip: &Clip,
-    places: &Places,
+    places: Option<&Places>,
 ) -> Result<Option<ExertionDrawing>, PrepareError> {
-    Sources::new(study, places).exertion_drawing(clip)
+    let nowhere = Places { study: PathBuf::new(), data: None, packs: PathBuf::new() };
+    let sources = Sources::new(study, places.unwrap_or(&nowhere));
+    let Some((id, own)) = sources.exertion_of(clip)? else { return Ok(None) };
+    if places.is_none() && (own.motion.is_some() || own.model_file().is_some()) {
+        let message = "its files are not at hand; open the motion in the studio";
+        return Err(PrepareError::new(pointer(&["stimuli", "captures", id, "exertion"]), message));
+    }
+    sources.exertion_drawing(clip, id, own).map(Some)
 }
 
 /// What a clip is played from.

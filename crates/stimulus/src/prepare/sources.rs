@@ -287,19 +287,34 @@ impl<'a> Sources<'a> {
         exertion::computed(own, &at, |file, at| self.path(file, at))
     }
 
-    /// The exertion that a clip shows, as pages draw it; none where it shows something else.
-    pub fn exertion_drawing(&self, clip: &Clip) -> Result<Option<ExertionDrawing>, PrepareError> {
-        let (segment, at) = self.segment(&clip.segment)?;
+    /// The exertion that a clip shows, and its identifier; none where the clip shows something else.
+    pub fn exertion_of(
+        &self,
+        clip: &Clip,
+    ) -> Result<Option<(&'a str, &'a ExertionCapture)>, PrepareError> {
+        let (segment, _) = self.segment(&clip.segment)?;
         let capture = self.study.stimuli.captures.get(&segment.capture);
-        let (Some(CaptureSource::Exertion(own)), Some(Span::Frames { first, end })) =
-            (capture.and_then(|capture| capture.source()), segment.span())
-        else {
-            return Ok(None);
+        Ok(match capture.and_then(|capture| capture.source()) {
+            Some(CaptureSource::Exertion(own)) => Some((&segment.capture[..], own)),
+            _ => None,
+        })
+    }
+
+    /// The frames of an exertion that a clip shows, as pages draw them.
+    pub fn exertion_drawing(
+        &self,
+        clip: &Clip,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<ExertionDrawing, PrepareError> {
+        let (segment, at) = self.segment(&clip.segment)?;
+        let computed = self.computed(id, own)?;
+        let drawing = match segment.span() {
+            Some(Span::Frames { first, end }) => computed.drawing(first..end),
+            _ => None,
         };
-        let drawing = self.computed(&segment.capture, own)?.drawing(first..end);
-        drawing.map(Some).ok_or_else(|| {
-            let message = format!("frames {first} to {end}: not all of them are there; correct them");
-            PrepareError::new(at, message)
+        drawing.ok_or_else(|| {
+            PrepareError::new(at, "not all of its frames are there; correct first and end")
         })
     }
 

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use crate::workspace::{Problem, Workspace};
 use settings::{ModelChoice, Refused, Settings};
-use source::{FileContent, Moved, OpenedFile, Worked};
+use source::{Moved, OpenedFile, Worked};
 
 /// The slot of the face's weights.
 pub(crate) const SLOT: &str = "exertion";
@@ -64,9 +64,10 @@ impl Workspace {
         rate_hz: Option<f64>,
     ) -> Result<Value, Problem> {
         let opened = OpenedFile::read(file, bytes, unit, rate_hz)?;
-        let is_activity = matches!(opened.content, FileContent::Activity(_));
         let facts = json!({
-            "file": file, "isActivity": is_activity, "hasHeart": opened.has_heart(),
+            "file": file, "hasHeart": opened.has_heart(), "isActivity": opened.activity().is_some(),
+            // Whole seconds are computed.
+            "spanS": opened.activity().and_then(|own| own.time_s.last()).map(|last| last.floor()),
         });
         self.exertion.moved.forget();
         self.exertion.file = Some(opened);

@@ -6,7 +6,6 @@ use mimique_study::{ExertionCapture, ExertionHeart, ExertionPerson};
 use serde_json::{Value, json};
 
 use super::settings::{HeartChoice, ModelChoice, SourceChoice};
-use super::source::FileContent;
 use super::{Made, SLOT};
 use crate::workspace::{Problem, Workspace};
 
@@ -98,7 +97,7 @@ impl Workspace {
     fn study_motion(&self, source: SourceChoice) -> Result<(String, Option<String>), Problem> {
         let file = match (source, &self.exertion.file) {
             (SourceChoice::File, Some(file)) => {
-                if matches!(file.content, FileContent::Activity(_)) {
+                if file.activity().is_some() {
                     let what = "a recording of a watch; a study file takes the motion of a body: play its weights \
                                 there, as a file of weights";
                     return Err(Problem::of(&file.name, what));

@@ -4,7 +4,7 @@ use mimique_exertion::{
     Accumulated, ActivityWork, BodyOptions, Convention, Finding, MotionWork, Part, Person,
 };
 use mimique_mocap::{
-    Activity, BodyJoints, BodyJointsError, Capture, read_activity_bytes, recognise_activity,
+    Activity, ActivityColumn, BodyJoints, BodyJointsError, Capture, read_activity_bytes, recognise_activity,
 };
 use mimique_stimulus::built_in_motion;
 
@@ -42,14 +42,17 @@ impl OpenedFile {
         Ok(Self { name: name.to_owned(), content })
     }
 
+    /// What a watch recorded.
+    pub fn activity(&self) -> Option<&Activity> {
+        match &self.content {
+            FileContent::Motion(_) => None,
+            FileContent::Activity(activity) => Some(activity),
+        }
+    }
+
     /// Whether the heart was recorded.
     pub fn has_heart(&self) -> bool {
-        match &self.content {
-            FileContent::Motion(_) => false,
-            FileContent::Activity(activity) => {
-                activity.column(mimique_mocap::ActivityColumn::HeartRate).is_some()
-            }
-        }
+        self.activity().is_some_and(|own| own.column(ActivityColumn::HeartRate).is_some())
     }
 }
 
@@ -99,7 +102,7 @@ impl Workspace {
         if choice == SourceChoice::File {
             let none = || Refused::at("source", "no file yet; open a motion or a recording");
             let file = self.exertion.file.as_ref().ok_or_else(none)?;
-            if let FileContent::Activity(activity) = &file.content {
+            if let Some(activity) = file.activity() {
                 return recorded(&file.name, activity, person, seconds);
             }
         }
