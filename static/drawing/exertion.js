@@ -83,7 +83,7 @@ export class ExertionPictures {
   // The shapes that move most, in one order for as long as the drawing is the same.
   #moving() {
     const most = ({ values }) => values.reduce((high, value) => Math.max(high, Math.abs(value)), 0);
-    this.#drawing.moving ??= [...this.#drawing.weights].map((line) => [most(line), line]).sort(([a], [b]) => b - a).slice(0, SHAPES).map(([, line]) => line);
+    this.#drawing.moving ??= bothSides(this.#drawing.weights).map((line) => [most(line), line]).filter(([high]) => high > 0).sort(([a], [b]) => b - a).slice(0, SHAPES).map(([, line]) => line);
     return this.#drawing.moving;
   }
 
@@ -107,6 +107,17 @@ export class ExertionPictures {
     canvas.addEventListener("pointermove", (event) => held !== null && follow(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (held = null));
   }
+}
+
+// Left and right as one line where they move alike.
+function bothSides(lines) {
+  const named = new Map(lines.map((line) => [line.name, line]));
+  const alike = ({ values }, other) => other !== undefined && values.every((value, i) => value === other.values[i]);
+  return lines.flatMap((line) => {
+    const [stem, side] = [line.name.replace(/(Left|Right)$/, ""), /(Left|Right)$/.exec(line.name)?.[0]];
+    if (!side || !alike(line, named.get(`${stem}${side === "Left" ? "Right" : "Left"}`))) return [line];
+    return side === "Left" ? [{ ...line, name: `${stem}, both sides` }] : [];
+  });
 }
 
 // A canvas with the keys of its lines.

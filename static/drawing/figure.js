@@ -35,8 +35,8 @@ export function drawFigure(canvas, figure, seconds, lungs) {
   const joints = jointsAt(figure, seconds, lungs);
   const tall = highest(figure);
   const [top, bottom] = [24, 14];
-  // Arms and legs go as far to the sides as the body is tall.
-  const scale = Math.min((height - top - bottom) / (tall + AROUND), width / 2 / (1.15 * tall));
+  // A step is three quarters as long as the body is tall.
+  const scale = Math.min((height - top - bottom) / (tall + AROUND), width / 2 / (0.76 * tall));
   const floor = height - bottom;
   context.lineCap = context.lineJoin = "round";
   context.strokeStyle = soft;

@@ -66,7 +66,6 @@ test("studio: a run whose heart and mouth follow training, its window, its files
     assert.match(await page.locator("#exertion-veil").textContent(), /avatar/, "the face needs one, the body none");
     await page.click("#avatar-built-in");
     await page.waitForFunction(() => document.querySelector("#exertion-veil").hidden, null, { timeout: 60_000 });
-    assert.match(await page.locator("#exertion-notes").textContent(), /nine tenths.*steady settles/s);
     assert.ok((await inked(page, ".exertion-body")) > 500, "the body is drawn");
     assert.equal(await page.locator("#exertion-courses canvas").count(), 7);
 
@@ -74,6 +73,7 @@ test("studio: a run whose heart and mouth follow training, its window, its files
     await set(page, "person-level", 0);
     words = await facts(page, words);
     const untrained = heart(words);
+    assert.match(await page.locator("#exertion-notes").textContent(), /nine tenths.*steady settles/s);
     const weights = async () => String(await download(page, () => page.click("#exertion-weights")));
     const open0 = mean(await weights(), "jawOpen");
     await set(page, "person-level", 10);
@@ -83,7 +83,7 @@ test("studio: a run whose heart and mouth follow training, its window, its files
     assert.ok(open10 < 0.8 * open0, `${open10} ${open0}`);
 
     // The files are the command's, byte for byte.
-    await set(page, "loads-back".replace("loads", "person-loads"), 5);
+    await set(page, "person-loads-back", 5);
     words = await facts(page, words);
     await set(page, "seed", 7);
     await page.waitForTimeout(500);
@@ -178,8 +178,10 @@ test("studio: exertion of files, and a motion without joints", { skip: noBrowser
     await page.selectOption("#exertion-source", "walk");
     await page.waitForFunction(() => document.querySelector("#exertion-problem").hidden);
     // The take and the window are played in step; the window can be played alone, and be exported.
+    await unfold(page, "exports");
     await page.selectOption("#range", "exertion");
     await page.selectOption("#export-slot", "exertion");
+    assert.equal(String((await download(page, () => page.click("#export-glb"))).subarray(0, 4)), "glTF");
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();

@@ -157,7 +157,8 @@ impl Workspace {
                 (self.take_name().to_owned(), capture)
             }
         };
-        let notes = capture.notes.clone();
+        // How our own motion was read is nobody's question.
+        let notes = if built_in.is_none() { capture.notes.clone() } else { Vec::new() };
         if self.exertion.moved.0.as_ref().is_none_or(|(known, ..)| *known != by) {
             let refused = |error| Refused::source(&name, error);
             let joints = BodyJoints::find(&capture.labels)
