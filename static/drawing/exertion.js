@@ -66,7 +66,7 @@ export class ExertionPictures {
     });
     const window = { time: { from, to, unit: "s" } };
     this.#breath.canvas.parentElement.hidden = drawing.breath.length === 0;
-    this.#breath.draw(drawing.breath, window, part);
+    this.#breath.draw(drawing.breath, { ...window, low: -1, high: 1 }, part);
     this.#weights.draw(this.#moving(), { ...window, high: 1 }, part);
   }
 

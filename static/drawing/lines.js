@@ -119,7 +119,7 @@ function timeAxis(context, { from, to, unit }, x, height, ink) {
   const end = context.measureText(`${to.toFixed(digits)} ${unit}`).width;
   for (let at = Math.ceil(from / step - 1e-6) * step; at <= to + 1e-6 * step; at += step) {
     const place = x((at - from) / length);
-    if (place < x(1) - end - 14) context.fillText(at.toFixed(digits), Math.max(place, x(0) + 4), height - 9);
+    if (place < x(1) - end - 20) context.fillText(at.toFixed(digits), Math.max(place, x(0) + 4), height - 9);
   }
   context.textAlign = "end";
   context.fillText(`${to.toFixed(digits)} ${unit}`, x(1), height - 9);

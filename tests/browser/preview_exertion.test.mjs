@@ -31,9 +31,14 @@ function study(folder) {
     methods: { recorded: { method: "recorded" } },
     clips: { list: ["run", "walk", "joy2"].map((segment) => ({ avatar: "head", segment, method: "recorded" })) },
   };
-  const question = { id: "seen", type: "number", text: text("How hard?"), min: 6, max: 20 };
   const file = join(folder, "exertions.json");
-  writeFileSync(file, JSON.stringify(small("exertions", { stimuli, flow: [trials(["run.recorded"], [question])] })));
+  const parts = {
+    stimuli,
+    questions: [{ id: "effort", type: "likert", prompt: text("How hard?"), numItems: 7, leftLabel: text("not at all"), rightLabel: text("very hard") }],
+    components: { clips: trials(["run.recorded", "walk.recorded", "joy2.recorded"], ["effort"]) },
+    sequence: { order: "fixed", components: ["clips"] },
+  };
+  writeFileSync(file, JSON.stringify(small("exertions", parts)));
   return file;
 }
 
@@ -45,6 +50,8 @@ test("preview: the body of an exertion beside its face", { skip: noBrowser, time
   try {
     const address = `${server.url}/preview/exertions?backend=webgl2`;
     await page.goto(address);
+    await page.waitForSelector("#clip-a");
+    await page.selectOption("#clip-a", "run.recorded");
     await page.waitForFunction(() => document.querySelector("#exertion-clip").textContent === "run.recorded", null, { timeout: 120_000 });
     await page.waitForFunction(() => document.querySelector(".preview-clip").textContent.includes("361 frames"), null, { timeout: 120_000 });
     assert.equal(await page.locator("#exertion canvas").count(), 8);

@@ -24,8 +24,7 @@ pub enum Course {
 
 impl Course {
     /// All of them, in the order in which they are drawn.
-    pub const ALL: [Self; 5] =
-        [Self::HeartRate, Self::Breaths, Self::Work, Self::Epoc, Self::Face];
+    pub const ALL: [Self; 5] = [Self::HeartRate, Self::Breaths, Self::Work, Self::Epoc, Self::Face];
     /// Those of a figure that stands alone.
     pub const PLOTTED: [Self; 3] = [Self::HeartRate, Self::Epoc, Self::Face];
 

@@ -65,9 +65,7 @@ pub enum Finding {
         by_unit_m: f64,
     },
     /// Noise that the low-pass takes away.
-    #[error(
-        "the motion jitters: without the low-pass its work would be {ratio:.1} times as much"
-    )]
+    #[error("the motion jitters: without the low-pass its work would be {ratio:.1} times as much")]
     Jitter {
         /// Work without the low-pass in works with it.
         ratio: f64,

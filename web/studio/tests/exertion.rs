@@ -105,9 +105,15 @@ fn a_study_file_takes_what_is_saved_for_it() {
     told(&mut workspace, json!({"person": {"level": 8, "loads": {"back": 5}}, "heart": "steady"}));
     let parts: Value = serde_json::from_str(&workspace.exertion_study().unwrap()).unwrap();
     let own = &parts["captures"]["run"]["exertion"];
-    assert_eq!((&own["builtin"], &own["for"], &own["heart"]), (&json!("run"), &json!(300.0), &json!("steady")));
+    assert_eq!(
+        (&own["builtin"], &own["for"], &own["heart"]),
+        (&json!("run"), &json!(300.0), &json!("steady"))
+    );
     assert_eq!(own["person"], json!({"level": 8.0, "loads": {"back": 5.0}}));
-    assert_eq!(parts["segments"], json!([{"id": "run", "capture": "run", "first": 17400, "end": 18001}]));
+    assert_eq!(
+        parts["segments"],
+        json!([{"id": "run", "capture": "run", "first": 17400, "end": 18001}])
+    );
     serde_json::from_value::<mimique_study::ExertionCapture>(own.clone()).unwrap();
 
     workspace.exertion_file("ride.csv", RIDE, None, None).unwrap();
@@ -134,7 +140,10 @@ fn the_body_stands_on_its_floor_and_begins_again() {
     assert!((1600.0..1800.0).contains(&place(0, "headTop")[1]), "{:?}", place(0, "headTop"));
     assert!(place(0, "leftHip")[0] > 50.0 && place(0, "rightHip")[0] < -50.0, "left is left");
     // Toes point forwards.
-    assert!(place(0, "leftToe")[2] > place(0, "leftAnkle")[2] && place(0, "rightToe")[2] > place(0, "rightAnkle")[2]);
+    assert!(
+        place(0, "leftToe")[2] > place(0, "leftAnkle")[2]
+            && place(0, "rightToe")[2] > place(0, "rightAnkle")[2]
+    );
     // After a period everything is where it was.
     let apart = (0..width).map(|i| (positions[i] - positions[last + i]).abs()).fold(0.0, f64::max);
     assert!(apart < 40.0, "{apart}");
@@ -161,7 +170,10 @@ fn a_motion_of_a_file_and_one_without_joints() {
     workspace.built_in_take(1);
     let (place, text) = problem(&mut workspace, json!({"source": "take"}));
     assert_eq!(place, "source");
-    assert!(text.contains("no joints of a body") && text.contains("CMU, Mixamo or Xsens"), "{text}");
+    assert!(
+        text.contains("no joints of a body") && text.contains("CMU, Mixamo or Xsens"),
+        "{text}"
+    );
     assert!(workspace.exertion_weights_csv().is_err(), "nothing of before is saved for it");
 }
 
@@ -169,7 +181,10 @@ fn a_motion_of_a_file_and_one_without_joints() {
 fn a_recording_has_a_heart_and_no_body() {
     let mut workspace = Workspace::new();
     let facts = workspace.exertion_file("ride.csv", RIDE, None, None).unwrap();
-    assert_eq!(facts, json!({"file": "ride.csv", "isActivity": true, "hasHeart": true, "spanS": 6.0}));
+    assert_eq!(
+        facts,
+        json!({"file": "ride.csv", "isActivity": true, "hasHeart": true, "spanS": 6.0})
+    );
     let ride = json!({"source": "file", "seconds": null, "window": [0, 6], "heart": "recorded"});
     let own = told(&mut workspace, ride);
     assert_eq!(own["drawing"]["figure"], Value::Null);
@@ -186,7 +201,11 @@ fn wrong_numbers_are_said_at_their_inputs() {
     let mut workspace = Workspace::new();
     for (changes, place, words) in [
         (json!({"person": {"level": 11}}), "person/level", "0 to 10"),
-        (json!({"person": {"expressivity": {"eyes": -1}}}), "person/expressivity/eyes", "0 or more"),
+        (
+            json!({"person": {"expressivity": {"eyes": -1}}}),
+            "person/expressivity/eyes",
+            "0 or more",
+        ),
         (json!({"person": {"loads": {"back": -1}}}), "person/loads/back", "0 or more"),
         (json!({"seconds": -5}), "seconds", "above 0"),
         (json!({"seconds": 1e6, "window": [0, 5]}), "seconds", "86400"),

@@ -4,9 +4,7 @@ use std::io::Write as _;
 
 use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
-use mimique_exertion::{
-    Clip, Course, Curves, Expression, Finding, Heart, Person, Series, VERSION,
-};
+use mimique_exertion::{Clip, Course, Curves, Expression, Finding, Heart, Person, Series, VERSION};
 use mimique_mocap::WeightsTable;
 use mimique_stimulus::Provenance;
 use serde_json::{Value, json};

@@ -3,9 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use mimique_exertion::{
-    Expression, ExpressionModel, Face, Figure, HeartModel, Person, PersonSpec,
-};
+use mimique_exertion::{Expression, ExpressionModel, Face, Figure, HeartModel, Person, PersonSpec};
 use mimique_mocap::{CaptureFile, ReadOptions, WeightsTable};
 use mimique_study::{ExertionCapture, MotionSource};
 
@@ -33,7 +31,15 @@ impl Computed {
         let figure = Figure::of(&motion.body, window_s, motion.is_repeated(*span_s));
         let (person, expression) = (&self.person, &self.expression);
         let (span_s, figure) = (*span_s, Some(figure));
-        Some(ExertionDrawing::of(Drawn { person, expression, series, clip, frames, span_s, figure }))
+        Some(ExertionDrawing::of(Drawn {
+            person,
+            expression,
+            series,
+            clip,
+            frames,
+            span_s,
+            figure,
+        }))
     }
 }
 

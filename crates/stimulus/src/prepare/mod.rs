@@ -29,8 +29,8 @@ use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
-use crate::{ExertionDrawing, RecordedWeights};
 use crate::provenance::Provenance;
+use crate::{ExertionDrawing, RecordedWeights};
 
 /// Whether what a study names is there: a file, or a folder of an avatar's poses.
 pub fn is_source(path: &Path) -> bool {

@@ -20,9 +20,7 @@ use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, exertion, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
-use crate::{
-    ExertionDrawing, MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes,
-};
+use crate::{ExertionDrawing, MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {

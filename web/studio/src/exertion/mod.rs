@@ -106,12 +106,8 @@ impl Workspace {
         let plan = Plan::of(part).map_err(refused)?;
         let series = Series::of(&person, &plan, settings.heart.heart(), Start::default())
             .map_err(refused)?;
-        let face = Face {
-            expression,
-            breathing: settings.breath,
-            seed: settings.seed,
-            ..Face::default()
-        };
+        let face =
+            Face { expression, breathing: settings.breath, seed: settings.seed, ..Face::default() };
         let clip = Clip::of(&person, &plan, &series, &window, &face).map_err(refused)?;
         let figure = (self.body_motion(settings.source))
             .map(|motion| Figure::of(&motion.body, window.seconds, is_repeated));

@@ -67,7 +67,9 @@ impl Workspace {
         let model = match settings.model {
             ModelChoice::Rules => "rules".to_owned(),
             ModelChoice::Linear => "linear".to_owned(),
-            ModelChoice::File => self.exertion.model.as_ref().map_or("", |(name, _)| name).to_owned(),
+            ModelChoice::File => {
+                self.exertion.model.as_ref().map_or("", |(name, _)| name).to_owned()
+            }
         };
         let first = (settings.window[0] * FRAMES_PER_SECOND).round() as usize;
         let capture = ExertionCapture {

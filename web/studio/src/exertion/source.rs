@@ -4,7 +4,8 @@ use mimique_exertion::{
     Accumulated, ActivityWork, BodyOptions, Convention, Finding, MotionWork, Part, Person,
 };
 use mimique_mocap::{
-    Activity, ActivityColumn, BodyJoints, BodyJointsError, Capture, read_activity_bytes, recognise_activity,
+    Activity, ActivityColumn, BodyJoints, BodyJointsError, Capture, read_activity_bytes,
+    recognise_activity,
 };
 use mimique_stimulus::built_in_motion;
 
@@ -161,8 +162,8 @@ impl Workspace {
         let notes = if built_in.is_none() { capture.notes.clone() } else { Vec::new() };
         if self.exertion.moved.0.as_ref().is_none_or(|(known, ..)| *known != by) {
             let refused = |error| Refused::source(&name, error);
-            let joints = BodyJoints::find(&capture.labels)
-                .map_err(|error| refused(joints_words(&error)))?;
+            let joints =
+                BodyJoints::find(&capture.labels).map_err(|error| refused(joints_words(&error)))?;
             let (options, convention) = (BodyOptions::default(), Convention::Segments);
             let number = |error: mimique_exertion::ExertionError| refused(error.to_string());
             let motion =
