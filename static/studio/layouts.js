@@ -1,7 +1,7 @@
 // A marker layout: made or opened, drawn on the head, dragged by mouse and keys, with its error beside it; which
 // of its markers may go.
 import { made } from "../stage/player.js";
-import { draw, swatch } from "./curves.js";
+import { draw, swatch } from "../drawing/lines.js";
 import { HeadPicture, WAYS } from "./head-picture.js";
 import { drawLayout, facesCamera } from "./overlay.js";
 import { callWorker } from "./worker-calls.js";

@@ -1,22 +1,11 @@
 // Markers drawn over a picture of the head, with the picture's own camera.
+import { fitted } from "../drawing/lines.js";
 
 /// Where a point (metres) lies on a canvas: [x, y, depth 0..1].
 export function project(camera, [x, y, z], width, height) {
   const row = (r) => camera[r] * x + camera[4 + r] * y + camera[8 + r] * z + camera[12 + r];
   const w = row(3);
   return [(row(0) / w / 2 + 0.5) * width, (0.5 - row(1) / w / 2) * height, row(2) / w];
-}
-
-/// Fits a canvas's pixels to its size on the page; answers its context and size in CSS pixels.
-export function fitted(canvas) {
-  const { width, height } = canvas.getBoundingClientRect();
-  const ratio = devicePixelRatio || 1;
-  const [w, h] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
-  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  return { context, width, height };
 }
 
 /// What the markers ask (open circles), where the skin is (dots), and the way between: `points` holds

@@ -9,7 +9,7 @@ const JSON_CALLS = new Set([
   "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",
   "labelsFromExpressions", "labelsToExpressions",
   "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",
-  "layoutState",
+  "layoutState", "exertion", "exertionFile", "exertionModel",
 ]);
 
 let worker = null;

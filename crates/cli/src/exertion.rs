@@ -77,10 +77,10 @@ fn face(args: &Options, json: bool) -> anyhow::Result<()> {
         );
     }
     if let Some(file) = &args.series {
-        files.push((file.clone(), report.series_csv().into_bytes()));
+        files.push((file.clone(), take.series.to_csv().into_bytes()));
     }
     if let Some(file) = &args.plot {
-        let panels = report.panels(&face.expression)?;
+        let panels = report.panels(&face.expression);
         let title = format!("Heart rate, EPOC and curves of {}", inputs.name());
         files.push((file.clone(), time_courses(&title, &panels, report.marked()).into_bytes()));
     }

@@ -270,7 +270,10 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
         }
         let Some(checked) = report.study else { continue };
         match prepare_study(file, checked.study(), packs) {
-            Ok(clips) => studies.push(HostedStudy::new(checked.value().clone(), clips, stage)?),
+            Ok(clips) => {
+                let study = HostedStudy::new(checked.value().clone(), clips, stage)?;
+                studies.push(study.with_places(Places::of(file, packs)));
+            }
             Err(problem) => problems.push(problem),
         }
     }

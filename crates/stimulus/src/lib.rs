@@ -65,8 +65,8 @@ pub use checks::{
     MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
 };
 pub use exertion::{
-    ExertionPart, ExertionPartError, ExertionTake, ExertionWarning, MotionOptions, PartFacts,
-    PartNote, built_in_bvh, built_in_motion,
+    Drawn, DrawnCourse, DrawnLine, ExertionDrawing, ExertionPart, ExertionPartError, ExertionTake,
+    MotionOptions, PartFacts, built_in_bvh, built_in_motion,
 };
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
@@ -74,7 +74,7 @@ pub use marker_map::{
 };
 pub use prepare::{
     AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
-    is_source, prepare,
+    exertion_drawing, is_source, prepare,
 };
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{

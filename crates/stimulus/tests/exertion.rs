@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use mimique_clip::solve_packs;
-use mimique_stimulus::{Places, Prepared, built_in_bvh, prepare};
+use mimique_stimulus::{Places, Prepared, built_in_bvh, exertion_drawing, prepare};
 use mimique_study::Study;
 use serde_json::{Value, json};
 use study_of_stimuli::study_of;
@@ -196,4 +196,34 @@ fn exertions_that_cannot_be_are_refused_at_their_place() {
     let error = refused(&own, [0, 1202]);
     assert_eq!(error.pointer, "/stimuli/segments/0");
     assert!(error.message.contains("1201 frames"), "{error}");
+}
+
+#[test]
+fn what_previews_draw_is_what_the_clip_plays() {
+    let folder = tempfile::tempdir().unwrap();
+    let places = places(folder.path());
+    let bvh = built_in_bvh(&mimique_actor::Gait::RUN);
+    std::fs::write(folder.path().join("run.bvh"), bvh).unwrap();
+    let own = study(&json!({"motion": "run.bvh", "for": 120}), [6900, 7201]);
+    let clip = own.clips().remove(0);
+    let drawing = exertion_drawing(&own, &clip, Some(&places)).unwrap().unwrap();
+    assert_eq!((drawing.span_s, drawing.window_s), (120.0, [115.0, 120.0]));
+    assert_eq!(drawing.courses[0].lines[0].values.len(), 121);
+    assert!(drawing.figure.is_some() && drawing.breath.len() == 2);
+    let drawn = drawing.weights.iter().find(|line| line.name == "jawOpen").unwrap();
+    let prepared = prepare(&own, &places, &mut |_| ()).unwrap();
+    let played = weights(&prepared, folder.path(), "jawOpen");
+    assert_eq!(drawn.values.len(), played.len());
+    // Packs keep weights to a step, drawings to four digits.
+    let apart = drawn.values.iter().zip(&played).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-3, "{apart}");
+
+    // Without its folder a motion of a file is not looked for; a built-in one needs none.
+    let error = exertion_drawing(&own, &clip, None).unwrap_err();
+    assert_eq!(error.pointer, "/stimuli/captures/body/exertion");
+    let built_in = study(&json!({"builtin": "walk", "for": 120}), [6900, 7201]);
+    assert!(exertion_drawing(&built_in, &built_in.clips()[0], None).unwrap().is_some());
+    let beyond = study(&json!({"builtin": "walk", "for": 120}), [6900, 9000]);
+    let error = exertion_drawing(&beyond, &beyond.clips()[0], None).unwrap_err();
+    assert_eq!(error.pointer, "/stimuli/segments/0");
 }

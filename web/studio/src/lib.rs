@@ -15,6 +15,7 @@
 
 mod bindings;
 mod difference;
+mod exertion;
 mod expressions;
 mod labels;
 mod layout;

@@ -75,6 +75,17 @@ impl Workspace {
         Ok(facts)
     }
 
+    /// Lays weights of something else under the avatar's names into a slot; answers facts.
+    pub(crate) fn put_recorded(
+        &mut self,
+        slot: &str,
+        table: &WeightsTable,
+    ) -> Result<Value, Problem> {
+        let (solved, facts) = recorded(self.face()?, slot, table)?;
+        self.solved.insert(slot.to_owned(), solved);
+        Ok(facts)
+    }
+
     /// Shapes that move no marker of map and capture by a millimetre.
     fn unseen(&self, face: &Face) -> Result<Vec<String>, Problem> {
         let capture = self.capture()?;

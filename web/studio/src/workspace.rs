@@ -15,6 +15,7 @@ use mimique_stimulus::{
 };
 use serde_json::{Value, json};
 
+use crate::exertion::ExertionDesk;
 use crate::labels::Labelling;
 use crate::layout::LayoutDesk;
 use crate::solved::Solved;
@@ -49,6 +50,7 @@ pub struct Workspace {
     pub(crate) labels: Labelling,
     pub(crate) training: TrainingFiles,
     pub(crate) layout: LayoutDesk,
+    pub(crate) exertion: ExertionDesk,
 }
 
 /// An avatar and its skin.
@@ -200,6 +202,7 @@ impl Workspace {
         self.segments.clear();
         self.labels.take_changed();
         self.layout.motion_changed();
+        self.exertion.take_changed();
         let facts = match &take {
             Take::Markers { name, recording, .. } => {
                 let facts = CaptureFacts::of(recording);

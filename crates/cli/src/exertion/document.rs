@@ -86,7 +86,7 @@ fn summary(report: &Report<'_>, told: &Value) -> String {
 }
 
 fn courses(report: &Report<'_>, expression: &Expression) -> anyhow::Result<Block> {
-    let panels = report.panels(expression)?;
+    let panels = report.panels(expression);
     let caption = "Heart rate, EPOC and curves of the face, second by second".to_owned();
     let mut columns = vec!["s".to_owned()];
     for panel in &panels {

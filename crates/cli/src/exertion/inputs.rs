@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::args::{MotionOptions, Options};
 use super::plan::{Written, parse};
+use super::report::words;
 use super::{blame, hash_of, text_of};
 use crate::solve::length_unit;
 
@@ -163,7 +164,8 @@ impl ReadPart {
         if let Value::Object(members) = &mut told {
             members.insert("file".to_owned(), json!(file));
         }
-        let notes = said.iter().cloned().chain(own.notes.iter().map(ToString::to_string));
+        let notes =
+            said.iter().cloned().chain(own.findings.into_iter().map(words)).chain(own.notes);
         let notes = notes.map(|note| format!("{}: {note}", file.display())).collect();
         Ok(Self { part: own.part, told, notes })
     }

@@ -1,11 +1,10 @@
 //! What is told: the series, the figure, the report.
 
-use std::fmt::Write as _;
 use std::io::Write as _;
 
 use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
-use mimique_exertion::{Curves, Expression, Features, Heart, Person, VERSION};
+use mimique_exertion::{Course, Curves, Expression, Finding, Heart, Person, Series, VERSION};
 use mimique_mocap::WeightsTable;
 use mimique_stimulus::{ExertionTake, Provenance};
 use serde_json::{Value, json};
@@ -24,60 +23,10 @@ pub(super) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// The series as CSV, a row a second.
-    pub(super) fn series_csv(&self) -> String {
-        let (series, of) = (&self.take.series, &self.take.series.metabolism);
-        let mut text =
-            String::from("t,w,p,rcn,hr,vo2,breaths,kcal,epoc,fatigue,flush,sweat,borg\n");
-        for second in 0..series.seconds() {
-            let _ = write!(text, "{second}");
-            for column in [
-                &series.w,
-                &series.p,
-                &series.rcn,
-                &series.heart_rate,
-                &of.vo2,
-                &of.breaths,
-                &of.kcal_min,
-                &of.epoc,
-                &of.fatigue,
-                &of.flush,
-                &of.sweat,
-                &of.borg,
-            ] {
-                let _ = write!(text, ",{}", column[second]);
-            }
-            text.push('\n');
-        }
-        text
-    }
-
     /// Heart rate, EPOC and curves, second by second.
-    pub(super) fn panels(&self, expression: &Expression) -> anyhow::Result<Vec<CoursePanel>> {
-        let (series, of) = (&self.take.series, &self.take.series.metabolism);
-        let states: Vec<Features> = (0..series.seconds())
-            .map(|second| Features {
-                w: series.w[second],
-                p: series.p[second],
-                rcn: series.rcn[second],
-                epoc: of.epoc[second],
-            })
-            .collect();
-        let curves = expression.curves(&states, self.person.spec().level);
-        let line = |k: usize| curves.iter().map(|own| own.to_array()[k]).collect();
-        let words = ["open", "stretched", "eyes", "brows"];
-        let alone = |label: &str, values: &[f64]| CoursePanel {
-            label: label.to_owned(),
-            lines: vec![(String::new(), values.to_vec())],
-        };
-        Ok(vec![
-            alone("beats per minute", &series.heart_rate),
-            alone("EPOC, ml/kg", &of.epoc),
-            CoursePanel {
-                label: "face, %".to_owned(),
-                lines: (0..words.len()).map(|k| (words[k].to_owned(), line(k))).collect(),
-            },
-        ])
+    pub(super) fn panels(&self, expression: &Expression) -> Vec<CoursePanel> {
+        let curves = self.take.series.curves(self.person, expression);
+        Course::PLOTTED.map(|course| panel(&self.take.series, course, &curves)).into()
     }
 
     /// What it is, in the user's words.
@@ -98,7 +47,7 @@ impl Report<'_> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.take.warnings().iter().map(ToString::to_string).collect()
+        Finding::of_clip(&self.take.series, &self.take.clip).into_iter().map(words).collect()
     }
 
     fn heart_name(&self) -> String {
@@ -285,6 +234,24 @@ impl Report<'_> {
         }
         Ok(())
     }
+}
+
+/// A course as a panel of a figure.
+fn panel(series: &Series, course: Course, curves: &[Curves]) -> CoursePanel {
+    let lines = series.lines(course, curves).into_iter();
+    let lines = lines.map(|(name, values)| (name.to_owned(), values)).collect();
+    CoursePanel { label: course.label().to_owned(), lines }
+}
+
+/// A finding with the option that changes it.
+pub(super) fn words(finding: Finding) -> String {
+    let option = match finding {
+        Finding::NearMaximum { .. } => " (--heart steady settles)",
+        Finding::OverLimit { .. } => " (--rate)",
+        Finding::OtherUnit { .. } => " (--unit)",
+        Finding::CutFrames { .. } | Finding::Repeated { .. } | Finding::Jitter { .. } => "",
+    };
+    format!("{finding}{option}")
 }
 
 fn largest(values: &[f64]) -> f64 {

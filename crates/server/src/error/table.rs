@@ -107,6 +107,9 @@ refusals! {
     UnknownPack = NOT_FOUND "unknown-pack",
         en "no pack has this hash"; "reload the page",
         fr "aucun paquet n’a cette empreinte"; "rechargez la page";
+    NoExertion { problem: String } = CONFLICT "no-exertion",
+        en "the exertion cannot be computed: {problem}"; "see that the study's files are where it names them",
+        fr "l’effort ne peut pas être calculé : {problem}"; "vérifiez que les fichiers de l’étude sont où elle les nomme";
     UnknownSession = NOT_FOUND "unknown-session",
         en "no session has this token"; "start the study again from its address",
         fr "aucune session n’a ce jeton"; "reprenez l’étude depuis son adresse";

@@ -24,7 +24,7 @@ use headers::{Headers, settled_headers};
 use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
-use crate::participant::{pages, withdrawal};
+use crate::participant::{pages, previews, withdrawal};
 use crate::researcher::handlers::{accounts, people, studies};
 use crate::state::App;
 use crate::uploads::handlers as uploads;
@@ -73,6 +73,7 @@ fn researchers(app: &App) -> Router<App> {
     let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
     interface::downloads()
         .route("/preview/{study}", get(pages::preview))
+        .route("/preview/{study}/exertion", get(previews::exertion))
         .route("/studio", get(pages::studio))
         .route("/researcher", get(studies::home))
         .route(STUDY, get(studies::study))

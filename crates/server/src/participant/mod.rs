@@ -4,6 +4,7 @@ pub(crate) mod first_page;
 mod marks;
 pub(crate) mod pages;
 pub(crate) mod panics;
+pub(crate) mod previews;
 mod resumed;
 pub(crate) mod sessions;
 pub(crate) mod studies;

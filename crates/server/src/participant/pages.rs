@@ -100,10 +100,16 @@ pub(crate) async fn preview(
     Path(study): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    if let Some(who) = may_look(&app, &headers).await? {
-        who.needs_in(&study, Role::Viewer)?;
-    }
+    may_preview(&app, &study, &headers).await?;
     from_template(&app, "researcher/preview.html", &study, None, &headers)
+}
+
+/// Lets those in who may see a study's stimuli.
+pub(super) async fn may_preview(app: &App, study: &str, headers: &HeaderMap) -> Result<(), Error> {
+    match may_look(app, headers).await? {
+        Some(who) => who.needs_in(study, Role::Viewer),
+        None => Ok(()),
+    }
 }
 
 /// The studio: everything in it happens in the browser.

@@ -219,7 +219,8 @@ async fn prepare_and_host(
             packs.load(&packs_folder, hash).map_err(|error| error.to_string())?;
         }
         let hosted = HostedStudy::new(study.value().clone(), prepared.clips, Stage::Pilot)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.to_string())?
+            .with_places(places);
         Ok::<_, String>((hosted, packs, warnings))
     };
     let (hosted, packs, warnings): (_, _, Vec<String>) =

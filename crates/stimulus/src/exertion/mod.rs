@@ -7,9 +7,11 @@
 //! ```
 
 mod built_in;
+mod drawing;
 mod part;
 mod take;
 
 pub use built_in::{built_in_bvh, built_in_motion};
-pub use part::{ExertionPart, ExertionPartError, MotionOptions, PartFacts, PartNote};
-pub use take::{ExertionTake, ExertionWarning};
+pub use drawing::{Drawn, DrawnCourse, DrawnLine, ExertionDrawing};
+pub use part::{ExertionPart, ExertionPartError, MotionOptions, PartFacts};
+pub use take::ExertionTake;

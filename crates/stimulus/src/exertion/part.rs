@@ -1,16 +1,12 @@
 //! A motion or a recorded activity as a part of a plan, and what is to be said of it.
 
 use mimique_exertion::{
-    Accumulated, ActivityWork, Body, BodyOptions, BodyWork, Convention, ExertionError, LOWPASS_HZ,
-    Part, Person, Scale, Up,
+    Accumulated, ActivityWork, BodyOptions, Convention, ExertionError, Finding, LOWPASS_HZ,
+    MotionWork, Part, Person, Scale, Up,
 };
-use mimique_mocap::{Activity, BodyJoints, BodyJointsError, Capture, LengthUnit};
+use mimique_mocap::{Activity, BodyJoints, BodyJointsError, Capture};
 use serde::Serialize;
 
-/// Work without the low-pass in works with it from which jitter is said.
-const JITTER: f64 = 1.5;
-/// How far the unit of a file may be from the one that fits the legs before it is said.
-const UNIT: f64 = 0.2;
 /// How much longer than a recording a part may be, s: rounding.
 const ROUNDING_S: f64 = 1e-9;
 
@@ -48,10 +44,12 @@ pub struct ExertionPart {
     pub part: Part,
     /// What it is.
     pub facts: PartFacts,
-    /// What is to be said of it.
-    pub notes: Vec<PartNote>,
-    /// The body of a motion, once through.
-    pub body: Option<Body>,
+    /// What is worth saying of it.
+    pub findings: Vec<Finding>,
+    /// What the reader of an activity has to say.
+    pub notes: Vec<String>,
+    /// The body of a motion and its work, once through.
+    pub motion: Option<MotionWork>,
 }
 
 /// What a part is, as reports have it.
@@ -112,36 +110,6 @@ pub enum PartFacts {
     },
 }
 
-/// What is to be said of a part.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PartNote {
-    /// The motion is shorter than the part.
-    #[error(
-        "repeated {0:.1} times: the work is repeated, not the motion, whose jump back would be work"
-    )]
-    Repeated(f64),
-    /// By the capture's unit the person would be of another stature.
-    #[error(
-        "the legs are made those of a person of {stature_m} m; by the file's unit ({}) the person would be \
-         {by_unit_m:.2} m tall; name the unit where the file is right",
-        unit.symbol()
-    )]
-    OtherStature {
-        /// The person's stature, m.
-        stature_m: f64,
-        /// What it would be, m.
-        by_unit_m: f64,
-        /// The capture's unit.
-        unit: LengthUnit,
-    },
-    /// Without the low-pass there would be so many times as much work.
-    #[error("the motion jitters: without the low-pass its work would be {0:.1} times as much")]
-    Jitter(f64),
-    /// What the reader of an activity has to say.
-    #[error("{0}")]
-    Read(String),
-}
-
 /// A motion or an activity is no part of a plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExertionPartError {
@@ -186,7 +154,7 @@ impl ExertionPart {
     }
 
     fn plain(part: Part, facts: PartFacts) -> Self {
-        Self { part, facts, notes: vec![], body: None }
+        Self { part, facts, findings: vec![], notes: vec![], motion: None }
     }
 
     /// A motion that goes on for `seconds`, or once. A shorter motion repeats its work, not its positions,
@@ -210,44 +178,32 @@ impl ExertionPart {
             false => Scale::ByStature,
             true => Scale::MetresPerUnit(capture.unit.metres()),
         };
-        let body_of = |lowpass_hz| {
-            Body::new(capture, &joints, person, &BodyOptions { scale, lowpass_hz, up: options.up })
-        };
-        let work_of = |body: &Body| {
-            BodyWork::of(body, person, options.convention, false).map(|work| work.accumulated)
-        };
-        let body = body_of(options.lowpass_hz)?;
-        let once = work_of(&body)?;
-        let span = once.span_s();
+        let body = BodyOptions { scale, lowpass_hz: options.lowpass_hz, up: options.up };
+        let convention = options.convention;
+        let motion = MotionWork::of(capture, &joints, person, &body, convention)?;
+        let span = motion.once.span_s();
         let seconds = seconds.unwrap_or(span);
-        let repeated = seconds > span;
-        let mut notes = Vec::new();
-        if repeated {
-            notes.push(PartNote::Repeated(seconds / span));
+        let mut findings: Vec<Finding> = motion.repetition(seconds).into_iter().collect();
+        if !options.unit_is_known {
+            findings.extend(Finding::of_unit(capture, &motion.body, person));
         }
-        notes.extend(other_stature(capture, &body, options, person));
-        if options.lowpass_hz.is_some() {
-            let ratio = work_of(&body_of(None)?)?.total() / once.total();
-            if ratio > JITTER {
-                notes.push(PartNote::Jitter(ratio));
-            }
-        }
+        findings.extend(motion.jitter(capture, &joints, person, &body, convention)?);
         let facts = PartFacts::Motion {
             seconds,
             span,
-            repeated,
+            repeated: motion.is_repeated(seconds),
             rate_hz: capture.rate_hz,
             frames: capture.frames(),
             naming: joints.naming,
-            metres_per_unit: body.metres_per_unit(),
-            up: body.up().to_array(),
-            segments: body.segment_names(),
-            convention: options.convention.name(),
+            metres_per_unit: motion.body.metres_per_unit(),
+            up: motion.body.up().to_array(),
+            segments: motion.body.segment_names(),
+            convention: convention.name(),
             lowpass_hz: options.lowpass_hz,
-            work_per_second: once.total() / span,
+            work_per_second: motion.once.total() / span,
         };
-        let part = Part { work: once.repeated(repeated), seconds, rcn: None };
-        Ok(Self { part, facts, notes, body: Some(body) })
+        let part = motion.part(seconds);
+        Ok(Self { part, facts, findings, notes: vec![], motion: Some(motion) })
     }
 
     /// A recorded activity: its first `seconds`, or all of it.
@@ -276,24 +232,8 @@ impl ExertionPart {
             heart_rate: found.rcn.is_some(),
             work_per_second: work.at(seconds) / seconds,
         };
-        let notes = activity.notes.iter().map(|note| PartNote::Read(note.to_string())).collect();
+        let notes = activity.notes.clone();
         let part = Part { work, seconds, rcn: found.rcn };
-        Ok(Self { part, facts, notes, body: None })
+        Ok(Self { part, facts, findings: vec![], notes, motion: None })
     }
-}
-
-/// That the capture's unit would make somebody of another stature.
-fn other_stature(
-    capture: &Capture,
-    body: &Body,
-    options: &MotionOptions,
-    person: &Person,
-) -> Option<PartNote> {
-    let own = capture.unit.metres() / body.metres_per_unit();
-    let stature_m = person.spec().height_m;
-    (!options.unit_is_known && (own - 1.0).abs() > UNIT).then(|| PartNote::OtherStature {
-        stature_m,
-        by_unit_m: stature_m * own,
-        unit: capture.unit,
-    })
 }

@@ -1,9 +1,11 @@
-//! A capture of a study that is an exertion, as recorded weights.
+//! A capture of a study that is an exertion: as recorded weights, and as the preview draws it.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use mimique_exertion::{
-    Expression, ExpressionModel, Face, Heart, HeartModel, Person, PersonSpec, Plan,
+    Expression, ExpressionModel, Face, Figure, Finding, Heart, HeartModel, MotionWork, Person,
+    PersonSpec, Plan,
 };
 use mimique_mocap::{CaptureFile, ReadOptions, WeightsTable, read_activity};
 use mimique_study::{ExertionCapture, ExertionHeart, ExertionSource, WrittenPart};
@@ -11,7 +13,8 @@ use mimique_study::{ExertionCapture, ExertionHeart, ExertionSource, WrittenPart}
 use super::PrepareError;
 use super::sources::unit_of;
 use crate::{
-    ExertionPart, ExertionPartError, ExertionTake, ExertionWarning, MotionOptions, built_in_motion,
+    Drawn, ExertionDrawing, ExertionPart, ExertionPartError, ExertionTake, MotionOptions,
+    built_in_motion,
 };
 
 /// An exertion of a study.
@@ -30,9 +33,49 @@ pub(super) struct ExertionWeights {
     pub warnings: Vec<(String, String)>,
 }
 
+/// An exertion as it is computed.
+pub(super) struct ComputedExertion {
+    person: Person,
+    expression: Expression,
+    take: ExertionTake,
+    span_s: f64,
+    parts: Vec<PartInTime>,
+    warnings: Vec<(String, String)>,
+}
+
+/// When a part of an exertion is, and the body of its motion.
+struct PartInTime {
+    seconds: [f64; 2],
+    motion: Option<MotionWork>,
+}
+
+impl ComputedExertion {
+    /// The weights of all of it.
+    pub fn weights(&self) -> ExertionWeights {
+        ExertionWeights { table: self.take.clip.table(), warnings: self.warnings.clone() }
+    }
+
+    /// Some of its frames as pages draw them; none where there are no such frames.
+    pub fn drawing(&self, frames: Range<usize>) -> Option<ExertionDrawing> {
+        let ExertionTake { series, clip } = &self.take;
+        let times = clip.times.get(frames.clone()).filter(|times| !times.is_empty())?;
+        let window_s = [times[0], times[times.len() - 1]];
+        // The body of the part in which the window begins.
+        let part = self.parts.iter().find(|part| part.seconds[1] > window_s[0])?;
+        let figure = part.motion.as_ref().map(|motion| {
+            let [from, to] = part.seconds;
+            Figure::of(&motion.body, window_s.map(|t| t - from), motion.is_repeated(to - from))
+        });
+        let (person, expression) = (&self.person, &self.expression);
+        let span_s = self.span_s;
+        let drawn = Drawn { person, expression, series, clip, frames, span_s, figure };
+        Some(ExertionDrawing::of(drawn))
+    }
+}
+
 impl<P: Fn(&str, &str) -> Result<PathBuf, PrepareError>> Exertion<'_, P> {
-    /// Computes the face.
-    pub fn weights(&self) -> Result<ExertionWeights, PrepareError> {
+    /// Computes body and face.
+    pub fn computed(&self) -> Result<ComputedExertion, PrepareError> {
         let exertion = self.exertion;
         let person = self.person()?;
         let face = Face {
@@ -47,11 +90,16 @@ impl<P: Fn(&str, &str) -> Result<PathBuf, PrepareError>> Exertion<'_, P> {
             joints: exertion.joints.as_deref().map(|file| self.text(file, "joints")).transpose()?,
             ..MotionOptions::default()
         };
-        let (mut parts, mut warnings) = (Vec::new(), Vec::new());
+        let (mut parts, mut in_time, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+        let mut from = 0.0;
         for written in exertion.parts() {
             let part = self.part(&written, &person, &options)?;
             let at = self.pointer_of(&written);
-            warnings.extend(part.notes.iter().map(|note| (at.clone(), note.to_string())));
+            let said = part.findings.iter().map(ToString::to_string).chain(part.notes);
+            warnings.extend(said.map(|text| (at.clone(), text)));
+            let to = from + part.part.seconds;
+            in_time.push(PartInTime { seconds: [from, to], motion: part.motion });
+            from = to;
             parts.push(part.part);
         }
         let plan = Plan::new(parts).map_err(|error| self.error("/for", error))?;
@@ -61,13 +109,15 @@ impl<P: Fn(&str, &str) -> Result<PathBuf, PrepareError>> Exertion<'_, P> {
             self.error(place, error)
         })?;
         // Cut frames may be ones that no clip shows; and who names the law of the thesis knows it.
-        let told = take.warnings().into_iter().filter(|warning| match warning {
-            ExertionWarning::Cut { .. } => false,
-            ExertionWarning::NearMaximum { .. } => exertion.heart.is_none(),
-            ExertionWarning::OverLimit { .. } => true,
+        let found = Finding::of_clip(&take.series, &take.clip).into_iter();
+        let told = found.filter(|finding| match finding {
+            Finding::CutFrames { .. } => false,
+            Finding::NearMaximum { .. } => exertion.heart.is_none(),
+            _ => true,
         });
-        warnings.extend(told.map(|warning| (self.at.to_owned(), warning.to_string())));
-        Ok(ExertionWeights { table: take.clip.table(), warnings })
+        warnings.extend(told.map(|finding| (self.at.to_owned(), finding.to_string())));
+        let (expression, span_s) = (face.expression, plan.span_s());
+        Ok(ComputedExertion { person, expression, take, span_s, parts: in_time, warnings })
     }
 
     fn error(&self, place: &str, error: impl std::fmt::Display) -> PrepareError {
@@ -132,7 +182,7 @@ impl<P: Fn(&str, &str) -> Result<PathBuf, PrepareError>> Exertion<'_, P> {
                 // Rate, unit and joints of the built-in body are its own.
                 let own = MotionOptions::default();
                 ExertionPart::motion(&built_in_motion(motion), seconds, person, &own)
-                    .map(|part| ExertionPart { notes: vec![], ..part })
+                    .map(|part| ExertionPart { findings: vec![], ..part })
                     .map_err(|error| refused("", error))
             }
             Some(ExertionSource::Motion(file)) => {

@@ -29,8 +29,8 @@ use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
-use crate::RecordedWeights;
 use crate::provenance::Provenance;
+use crate::{ExertionDrawing, RecordedWeights};
 
 /// Whether what a study names is there: a file, or a folder of an avatar's poses.
 pub fn is_source(path: &Path) -> bool {
@@ -140,6 +140,27 @@ pub fn prepare(
         known::keep(&cache, key, sources.asked(), &prepared)?;
     }
     Ok(prepared)
+}
+
+/// What the preview of a study draws of a clip whose capture is an exertion: what its weights were made of,
+/// computed anew. None for other clips. Where it is not known where the study's files are, only what names none
+/// can be computed.
+///
+/// # Errors
+/// [`PrepareError`]: a file that is absent or damaged, frames that are not there.
+pub fn exertion_drawing(
+    study: &Study,
+    clip: &Clip,
+    places: Option<&Places>,
+) -> Result<Option<ExertionDrawing>, PrepareError> {
+    let nowhere = Places { study: PathBuf::new(), data: None, packs: PathBuf::new() };
+    let sources = Sources::new(study, places.unwrap_or(&nowhere));
+    let Some((id, own)) = sources.exertion_of(clip)? else { return Ok(None) };
+    if places.is_none() && own.names_files() {
+        let message = "its files are not at hand; open the motion in the studio";
+        return Err(PrepareError::new(pointer(&["stimuli", "captures", id, "exertion"]), message));
+    }
+    sources.exertion_drawing(clip, id, own).map(Some)
 }
 
 /// What a clip is played from.

@@ -16,12 +16,12 @@ use mimique_study::{
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
-use super::exertion::{Exertion, ExertionWeights};
+use super::exertion::{ComputedExertion, Exertion, ExertionWeights};
 use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
-use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
+use crate::{ExertionDrawing, MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -284,11 +284,46 @@ impl<'a> Sources<'a> {
         if let Some(found) = self.exertions.borrow().get(id) {
             return Ok(found.clone());
         }
-        let at = pointer(&["stimuli", "captures", id, "exertion"]);
-        let path = |file: &str, at: &str| self.path(file, at);
-        let weights = Rc::new(Exertion { exertion: own, at: &at, path }.weights()?);
+        let weights = Rc::new(self.computed(id, own)?.weights());
         self.exertions.borrow_mut().insert(id.to_owned(), weights.clone());
         Ok(weights)
+    }
+
+    fn computed(&self, id: &str, own: &ExertionCapture) -> Result<ComputedExertion, PrepareError> {
+        let at = pointer(&["stimuli", "captures", id, "exertion"]);
+        let path = |file: &str, at: &str| self.path(file, at);
+        Exertion { exertion: own, at: &at, path }.computed()
+    }
+
+    /// The exertion that a clip shows, and its identifier; none where the clip shows something else.
+    pub fn exertion_of(
+        &self,
+        clip: &Clip,
+    ) -> Result<Option<(&'a str, &'a ExertionCapture)>, PrepareError> {
+        let (segment, _) = self.segment(&clip.segment)?;
+        let capture = self.study.stimuli.captures.get(&segment.capture);
+        Ok(match capture.and_then(|capture| capture.source()) {
+            Some(CaptureSource::Exertion(own)) => Some((&segment.capture[..], own)),
+            _ => None,
+        })
+    }
+
+    /// The frames of an exertion that a clip shows, as pages draw them.
+    pub fn exertion_drawing(
+        &self,
+        clip: &Clip,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<ExertionDrawing, PrepareError> {
+        let (segment, at) = self.segment(&clip.segment)?;
+        let computed = self.computed(id, own)?;
+        let drawing = match segment.span() {
+            Some(Span::Frames { first, end }) => computed.drawing(first..end),
+            _ => None,
+        };
+        drawing.ok_or_else(|| {
+            PrepareError::new(at, "not all of its frames are there; correct first and end")
+        })
     }
 
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {

@@ -168,6 +168,14 @@ impl ExertionCapture {
         seconds.map(|seconds| (seconds * EXERTION_FRAMES_PER_SECOND + 1e-9).floor() as usize + 1)
     }
 
+    /// Whether any file is needed to compute it.
+    pub fn names_files(&self) -> bool {
+        let of_file = |part: &WrittenPart<'_>| {
+            matches!(part.source, Some(ExertionSource::Motion(_) | ExertionSource::Activity(_)))
+        };
+        self.parts().iter().any(of_file) || self.joints.is_some() || self.model_file().is_some()
+    }
+
     /// The model's file; `None` for `rules` and `linear`.
     pub fn model_file(&self) -> Option<&str> {
         Some(&self.model[..]).filter(|model| !["rules", "linear"].contains(model))

@@ -260,7 +260,7 @@ impl Workspace {
         self.labels.boxes.get_mut(index).ok_or_else(|| Problem::of(WHAT, what))
     }
 
-    fn take_name(&self) -> &str {
+    pub(crate) fn take_name(&self) -> &str {
         match &self.take {
             Some(Take::Markers { name, .. } | Take::Weights { name, .. }) => name,
             None => "",
