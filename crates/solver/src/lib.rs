@@ -82,6 +82,7 @@ pub use fit::problem::FitError;
 pub use fit::report::{
     FrameReport, FrameSolution, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT, TakeSolution,
 };
+pub use fit::window::{LOOK_AHEAD, WINDOW_FRAMES};
 pub use fit::{CHUNK_FRAMES, Fit};
 pub use front_end::error::FrontEndError;
 pub use front_end::head_lowpass::{HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE};

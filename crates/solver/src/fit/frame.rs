@@ -3,10 +3,11 @@
 use crate::fit::Fit;
 use crate::fit::problem::FitError;
 use crate::fit::report::{FrameReport, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT};
-use crate::fit::setup::{Engine, FREE};
+use crate::fit::setup::{Engine, FREE, Quadratic};
 use crate::fit::visible_markers::VisibleMarkers;
 use crate::gaussian_process::regression::{Regression, RegressionScratch};
 use crate::linear_algebra::dense::{axpy, dot, mul, mul_transposed};
+use crate::method::greedy::one_after_the_other;
 use crate::newton::minimise::NewtonState;
 use crate::newton::objective::{Matrices, Objective, Target, Term};
 use crate::quadratic::box_qp::{BoxState, Outcome, worse};
@@ -22,6 +23,8 @@ pub struct FrameSolver<'a> {
     /// The same times the gain.
     amplified: Vec<f64>,
     displacements: Vec<f64>,
+    /// Bounds of a programme that holds weights at 0.
+    held: Vec<[f64; 2]>,
     right: Vec<f64>,
     scratch: Vec<f64>,
     qp: BoxState,
@@ -56,12 +59,48 @@ impl<'a> FrameSolver<'a> {
             weights: Vec::new(),
             amplified: Vec::new(),
             displacements: Vec::new(),
+            held: Vec::new(),
             right: Vec::new(),
             scratch: Vec::new(),
             qp: BoxState::default(),
             newton: NewtonState::default(),
             learnt: RegressionScratch::default(),
         }
+    }
+
+    /// Solve a frame by itself; whether other markers are missing than before.
+    pub(crate) fn solve_alone(&mut self, d: &[f64]) -> (Outcome, bool) {
+        let (_, changed) = self.take_in(d);
+        (self.answer().outcome, changed)
+    }
+
+    /// The matrix of the last frame's programme.
+    pub(crate) fn system(&self) -> &[f64] {
+        &self.some_visible.as_ref().unwrap_or(&self.fit.all_visible).system
+    }
+
+    /// The right side of the last frame's programme.
+    pub(crate) fn right(&self) -> &[f64] {
+        &self.right
+    }
+
+    /// The free weights of the last frame, as they were solved.
+    pub(crate) fn own_weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// What is said of a frame whose free weights were found elsewhere; all N in `weights`.
+    pub(crate) fn report_given(
+        &mut self,
+        d: &[f64],
+        free: &[f64],
+        outcome: Outcome,
+        weights: &mut [f64],
+    ) -> FrameReport {
+        let (missing_markers, _) = self.take_in(d);
+        self.weights.clear();
+        self.weights.extend_from_slice(free);
+        self.report(outcome.into(), missing_markers, weights)
     }
 
     /// Solve the next frame; `d` as of [`Fit::solve_frame`], the N weights in `weights`.
@@ -87,8 +126,14 @@ impl<'a> FrameSolver<'a> {
 
     pub(crate) fn solve_checked(&mut self, d: &[f64], weights: &mut [f64]) -> FrameReport {
         assert_eq!(weights.len(), self.fit.shape_count(), "a frame has N weights");
-        let missing_markers = self.take_in(d);
+        let (missing_markers, _) = self.take_in(d);
         let answer = self.answer();
+        self.report(answer, missing_markers, weights)
+    }
+
+    /// What is said of the frame that was taken in, whose free weights are in `self.weights`; all N in
+    /// `weights`.
+    fn report(&mut self, answer: Answer, missing_markers: u32, weights: &mut [f64]) -> FrameReport {
         let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let importance = visible.importance;
         weights.fill(0.0);
@@ -143,12 +188,10 @@ impl<'a> FrameSolver<'a> {
         self.right.resize(n, 0.0);
         let d = &self.displacements;
         match &problem.engine {
-            Engine::Quadratic { data_weight, bounds, .. } => {
-                mul_transposed(&visible.deltas, d, &mut self.right);
-                for x in &mut self.right {
-                    *x *= data_weight;
-                }
-                self.qp.solve(&visible.system, &self.right, bounds, &mut self.weights).into()
+            Engine::Quadratic(quadratic) => self.solve_quadratic(quadratic).into(),
+            Engine::Greedy { order, bounds } => {
+                let (left, weights) = (&mut self.scratch, &mut self.weights);
+                one_after_the_other(order, bounds, visible, d, left, weights).into()
             }
             Engine::Linked { bounds } => {
                 // The displacements carry the root of the importance, the sums need all of it.
@@ -174,6 +217,33 @@ impl<'a> FrameSolver<'a> {
             }
             Engine::Smooth { objective, fallback_eps } => self.minimise(objective, *fallback_eps),
         }
+    }
+
+    /// A quadratic programme in a box, from the weights of the frame before, which are in
+    /// `self.weights`.
+    fn solve_quadratic(&mut self, quadratic: &Quadratic) -> Outcome {
+        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
+        let Quadratic { data_weight, linear, last_frame, cancelling, bounds, .. } = quadratic;
+        mul_transposed(&visible.deltas, &self.displacements, &mut self.right);
+        for (x, last) in self.right.iter_mut().zip(&self.weights) {
+            *x = data_weight * *x - linear + last_frame * last;
+        }
+        let (system, right, c) = (&visible.system, &self.right, &mut self.weights);
+        let first = self.qp.solve(system, right, bounds, c);
+        self.held.clear();
+        self.held.extend_from_slice(bounds);
+        for &[i, j] in cancelling {
+            let weaker = if c[i] >= c[j] { j } else { i };
+            let [low, high] = bounds[weaker];
+            self.held[weaker] = [0.0_f64.clamp(low, high); 2];
+        }
+        // Weights that are where they would be held change nothing.
+        if c.iter().zip(&self.held).all(|(c, [low, high])| low <= c && c <= high) {
+            return first;
+        }
+        let second = self.qp.solve(system, right, &self.held, c);
+        let converged = first.converged && second.converged;
+        Outcome { iterations: first.iterations + second.iterations, converged, ..second }
     }
 
     /// Newton's method on smooth energies.
@@ -278,8 +348,8 @@ impl<'a> FrameSolver<'a> {
     }
 
     /// Weigh the rows, drop those of missing markers, and prepare what depends on them. Returns how
-    /// many markers are missing.
-    fn take_in(&mut self, d: &[f64]) -> u32 {
+    /// many markers are missing, and whether they are other ones than before.
+    fn take_in(&mut self, d: &[f64]) -> (u32, bool) {
         let problem = &self.fit.problem;
         self.displacements.resize(d.len(), 0.0);
         let is_missing = |m: &[f64]| !m.iter().all(|x| x.is_finite());
@@ -306,7 +376,7 @@ impl<'a> FrameSolver<'a> {
             self.some_visible = (missing > 0)
                 .then(|| VisibleMarkers::new(problem, d.chunks_exact(3).map(is_missing).collect()));
         }
-        missing
+        (missing, !same)
     }
 }
 
