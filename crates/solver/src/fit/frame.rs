@@ -3,7 +3,7 @@
 use crate::fit::Fit;
 use crate::fit::problem::FitError;
 use crate::fit::report::{FrameReport, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT};
-use crate::fit::setup::{Engine, FREE, Quadratic};
+use crate::fit::setup::{Engine, FREE};
 use crate::fit::visible_markers::VisibleMarkers;
 use crate::gaussian_process::regression::{Regression, RegressionScratch};
 use crate::linear_algebra::dense::{axpy, dot, mul, mul_transposed};
@@ -15,26 +15,26 @@ use crate::quadratic::box_qp::{BoxState, Outcome, worse};
 /// Solves frames one after the other, each started from the one before.
 #[derive(Debug, Clone)]
 pub struct FrameSolver<'a> {
-    fit: &'a Fit,
+    pub(super) fit: &'a Fit,
     /// What depends on the markers seen, kept while the same ones are missing.
-    some_visible: Option<VisibleMarkers>,
+    pub(super) some_visible: Option<VisibleMarkers>,
     /// The free weights as they were solved: the next frame starts from them.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     /// The same times the gain.
-    amplified: Vec<f64>,
-    displacements: Vec<f64>,
+    pub(super) amplified: Vec<f64>,
+    pub(super) displacements: Vec<f64>,
     /// Bounds of a programme that holds weights at 0.
-    held: Vec<[f64; 2]>,
-    right: Vec<f64>,
-    scratch: Vec<f64>,
-    qp: BoxState,
-    newton: NewtonState,
-    learnt: RegressionScratch,
+    pub(super) held: Vec<[f64; 2]>,
+    pub(super) right: Vec<f64>,
+    pub(super) scratch: Vec<f64>,
+    pub(super) qp: BoxState,
+    pub(super) newton: NewtonState,
+    pub(super) learnt: RegressionScratch,
 }
 
 /// How a frame was solved.
-struct Answer {
-    outcome: Outcome,
+pub(super) struct Answer {
+    pub(super) outcome: Outcome,
     /// The thin shell's energy of a surface.
     energy: Option<f64>,
     /// Predictive standard deviation of a regression.
@@ -68,41 +68,6 @@ impl<'a> FrameSolver<'a> {
         }
     }
 
-    /// Solve a frame by itself; whether other markers are missing than before.
-    pub(crate) fn solve_alone(&mut self, d: &[f64]) -> (Outcome, bool) {
-        let (_, changed) = self.take_in(d);
-        (self.answer().outcome, changed)
-    }
-
-    /// The matrix of the last frame's programme.
-    pub(crate) fn system(&self) -> &[f64] {
-        &self.some_visible.as_ref().unwrap_or(&self.fit.all_visible).system
-    }
-
-    /// The right side of the last frame's programme.
-    pub(crate) fn right(&self) -> &[f64] {
-        &self.right
-    }
-
-    /// The free weights of the last frame, as they were solved.
-    pub(crate) fn own_weights(&self) -> &[f64] {
-        &self.weights
-    }
-
-    /// What is said of a frame whose free weights were found elsewhere; all N in `weights`.
-    pub(crate) fn report_given(
-        &mut self,
-        d: &[f64],
-        free: &[f64],
-        outcome: Outcome,
-        weights: &mut [f64],
-    ) -> FrameReport {
-        let (missing_markers, _) = self.take_in(d);
-        self.weights.clear();
-        self.weights.extend_from_slice(free);
-        self.report(outcome.into(), missing_markers, weights)
-    }
-
     /// Solve the next frame; `d` as of [`Fit::solve_frame`], the N weights in `weights`.
     ///
     /// # Errors
@@ -133,7 +98,12 @@ impl<'a> FrameSolver<'a> {
 
     /// What is said of the frame that was taken in, whose free weights are in `self.weights`; all N in
     /// `weights`.
-    fn report(&mut self, answer: Answer, missing_markers: u32, weights: &mut [f64]) -> FrameReport {
+    pub(super) fn report(
+        &mut self,
+        answer: Answer,
+        missing_markers: u32,
+        weights: &mut [f64],
+    ) -> FrameReport {
         let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let importance = visible.importance;
         weights.fill(0.0);
@@ -175,7 +145,7 @@ impl<'a> FrameSolver<'a> {
 
     /// Solve for the displacements that were taken in: the weights of the free shapes are then in
     /// `self.weights`.
-    fn answer(&mut self) -> Answer {
+    pub(super) fn answer(&mut self) -> Answer {
         let fit = self.fit;
         let problem = &fit.problem;
         let visible = self.some_visible.as_ref().unwrap_or(&fit.all_visible);
@@ -217,33 +187,6 @@ impl<'a> FrameSolver<'a> {
             }
             Engine::Smooth { objective, fallback_eps } => self.minimise(objective, *fallback_eps),
         }
-    }
-
-    /// A quadratic programme in a box, from the weights of the frame before, which are in
-    /// `self.weights`.
-    fn solve_quadratic(&mut self, quadratic: &Quadratic) -> Outcome {
-        let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
-        let Quadratic { data_weight, linear, last_frame, cancelling, bounds, .. } = quadratic;
-        mul_transposed(&visible.deltas, &self.displacements, &mut self.right);
-        for (x, last) in self.right.iter_mut().zip(&self.weights) {
-            *x = data_weight * *x - linear + last_frame * last;
-        }
-        let (system, right, c) = (&visible.system, &self.right, &mut self.weights);
-        let first = self.qp.solve(system, right, bounds, c);
-        self.held.clear();
-        self.held.extend_from_slice(bounds);
-        for &[i, j] in cancelling {
-            let weaker = if c[i] >= c[j] { j } else { i };
-            let [low, high] = bounds[weaker];
-            self.held[weaker] = [0.0_f64.clamp(low, high); 2];
-        }
-        // Weights that are where they would be held change nothing.
-        if c.iter().zip(&self.held).all(|(c, [low, high])| low <= c && c <= high) {
-            return first;
-        }
-        let second = self.qp.solve(system, right, &self.held, c);
-        let converged = first.converged && second.converged;
-        Outcome { iterations: first.iterations + second.iterations, converged, ..second }
     }
 
     /// Newton's method on smooth energies.
@@ -349,7 +292,7 @@ impl<'a> FrameSolver<'a> {
 
     /// Weigh the rows, drop those of missing markers, and prepare what depends on them. Returns how
     /// many markers are missing, and whether they are other ones than before.
-    fn take_in(&mut self, d: &[f64]) -> (u32, bool) {
+    pub(super) fn take_in(&mut self, d: &[f64]) -> (u32, bool) {
         let problem = &self.fit.problem;
         self.displacements.resize(d.len(), 0.0);
         let is_missing = |m: &[f64]| !m.iter().all(|x| x.is_finite());

@@ -2,6 +2,7 @@
 
 pub(crate) mod frame;
 pub(crate) mod problem;
+mod quadratic_frame;
 pub(crate) mod report;
 pub(crate) mod setup;
 pub(crate) mod visible_markers;
