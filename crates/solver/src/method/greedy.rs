@@ -26,9 +26,14 @@ pub(crate) const GREEDY: Definition = Definition {
 /// The order: by |D_k|^2 over all markers, seen or not; equal ones as in the bank.
 fn greedy(setup: &Setup<'_>) -> Result<Engine, FitError> {
     let bounds = setup.bounds(UNIT_INTERVAL);
-    let mut order: Vec<usize> = (0..bounds.len()).collect();
-    let size: Vec<f64> = order.iter().map(|&k| setup.product(k, k)).collect();
-    order.sort_by(|&i, &j| size[j].total_cmp(&size[i]));
+    let mut left: Vec<usize> = (0..bounds.len()).collect();
+    let mut order = Vec::with_capacity(left.len());
+    let size: Vec<f64> = left.iter().map(|&k| setup.product(k, k)).collect();
+    while !left.is_empty() {
+        let largest = (1..left.len())
+            .fold(0, |best, at| if size[left[at]] > size[left[best]] { at } else { best });
+        order.push(left.remove(largest));
+    }
     Ok(Engine::Greedy { order, bounds })
 }
 

@@ -22,7 +22,7 @@ pub(super) struct ShapePairs {
 
 /// The pairs among the free shapes of an avatar: by their names, and by how they move the markers.
 pub(super) fn shape_pairs(setup: &Setup<'_>) -> ShapePairs {
-    let names: Vec<Vec<String>> = setup.free_names.iter().map(|name| words(name)).collect();
+    let names: Vec<Vec<&str>> = setup.free_names.iter().map(|name| words(name)).collect();
     let mut found = ShapePairs::default();
     for j in 0..names.len() {
         for i in 0..j {
@@ -39,35 +39,30 @@ pub(super) fn shape_pairs(setup: &Setup<'_>) -> ShapePairs {
 }
 
 /// Which of [`OPPOSED`] is all that two names differ by.
-fn opposed(a: &[String], b: &[String]) -> Option<usize> {
+fn opposed(a: &[&str], b: &[&str]) -> Option<usize> {
     if a.len() != b.len() {
         return None;
     }
-    let mut different = a.iter().zip(b).filter(|(a, b)| a != b);
+    let mut different = a.iter().zip(b).filter(|(a, b)| !a.eq_ignore_ascii_case(b));
     let ((a, b), None) = (different.next()?, different.next()) else { return None };
-    OPPOSED.iter().position(|[one, other]| {
-        (a, b) == (&one.to_string(), &other.to_string())
-            || (b, a) == (&one.to_string(), &other.to_string())
-    })
+    let is =
+        |word: &str, other: &str| a.eq_ignore_ascii_case(word) && b.eq_ignore_ascii_case(other);
+    OPPOSED.iter().position(|[one, other]| is(one, other) || is(other, one))
 }
 
-/// `mouthSmile_L`: mouth, smile, l.
-fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut before = ' ';
-    for letter in name.chars() {
-        let begins = letter.is_ascii_uppercase() && !before.is_ascii_uppercase();
-        if begins || !letter.is_alphanumeric() {
-            words.push(String::new());
-        }
-        if letter.is_alphanumeric()
-            && let Some(word) = words.last_mut()
-        {
-            word.push(letter.to_ascii_lowercase());
+/// `mouthSmile_L`: mouth, Smile, L.
+fn words(name: &str) -> Vec<&str> {
+    let mut words = Vec::new();
+    let (mut start, mut before) = (0, b' ');
+    for (at, letter) in name.bytes().enumerate() {
+        let parts = letter.is_ascii() && !letter.is_ascii_alphanumeric();
+        if parts || (letter.is_ascii_uppercase() && !before.is_ascii_uppercase()) {
+            words.extend(name.get(start..at).filter(|word| !word.is_empty()));
+            start = at + usize::from(parts);
         }
         before = letter;
     }
-    words.retain(|word| !word.is_empty());
+    words.extend(name.get(start..).filter(|word| !word.is_empty()));
     words
 }
 
@@ -91,6 +86,6 @@ mod tests {
         ] {
             assert_eq!(opposed(&words(a), &words(b)), which, "{a} {b}");
         }
-        assert_eq!(words("browInnerUp_L"), ["brow", "inner", "up", "l"]);
+        assert_eq!(words("browInnerUp_L"), ["brow", "Inner", "Up", "L"]);
     }
 }
