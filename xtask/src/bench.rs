@@ -106,6 +106,9 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
+/// The baselines, each timed on the whole take beside `lsts`.
+const BASELINES: [&str; 6] = ["box", "ridge", "a2f", "sparse", "smooth-sparse", "greedy"];
+
 /// The processes whose figures are compared: they wait for questions, so that every round asks all of them.
 struct Partners {
     ours: Partner,
@@ -138,7 +141,12 @@ impl Partners {
         let (lsts_wasm, _) = self.wasm("lsts")?;
         let (lsts_norm_wasm, memory) = self.wasm("lsts-norm")?;
         let ours = &mut self.ours;
+        let mut baselines = [0.0; BASELINES.len()];
+        for (rate, name) in baselines.iter_mut().zip(BASELINES) {
+            *rate = ours.rate(name)?;
+        }
         Ok(Round {
+            baselines,
             lsts: ours.rate("lsts")?,
             lsts_peer: self.peers.rate("lsts")?,
             lsts_norm: ours.rate("lsts-norm")?,
@@ -200,6 +208,8 @@ impl Differences {
 
 /// The figures of one round: frames per second, seconds of a set-up, bytes of memory.
 struct Round {
+    /// Of [`BASELINES`].
+    baselines: [f64; BASELINES.len()],
     lsts: f64,
     lsts_peer: f64,
     lsts_norm: f64,
@@ -244,7 +254,7 @@ fn rows(rounds: &[Round]) -> Vec<Row> {
     let bvls = against(|r| [r.lsts, r.lsts_peer], "bvls");
     let fine = format!("{:.2} of the skin's", of(|r| r.lsts_fine / r.lsts));
     let (alone, memory) = (String::new, format!("{:.1} MiB", of(|r| r.wasm_memory) / 1048576.0));
-    vec![
+    let mut rows = vec![
         row("`lsts`, solve alone", rate(|r| r.lsts), bvls, "80 x"),
         row("`lsts-norm`, solve alone", rate(|r| r.lsts_norm), tight, "60 x"),
         row("", alone(), default, ""),
@@ -271,7 +281,14 @@ fn rows(rounds: &[Round]) -> Vec<Row> {
             "160 ms",
         ),
         row("wasm memory", memory, "after both methods on 5,660 frames".into(), "150 MiB"),
-    ]
+    ];
+    for (k, name) in BASELINES.iter().enumerate() {
+        let own = median(rounds.iter().map(|round| round.baselines[k]).collect());
+        let ratio = median(rounds.iter().map(|round| round.baselines[k] / round.lsts).collect());
+        let what = format!("`{name}`, solve alone");
+        rows.push(row(&what, format!("{own:.0} frames/s"), format!("{ratio:.2} of `lsts`"), ""));
+    }
+    rows
 }
 
 /// 54 clips solved by the page's own worker.

@@ -210,6 +210,7 @@ fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
     let study = |name: &str| text(&repository().join("study-config").join(name));
     ok(&["check", &study("demo.json")]);
     ok(&["check", &study("template.json")]);
+    ok(&["check", &study("baselines.json")]);
     let folder = tempfile::tempdir().expect("a folder");
     let bad = folder.path().join("bad.json");
     std::fs::write(&bad, r#"{ "id": "x", "languges": ["en"], "components": {} }"#).expect("a file");

@@ -41,6 +41,8 @@
 //! | Dm (eq. 5.21) | displacements `d`, [`FrontEnd::displacements`] | 3P per frame | m |
 //! | l^2 = tr(D^T D) / N | [`Operators::data_scale`] | | m^2 |
 //! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
+//! | lambda, mu (Racković et al.) | [`MethodSpec::lambda`], [`MethodSpec::mu`]; [`WINDOW_FRAMES`], [`LOOK_AHEAD`] | | 1 |
+//! | L1, L2, T, Y (Audio2Face-3D) | [`MethodSpec::l1`], [`MethodSpec::l2`], [`MethodSpec::temporal`], [`MethodSpec::symmetry`] | | 1 |
 //! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
 //! | K of eq. 2.16, its P x P for the whole surface | [`SurfaceResponse`] | S x S, P x P | 1 |
@@ -82,6 +84,7 @@ pub use fit::problem::FitError;
 pub use fit::report::{
     FrameReport, FrameSolution, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT, TakeSolution,
 };
+pub use fit::window::{LOOK_AHEAD, WINDOW_FRAMES};
 pub use fit::{CHUNK_FRAMES, Fit};
 pub use front_end::error::FrontEndError;
 pub use front_end::head_lowpass::{HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE};

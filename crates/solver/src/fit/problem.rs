@@ -111,6 +111,7 @@ impl Problem {
             spec,
             parts,
             shell: &shell,
+            free: &free,
             free_names: free.iter().map(|&k| parts.shape_names[k].as_str()).collect(),
             data_scale: squares / n_all as f64,
             shell_scale: operators.shell_scale(),

@@ -3,7 +3,7 @@
 
 use super::definition::{Defaults, Definition, Needs};
 use crate::fit::problem::FitError;
-use crate::fit::setup::{Engine, NOT_NEGATIVE, Setup, UNIT_INTERVAL};
+use crate::fit::setup::{Engine, NOT_NEGATIVE, Quadratic, Setup, UNIT_INTERVAL};
 use crate::parameters::group::Group;
 
 /// Weights within 0 and 1: the plain baseline.
@@ -36,5 +36,5 @@ pub(crate) const PSEUDO_INVERSE: Definition = Definition {
 /// The scale of the data changes no minimiser; with it the matrix is near 1 in any unit.
 fn within(setup: &Setup<'_>, bounds: Vec<[f64; 2]>) -> Result<Engine, FitError> {
     let prior = vec![0.0; bounds.len() * bounds.len()];
-    Ok(Engine::Quadratic { data_weight: setup.data_weight(), prior, bounds })
+    Ok(Engine::Quadratic(Quadratic::new(setup.data_weight(), prior, bounds)))
 }

@@ -11,6 +11,12 @@ pub enum Group {
     BoundsWeight,
     /// The smoothing of norms.
     Norms,
+    /// The sum of the weights beside the data.
+    Sparsity,
+    /// The second differences of the weights in time.
+    Smoothness,
+    /// The strengths of Audio2Face-3D.
+    Audio2Face,
     /// The unit in which an equation is taken literally.
     LiteralUnit,
     /// The thin shell itself.
@@ -43,7 +49,10 @@ impl Group {
             | Group::PriorWeight
             | Group::BoundsWeight
             | Group::Norms
+            | Group::Sparsity
+            | Group::Smoothness
             | Group::LiteralUnit => "Energies",
+            Group::Audio2Face => "Strengths (a2f)",
             Group::ThinShell => "Thin shell",
             Group::SoftBounds | Group::Bounds => "Bounds",
             Group::Association => "Association of markers (kouadio)",

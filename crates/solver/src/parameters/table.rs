@@ -211,6 +211,36 @@ parameters! {
     bounds_weight: Option<f64> as "boundsWeight" = |_| 1e-3,
     { group: Group::BoundsWeight, label: "Weight of the bounds", range: Range::above(0.0), }
 
+    /// Weight of the sum of the weights against the data: the more, the fewer shapes are used.
+    lambda: Option<f64> as "lambda" = |_| 0.002,
+    { group: Group::Sparsity, label: "λ, sum of the weights", range: Range::at_least(0.0), step: Some(0.001), }
+
+    /// Weight of the squared second differences of the weights from frame to frame.
+    mu: Option<f64> as "mu" = |_| 0.1,
+    {
+        group: Group::Smoothness, label: "μ, second differences", range: Range::at_least(0.0),
+        zero: Some("every frame by itself"), step: Some(0.05),
+    }
+
+    /// Strength of the squared sum of the weights (L1 of Audio2Face-3D, which squares it).
+    l1: Option<f64> as "l1" = |_| 1.0,
+    { group: Group::Audio2Face, label: "L1, squared sum of the weights", range: Range::at_least(0.0), step: Some(0.1), }
+
+    /// Strength of the squared weights (L2 of Audio2Face-3D).
+    l2: Option<f64> as "l2" = |_| 3.5,
+    { group: Group::Audio2Face, label: "L2, squared weights", range: Range::at_least(0.0), step: Some(0.1), }
+
+    /// Strength of the squared differences between the two sides of a movement.
+    symmetry: Option<f64> as "symmetry" = |_| 100.0,
+    { group: Group::Audio2Face, label: "Y, symmetry", range: Range::at_least(0.0), step: Some(5.0), }
+
+    /// Strength of the temporal term, towards the weights of the frame before.
+    temporal: Option<f64> as "temporal" = |_| 0.15,
+    {
+        group: Group::Audio2Face, label: "T, last frame", range: Range::at_least(0.0),
+        zero: Some("every frame by itself"), step: Some(0.05),
+    }
+
     /// Unit in which the equation of the paper is taken literally.
     unit: Option<Unit> as "unit" = |_| Unit::default(),
     { group: Group::LiteralUnit, label: "Unit", }
