@@ -152,8 +152,8 @@ proptest! {
             // G is 2030 cm^2 on the mean diagonal of a mesh, and s is 1.
             let (mut a, mut b) = normal_equations(&operators, d);
             for i in 0..N {
-                for j in 0..N {
-                    a[i][j] = 2030.0 * a[i][j] + 0.25 * l1 * l1;
+                for entry in a[i].iter_mut() {
+                    *entry = 2030.0 * *entry + 0.25 * l1 * l1;
                 }
                 a[i][i] += 10.0 * l2 + 100.0 * t;
                 b[i] = 2030.0 * b[i] + if balanced { 100.0 } else { 1.0 } * t * last[i];

@@ -77,9 +77,10 @@ impl RecordedWeights {
         let weights = (0..recorded.frames.len())
             .flat_map(|row| {
                 let row = recorded.row(row);
-                map.terms
-                    .iter()
-                    .map(move |terms| terms.iter().map(|&(c, share)| share * row[c]).sum())
+                // An empty sum would be -0, which packs keep as 0: another hash.
+                map.terms.iter().map(move |terms| {
+                    terms.iter().fold(0.0, |sum, &(c, share)| sum + share * row[c])
+                })
             })
             .collect();
         let with_terms = || shape_names.iter().zip(&map.terms);

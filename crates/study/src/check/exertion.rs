@@ -84,7 +84,7 @@ pub(super) fn segments(subject: &Subject<'_>, issues: &mut Issues) {
         if let (Some(end), Some(frames)) = (segment.end, frames)
             && end > frames
         {
-            let at = below(&below("/stimuli/segments", &i.to_string()), "end");
+            let at = below(&below("/stimuli/segments", i), "end");
             issues.error(at, Problem::PastExertion { end, frames });
         }
     }
