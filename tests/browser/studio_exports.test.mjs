@@ -163,7 +163,7 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
     for (const { names, times, weights } of channels) {
       assert.equal(times.length, part.length);
       assert.ok(times.every((time, i) => Math.abs(time - (part[i].time - part[0].time)) < 1e-6), "the capture's times");
-      const apart = part.flatMap((row, f) => names.map((name, k) => Math.abs(weights[f * names.length + k] - row[name])));
+      const apart = part.flatMap((row, f) => names.map((name, k) => Math.abs(weights[f * names.length + k] - (row[name] ?? 0))));
       assert.equal(weights.length, apart.length);
       assert.ok(Math.max(...apart.slice(0, 50_000)) < 1e-6, "the table's weights");
     }
