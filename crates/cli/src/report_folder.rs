@@ -31,6 +31,13 @@ pub fn check(out: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// A remark as a sentence of a report.
+pub fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
+}
+
 fn write_files(files: &[ReportFile], folder: &Path) -> anyhow::Result<()> {
     for file in files {
         let path = folder.join(&file.path);

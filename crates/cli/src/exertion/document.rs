@@ -5,6 +5,7 @@ use mimique_exertion::Expression;
 use serde_json::Value;
 
 use super::report::Report;
+use crate::report_folder::sentence;
 
 /// Rows of a figure's data, at most: the series has all of them.
 const MOST_ROWS: usize = 61;
@@ -201,11 +202,4 @@ fn number(value: &Value) -> String {
 
 fn texts<const N: usize>(cells: [&str; N]) -> Vec<String> {
     cells.map(str::to_owned).to_vec()
-}
-
-/// A remark as a sentence.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", letters.as_str())
 }

@@ -13,7 +13,7 @@ use mimique_layout::{Measures, Method};
 use super::args::Make;
 use super::inputs::blame;
 use super::{CountReason, Made};
-use crate::report_folder;
+use crate::report_folder::{self, sentence};
 
 /// Writes the report into a folder: a document, every curve as a table, `results.json`.
 pub(super) fn write(
@@ -59,13 +59,6 @@ fn document(args: &Make, made: &Made<'_, '_>, measures: &[Measures]) -> Document
         subtitle: format!("{count} face markers and {} head markers", made.layout.head.len()),
         blocks,
     }
-}
-
-/// A warning as a sentence.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", letters.as_str())
 }
 
 fn summary(args: &Make, made: &Made<'_, '_>) -> String {
