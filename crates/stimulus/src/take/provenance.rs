@@ -37,6 +37,9 @@ impl JoinedTake<'_> {
             let lids = self.lids.iter().map(|l| json!([l.label, l.edge, l.closed, l.wide]));
             made = made.json("map.lids", lids.collect::<Vec<_>>());
         }
+        if let Some(gaze) = &self.gaze {
+            made = made.json("gaze", gaze.given().key());
+        }
         self.adjustments(made)
     }
 
