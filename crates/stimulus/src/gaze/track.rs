@@ -92,12 +92,15 @@ impl GazeTrack {
         for (&seconds, gaze) in seconds.iter().zip(&angles) {
             let values = [gaze.azimuth, gaze.elevation, gaze.vergence];
             // No eye turns by more, however it is counted.
-            let wrong = values.into_iter().zip(ANGLES).find(|(value, _)| !(value.abs() <= 90.0));
+            let wrong = values
+                .into_iter()
+                .zip(ANGLES)
+                .find(|(value, _)| !value.is_finite() || value.abs() > 90.0);
             if let Some((value, column)) = wrong {
                 return Err(GazeTrackError::NoAngle { seconds, column, value });
             }
         }
-        if let Some(pair) = seconds.windows(2).find(|pair| !(pair[1] > pair[0])) {
+        if let Some(pair) = seconds.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(GazeTrackError::Backwards { seconds: pair[1] });
         }
         Ok(Self { seconds, angles })
