@@ -58,7 +58,7 @@ pub fn surface_avatar(
                 Part::Teeth | Part::Tongue => {
                     bank_weights.iter().map(|weights| posed(mesh, weights)).collect()
                 }
-                part if part.is_eye() => vec![SparseShape::default(); 3 * p],
+                Part::EyeLeft | Part::EyeRight => vec![SparseShape::default(); 3 * p],
                 Part::EyeOverlay | Part::Lashes | Part::Hair | Part::Socket | Part::Other => {
                     let nearest: Vec<usize> = (mesh.positions.iter())
                         .map(|p| skin.nearest(Point::from(p.map(f64::from))).map_or(0, |(v, _)| v))

@@ -200,6 +200,11 @@ impl<'a> JoinedTake<'a> {
         &self.warnings
     }
 
+    /// The face markers on the welded skin, in the order of operators and displacements.
+    pub fn sites(&self) -> &[MarkerSite] {
+        &self.markers
+    }
+
     /// Whether scale factors come from the bank's range of motion.
     pub(crate) fn scales_by_bank(&self) -> bool {
         self.scale.automatic.is_some()

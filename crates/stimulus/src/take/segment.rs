@@ -78,7 +78,7 @@ impl JoinedTake<'_> {
     ///
     /// # Errors
     /// [`SolveError`] of the front end.
-    pub(crate) fn motion(
+    pub fn motion(
         &self,
         operators: &Operators,
         spec: &MethodSpec,

@@ -320,6 +320,8 @@ NothingPasses { hertz: f64 }: "out-of-range",
     "{hertz} Hz lets nothing pass", "take a frequency above 0, or leave it out";
 FrameRate { hertz: f64 }: "out-of-range", "{hertz} frames a second show no face as it moves",
     "take 60 (what most displays show), another rate from 15 to 1000, or leave it out";
+ClipsUnlike { what: String, remedy: &'static str }: "clips-unlike", "{what}", "{remedy}";
+NotPrepared { message: String }: "not-prepared", "{message}", "correct it, or the study cannot be served";
 GazeSources: "bad-gaze", "not exactly one of held, file, target and performed gives the gaze",
     "give one of them, as \"gaze\": {{ \"held\": {{ \"azimuth\": 0 }} }}";
 GazeAngle { degrees: f64, least: f64, most: f64 }: "out-of-range",
