@@ -1,32 +1,32 @@
 //! How far apart two motions of one face are, part by part.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::motion::length;
 use crate::{ComparedFace, FaceMotion};
 
 /// How far apart two motions are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Difference {
     /// Each part of the face, from above to below, then the whole `Face`.
     pub parts: Vec<PartDifference>,
     /// Lip vertex error, millimetres: the largest distance of a vertex of the lips, its mean over the frames
     /// (Richard et al., MeshTalk, ICCV 2021); none of an avatar without lips.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lip_vertex_error_mm: Option<f64>,
     /// Of the frames in which the lips of the first are shut, the share in which those of the second are not; none
     /// where the first never shuts them.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lip_closure_misses: Option<f64>,
 }
 
 /// How far apart a part of the face is in two motions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PartDifference {
     /// `Forehead`, `Brow`, `Eye`, `Nose`, `Cheek`, `Mouth`, `Chin`, `Jaw` or `Face`.
-    pub part: &'static str,
+    pub part: String,
     /// Root mean square distance of its vertices over all frames, millimetres.
     pub rms_mm: f64,
     /// Largest distance of one of its vertices, millimetres.
@@ -78,7 +78,7 @@ pub fn difference(
         }
         let count = (frames * places.len()).max(1) as f64;
         PartDifference {
-            part: name,
+            part: name.to_owned(),
             rms_mm: 1e3 * (squares / count).sqrt(),
             largest_mm: 1e3 * largest.0,
             largest_frame: largest.1,

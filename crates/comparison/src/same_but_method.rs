@@ -11,7 +11,7 @@ use mimique_clip::{SolvePacksError, SolvedTake, solve_packs};
 use mimique_solver::{MeshError, Method};
 use mimique_stimulus::AvatarSkin;
 use mimique_study::{Clip, ClipSource, Study};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::difference::{Difference, difference};
 use crate::{ComparedFace, FaceMotion};
@@ -24,7 +24,7 @@ const BLINK: [f64; 2] = [0.6, 0.2];
 const DURATION_MS: f64 = 1.0;
 
 /// The clips of a study held against each other.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct StudyComparison {
     /// What two clips of one segment have not in common, though only the method should differ.
@@ -34,7 +34,7 @@ pub struct StudyComparison {
 }
 
 /// What two clips of one segment have not in common.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Unlike {
     /// The segment.
@@ -47,7 +47,7 @@ pub struct Unlike {
 }
 
 /// What should be the same and is not. Frames are counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "camelCase", rename_all_fields = "camelCase")]
 pub enum Disagreement {
     /// One is longer.
@@ -103,7 +103,7 @@ impl Unlike {
 }
 
 /// How far apart the faces of two clips are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ClipDifference {
     /// The segment.
@@ -317,5 +317,29 @@ impl Faces<'_> {
 
     fn bytes(&self, hash: &str) -> Result<Vec<u8>, ComparisonError> {
         (self.read)(hash).map_err(|error| ComparisonError::Read { hash: hash.to_owned(), error })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blink_of_one_is_found_in_its_frame_and_half_shut_eyes_are_none() {
+        let lids = [0.0, 0.1, 0.9, 0.95, 0.1];
+        assert_eq!(blink_apart(&lids, &lids), None);
+        assert_eq!(blink_apart(&lids, &[0.0, 0.1, 0.5, 0.5, 0.1]), None);
+        let found = blink_apart(&lids, &[0.0, 0.1, 0.1, 0.05, 0.1]);
+        assert_eq!(found, Some(Disagreement::Blink { shut: [0.95, 0.05], frame: 3 }));
+        assert_eq!(blink_apart(&[], &lids), None);
+    }
+
+    #[test]
+    fn a_gaze_that_nobody_sees_apart_is_the_same() {
+        let eye =
+            |azimuth: f64| EyeAngles { left: Some([azimuth, 0.0]), right: Some([azimuth, 0.0]) };
+        assert_eq!(gaze_apart(&[eye(3.0)], &[eye(3.9)]), None);
+        let found = gaze_apart(&[eye(0.0), eye(3.0)], &[eye(0.0), eye(-2.0)]);
+        assert_eq!(found, Some(Disagreement::Gaze { degrees: 5.0, frame: 1 }));
     }
 }
