@@ -48,7 +48,16 @@ fn solve_gives_the_stored_weights_of_lsts_and_box() {
             args.extend([option.to_owned(), text(&path)]);
         }
         // The stored optima are of a head that was not filtered, every shape solved.
-        let more = ["--neutral", "0:60", "--head-lowpass", "none", "--gaze", "markers"];
+        let more = [
+            "--neutral",
+            "0:60",
+            "--head-lowpass",
+            "none",
+            "--gaze",
+            "markers",
+            "--untold",
+            "solve",
+        ];
         args.extend(more.map(str::to_owned));
         if let Some(alpha) = alpha {
             args.extend(["--alpha".to_owned(), alpha.to_owned()]);

@@ -78,6 +78,7 @@ mod quadratic;
 mod surface;
 
 pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
+pub use energy::sensitivity::{ShapeSensitivity, ToldBy, is_told, shape_sensitivities};
 pub use energy::thin_shell::{apply_shell, shell_gram};
 pub use fit::frame::FrameSolver;
 pub use fit::problem::FitError;
@@ -125,7 +126,9 @@ pub use mesh::symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
 pub use mesh::synthesis::Synthesis;
 pub use method::definition::Needs;
 pub use method::names::Method;
-pub use parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved};
+pub use parameters::choices::{
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
+};
 pub use parameters::group::Group;
 pub use parameters::kind::{Kind, NamesOf, Quantity, Range};
 pub use parameters::problem::{SpecError, SpecFault};

@@ -91,8 +91,8 @@ pub use suggest_map::{
 };
 pub use take::{
     FileHash, FrameRow, JoinedTake, Lid, LidEdge, RegressionSummary, RepairSidecar, SetUp,
-    SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds, TakeOptions, Training,
-    sidecar_path, solve_take,
+    ShapeRow, ShapeState, SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds,
+    TakeOptions, Training, sidecar_path, solve_take,
 };
 pub use weights::{
     Driven, RecordedNames, RecordedWeights, WeightBeyondSense, WeightSteps, weight_steps,

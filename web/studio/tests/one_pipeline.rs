@@ -149,7 +149,7 @@ impl Laboratory {
         if spec.method == Method::Recorded {
             workspace.take_file("recorded.csv", &self.bytes("recorded.csv"), None, None).unwrap();
         }
-        let facts = workspace.solve("a", &serde_json::to_string(spec).unwrap(), false).unwrap();
+        let facts = workspace.solve("a", &serde_json::to_string(spec).unwrap()).unwrap();
         facts["weights_hash"].as_str().unwrap().to_owned()
     }
 

@@ -75,6 +75,18 @@ choice! {
 }
 
 choice! {
+    /// What becomes of shapes that the markers do not tell: noise of 1 mm moves their weights from 0 to 1 and
+    /// beyond, even if all other weights are known.
+    Untold {
+        /// They stay at 0, but for those that the bounds name.
+        #[default]
+        Hold = "hold",
+        /// They are solved as all others: what they get is the method's prior.
+        Solve = "solve",
+    }
+}
+
+choice! {
     /// What becomes of a take with frames that are not solved.
     Unsolved {
         /// It is refused, the first of them named.

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::kouadio::associated_rows::VertexAssociation;
 use crate::method::names::Method;
 use crate::parameters::choices::{
-    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved,
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
 };
 use crate::parameters::group::Group;
 use crate::parameters::kind::{Kind, NamesOf, Quantity, Range};
@@ -308,6 +308,11 @@ parameters! {
     /// them, or the markers.
     gaze: Option<Gaze> as "gaze" = |_| Gaze::default(),
     { group: Group::Shapes, label: "Gaze", }
+
+    /// What becomes of shapes that the markers do not tell ([`crate::shape_sensitivities`]): they stay at 0, but
+    /// for those that the bounds name, or are solved as all others.
+    untold: Option<Untold> as "untold" = |_| Untold::default(),
+    { group: Group::Shapes, label: "Shapes that no marker tells", }
 
     /// Factor of the solved weights, within their bounds: above 1 exaggerates, below 1 attenuates.
     gain: Option<f64> as "gain" = |_| 1.0,

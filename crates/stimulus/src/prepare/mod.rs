@@ -256,14 +256,15 @@ fn marker_clip(
 ) -> Result<Ingredients, PrepareError> {
     let avatar = sources.avatar(&clip.avatar)?;
     let performance = sources.performance(&clip.segment, &avatar)?;
-    let spec = with_lowpass(spec, &performance);
-    let mut spec = performance.joined()?.with_shapes_held(&spec);
-    crate::lock_shapes(&mut spec, &avatar.locked);
+    let mut written = with_lowpass(spec, &performance);
+    crate::lock_shapes(&mut written, &avatar.locked);
+    let spec = performance.joined()?.with_shapes_held(&written);
     let method_pointer = method_pointer(clip);
     spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
     let learns = spec.method == Method::Regression;
     let training = learns.then(|| sources.training(&clip.method)).transpose()?;
     let wanted = Wanted {
+        written: &written,
         spec: &spec,
         training: training.as_deref(),
         method_pointer: &method_pointer,

@@ -5,7 +5,7 @@ use std::ops::Range;
 use mimique_clip::with_gaze_at_rest;
 use mimique_geometry::{Point, RigidMotion};
 use mimique_mocap::Capture;
-use mimique_solver::{FrontEnd, Group, MarkerSite, MethodSpec};
+use mimique_solver::{FrontEnd, Group, MarkerSite, MethodSpec, Untold};
 
 use super::joined::{JoinedTake, metres};
 use super::lid_opening::{LidEdge, LidRange, actor_range, lid_weights};
@@ -25,7 +25,8 @@ pub(crate) struct JoinedLid {
 
 impl JoinedTake<'_> {
     /// The method with the shapes held at 0 that its markers do not tell: those of the lids that lid
-    /// markers drive, and those that turn the eyes.
+    /// markers drive, those that turn the eyes, and those that noise of 1 mm would move over their whole range
+    /// ([`Untold`]).
     pub fn with_shapes_held(&self, spec: &MethodSpec) -> MethodSpec {
         let mut spec = with_gaze_at_rest(spec, &self.skin.shape_names);
         if !spec.method.uses(Group::Shapes) {
@@ -44,7 +45,21 @@ impl JoinedTake<'_> {
                 spec.locked.push(name.clone());
             }
         }
+        if spec.untold() == Untold::Hold {
+            for name in self.untold() {
+                if !spec.bounds.contains_key(name) && !spec.locked.contains(name) {
+                    spec.locked.push(name.clone());
+                }
+            }
+        }
         spec
+    }
+
+    /// Names of the shapes that lid markers and a given gaze drive.
+    pub(crate) fn driven_shapes(&self) -> impl Iterator<Item = &String> {
+        let lids =
+            self.lids.iter().flat_map(|lid| [Some(&lid.closed), lid.wide.as_ref()]).flatten();
+        lids.chain(self.gaze.iter().flat_map(|gaze| &gaze.names))
     }
 
     /// The lid markers as columns after the others.

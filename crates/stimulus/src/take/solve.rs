@@ -7,7 +7,7 @@ use mimique_mocap::{Capture, WeightsTable};
 use mimique_solver::{FitError, MarkerSite, Method, MethodSpec, Operators, SurfaceResponse};
 
 use super::report::{
-    FrameRow, RegressionSummary, SolveReport, StageSeconds, dependent_shapes, unseen_shapes,
+    FrameRow, RegressionSummary, SolveReport, StageSeconds, dependent_shapes, untold_shapes,
 };
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
@@ -68,6 +68,7 @@ pub fn solve_take(
     spec.validate().map_err(FitError::from)?;
     let start = clock();
     let joined = JoinedTake::new(skin, capture, map, options)?;
+    let written = spec;
     let asked = joined.with_shapes_held(spec);
     let spec = &asked.at_rate(joined.rate_hz);
     let SetUp { operators, surface } = joined.set_up(&asked, options.training.as_deref())?;
@@ -89,6 +90,7 @@ pub fn solve_take(
     };
     let mut report = report(&joined, spec, &operators, &solution, checks);
     report.seconds = seconds;
+    report.shapes_told = joined.shape_rows(written, &asked, &operators);
     report.warnings.extend(joined.unfiltered_head(&asked));
     report.warnings.extend(dependent_shapes(&operators, spec, &solution.fit));
     report.warnings.extend(surface.as_ref().and_then(adrift));
@@ -139,7 +141,7 @@ fn report(
     warnings.extend(moving_skin(&head_markers));
     warnings.extend(label_problems.iter().map(LabelProblem::sentence));
     warnings.extend(smoothing.as_ref().map(SmoothingAdvice::sentence));
-    warnings.extend(unseen_shapes(operators, spec));
+    warnings.extend(untold_shapes(operators, spec));
     warnings.extend(summary.warnings(joined.first_frame));
     let gaze = GazeStatistics::of(&operators.parts().shape_names, &solution.weights);
     warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(joined.first_frame)));
@@ -154,6 +156,7 @@ fn report(
         head_lowpass_hz: solution.motion.head_lowpass_hz,
         gaze_at_rest: solution.gaze_at_rest.clone(),
         gaze,
+        shapes_told: Vec::new(),
         method: spec.resolved(),
         data_scale_mm: 1e3 * operators.data_scale().sqrt(),
         shell_scale_m2: operators.shell_scale(),
