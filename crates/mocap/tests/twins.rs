@@ -43,7 +43,12 @@ fn told(bytes: &[u8], weights: bool) -> Result<Told, ReadError> {
         let rate = table.rate_hz().map(|rate| format!("{rate:.6}"));
         return Ok(Told {
             content: (table.shape_names, format!("{rate:?}"), bits(&table.weights)),
-            notes: table.filled.iter().map(|span| format!("filled {span:?}")).collect(),
+            notes: table
+                .filled
+                .iter()
+                .map(|span| format!("filled {span:?}"))
+                .chain(table.notes)
+                .collect(),
         });
     }
     let recording = file.recording(&ReadOptions::default())?;

@@ -32,7 +32,7 @@ pub(super) static FORMAT: Format = Format {
     reads: "format 1.0 to 3.0; `f4` and `f8`, both byte orders, C and Fortran order; names and rate from `NAME.shapes.json` beside it, else the avatar's shapes and the rate that is asked for",
     recognise: Recognise::Beginning(|bytes| bytes.starts_with(MAGIC)),
     read: Read::BinaryWeights(read),
-    write: Some(Write::Weights(write)),
+    write: Some(Write::Weights { columns: None, write }),
 };
 
 /// What stands beside an array.
