@@ -51,7 +51,9 @@ fn told(bytes: &[u8], weights: bool) -> Result<Told, ReadError> {
                 .collect(),
         });
     }
-    let recording = file.recording(&ReadOptions::default())?;
+    // An array of vertices has no rate; other files are held to their own.
+    let rate_hz = file.format().filter(|format| format.id == "npy-vertices").map(|_| 60.0);
+    let recording = file.recording(&ReadOptions { rate_hz, ..ReadOptions::default() })?;
     let facts = CaptureFacts::of(&recording);
     let capture = recording.capture;
     Ok(Told {

@@ -36,9 +36,11 @@ use weights_json::{
 pub use wide_csv::{FORMAT as WIDE_CSV, write_csv};
 
 /// Every format. Where a file could be of two, it is of the one that stands first.
-static FORMATS: [&Format; 17] = [
+static FORMATS: [&Format; 19] = [
     &c3d::FORMAT,
+    &npy::VERTICES,
     &npy::FORMAT,
+    &npy::npz::FORMAT,
     &audio2face_json::FORMAT,
     &mediapipe_json::FORMAT,
     &arkit_json::FORMAT,

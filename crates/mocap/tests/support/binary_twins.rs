@@ -7,7 +7,8 @@ use super::twins::Twin;
 pub fn twins(id: &str, bytes: &[u8]) -> Vec<Twin> {
     match id {
         "c3d" => c3d(bytes),
-        "npy" => npy(bytes),
+        "npy" | "npy-vertices" => npy(bytes),
+        "npz" => npz(bytes),
         "arkit-json" | "audio2face-json" | "mediapipe-json" => json(bytes),
         other => panic!("no twins of {other}"),
     }
@@ -131,6 +132,9 @@ fn npy(bytes: &[u8]) -> Vec<Twin> {
         }),
     ];
     for (name, what, by) in [
+        ("frames too many", "(3, 4, 3)", "(4, 4, 3)"),
+        ("vertices too few", "(3, 4, 3)", "(3, 3, 3)"),
+        ("axes too few", "(3, 4, 3)", "(3, 6, 2)"),
         ("rows too many", "(2, 4)", "(3, 4)"),
         ("columns too few", "(2, 4)", "(2, 3)"),
         ("of rank 1", "(2, 4)", "(8,)  "),
@@ -203,4 +207,18 @@ fn json(bytes: &[u8]) -> Vec<Twin> {
         }
     }
     twins
+}
+
+/// An archive has a sum of every member.
+fn npz(bytes: &[u8]) -> Vec<Twin> {
+    let at = after(bytes, "NUMPY") + 20;
+    let last = bytes.windows(5).rposition(|window| window == b"NUMPY").unwrap() - 1;
+    vec![
+        twin(false, "cut", bytes[..bytes.len() - 30].to_vec()),
+        twin(false, "cut in the first array", bytes[..at].to_vec()),
+        twin(false, "two files in one", bytes.repeat(2)),
+        twin(false, "a letter of a header", patched(bytes, at, b"#")),
+        twin(false, "a number", patched(bytes, last + 130, &[7])),
+        twin(false, "no central directory", bytes[..bytes.len() - 22].to_vec()),
+    ]
 }
