@@ -34,6 +34,7 @@ mod solve;
 mod study_file;
 mod test_command;
 mod verify;
+mod vertices;
 
 use std::process::ExitCode;
 
@@ -68,6 +69,8 @@ enum Command {
     Solve(Box<solve::Args>),
     /// Choose how many markers a face needs, and where; or check a map
     Layout(Box<layout::Args>),
+    /// Turn a sequence of vertices into an avatar and the weights that play it
+    Vertices(vertices::Args),
     /// Repair a capture: swaps, spikes, gaps; filter, resample, hold the head still
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
@@ -120,6 +123,7 @@ fn main() -> ExitCode {
         Command::Sample(args) => sample::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
         Command::Layout(args) => layout::run(*args, json),
+        Command::Vertices(args) => vertices::run(&args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
         Command::Annotate(args) => annotate::run(args, json),

@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use crate::read_performance;
 use mimique_clip::sha256_hex;
-use mimique_mocap::{
-    Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable, read_weights_file,
-};
+use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, ExertionCapture, Segment, Span, Study, resolve_path,
     video_type,
@@ -207,8 +206,9 @@ impl<'a> Sources<'a> {
                 let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
                 let at = format!("{at}/weights");
                 let path = self.path(weights_file, &at)?;
-                let weights = read_weights_file(&path, &WeightOptions::default())
-                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                let weights = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
                 Training {
                     capture,
                     weights,
@@ -267,8 +267,9 @@ impl<'a> Sources<'a> {
             }
         };
         let path = self.path(file, &pointer)?;
-        let table = read_weights_file(&path, &WeightOptions::default())
-            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
+        let table = read_performance(&path, &WeightOptions::default())
+            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?
+            .table;
         match segment.span() {
             Some(Span::Frames { first, end }) => cut(at, table, [first, end]),
             _ => cut(at, table, [0, usize::MAX]),
@@ -426,7 +427,8 @@ fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording,
         let message = format!("give first and end within the {frames} frames of the capture");
         return Err(PrepareError::new(at, message));
     }
-    Ok(Recording { pointer: at, table, frames: first..end, is_computed: false, warnings: vec![] })
+    let warnings = table.notes.iter().map(|note| (at.clone(), note.clone())).collect();
+    Ok(Recording { pointer: at, table, frames: first..end, is_computed: false, warnings })
 }
 
 /// A file that cannot be read.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use mimique_geometry::Point;
 
-use super::header::{Header, MAGIC, header, shape_at_the_beginning};
+use super::header::{Header, MAGIC, description, header, shape_at_the_beginning};
 use super::{npz, stored};
 use crate::capture::unit::decide_unit;
 use crate::formats::format::{Format, Read, Recognise};
@@ -43,7 +43,8 @@ pub struct VertexArray {
     pub positions: Vec<f32>,
 }
 
-/// Reads an array of vertices: `.npy`, or the one in an `.npz`.
+/// Reads an array of vertices: `.npy`, or the one in an `.npz`. The coordinates of a frame may stand in one
+/// row (frames x 3 vertices), as FaceFormer and CodeTalker write them.
 ///
 /// # Errors
 /// [`ReadError`] with its place: not an array, another shape, cut off.
@@ -58,6 +59,20 @@ pub fn read_vertex_array(path: &Path) -> Result<VertexArray, ReadError> {
 }
 
 fn array_of(file: &mut dyn Source, length: u64) -> Result<VertexArray, ReadError> {
+    let shape = description(file, length, REMEDY)?.keys.shape;
+    if let [_, row] = shape[..]
+        && row > 3
+        && row.is_multiple_of(3)
+    {
+        let header: Header<2> = header(file, length, REMEDY)?;
+        let (numbers, frames) = (stored(file, &header)?, header.shape[0]);
+        let place = |i: usize| match header.fortran_order {
+            false => i,
+            true => i % row * frames + i / row,
+        };
+        let positions = (0..numbers.len()).map(|i| numbers[place(i)] as f32).collect();
+        return Ok(VertexArray { vertices: row / 3, positions });
+    }
     let (vertices, positions) = positions(file, length)?;
     Ok(VertexArray { vertices, positions: positions.iter().map(|x| *x as f32).collect() })
 }
@@ -135,6 +150,9 @@ mod tests {
         write(head, &numbers);
         let read = read_vertex_array(&file).unwrap();
         assert_eq!(read.positions[..6], [0.0, 6.0, 12.0, 3.0, 9.0, 15.0]);
+        write(npy_header("<f4", &[3, 6]), &numbers);
+        let read = read_vertex_array(&file).unwrap();
+        assert_eq!((read.vertices, read.positions), (2, numbers.clone()));
         for (shape, count) in [(&[6, 3][..], 18), (&[3, 3, 2], 18), (&[3, 2, 3], 17)] {
             write(npy_header("<f4", shape), &numbers[..count]);
             let error = read_vertex_array(&file).unwrap_err().to_string();
