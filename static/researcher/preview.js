@@ -2,6 +2,7 @@
 import { backend, openStage, prepareClip, preparedClip, refreshPeriod } from "../stage/host.js";
 import { Player, made } from "../stage/player.js";
 import { ExertionPictures } from "../drawing/exertion.js";
+import { ShownComparison } from "./comparison.js";
 
 const $ = (id) => document.getElementById(id);
 const study = document.body.dataset.study;
@@ -45,6 +46,16 @@ class ShownExertion {
 }
 
 const exertion = new ShownExertion();
+const comparison = new ShownComparison((frame) => {
+  const rate = player.panels[0]?.clip()?.rate_hz;
+  if (rate) player.seek((1000 * frame) / rate);
+});
+
+/// Shows how the clips of both panels differ.
+function compare() {
+  const [a, b] = player.panels.map((panel) => panel.wanted());
+  comparison.put(a ?? null, b ?? null);
+}
 
 class Panel {
   #element;
@@ -87,8 +98,13 @@ class Panel {
     return this.#clipId === null ? null : preparedClip(this.#clipId);
   }
 
+  wanted() {
+    return this.#wanted;
+  }
+
   async choose(id) {
     this.#wanted = id;
+    compare();
     this.#select.value = id;
     this.#element.classList.toggle("empty", id === "");
     this.#clipId = null;
@@ -210,6 +226,7 @@ async function start() {
   player.onDraw = (ms) => exertion.at(ms);
   player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
   refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
+  comparison.load(study).then(compare, problem);
   // B: the same take solved by another method, where the study has one.
   const other = ids.find((id) => clips[id].take === clips[ids[0]].take && id !== ids[0]) ?? "";
   await Promise.all([player.panels[0].choose(ids[0]), player.panels[1].choose(other)]);

@@ -21,6 +21,7 @@ mod driven;
 mod eye_pairs;
 mod files;
 mod glb;
+mod lids_follow;
 mod obj;
 mod part_words;
 mod parts;

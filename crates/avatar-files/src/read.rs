@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::ReadError;
 use crate::eye_pairs::part_eyes;
 use crate::files::Files;
+use crate::lids_follow::let_lids_follow;
 use crate::parts::find_eyeballs;
 use crate::settings::{AvatarSettings, avatar_name, fits};
 use mimique_avatar::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, arkit_shapes};
@@ -122,11 +123,12 @@ impl ReadAvatar {
         }
         within_most(
             "meshes, eyeballs",
-            avatar.meshes.iter().filter(|m| is_eye(m)).count(),
+            avatar.meshes.iter().filter(|mesh| mesh.part.is_eye()).count(),
             MOST_EYEBALLS,
             "leave layers out, or call them eyeOverlay, under \"parts\" in the JSON beside the avatar",
         )?;
         avatar.eyeballs = find_eyeballs(&avatar);
+        notes.extend(let_lids_follow(&mut avatar));
         let locked = locked(&avatar.shape_names, settings)?;
         Ok(Self { avatar, unit_metres, locked, notes })
     }
@@ -138,10 +140,6 @@ fn within_most(place: &str, found: usize, most: usize, remedy: &str) -> Result<(
         return Ok(());
     }
     Err(ReadError::broken(place, format!("{found} of them, at most {most} can be drawn"), remedy))
-}
-
-fn is_eye(mesh: &Mesh) -> bool {
-    matches!(mesh.part, Part::EyeLeft | Part::EyeRight)
 }
 
 /// Leaves shapes out and renames shapes as the settings ask.

@@ -123,6 +123,11 @@ impl Part {
         Self::Other,
     ];
 
+    /// Whether it is an eyeball, which turns and does not deform.
+    pub fn is_eye(self) -> bool {
+        matches!(self, Self::EyeLeft | Self::EyeRight)
+    }
+
     /// Its name in files.
     pub fn name(self) -> &'static str {
         match self {

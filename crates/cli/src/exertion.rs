@@ -17,8 +17,8 @@ use mimique_analysis::{Language, ReportFile};
 use mimique_exertion::{
     Clip, Expression, ExpressionModel, Face, Series, ShapeTable, Start, Window,
 };
-use mimique_mocap::{WeightOptions, WeightsTable, read_weights_file};
-use mimique_stimulus::{ExertionTake, sha256_of_file};
+use mimique_mocap::{WeightOptions, WeightsTable};
+use mimique_stimulus::{ExertionTake, read_performance, sha256_of_file};
 
 pub use self::args::Args;
 use self::args::{Command, Options};
@@ -157,7 +157,7 @@ fn window(args: &Options, span: f64, over: Option<&WeightsTable>) -> anyhow::Res
 /// Weights of something else, at the rate of the face.
 fn other_weights(file: &Path, rate_hz: f64) -> anyhow::Result<WeightsTable> {
     let options = WeightOptions { rate_hz: Some(rate_hz), ..WeightOptions::default() };
-    let table = read_weights_file(file, &options).map_err(|e| blame(file, e))?;
+    let table = read_performance(file, &options).map_err(|e| blame(file, e))?.table;
     Ok(table.resampled(rate_hz))
 }
 

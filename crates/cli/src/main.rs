@@ -10,6 +10,7 @@ mod backup;
 mod border_options;
 mod capture_options;
 mod check;
+mod compare;
 mod eaf_file;
 mod erase;
 mod exertion;
@@ -67,6 +68,8 @@ enum Command {
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
+    /// Hold weights of one performance against each other: in millimetres, in smoothness, in what the markers did
+    Compare(compare::Args),
     /// Choose how many markers a face needs, and where; or check a map
     Layout(Box<layout::Args>),
     /// Turn a sequence of vertices into an avatar and the weights that play it
@@ -122,6 +125,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(args, json),
         Command::Sample(args) => sample::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
+        Command::Compare(args) => compare::run(&args, json),
         Command::Layout(args) => layout::run(*args, json),
         Command::Vertices(args) => vertices::run(&args, json),
         Command::Repair(args) => repair::run(*args, json),

@@ -1,6 +1,7 @@
 //! `mimique solve`: avatar, capture and marker map in, weights a frame and a report out.
 
 mod args;
+mod gaze;
 mod method_options;
 mod parameter_options;
 mod print;
@@ -119,6 +120,7 @@ fn read(args: &Args, markers: &Path, spec: &mut MethodSpec) -> anyhow::Result<In
             markers: unique("--scale", &args.scale)?.into_iter().map(|(k, f)| (k, f.0)).collect(),
         },
         depth: args.depth,
+        gaze: gaze::given(args)?,
         training: training(args, &avatar.avatar.shape_names)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
@@ -198,7 +200,8 @@ fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
         SolveError::Training(_) | SolveError::TrainingMarkers { .. } => {
             args.training.as_deref().unwrap_or(Path::new("--training"))
         }
-        SolveError::Surface(_) => &args.avatar,
+        SolveError::Surface(_) | SolveError::NoGazeShapes => &args.avatar,
+        SolveError::NoGazeTarget { .. } => Path::new("--gaze-target"),
         SolveError::NoScaledMarker { .. } | SolveError::ScaleFrames { .. } => markers,
         SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
         SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => markers,

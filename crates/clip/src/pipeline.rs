@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use mimique_geometry::RigidMotion;
 use mimique_solver::{
-    Adaptation, Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch,
+    Adaptation, Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch, Gaze, Group,
     MarkerColumns, MarkerFrames, MarkerScales, MethodSpec, Operators, SurfaceDepth,
 };
 
-use crate::gaze::{gaze_at_rest, with_gaze_at_rest};
+use crate::gaze::{bring_eyes_together, gaze_at_rest, with_gaze_at_rest};
 use crate::packs::SegmentMarkers;
 use crate::unsolved::{UnsolvedFrames, settle};
 
@@ -108,10 +108,18 @@ pub fn solve_markers(
     let front_end = clock();
     let mut solution = fit.solve_take(&motion.displacements)?;
     let width = 3 * fit.marker_count();
-    settle(&mut solution, spec.unsolved.unwrap_or_default(), |frame, weights| {
+    let residual = |frame: usize, weights: &[f64]| {
         fit.residual(&motion.displacements[frame * width..(frame + 1) * width], weights)
-    })
-    .map_err(PipelineError::Unsolved)?;
+    };
+    settle(&mut solution, spec.unsolved.unwrap_or_default(), residual)
+        .map_err(PipelineError::Unsolved)?;
+    if spec.gaze() == Gaze::Together && spec.method.uses(Group::Shapes) {
+        bring_eyes_together(&mut solution.weights, shape_names);
+        let rows = solution.weights.chunks_exact(shape_names.len());
+        for (frame, (report, row)) in solution.reports.iter_mut().zip(rows).enumerate() {
+            report.residual = residual(frame, row);
+        }
+    }
     put_driven(&mut solution.weights, shape_names, take);
     let seconds = PipelineSeconds {
         set_up: set_up - start,
@@ -121,7 +129,7 @@ pub fn solve_markers(
     Ok(MarkerSolution {
         motion,
         fit,
-        gaze_at_rest: gaze_at_rest(&spec, shape_names),
+        gaze_at_rest: gaze_at_rest(&spec, shape_names, &take.markers.driven_shapes),
         weights: solution.weights,
         reports: solution.reports,
         seconds,

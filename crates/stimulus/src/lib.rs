@@ -48,6 +48,7 @@ mod avatar;
 mod built_in;
 mod checks;
 mod exertion;
+mod gaze;
 mod marker_map;
 mod prepare;
 mod provenance;
@@ -64,13 +65,15 @@ pub use built_in::{
     built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
 };
 pub use checks::{
-    ADVISED_SMOOTHING, BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem,
-    MarkerDiagnosis, STILL_MM, SmoothingAdvice, SmoothingReason,
+    ADVISED_SMOOTHING, BankDiagnosis, DependentShape, GazeBeyond, GazeFault, GazeStatistics,
+    HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM, SmoothingAdvice,
+    SmoothingReason,
 };
 pub use exertion::{
     Drawn, DrawnCourse, DrawnLine, ExertionDrawing, ExertionPart, ExertionPartError, ExertionTake,
     MotionOptions, PartFacts, built_in_bvh, built_in_motion,
 };
+pub use gaze::{GazeTrack, GazeTrackError, GivenGaze};
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
     MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,

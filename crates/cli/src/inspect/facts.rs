@@ -6,7 +6,8 @@ use mimique_avatar::Avatar;
 use mimique_clip::{TakeContent, decode_operators, decode_take, sha256_hex};
 use mimique_mocap::{Activity, ActivityColumn, Sport, WeightsTable};
 use mimique_solver::VertexAssociation;
-use mimique_stimulus::{AvatarSkin, MarkerMap};
+
+use mimique_stimulus::{AvatarSkin, GazeStatistics, MarkerMap};
 use mimique_study::Multilingual as _;
 use serde_json::{Value, json};
 
@@ -127,7 +128,11 @@ pub(super) fn weights_facts(format: &str, table: &WeightsTable) -> Value {
         .map(|((low, high), name)| format!("{name} ({low:.3} to {high:.3})"))
         .collect();
     let interpolated: usize = table.filled.iter().map(|(first, end)| end - first).sum();
+    let gaze = GazeStatistics::of(names, weights);
+    let first = table.frames.first().copied().unwrap_or_default();
     json!({
+        "gaze": gaze.as_ref().map(GazeStatistics::words),
+        "gaze_warning": gaze.and_then(|gaze| gaze.warning(first)),
         "kind": "weights",
         "format": format,
         "frames": weights.len() / n,

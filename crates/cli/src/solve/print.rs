@@ -79,6 +79,9 @@ fn print_text(
             "gaze at rest: no gaze is given, so {count} shapes that turn the eyes stay at 0"
         )?;
     }
+    if let Some(gaze) = report.gaze.as_ref().filter(|gaze| !gaze.is_still()) {
+        writeln!(out, "gaze {}", gaze.words())?;
+    }
     print_regression(out, report)?;
     writeln!(
         out,

@@ -6,7 +6,8 @@ use anyhow::bail;
 use mimique_clip::weights_hash;
 use mimique_mocap::WeightOptions;
 use mimique_stimulus::{
-    Performance, Provenance, RecordedWeights, avatar_key, read_performance, sha256_of_file,
+    GazeStatistics, Performance, Provenance, RecordedWeights, avatar_key, read_performance,
+    sha256_of_file,
 };
 use serde_json::json;
 
@@ -39,7 +40,10 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         )
         .json("weights", hash.as_str())
         .hash();
+    let gaze = GazeStatistics::of(&table.shape_names, &table.weights);
+    let first_frame = table.frames.first().copied().unwrap_or_default();
     let mut warnings = names.warnings(true);
+    warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(first_frame)));
     warnings.extend(write_weights(&table, &args.out)?);
     let report = json!({
         "method": {"method": "recorded"},
@@ -48,6 +52,7 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "rate_hz": table.rate_hz(),
         "shapes": table.shape_names.len(),
         "names": names,
+        "gaze": gaze,
         "warnings": warnings,
         "notes": notes,
         "weights_hash": hash,
@@ -73,6 +78,9 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         table.shape_names.len(),
         recorded.shape_names.len() - names.unused.len(),
     )?;
+    if let Some(gaze) = gaze.as_ref().filter(|gaze| !gaze.is_still()) {
+        writeln!(out, "gaze {}", gaze.words())?;
+    }
     writeln!(out, "weights {hash}\nprovenance {provenance}")?;
     let mocap = args.mocap.display();
     notes.iter().try_for_each(|note| writeln!(out, "note: {mocap}: {note}"))?;

@@ -110,6 +110,9 @@ refusals! {
     NoExertion { problem: String } = CONFLICT "no-exertion",
         en "the exertion cannot be computed: {problem}"; "see that the study's files are where it names them",
         fr "l’effort ne peut pas être calculé : {problem}"; "vérifiez que les fichiers de l’étude sont où elle les nomme";
+    NoComparison { problem: String } = CONFLICT "no-comparison",
+        en "the clips cannot be compared: {problem}"; "start the server again, so that it prepares the study anew",
+        fr "les clips ne peuvent pas être comparés : {problem}"; "redémarrez le serveur, afin qu’il prépare de nouveau l’étude";
     UnknownSession = NOT_FOUND "unknown-session",
         en "no session has this token"; "start the study again from its address",
         fr "aucune session n’a ce jeton"; "reprenez l’étude depuis son adresse";

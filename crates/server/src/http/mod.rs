@@ -73,6 +73,7 @@ fn researchers(app: &App) -> Router<App> {
     let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
     interface::downloads()
         .route("/preview/{study}", get(pages::preview))
+        .route("/preview/{study}/comparison", get(previews::comparison))
         .route("/preview/{study}/exertion", get(previews::exertion))
         .route("/studio", get(pages::studio))
         .route("/researcher", get(studies::home))

@@ -3,10 +3,12 @@
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use axum::http::HeaderMap;
+use mimique_comparison::StudyComparison;
 use mimique_stimulus::{ExertionDrawing, exertion_drawing};
 use serde::Deserialize;
 
 use super::pages::may_preview;
+use crate::comparison::comparison_of;
 use crate::error::Error;
 use crate::state::App;
 
@@ -14,6 +16,23 @@ use crate::state::App;
 #[derive(Deserialize)]
 pub(crate) struct OfClip {
     clip: String,
+}
+
+/// How the clips of each segment differ, and in what they should not.
+pub(crate) async fn comparison(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+) -> Result<Json<StudyComparison>, Error> {
+    may_preview(&app, &study, &headers).await?;
+    let hosted = app.study(&study)?;
+    let compute = move || {
+        let places = hosted.places().ok_or(Error::NotFound)?;
+        comparison_of(hosted.study(), hosted.clips(), &places.packs)
+            .map_err(|problem| Error::NoComparison { problem })
+    };
+    let computed = tokio::task::spawn_blocking(compute).await.map_err(Error::internal)?;
+    computed.map(Json)
 }
 
 /// The body, the courses and the breath of a clip whose capture is an exertion; null for other clips.

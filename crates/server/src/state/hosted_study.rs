@@ -96,6 +96,11 @@ impl HostedStudy {
         &self.study
     }
 
+    /// Its clips and media, where their packs are.
+    pub(crate) fn clips(&self) -> &BTreeMap<String, ClipSource> {
+        &self.bundle.clips
+    }
+
     /// Whether answers count.
     pub fn stage(&self) -> Stage {
         self.stage

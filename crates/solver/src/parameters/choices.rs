@@ -66,8 +66,11 @@ choice! {
         /// those that the bounds name.
         #[default]
         Rest = "rest",
-        /// The markers, as every other shape.
+        /// The markers, as every other shape: each eye by itself, also outwards from the other.
         Markers = "markers",
+        /// The markers, both eyes brought together to one gaze: the mean of their azimuths and elevations,
+        /// their vergence not below 0.
+        Together = "together",
     }
 }
 

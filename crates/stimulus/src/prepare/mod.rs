@@ -30,7 +30,7 @@ use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
 use crate::provenance::Provenance;
-use crate::{ExertionDrawing, RecordedWeights};
+use crate::{ExertionDrawing, GazeStatistics, RecordedWeights};
 
 /// Whether what a study names is there: a file, or a folder of an avatar's poses.
 pub fn is_source(path: &Path) -> bool {
@@ -197,6 +197,9 @@ fn prepare_clip(
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(method_pointer(clip), e))?;
     remarks.warnings.extend(solved.warnings.iter().map(|w| (at.clone(), w.clone())));
+    let gaze = GazeStatistics::of(&solved.shape_names, &solved.weights);
+    let gaze = gaze.and_then(|gaze| gaze.warning(0));
+    remarks.warnings.extend(gaze.map(|w| (at.clone(), format!("{}: {w}", clip.id))));
     let mut provenance = Provenance::new()
         .json("avatar", avatar.hash.as_str())
         .json("operators", operators.hash.as_str())
@@ -318,8 +321,9 @@ fn recorded(
     warnings: &mut Vec<(String, String)>,
 ) -> Result<Vec<u8>, PrepareError> {
     let shape_names = &avatar.shape_names;
-    let RecordedWeights { table, names } = RecordedWeights::of(&recording.table, shape_names)
-        .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
+    let RecordedWeights { mut table, names } =
+        RecordedWeights::of(&recording.table, shape_names)
+            .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
     warnings.extend(recording.warnings.iter().cloned());
     warnings.extend(
         names.warnings(!recording.is_computed).into_iter().map(|w| (recording.pointer.clone(), w)),
@@ -327,6 +331,9 @@ fn recorded(
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
     })?;
+    if let Some(gaze) = &recording.gaze {
+        gaze.put_into(&mut table).map_err(|e| PrepareError::new(&recording.pointer, e))?;
+    }
     let frames = recording.frames.clone();
     let weights: Vec<f64> = frames.flat_map(|frame| table.row(frame).iter().copied()).collect();
     let take = TakePack {

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use crate::read_performance;
+use mimique_avatar::GazeAngles;
 use mimique_clip::sha256_hex;
 use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
 use mimique_study::{
-    AvatarSource, CaptureSource, Clip, ExertionCapture, Segment, Span, Study, resolve_path,
-    video_type,
+    AvatarSource, CaptureSource, Clip, ExertionCapture, GazeSource, HeldGaze, Segment, Span, Study,
+    resolve_path, video_type,
 };
 use serde_json::json;
 
@@ -20,7 +20,10 @@ use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
-use crate::{ExertionDrawing, MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
+use crate::{
+    ExertionDrawing, GazeTrack, GivenGaze, MarkerMap, RepairSidecar, TakeOptions, Training,
+    read_performance, split_shapes,
+};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -126,6 +129,7 @@ impl<'a> Sources<'a> {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
             repair: file.repair.clone(),
+            gaze: self.gaze(segment)?,
             ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
@@ -145,6 +149,7 @@ impl<'a> Sources<'a> {
             .json("map", map_key)
             .json("neutral", json!(options.neutral.as_ref().map(|n| [n.start, n.end])))
             .json("head", json!(options.head))
+            .json("gaze", json!(options.gaze.as_ref().map(GivenGaze::key)))
             .hash();
         Ok(Performance {
             pointer: at,
@@ -183,6 +188,47 @@ impl<'a> Sources<'a> {
                 at,
                 "no marker map; name the file that says where each marker sits on the avatar",
             )),
+        }
+    }
+
+    /// The gaze that is given for a segment's capture; none where the eyes rest.
+    pub fn gaze(&self, segment: &Segment) -> Result<Option<GivenGaze>, PrepareError> {
+        let id = &segment.capture;
+        let at = pointer(&["stimuli", "captures", id, "gaze"]);
+        let capture = self.study.stimuli.captures.get(id);
+        let Some(gaze) = capture.and_then(|capture| capture.gaze.as_ref()) else { return Ok(None) };
+        let track = |table: &WeightsTable, later_s: f64, at: &str| {
+            let track = GazeTrack::of(table, later_s).map_err(|e| PrepareError::new(at, e))?;
+            Ok(Some(GivenGaze::Track(track)))
+        };
+        match gaze.source() {
+            Some(GazeSource::Held(HeldGaze { azimuth, elevation, vergence })) => {
+                Ok(Some(GivenGaze::Held(GazeAngles { azimuth, elevation, vergence })))
+            }
+            Some(GazeSource::Target(label)) => Ok(Some(GivenGaze::Target(label.to_owned()))),
+            Some(GazeSource::File(file, later_s)) => {
+                let at = format!("{at}/file");
+                let path = self.path(file, &at)?;
+                let table = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
+                track(&table, later_s, &at)
+            }
+            Some(GazeSource::Performed) => {
+                let source = capture.and_then(|capture| capture.source());
+                let (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) =
+                    (source, segment.span())
+                else {
+                    let message =
+                        "only a built-in actor performs a gaze; give held, file or target";
+                    return Err(PrepareError::new(at, message));
+                };
+                track(&builtin::performed(actor, what).0, 0.0, &at)
+            }
+            None => {
+                let message = "give exactly one of held, file, target and performed";
+                Err(PrepareError::new(at, message))
+            }
         }
     }
 
@@ -229,7 +275,7 @@ impl<'a> Sources<'a> {
     /// The segment of that identifier as recorded weights, at the rate that is shown.
     pub fn recording(&self, segment: &str) -> Result<Recording, PrepareError> {
         let (segment, at) = self.segment(segment)?;
-        let recording = self.recorded(segment, at)?;
+        let recording = Recording { gaze: self.gaze(segment)?, ..self.recorded(segment, at)? };
         let id = &segment.capture;
         match self.study.stimuli.captures.get(id).and_then(|c| c.rate_hz) {
             Some(rate_hz) => {
@@ -252,6 +298,7 @@ impl<'a> Sources<'a> {
                     table,
                     frames,
                     is_computed: false,
+                    gaze: None,
                     warnings: vec![],
                 });
             }
@@ -427,8 +474,9 @@ fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording,
         let message = format!("give first and end within the {frames} frames of the capture");
         return Err(PrepareError::new(at, message));
     }
+    let frames = first..end;
     let warnings = table.notes.iter().map(|note| (at.clone(), note.clone())).collect();
-    Ok(Recording { pointer: at, table, frames: first..end, is_computed: false, warnings })
+    Ok(Recording { pointer: at, table, frames, is_computed: false, gaze: None, warnings })
 }
 
 /// A file that cannot be read.

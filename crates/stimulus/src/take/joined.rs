@@ -12,6 +12,7 @@ use mimique_solver::{
 
 use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
+use super::gaze::JoinedGaze;
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
 use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
@@ -48,6 +49,7 @@ pub struct JoinedTake<'a> {
     pub(crate) first_frame: u64,
     pub(crate) repair: Option<String>,
     pub(crate) lids: Vec<JoinedLid>,
+    pub(crate) gaze: Option<JoinedGaze>,
     pub(crate) map_origin: MapOrigin,
     pub(crate) warnings: Vec<String>,
 }
@@ -102,6 +104,10 @@ impl<'a> JoinedTake<'a> {
         joined.repair = options.repair.clone();
         joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
+        if let Some(given) = &options.gaze {
+            joined.add_gaze(capture, given)?;
+            joined.warnings.extend(joined.gaze_beyond_eyes());
+        }
         Ok(joined)
     }
 
@@ -183,6 +189,7 @@ impl<'a> JoinedTake<'a> {
             first_frame: capture.first_frame,
             repair: None,
             lids: Vec::new(),
+            gaze: None,
             map_origin: MapOrigin::Unknown,
             warnings,
         })
@@ -191,6 +198,11 @@ impl<'a> JoinedTake<'a> {
     /// What should be said of map, capture and avatar together.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// The face markers on the welded skin, in the order of operators and displacements.
+    pub fn sites(&self) -> &[MarkerSite] {
+        &self.markers
     }
 
     /// Whether scale factors come from the bank's range of motion.

@@ -31,6 +31,13 @@ impl JoinedTake<'_> {
         if !spec.method.uses(Group::Shapes) {
             return spec;
         }
+        // A gaze that is given turns the eyes, and nothing else does.
+        for name in self.gaze.iter().flat_map(|gaze| &gaze.names) {
+            spec.bounds.remove(name);
+            if !spec.locked.contains(name) {
+                spec.locked.push(name.clone());
+            }
+        }
         for name in self.lids.iter().flat_map(|l| [Some(&l.closed), l.wide.as_ref()]).flatten() {
             let bounded = spec.bounds.contains_key(name);
             if !bounded && !spec.locked.contains(name) {

@@ -2,6 +2,7 @@
 
 mod adjustments;
 mod found_neutral;
+mod gaze;
 mod joined;
 mod lid_opening;
 mod lids;

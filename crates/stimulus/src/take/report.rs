@@ -6,7 +6,7 @@ use mimique_solver::{
 };
 use serde::Serialize;
 
-use crate::checks::{HeadMarker, LabelProblem, SmoothingAdvice};
+use crate::checks::{GazeStatistics, HeadMarker, LabelProblem, SmoothingAdvice};
 
 /// The seconds of each stage of a solve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -111,6 +111,9 @@ pub struct SolveReport {
     pub head_lowpass_hz: Option<f64>,
     /// The shapes that turn the eyes and rest, since no gaze is given.
     pub gaze_at_rest: Vec<String>,
+    /// Where the eyes look; none of a bank that turns no eye.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<GazeStatistics>,
     /// The method with every parameter that it used.
     pub method: MethodSpec,
     /// l = sqrt(tr(D^T D) / N), millimetres.

@@ -11,7 +11,7 @@ use super::report::{
 };
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule, SmoothingAdvice};
+use crate::{AvatarSkin, Depth, GazeStatistics, GivenGaze, MarkerMap, ScaleRule, SmoothingAdvice};
 
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,6 +29,8 @@ pub struct TakeOptions {
     pub scale: ScaleRule,
     /// Where the third coordinate comes from; the map's where not given.
     pub depth: Option<Depth>,
+    /// Where the eyes look; they rest where it is not given, but for what the method asks of the markers.
+    pub gaze: Option<GivenGaze>,
 }
 
 /// Weights and their report.
@@ -139,6 +141,8 @@ fn report(
     warnings.extend(smoothing.as_ref().map(SmoothingAdvice::sentence));
     warnings.extend(unseen_shapes(operators, spec));
     warnings.extend(summary.warnings(joined.first_frame));
+    let gaze = GazeStatistics::of(&operators.parts().shape_names, &solution.weights);
+    warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(joined.first_frame)));
     SolveReport {
         avatar: joined.skin.name.clone(),
         vertices: joined.skin.mesh.positions.len(),
@@ -149,6 +153,7 @@ fn report(
         rate_hz: joined.rate_hz,
         head_lowpass_hz: solution.motion.head_lowpass_hz,
         gaze_at_rest: solution.gaze_at_rest.clone(),
+        gaze,
         method: spec.resolved(),
         data_scale_mm: 1e3 * operators.data_scale().sqrt(),
         shell_scale_m2: operators.shell_scale(),

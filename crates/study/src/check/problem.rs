@@ -320,6 +320,15 @@ NothingPasses { hertz: f64 }: "out-of-range",
     "{hertz} Hz lets nothing pass", "take a frequency above 0, or leave it out";
 FrameRate { hertz: f64 }: "out-of-range", "{hertz} frames a second show no face as it moves",
     "take 60 (what most displays show), another rate from 15 to 1000, or leave it out";
+ClipsUnlike { what: String, remedy: &'static str }: "clips-unlike", "{what}", "{remedy}";
+NotPrepared { message: String }: "not-prepared", "{message}", "correct it, or the study cannot be served";
+GazeSources: "bad-gaze", "not exactly one of held, file, target and performed gives the gaze",
+    "give one of them, as \"gaze\": {{ \"held\": {{ \"azimuth\": 0 }} }}";
+GazeAngle { degrees: f64, least: f64, most: f64 }: "out-of-range",
+    "eyes do not turn by {degrees} degrees", "write degrees from {least} to {most}";
+GazeTarget: "bad-gaze", "only a capture of a file has a marker that the eyes look at",
+    "give the gaze by held or file";
+GazePerformed: "bad-gaze", "only a built-in actor performs a gaze", "give the gaze by held, file or target";
 NoMarkers: "no-markers", "no marker map: nothing says where the markers sit on the avatar",
     "add \"markers\": \"map.json\"";
 NoNeutral: "no-neutral", "no frames of the neutral face",

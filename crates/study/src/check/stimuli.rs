@@ -7,7 +7,7 @@ use super::problem::Problem;
 use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
-use crate::study_file::{Capture, CaptureSource, Component, Sequence, SequenceItem};
+use crate::study_file::{Capture, CaptureSource, Component, GazeSource, Sequence, SequenceItem};
 
 /// Frames a second that a clip can be shown at.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=1000.0;
@@ -27,6 +27,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         file(capture.file.as_deref(), &below(&pointer, "file"), lookup, issues);
         file(capture.markers.as_deref(), &below(&pointer, "markers"), lookup, issues);
         recorded(capture, &pointer, issues);
+        gaze(capture, &below(&pointer, "gaze"), lookup, issues);
         if let Some(own) = &capture.exertion {
             exertion::examine(capture, own, &pointer, lookup, issues);
         }
@@ -104,6 +105,40 @@ fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
         && (capture.markers.is_some() || capture.unit.is_some() || !capture.head.is_empty())
     {
         issues.error(pointer, Problem::BuiltinMarkers);
+    }
+}
+
+/// The gaze: from one source, of angles that eyes have, from a capture that can give it.
+fn gaze(capture: &Capture, pointer: &str, lookup: &FileLookup<'_>, issues: &mut Issues) {
+    let Some(gaze) = &capture.gaze else { return };
+    match gaze.source() {
+        None => issues.error(pointer, Problem::GazeSources),
+        Some(GazeSource::Held(held)) => {
+            let angles = [
+                ("azimuth", held.azimuth, -45.0..=45.0),
+                ("elevation", held.elevation, -45.0..=45.0),
+                ("vergence", held.vergence, 0.0..=45.0),
+            ];
+            for (key, degrees, range) in angles {
+                if !range.contains(&degrees) {
+                    let (least, most) = (*range.start(), *range.end());
+                    let place = below(&below(pointer, "held"), key);
+                    issues.error(place, Problem::GazeAngle { degrees, least, most });
+                }
+            }
+        }
+        Some(GazeSource::File(path, _)) => {
+            file(Some(path), &below(pointer, "file"), lookup, issues);
+        }
+        Some(GazeSource::Target(_))
+            if !matches!(capture.source(), Some(CaptureSource::File(_))) =>
+        {
+            issues.error(below(pointer, "target"), Problem::GazeTarget);
+        }
+        Some(GazeSource::Performed) if capture.builtin.is_none() => {
+            issues.error(below(pointer, "performed"), Problem::GazePerformed);
+        }
+        Some(_) => {}
     }
 }
 

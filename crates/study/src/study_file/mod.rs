@@ -50,9 +50,9 @@ pub use sequence::{
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
 };
 pub use stimuli::{
-    Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource,
-    ClipCross, ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
-    video_type,
+    Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureGaze,
+    CaptureSource, ClipCross, ClipEntry, ClipRules, DATA_PREFIX, GazeSource, HeldGaze, Look,
+    Performance, Segment, Span, Stimuli, video_type,
 };
 pub use tables::{Layout, TableLayout};
 

@@ -164,6 +164,9 @@ pub struct Capture {
     /// Cut-off of the low-pass filter on the head's motion, Hz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_lowpass_hz: Option<f64>,
+    /// Where the eyes look in every clip of this capture; they rest if it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<CaptureGaze>,
     /// Frames a second that are solved and shown, the capture's own if not given. Fewer than the
     /// capture has: low-passed below what they can hold, then brought to the rate. At 60 Hz a
     /// participant loads and solves a third of a capture of 200 Hz. Segments and `neutral` still
@@ -182,6 +185,71 @@ pub struct BuiltinCapture {
     /// Standard deviation of the sensor's noise, millimetres; the generator's default if not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_mm: Option<f64>,
+}
+
+/// Where the eyes look in a capture: exactly one of `held`, `file`, `target` and `performed`. Every method shows
+/// the same gaze, and so do recorded weights.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct CaptureGaze {
+    /// One gaze throughout.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<HeldGaze>,
+    /// A table of `time` in seconds, `azimuth`, `elevation` and `vergence` in degrees, or recorded weights
+    /// with eyeLook shapes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// How many seconds after the file's clock the capture begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub later_s: Option<f64>,
+    /// Label of a marker of the capture that stands where the eyes look.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
+    /// The gaze that a built-in actor performs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub performed: bool,
+}
+
+/// One gaze of both eyes, degrees.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct HeldGaze {
+    /// To the person's left above 0.
+    #[serde(default)]
+    pub azimuth: f64,
+    /// Upwards above 0.
+    #[serde(default)]
+    pub elevation: f64,
+    /// Angle between both lines of sight: 0 for what is far away.
+    #[serde(default)]
+    pub vergence: f64,
+}
+
+/// What gives the gaze of a capture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GazeSource<'a> {
+    /// One gaze throughout.
+    Held(HeldGaze),
+    /// A file, and how many seconds after its clock the capture begins.
+    File(&'a str, f64),
+    /// A marker that stands where the eyes look.
+    Target(&'a str),
+    /// What the built-in actor performs.
+    Performed,
+}
+
+impl CaptureGaze {
+    /// What gives it; `None` unless exactly one is given.
+    pub fn source(&self) -> Option<GazeSource<'_>> {
+        let later_s = self.later_s.unwrap_or_default();
+        match (self.held, &self.file, &self.target, self.performed) {
+            (Some(held), None, None, false) => Some(GazeSource::Held(held)),
+            (None, Some(file), None, false) => Some(GazeSource::File(file, later_s)),
+            (None, None, Some(target), false) => Some(GazeSource::Target(target)),
+            (None, None, None, true) => Some(GazeSource::Performed),
+            _ => None,
+        }
+    }
 }
 
 /// Where a capture comes from.
