@@ -29,6 +29,7 @@ mod pictures;
 mod read;
 mod read_error;
 mod settings;
+mod template;
 
 pub use driven::{Driven, DrivenError};
 pub use glb::{GlbWriteError, WeightAnimation, read_gltf, read_weight_animation, write_glb};
@@ -37,3 +38,4 @@ pub use parts::find_eyeballs;
 pub use read::{ReadAvatar, read_avatar, read_avatar_bytes};
 pub use read_error::ReadError;
 pub use settings::AvatarSettings;
+pub use template::{Template, read_template};

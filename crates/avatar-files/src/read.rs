@@ -213,7 +213,7 @@ fn skin_extent(avatar: &Avatar) -> Option<f64> {
 
 /// A face is 0.15 m high, a person 2 m: below 5 units metres, below 100 centimetres (a head and
 /// its shoulders), above it millimetres.
-fn unit_of(extent: f64) -> f64 {
+pub(crate) fn unit_of(extent: f64) -> f64 {
     match extent {
         e if e < 5.0 => 1.0,
         e if e < 100.0 => 0.01,

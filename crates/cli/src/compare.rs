@@ -8,9 +8,11 @@ use mimique_comparison::{
     ComparedFace, Difference, FaceMotion, MarkerCorrelation, Measures, difference,
     marker_correlation, measures,
 };
-use mimique_mocap::{CaptureFile, ReadOptions, WeightOptions, WeightsTable, read_weights_file};
+use mimique_mocap::{CaptureFile, ReadOptions, WeightOptions, WeightsTable};
 use mimique_solver::{Method, MethodSpec};
-use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, RecordedWeights, TakeOptions};
+use mimique_stimulus::{
+    AvatarSkin, JoinedTake, MarkerMap, RecordedWeights, TakeOptions, read_performance,
+};
 use serde::Serialize;
 
 use crate::output;
@@ -113,7 +115,7 @@ fn weights_on(
     rate_hz: Option<f64>,
 ) -> anyhow::Result<(Vec<f64>, f64)> {
     let options = WeightOptions { rate_hz, shape_names: &skin.shape_names };
-    let recorded = read_weights_file(path, &options).map_err(|e| blame(path, e))?;
+    let recorded = read_performance(path, &options).map_err(|e| blame(path, e))?.table;
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &skin.shape_names).map_err(|e| blame(path, e))?;
     if names.driven.is_empty() {

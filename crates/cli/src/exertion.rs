@@ -17,8 +17,8 @@ use mimique_analysis::{Language, ReportFile};
 use mimique_exertion::{
     Clip, Expression, ExpressionModel, Face, Series, ShapeTable, Start, Window,
 };
-use mimique_mocap::{WeightOptions, WeightsTable, read_weights_file, weights_files};
-use mimique_stimulus::{ExertionTake, sha256_of_file};
+use mimique_mocap::{WeightOptions, WeightsTable};
+use mimique_stimulus::{ExertionTake, read_performance, sha256_of_file};
 
 pub use self::args::Args;
 use self::args::{Command, Options};
@@ -71,10 +71,11 @@ fn face(args: &Options, json: bool) -> anyhow::Result<()> {
 
     // Everything is computed before anything is written.
     let mut files: Vec<(std::path::PathBuf, Vec<u8>)> = Vec::new();
+    let mut note = None;
     if let Some(out) = &args.out {
-        files.extend(
-            weights_files(&table, out).map_err(|e| anyhow!("--out: {}: {e}", out.display()))?,
-        );
+        let (written, left_out) = crate::solve::weights_in_files(&table, out)?;
+        files.extend(written);
+        note = left_out;
     }
     if let Some(file) = &args.series {
         files.push((file.clone(), take.series.to_csv().into_bytes()));
@@ -84,7 +85,10 @@ fn face(args: &Options, json: bool) -> anyhow::Result<()> {
         let title = format!("Heart rate, EPOC and curves of {}", inputs.name());
         files.push((file.clone(), time_courses(&title, &panels, report.marked()).into_bytes()));
     }
-    let told = report.told(&table)?;
+    let mut told = report.told(&table)?;
+    if let (Some(note), Some(warnings)) = (note, told["warnings"].as_array_mut()) {
+        warnings.push(note.into());
+    }
     let mut pages = None;
     if let Some(file) = &args.report {
         let text = serde_json::to_string_pretty(&told)? + "\n";
@@ -153,7 +157,7 @@ fn window(args: &Options, span: f64, over: Option<&WeightsTable>) -> anyhow::Res
 /// Weights of something else, at the rate of the face.
 fn other_weights(file: &Path, rate_hz: f64) -> anyhow::Result<WeightsTable> {
     let options = WeightOptions { rate_hz: Some(rate_hz), ..WeightOptions::default() };
-    let table = read_weights_file(file, &options).map_err(|e| blame(file, e))?;
+    let table = read_performance(file, &options).map_err(|e| blame(file, e))?.table;
     Ok(table.resampled(rate_hz))
 }
 

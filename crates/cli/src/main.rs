@@ -35,6 +35,7 @@ mod solve;
 mod study_file;
 mod test_command;
 mod verify;
+mod vertices;
 
 use std::process::ExitCode;
 
@@ -71,6 +72,8 @@ enum Command {
     Compare(compare::Args),
     /// Choose how many markers a face needs, and where; or check a map
     Layout(Box<layout::Args>),
+    /// Turn a sequence of vertices into an avatar and the weights that play it
+    Vertices(vertices::Args),
     /// Repair a capture: swaps, spikes, gaps; filter, resample, hold the head still
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
@@ -124,6 +127,7 @@ fn main() -> ExitCode {
         Command::Solve(args) => solve::run(*args, json),
         Command::Compare(args) => compare::run(&args, json),
         Command::Layout(args) => layout::run(*args, json),
+        Command::Vertices(args) => vertices::run(&args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
         Command::Annotate(args) => annotate::run(args, json),

@@ -69,6 +69,16 @@ pub enum ReadError {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// A JSON document is wrong at a value.
+    #[error("{at}: {what}; {remedy}")]
+    Json {
+        /// Which value, e.g. `frame 12, weights`.
+        at: String,
+        /// What is wrong, with the value.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// A text file is wrong at a line.
     #[error("line {line}, {section}: {what}; {remedy}")]
     Text {
@@ -142,6 +152,15 @@ impl ReadError {
         remedy: &'static str,
     ) -> Self {
         Self::Binary { offset, section, what: what.into(), remedy }
+    }
+
+    /// An error at a value of a JSON document.
+    pub(crate) fn in_json(
+        at: impl Into<String>,
+        what: impl Into<String>,
+        remedy: &'static str,
+    ) -> Self {
+        Self::Json { at: at.into(), what: what.into(), remedy }
     }
 
     /// An error at a line of a text file.

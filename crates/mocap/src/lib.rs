@@ -55,4 +55,4 @@ pub use repair::{
     RepairPlan, RepairRecord, Repaired, RepairedGap, RepairedSwap, ResampleError, Spike,
     Stabilisation, StabiliseError, Swap, fill_gaps, gaps, repair, resample, stabilise,
 };
-pub use write::{capture_file, weights_files};
+pub use write::{capture_file, weights_files, written_columns};

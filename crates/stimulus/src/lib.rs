@@ -57,7 +57,10 @@ mod suggest_map;
 mod take;
 mod weights;
 
-pub use avatar::{AvatarSkin, SplitError, VertexFrames, lock_shapes, split_shapes, surface_avatar};
+pub use avatar::{
+    AvatarSkin, SplitError, VertexBank, VertexBankError, VertexBankOptions, VertexFrames,
+    lock_shapes, split_shapes, surface_avatar,
+};
 pub use built_in::{
     built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
 };
@@ -95,5 +98,6 @@ pub use take::{
     TakeOptions, Training, sidecar_path, solve_take,
 };
 pub use weights::{
-    Driven, RecordedNames, RecordedWeights, WeightBeyondSense, WeightSteps, weight_steps,
+    Driven, Performance, PerformanceError, RecordedNames, RecordedWeights, WeightBeyondSense,
+    WeightSteps, read_performance, weight_steps, weights_for_file,
 };

@@ -19,6 +19,8 @@ const MOST_FRAMES: usize = 720_000;
 /// Weights of morph targets over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightAnimation {
+    /// What is worth saying: which animation it is, where the file has several.
+    pub notes: Vec<String>,
     /// The targets' names, in the order in which meshes name them.
     pub shape_names: Vec<String>,
     /// Frames per second.
@@ -39,15 +41,24 @@ struct Track {
 /// Reads the first animation of a glTF file that moves morph targets; none where there is none.
 ///
 /// `folder` is where a `.gltf` file's buffers are looked for. Keys are sampled at their own rate where they are
-/// evenly spaced, else at 60 Hz, as the file interpolates them.
+/// evenly spaced, else at 60 Hz, as the file interpolates them (LINEAR, STEP, CUBICSPLINE).
 ///
 /// # Errors
-/// [`ReadError`] with the place in the file.
+/// [`ReadError`] with the place in the file; weights that KHR_animation_pointer animates.
 pub fn read_weight_animation(
     bytes: &[u8],
     folder: Option<&Path>,
 ) -> Result<Option<WeightAnimation>, ReadError> {
     let container = container::open(bytes, folder)?;
+    if let Some((place, pointer)) = container.weight_pointers.first() {
+        return Err(ReadError::broken(
+            place,
+            format!(
+                "weights by the extension KHR_animation_pointer ({pointer:?}), which is not read"
+            ),
+            "export the animation as channels of weights of a node",
+        ));
+    }
     for (number, animation) in container.root.animations.iter().enumerate() {
         let mut tracks = Vec::new();
         for (c, channel) in animation.channels.iter().enumerate() {
@@ -62,7 +73,18 @@ pub fn read_weight_animation(
             }
         }
         if !tracks.is_empty() {
-            return sampled(&tracks, &format!("animations[{number}]")).map(Some);
+            let animations = &container.root.animations;
+            let mut read = sampled(&tracks, &format!("animations[{number}]"))?;
+            if animations.len() > 1 {
+                let name =
+                    animation.name.as_ref().map_or(String::new(), |name| format!(" {name:?}"));
+                read.notes.push(format!(
+                    "animation {}{name} of {} is read: the first that moves shapes",
+                    number + 1,
+                    animations.len()
+                ));
+            }
+            return Ok(Some(read));
         }
     }
     Ok(None)
@@ -134,7 +156,7 @@ fn sampled(tracks: &[Track], place: &str) -> Result<WeightAnimation, ReadError> 
         let rows: Vec<Vec<f64>> = tracks.iter().map(|track| track.at(time)).collect();
         weights.extend(from.iter().map(|&(track, column)| rows[track][column]));
     }
-    Ok(WeightAnimation { shape_names, rate_hz, weights })
+    Ok(WeightAnimation { notes: Vec::new(), shape_names, rate_hz, weights })
 }
 
 /// Keys per second where they are evenly spaced.
@@ -230,5 +252,75 @@ mod tests {
         }
         assert_eq!(even_rate(&[0.0, 1.0, 3.0]), None);
         assert_eq!(even_rate(&[0.0, 0.02, 0.04]), Some(50.0));
+    }
+
+    /// A file of one triangle with two targets and an animation of them: three keys at 0, 0.5 and 1 s.
+    fn document(interpolation: &str, outputs: &[f32], target: &str) -> String {
+        use base64::Engine as _;
+        let vertices: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let numbers = vertices.iter().chain(&[0.0, 0.5, 1.0]).chain(outputs);
+        let bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
+        let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+        let (length, out) = (bytes.len(), outputs.len());
+        format!(
+            r#"{{"asset": {{"version": "2.0"}}, "extensionsUsed": ["KHR_animation_pointer"],
+            "buffers": [{{"byteLength": {length}, "uri": "data:application/octet-stream;base64,{data}"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 12}},
+              {{"buffer": 0, "byteOffset": 48, "byteLength": {}}}],
+            "accessors": [
+              {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}},
+              {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [1]}},
+              {{"bufferView": 2, "componentType": 5126, "count": {out}, "type": "SCALAR"}}],
+            "meshes": [{{"extras": {{"targetNames": ["jawOpen", "smile"]}},
+              "primitives": [{{"attributes": {{"POSITION": 0}}, "targets": [{{"POSITION": 0}}, {{"POSITION": 0}}]}}]}}],
+            "nodes": [{{"mesh": 0}}], "scenes": [{{"nodes": [0]}}], "scene": 0,
+            "animations": [{{"channels": [{{"sampler": 0, "target": {target}}}],
+              "samplers": [{{"input": 1, "output": 2, "interpolation": "{interpolation}"}}]}}]}}"#,
+            4 * out
+        )
+    }
+
+    #[test]
+    fn all_three_interpolations_are_read_from_a_file() {
+        let node = r#"{"node": 0, "path": "weights"}"#;
+        let keys = [0.0, 0.25, 0.5, 0.75, 1.0, 0.0];
+        let read = |interpolation: &str, outputs: &[f32]| {
+            let text = document(interpolation, outputs, node);
+            read_weight_animation(text.as_bytes(), None).unwrap().unwrap()
+        };
+        for interpolation in ["LINEAR", "STEP"] {
+            let read = read(interpolation, &keys);
+            assert_eq!(
+                (read.rate_hz, &read.shape_names[..]),
+                (2.0, &["jawOpen", "smile"].map(str::to_owned)[..])
+            );
+            assert_eq!(read.weights, keys.map(f64::from), "{interpolation}");
+            assert!(read.notes.is_empty());
+        }
+        // Tangents of 0 around each value.
+        let cubic: Vec<f32> =
+            keys.chunks(2).flat_map(|v| [0.0, 0.0, v[0], v[1], 0.0, 0.0]).collect();
+        assert_eq!(read("CUBICSPLINE", &cubic).weights, keys.map(f64::from));
+        let short = document("LINEAR", &keys[..4], node);
+        let error = read_weight_animation(short.as_bytes(), None).unwrap_err().to_string();
+        assert!(
+            error.starts_with("animations[0].channels[0]: 4 weights for 3 keys of 2"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn weights_behind_a_pointer_are_refused_by_name_and_the_mesh_is_read() {
+        let pointer = r#"{"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/meshes/0/weights/1"}}}"#;
+        let text = document("LINEAR", &[0.0, 0.5, 1.0], pointer);
+        let error = read_weight_animation(text.as_bytes(), None).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "animations[0].channels[0]: weights by the extension KHR_animation_pointer \
+             (\"/meshes/0/weights/1\"), which is not read; \
+             export the animation as channels of weights of a node"
+        );
+        let other = text.replace("/meshes/0/weights/1", "/materials/0/alphaCutoff");
+        assert_eq!(read_weight_animation(other.as_bytes(), None).unwrap(), None);
     }
 }

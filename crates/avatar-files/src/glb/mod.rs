@@ -53,6 +53,17 @@ pub(crate) fn read_with(
     folder: Option<&Path>,
     settings: &AvatarSettings,
 ) -> Result<ReadAvatar, ReadError> {
+    let (avatar, notes) = as_in_the_file(bytes, name, folder, settings)?;
+    ReadAvatar::finish(avatar, notes, settings)
+}
+
+/// The avatar as it stands in the file, in the file's unit and unchecked, and what is to be said of it.
+pub(crate) fn as_in_the_file(
+    bytes: &[u8],
+    name: &str,
+    folder: Option<&Path>,
+    settings: &AvatarSettings,
+) -> Result<(Avatar, Vec<String>), ReadError> {
     let container = container::open(bytes, folder)?;
     let mut notes = Vec::new();
     let mut surfaces = Vec::new();
@@ -80,8 +91,7 @@ pub(crate) fn read_with(
     let (shape_names, meshes) = joined(surfaces, &mut pictures, settings)?;
     notes.append(&mut pictures.notes);
     let (name, textures) = (name.to_owned(), pictures.textures);
-    let avatar = Avatar { name, shape_names, meshes, eyeballs: vec![], textures };
-    ReadAvatar::finish(avatar, notes, settings)
+    Ok((Avatar { name, shape_names, meshes, eyeballs: vec![], textures }, notes))
 }
 
 /// Every node of the scene with its world-from-node transform, parents first.

@@ -6,7 +6,8 @@ use std::path::Path;
 use anyhow::{anyhow, bail};
 use mimique_exertion::{Feature, Person, Plan, RecordedHeart, ShapeTable};
 use mimique_exertion_training::{Grid, Lesson, LessonTake, train};
-use mimique_mocap::{ActivityColumn, WeightOptions, read_activity, read_weights_file};
+use mimique_mocap::{ActivityColumn, WeightOptions, read_activity};
+use mimique_stimulus::read_performance;
 use serde_json::json;
 
 use super::args::TrainOptions;
@@ -110,7 +111,8 @@ fn take(args: &TrainOptions, place: usize) -> anyhow::Result<LessonTake> {
     }
     let plan = Plan::of(own).map_err(|e| blame(&args.take[place], e))?;
     let file = &args.weights[place];
-    let weights = read_weights_file(file, &WeightOptions::default()).map_err(|e| blame(file, e))?;
+    let read = read_performance(file, &WeightOptions::default());
+    let weights = read.map_err(|e| blame(file, e))?.table;
     if weights.rate_hz().is_none() {
         bail!("{}: column time: no rate; write the seconds of every frame", file.display());
     }

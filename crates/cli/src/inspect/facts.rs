@@ -17,6 +17,22 @@ pub(super) fn avatar_file(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
     let mut facts = avatar_facts("avatar", &read.avatar, bytes);
     facts["unit m"] = json!(read.unit_metres);
     facts["notes"] = json!(read.notes);
+    // Of a folder or an archive there are no animations.
+    if bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") {
+        match mimique_avatar_files::read_weight_animation(bytes, file.parent()) {
+            Ok(None) => {}
+            Ok(Some(animation)) => {
+                let shapes = animation.shape_names.len();
+                facts["animation"] = json!({
+                    "frames": animation.weights.len() / shapes.max(1),
+                    "rate_hz": (animation.rate_hz * 1e3).round() / 1e3,
+                    "shapes": animation.shape_names.join(", "),
+                    "notes": animation.notes,
+                });
+            }
+            Err(error) => facts["animation"] = json!({ "warnings": [error.to_string()] }),
+        }
+    }
     if !read.locked.is_empty() {
         facts["locked"] = json!(read.locked);
     }
@@ -126,6 +142,7 @@ pub(super) fn weights_facts(format: &str, table: &WeightsTable) -> Value {
         "outside_0_1": format!("{:.2} %", 100.0 * outside as f64 / weights.len().max(1) as f64),
         "first_frame": table.frames.first(),
         "interpolated": interpolated,
+        "notes": table.notes,
     })
 }
 

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
-use mimique_avatar_files::read_weight_animation;
 use mimique_layout::{DenseTake, Face, NamedSet, Take, TakeContent, Where};
-use mimique_mocap::{WeightOptions, WeightsTable, read_vertex_array, read_weights_file};
+use mimique_mocap::{WeightOptions, WeightsTable, read_vertex_array};
 use mimique_solver::MarkerSite;
-use mimique_stimulus::{AvatarSkin, MarkerMap, RecordedWeights};
+use mimique_stimulus::{AvatarSkin, MarkerMap, RecordedWeights, read_performance};
 use serde::Deserialize;
 
 /// What is wrong with a file.
@@ -65,23 +64,8 @@ pub(super) fn takes(
 
 /// The weights of a file, or of the animation of a GLB.
 fn weights(skin: &AvatarSkin, file: &Path, rate_hz: Option<f64>) -> anyhow::Result<WeightsTable> {
-    let is_gltf = file.extension().is_some_and(|ending| {
-        ["glb", "gltf"].iter().any(|known| ending.eq_ignore_ascii_case(known))
-    });
-    if !is_gltf {
-        let options = WeightOptions { rate_hz, shape_names: &skin.shape_names };
-        return read_weights_file(file, &options).map_err(|e| blame(file, e));
-    }
-    let bytes = std::fs::read(file)
-        .map_err(|e| blame(file, format!("open: {e}; check the path and its permissions")))?;
-    let animation = read_weight_animation(&bytes, file.parent()).map_err(|e| blame(file, e))?;
-    let Some(animation) = animation else {
-        bail!(
-            "{}: animations: none moves morph targets; export the animation of the shapes with the file",
-            file.display()
-        );
-    };
-    Ok(WeightsTable::at_rate(animation.shape_names, animation.weights, 0, animation.rate_hz))
+    let options = WeightOptions { rate_hz, shape_names: &skin.shape_names };
+    read_performance(file, &options).map(|read| read.table).map_err(|e| blame(file, e))
 }
 
 /// A file's name without folder and ending.

@@ -19,14 +19,16 @@ pub struct Args {
     /// Avatar with blendshapes: .glb or .gltf
     #[arg(long, value_name = "FILE")]
     pub(super) avatar: PathBuf,
-    /// Capture: C3D, TRC, CSV...; for recorded the weights: Live Link Face, or CSV
+    /// Capture: C3D, TRC, CSV...; for recorded the weights: Live Link Face, CSV, MediaPipe, OpenFace..., or a GLB
+    /// with an animation
     #[arg(long, value_name = "FILE")]
     pub(super) mocap: PathBuf,
     /// Marker map: JSON, or CSV with marker,role,vertex (not for recorded)
     #[arg(long, value_name = "FILE")]
     pub(super) markers: Option<PathBuf>,
-    /// Where the weights go: .csv with frame,time and a column per shape, or .npy with names and rate in
-    /// NAME.shapes.json beside it; for thin-shell-surface the
+    /// Where the weights go: .csv with frame,time and a column per shape, .npy with names and rate in
+    /// NAME.shapes.json beside it, .livelink.csv as Live Link Face writes it, or .json under ARKit's names;
+    /// for thin-shell-surface the
     /// columns are LABEL.x, LABEL.y, LABEL.z, the way of each marker's vertex in centimetres
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,

@@ -1,7 +1,7 @@
 //! The gaze that `mimique solve` is given.
 
-use mimique_mocap::{WeightOptions, read_weights_file};
-use mimique_stimulus::{GazeTrack, GivenGaze};
+use mimique_mocap::WeightOptions;
+use mimique_stimulus::{GazeTrack, GivenGaze, read_performance};
 
 use super::args::Args;
 use super::blame;
@@ -10,7 +10,7 @@ use super::blame;
 pub(super) fn given(args: &Args) -> anyhow::Result<Option<GivenGaze>> {
     if let Some(path) = &args.gaze_track {
         let options = WeightOptions { rate_hz: args.mocap_rate, shape_names: &[] };
-        let table = read_weights_file(path, &options).map_err(|e| blame(path, e))?;
+        let table = read_performance(path, &options).map_err(|e| blame(path, e))?.table;
         let later = args.gaze_later.unwrap_or_default();
         return Ok(Some(GivenGaze::Track(
             GazeTrack::of(&table, later).map_err(|e| blame(path, e))?,

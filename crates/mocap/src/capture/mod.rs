@@ -7,6 +7,7 @@ pub(crate) mod unit;
 mod weights;
 
 pub use recording::{Event, Recording};
+pub(crate) use weights::ROTATIONS;
 pub use weights::{WeightOptions, WeightsTable};
 
 /// A length unit a capture's coordinates are in.

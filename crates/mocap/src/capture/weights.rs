@@ -15,10 +15,12 @@ pub struct WeightsTable {
     /// Rows that the recording had dropped and that are interpolated: from the first, up to but
     /// without the second.
     pub filled: Vec<(usize, usize)>,
+    /// What is worth saying of the file: shapes that its tracker hardly sees, uneven times.
+    pub notes: Vec<String>,
 }
 
 /// What applications write beside the weights: rotations of head and eyes, in radians (Live Link Face).
-const ROTATIONS: [&str; 9] = [
+pub(crate) const ROTATIONS: [&str; 9] = [
     "HeadYaw",
     "HeadPitch",
     "HeadRoll",
@@ -54,6 +56,7 @@ impl WeightsTable {
             times: (0..count).map(|f| f as f64 / rate_hz).collect(),
             weights,
             filled: Vec::new(),
+            notes: Vec::new(),
         }
     }
 

@@ -145,6 +145,7 @@ mod tests {
             times: rows.iter().map(|row| row.0).collect(),
             weights: rows.iter().flat_map(|row| row.1.iter().copied()).collect(),
             filled: Vec::new(),
+            notes: Vec::new(),
         }
     }
 

@@ -7,9 +7,7 @@ use std::rc::Rc;
 
 use mimique_avatar::GazeAngles;
 use mimique_clip::sha256_hex;
-use mimique_mocap::{
-    Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable, read_weights_file,
-};
+use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, ExertionCapture, GazeSource, HeldGaze, Segment, Span, Study,
     resolve_path, video_type,
@@ -24,7 +22,7 @@ use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
 use crate::{
     ExertionDrawing, GazeTrack, GivenGaze, MarkerMap, RepairSidecar, TakeOptions, Training,
-    split_shapes,
+    read_performance, split_shapes,
 };
 
 /// Everything that a study file names.
@@ -211,8 +209,9 @@ impl<'a> Sources<'a> {
             Some(GazeSource::File(file, later_s)) => {
                 let at = format!("{at}/file");
                 let path = self.path(file, &at)?;
-                let table = read_weights_file(&path, &WeightOptions::default())
-                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                let table = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
                 track(&table, later_s, &at)
             }
             Some(GazeSource::Performed) => {
@@ -253,8 +252,9 @@ impl<'a> Sources<'a> {
                 let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
                 let at = format!("{at}/weights");
                 let path = self.path(weights_file, &at)?;
-                let weights = read_weights_file(&path, &WeightOptions::default())
-                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                let weights = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
                 Training {
                     capture,
                     weights,
@@ -314,8 +314,9 @@ impl<'a> Sources<'a> {
             }
         };
         let path = self.path(file, &pointer)?;
-        let table = read_weights_file(&path, &WeightOptions::default())
-            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
+        let table = read_performance(&path, &WeightOptions::default())
+            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?
+            .table;
         match segment.span() {
             Some(Span::Frames { first, end }) => cut(at, table, [first, end]),
             _ => cut(at, table, [0, usize::MAX]),
@@ -474,7 +475,8 @@ fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording,
         return Err(PrepareError::new(at, message));
     }
     let frames = first..end;
-    Ok(Recording { pointer: at, table, frames, is_computed: false, gaze: None, warnings: vec![] })
+    let warnings = table.notes.iter().map(|note| (at.clone(), note.clone())).collect();
+    Ok(Recording { pointer: at, table, frames, is_computed: false, gaze: None, warnings })
 }
 
 /// A file that cannot be read.

@@ -6,11 +6,13 @@
 //! and the caller says the rate.
 
 mod header;
+pub(super) mod npz;
 #[cfg(test)]
 mod tests;
 mod vertices;
 
 pub use header::npy_header;
+pub(super) use vertices::FORMAT as VERTICES;
 pub use vertices::{VertexArray, read_vertex_array};
 
 use std::io::SeekFrom;
@@ -32,7 +34,7 @@ pub(super) static FORMAT: Format = Format {
     reads: "format 1.0 to 3.0; `f4` and `f8`, both byte orders, C and Fortran order; names and rate from `NAME.shapes.json` beside it, else the avatar's shapes and the rate that is asked for",
     recognise: Recognise::Beginning(|bytes| bytes.starts_with(MAGIC)),
     read: Read::BinaryWeights(read),
-    write: Some(Write::Weights(write)),
+    write: Some(Write::Weights { columns: None, write }),
 };
 
 /// What stands beside an array.
@@ -93,11 +95,21 @@ fn read(
         Some(beside) => &beside.shape_names,
         None => options.shape_names,
     };
+    check_names(names, columns, beside.is_some())?;
+    let rate_hz = options.rate_hz.or(beside.as_ref().and_then(|beside| beside.rate_hz));
+    let rate_hz = checked_rate(rate_hz)?;
+    let weights = numbers(file, &header, names)?;
+    let first_frame = beside.as_ref().map_or(0, |beside| beside.first_frame);
+    Ok(WeightsTable::at_rate(names.to_vec(), weights, first_frame, rate_hz))
+}
+
+/// Refuses names that are not one of its own for each column.
+fn check_names(names: &[String], columns: usize, with_the_array: bool) -> Result<(), ReadError> {
     if names.len() != columns {
-        let what = match (&beside, names.len()) {
-            (Some(_), n) => format!("{columns} columns, NAME.shapes.json has {n} names"),
-            (None, 0) => format!("{columns} columns, whose names are not known"),
-            (None, n) => format!("{columns} columns, the avatar has {n} shapes"),
+        let what = match (with_the_array, names.len()) {
+            (true, n) => format!("{columns} columns, NAME.shapes.json has {n} names"),
+            (false, 0) => format!("{columns} columns, whose names are not known"),
+            (false, n) => format!("{columns} columns, the avatar has {n} shapes"),
         };
         return Err(ReadError::at_byte(0, "header", what, BESIDE));
     }
@@ -105,19 +117,19 @@ fn read(
         let what = format!("shape {:?} empty or twice", names[k]);
         return Err(ReadError::at_byte(0, "names", what, "give every column a name of its own"));
     }
-    let rate_hz = options.rate_hz.or(beside.as_ref().and_then(|beside| beside.rate_hz));
-    let Some(rate_hz) = rate_hz.filter(|rate| rate.is_finite() && *rate > 0.0) else {
-        let what = "no rate: an array has none";
-        return Err(ReadError::at_byte(
+    Ok(())
+}
+
+/// The rate, which an array has not.
+fn checked_rate(rate_hz: Option<f64>) -> Result<f64, ReadError> {
+    rate_hz.filter(|rate| rate.is_finite() && *rate > 0.0).ok_or_else(|| {
+        ReadError::at_byte(
             0,
             "header",
-            what,
+            "no rate: an array has none",
             "give it, or write NAME.shapes.json beside NAME.npy: {\"shape_names\": [...], \"rate_hz\": 60}",
-        ));
-    };
-    let weights = numbers(file, &header, names)?;
-    let first_frame = beside.as_ref().map_or(0, |beside| beside.first_frame);
-    Ok(WeightsTable::at_rate(names.to_vec(), weights, first_frame, rate_hz))
+        )
+    })
 }
 
 /// The numbers, frame by frame.

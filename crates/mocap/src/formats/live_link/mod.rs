@@ -5,8 +5,12 @@
 //! says. Frames the phone dropped leave a jump; they are filled by the line between their neighbours
 //! and listed.
 
-use super::format::{Format, Read, Recognise};
+mod write;
+
+use self::write::write;
+use super::format::{Format, Read, Recognise, Write};
 use super::text::{Delimiter, Lines, coordinate, snapped_rate, split_fields};
+use super::weights_json::arkit::ARKIT;
 use crate::{ReadError, WeightsTable};
 
 const REMEDY: &str = "export the take again from Live Link Face";
@@ -17,12 +21,12 @@ const CLOCK_DRIFT: f64 = 5e-3;
 pub(super) static FORMAT: Format = Format {
     id: "live-link-csv",
     name: "Live Link Face CSV (weights)",
-    extensions: &["csv"],
+    extensions: &["livelink.csv"],
     recognised_by: "`Timecode,BlendShapeCount`",
     reads: "weights; dropped frames are filled and listed",
     recognise: Recognise::FirstLine(is_header),
     read: Read::TextWeights(|lines, _| read(lines)),
-    write: None,
+    write: Some(Write::Weights { columns: Some(&ARKIT), write }),
 };
 
 /// Whether a line is the header of such a file.

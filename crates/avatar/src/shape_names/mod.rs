@@ -4,7 +4,11 @@
 //! A name stands for one or more *actions*: a feature on one side of the face. `browDownLeft`,
 //! `browDown_L`, `L_BrowDown` and `AU4_L` are one action; ARKit's `browInnerUp` is two, which other
 //! rigs have as `browInnerUp_L` and `browInnerUp_R`. FACS numbers after Ekman, Friesen and Hager
-//! (2002).
+//! (2002); what is called otherwise stands in `vocabularies`.
+
+mod vocabularies;
+
+use vocabularies::{Meaning, meaning};
 
 /// ARKit's 52 blendshapes.
 #[rustfmt::skip]
@@ -67,6 +71,8 @@ const ACTION_UNITS: [(u32, &[&str]); 28] = [
 struct Action {
     feature: &'static str,
     side: Side,
+    /// Whether the name means one of two halves of it, upper and lower.
+    half: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -131,20 +137,30 @@ fn terms_of(name: &str, columns: &[&str], meant: &[Vec<Action>]) -> Vec<(usize, 
         letters.flat_map(char::to_lowercase).collect::<String>()
     };
     let wanted = actions(name);
+    let is_half = |actions: &[Action]| actions.iter().any(|action| action.half);
     let whole = (columns.iter().position(|c| *c == name))
         .or_else(|| columns.iter().position(|c| plain(c) == plain(name)))
-        .or_else(|| meant.iter().position(|m| !wanted.is_empty() && *m == wanted));
+        .or_else(|| {
+            // Half a feature is not the other half, unless it is asked for by its own name.
+            meant.iter().position(|m| !wanted.is_empty() && !is_half(m) && *m == wanted)
+        });
     if let Some(column) = whole {
         return vec![(column, 1.0)];
     }
     let mut out: Vec<(usize, f64)> = Vec::new();
     let share = 1.0 / wanted.len().max(1) as f64;
+    let mut add = |column: usize, share: f64| match out.iter_mut().find(|(c, _)| *c == column) {
+        Some((_, sum)) => *sum += share,
+        None => out.push((column, share)),
+    };
     for action in &wanted {
-        let Some(column) = meant.iter().position(|m| m.contains(action)) else { continue };
-        match out.iter_mut().find(|(c, _)| *c == column) {
-            Some((_, sum)) => *sum += share,
-            None => out.push((column, share)),
+        let does = |m: &[Action], half| m.contains(&Action { half, ..*action });
+        if let Some(column) = meant.iter().position(|m| does(m, false)) {
+            add(column, share);
+            continue;
         }
+        let halves = (0..columns.len()).filter(|&c| does(&meant[c], true));
+        halves.for_each(|column| add(column, share / 2.0));
     }
     out
 }
@@ -197,13 +213,13 @@ fn of_words(words: &[String]) -> Option<Vec<Action>> {
         [first, ..] => bare(first).map(|n| unit(n, side)),
         [] => None,
     };
-    of_number.flatten().or_else(|| feature(&rest.concat()).map(|f| sides(&[f], side)))
+    of_number.flatten().or_else(|| of_name(&rest.concat(), side))
 }
 
 /// A name without anything between its words: `eyeblinkleft`, `leftau12`, `au12l`.
 fn of_letters(name: &str) -> Option<Vec<Action>> {
-    if let Some(feature) = feature(name) {
-        return Some(sides(&[feature], None));
+    if let Some(actions) = of_name(name, None) {
+        return Some(actions);
     }
     let ends =
         [("left", Side::Left), ("right", Side::Right), ("l", Side::Left), ("r", Side::Right)];
@@ -215,8 +231,25 @@ fn of_letters(name: &str) -> Option<Vec<Action>> {
         let rest = name.strip_suffix(end).or_else(|| name.strip_prefix(end))?;
         match action_unit(rest) {
             Some((number, "")) => unit(number, Some(side)),
-            _ => feature(rest).map(|f| sides(&[f], Some(side))),
+            _ => of_name(rest, Some(side)),
         }
+    })
+}
+
+/// The actions of a name in small letters, without its side: ARKit's own, or another vocabulary's.
+fn of_name(name: &str, side: Option<Side>) -> Option<Vec<Action>> {
+    if let Some(feature) = feature(name) {
+        return Some(sides(&[feature], side));
+    }
+    let on_side = |action: &Action| side.is_none_or(|side| action.side == side);
+    Some(match meaning(name)? {
+        Meaning::Features(features) => sides(features, side),
+        Meaning::Half(feature) => sides(&[feature], side)
+            .into_iter()
+            .map(|action| Action { half: true, ..action })
+            .collect(),
+        Meaning::LooksLeft => unit(61, None)?.into_iter().filter(on_side).collect(),
+        Meaning::LooksRight => unit(62, None)?.into_iter().filter(on_side).collect(),
     })
 }
 
@@ -231,8 +264,8 @@ fn action_unit(word: &str) -> Option<(u32, &str)> {
 fn unit(number: u32, side: Option<Side>) -> Option<Vec<Action>> {
     let gaze = |out: Side, inward: Side| {
         vec![
-            Action { feature: "eyeLookOut", side: out },
-            Action { feature: "eyeLookIn", side: inward },
+            Action { feature: "eyeLookOut", side: out, half: false },
+            Action { feature: "eyeLookIn", side: inward, half: false },
         ]
     };
     match (number, side) {
@@ -263,7 +296,7 @@ fn sides(features: &[&'static str], side: Option<Side>) -> Vec<Action> {
     let both = [Side::Left, Side::Right];
     features
         .iter()
-        .flat_map(|&feature| both.map(|side| Action { feature, side }))
+        .flat_map(|&feature| both.map(|side| Action { feature, side, half: false }))
         .filter(|action| side.is_none_or(|side| action.side == side))
         .collect()
 }
@@ -360,5 +393,52 @@ mod tests {
         assert_eq!(halves.terms, [vec![(0, 1.0)], vec![(0, 1.0)]]);
         // The very same name wins over one that means the same.
         assert_eq!(map_shapes(&["AU4_L"], &["browDownLeft", "AU4_L"]).terms, [vec![(1, 1.0)]]);
+    }
+
+    #[test]
+    fn facs_in_words_metahuman_and_vrm_are_known() {
+        for (name, expected) in [
+            ("lipCornerPullerL", vec!["mouthSmileLeft"]),
+            ("innerBrowRaiserR", vec!["browInnerUp"]),
+            ("browLowerL", vec!["browDownLeft"]),
+            ("dimplerR", vec!["mouthDimpleRight"]),
+            ("dimpler", vec!["mouthDimpleLeft", "mouthDimpleRight"]),
+            ("eyesCloseL", vec!["eyeBlinkLeft"]),
+            ("eyesLookLeft", vec!["eyeLookInRight", "eyeLookOutLeft"]),
+            ("CTRL_expressions_jawOpen", vec!["jawOpen"]),
+            ("CTRL_expressions_browDownL", vec!["browDownLeft"]),
+            ("CTRL_expressions_eyeLookLeftL", vec!["eyeLookOutLeft"]),
+            ("CTRL_expressions_eyeLookLeftR", vec!["eyeLookInRight"]),
+            ("CTRL_expressions_eyeLookRightR", vec!["eyeLookOutRight"]),
+            ("CTRL_expressions_mouthLeft", vec!["mouthLeft"]),
+            ("CTRL_expressions_mouthFunnelUL", vec!["mouthFunnel"]),
+            ("CTRL_expressions_jawChinRaiseDR", vec!["mouthShrugLower"]),
+            ("CTRL_expressions_browLateralL", vec![]),
+            ("blink", vec!["eyeBlinkLeft", "eyeBlinkRight"]),
+            ("blinkLeft", vec!["eyeBlinkLeft"]),
+            ("lookDown", vec!["eyeLookDownLeft", "eyeLookDownRight"]),
+            ("aa", vec![]),
+            ("happy", vec![]),
+        ] {
+            assert_eq!(arkit_shapes(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn halves_of_a_feature_are_joined_in_equal_shares() {
+        let quarters = ["UL", "UR", "DL", "DR"].map(|q| format!("CTRL_expressions_mouthFunnel{q}"));
+        let map = map_shapes(&["mouthFunnel", "mouthFunnel_L"], &quarters);
+        assert_eq!(map.terms[0], [(0, 0.25), (2, 0.25), (1, 0.25), (3, 0.25)]);
+        assert_eq!(map.terms[1], [(0, 0.5), (2, 0.5)]);
+        assert!(map.unused.is_empty());
+        // The other way round each quarter takes the whole feature, or its very own column.
+        let back = map_shapes(&quarters, &["mouthFunnel"]);
+        assert!(back.terms.iter().all(|terms| *terms == [(0, 1.0)]), "{back:?}");
+        let same = map_shapes(&quarters, &quarters);
+        assert!(same.terms.iter().enumerate().all(|(k, terms)| *terms == [(k, 1.0)]));
+        // VRM's visemes are taken where the avatar has them.
+        let vrm = map_shapes(&["aa", "jawOpen", "eyeBlinkLeft"], &["aa", "blink", "happy"]);
+        assert_eq!(vrm.terms, [vec![(0, 1.0)], vec![], vec![(1, 1.0)]]);
+        assert_eq!(vrm.unused, [2]);
     }
 }
