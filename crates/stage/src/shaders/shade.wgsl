@@ -376,10 +376,10 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
             n = -n;
         }
         if p.material <= MATERIAL_SOCKET {
-            f.open = exp(-2.6 * behind);
+            f.open = exp(-1.7 * behind);
             f.wrap = vec3f(0.25, 0.12, 0.10);
             f.roughness = select(0.34, 0.28, p.material == MATERIAL_TEETH);
-            f.albedo *= select(vec3f(0.55), vec3f(0.80, 0.74, 0.64), p.material == MATERIAL_TEETH);
+            f.albedo *= select(vec3f(0.85), vec3f(0.80, 0.74, 0.64), p.material == MATERIAL_TEETH);
         }
         if p.material == MATERIAL_HAIR || p.material == MATERIAL_LASHES {
             f.roughness = 0.62;
