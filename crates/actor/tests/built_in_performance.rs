@@ -71,7 +71,10 @@ fn each_emotion_uses_its_action_units_and_grows_with_intensity() {
             ],
         ),
         (Emotion::Anger, &["browDownLeft", "eyeWideLeft", "eyeSquintLeft", "mouthPressLeft"]),
-        (Emotion::Disgust, &["noseSneerLeft", "mouthUpperUpLeft", "mouthFrownLeft", "mouthShrugLower"]),
+        (
+            Emotion::Disgust,
+            &["noseSneerLeft", "mouthUpperUpLeft", "mouthFrownLeft", "mouthShrugLower"],
+        ),
         (Emotion::Surprise, &["browInnerUp", "browOuterUpLeft", "eyeWideLeft", "jawOpen"]),
     ];
     for (emotion, shapes) in units {

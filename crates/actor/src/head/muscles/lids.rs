@@ -80,5 +80,5 @@ pub(super) fn squint(flesh: &Flesh) -> Vec<Vec3> {
 
 /// The levator lifts the upper lid off the iris; the lower one has no part in it.
 pub(super) fn wide(flesh: &Flesh) -> Vec<Vec3> {
-    slide(flesh, |u| 14.5 * arch(u), |u| -1.0 * arch(u))
+    slide(flesh, |u| 14.5 * arch(u), |u| -arch(u))
 }
