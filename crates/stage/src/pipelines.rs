@@ -308,19 +308,15 @@ fn picture_pass(
             stencil: wgpu::StencilState::default(),
             bias: DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState {
-            count: SAMPLES,
-            // Hair thins out, in whatever order its sheets are drawn.
-            alpha_to_coverage_enabled: layer == Layer::Sheet,
-            ..wgpu::MultisampleState::default()
-        },
+        multisample: wgpu::MultisampleState { count: SAMPLES, ..wgpu::MultisampleState::default() },
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some("shade"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format,
-                blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                // Sheets of hair thin out over the skin, which is drawn before them.
+                blend: (layer != Layer::Closed).then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

@@ -374,6 +374,9 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
             let in_from_border = p.neutral.w * select(1.0, 2.4, on_brow(at));
             let end = 0.20 + 0.75 * (1.0 - hair);
             alpha = smoothstep(end - 0.18, end + 0.18, in_from_border);
+            if alpha < 0.02 {
+                discard;
+            }
             f.open = 0.4 + 0.6 * min(in_from_border, 1.0);
         }
         if clay && p.material >= MATERIAL_HAIR {
