@@ -353,6 +353,8 @@ fn shapes_move_what_they_are_named_for() {
     assert!(moved("mouthSmileLeft", "mouth_corner_left")[0] > 4.0, "left is +X");
     assert!(length(moved("mouthSmileLeft", "mouth_corner_right")) < 0.5);
     assert!(moved("mouthFrownRight", "mouth_corner_right")[1] < -4.0);
+    let stretched = moved("mouthStretchLeft", "mouth_corner_left");
+    assert!(stretched[0] > 6.0 && stretched[1] < -1.0, "aside, not up: {stretched:?}");
     assert!(moved("mouthLeft", "lip_upper")[0] > 4.0);
     assert!(moved("jawLeft", "chin")[0] > 4.0);
     assert!(moved("jawOpen", "chin")[1] < -15.0);
@@ -532,7 +534,7 @@ fn the_same_spec_is_the_same_head() {
 /// test prints the new one.
 #[test]
 fn default_head_has_the_recorded_fingerprint() {
-    assert_eq!(format!("{:016x}", fingerprint(&head())), "6c3e0e4504edba26");
+    assert_eq!(format!("{:016x}", fingerprint(&head())), "ed1a7aa4ebd4267b");
 }
 
 #[test]

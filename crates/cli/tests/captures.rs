@@ -287,7 +287,7 @@ fn segments_pasted_into_a_study_file_pass_its_check() {
         .replace("\"truth\": \"movement\"", "\"truth\": \"expression\"")
         .replace("\"factor\": \"movement\"", "\"factor\": \"expression\"")
         .replace("\"value\": \"jaw-open\"", "\"value\": \"joy\"")
-        .replace("\"value\": \"jaw-forward\"", "\"value\": \"fear\"")
+        .replace("\"value\": \"jaw-aside\"", "\"value\": \"fear\"")
         .replace("\"value\": \"smile\"", "\"value\": \"dégoût\"")
         .replace("${MIMIQUE_DATA}/", "");
     let files =

@@ -137,6 +137,13 @@ impl<'a> Units<'a> {
     ) -> Result<Vec<Vec<usize>>, LayoutError> {
         let wanted = self.wanted(count)?;
         let mut dropped: Vec<Vec<usize>> = Vec::new();
+        // Clusters keep their markers apart on one side of the face; their mirror images may come nearer.
+        let mut taken = self.kept.clone();
+        chosen.retain(|unit| {
+            let fits = self.fits(unit, &taken);
+            taken.extend(unit.iter().filter(|_| fits));
+            fits
+        });
         while markers(&chosen) > wanted {
             dropped.extend(chosen.pop());
         }

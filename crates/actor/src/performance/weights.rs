@@ -196,7 +196,7 @@ fn courses(
     let squeeze = squeeze(duration);
     let lead = rng.range(0.008, 0.030) * squeeze;
     let left_leads = rng.unit() < 0.6;
-    let uneven = rng.range(0.02, 0.07);
+    let uneven = rng.range(0.01, 0.04);
     let mut courses = Vec::new();
     for &(stem, weight) in clip.emotion.recipe() {
         let late = rng.range(-0.02, 0.05) * squeeze;
