@@ -171,11 +171,14 @@ fn write_weights(table: &WeightsTable, path: &Path) -> anyhow::Result<Option<Str
     Ok(note)
 }
 
+/// A file's path and bytes.
+pub(crate) type FileToWrite = (PathBuf, Vec<u8>);
+
 /// The files that weights become, and what is to be said of them.
 pub(crate) fn weights_in_files(
     table: &WeightsTable,
     path: &Path,
-) -> anyhow::Result<(Vec<(PathBuf, Vec<u8>)>, Option<String>)> {
+) -> anyhow::Result<(Vec<FileToWrite>, Option<String>)> {
     let blame = |e: String| anyhow!("--out: {}: {e}", path.display());
     let (table, left_out) = weights_for_file(table, path).map_err(|e| blame(e.to_string()))?;
     let files = weights_files(&table, path).map_err(|e| blame(e.to_string()))?;

@@ -5,7 +5,9 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{ok, refused, sample, text};
-use mimique_mocap::{Format, WeightOptions, WeightsTable, formats, read_weights_file};
+use mimique_mocap::{
+    Format, WeightOptions, WeightsTable, formats, npy_header, read_vertex_array, read_weights_file,
+};
 use mimique_test_support::real_file;
 use serde_json::Value;
 
@@ -152,6 +154,15 @@ fn live_link_arkit_json_and_npy_are_written_and_read_back() {
     }
 }
 
+/// Leaves every fortieth frame of an array of vertices.
+fn every_fortieth_frame(file: &Path) {
+    let array = read_vertex_array(file).expect("vertices");
+    let frames: Vec<&[f32]> = array.positions.chunks(3 * array.vertices).step_by(40).collect();
+    let mut bytes = npy_header("<f4", &[frames.len(), array.vertices, 3]);
+    bytes.extend(frames.concat().iter().flat_map(|x| x.to_le_bytes()));
+    std::fs::write(file, bytes).expect("an array");
+}
+
 /// A take's moved skin, compressed: what is played of it is the take, by GLB and by weights.
 #[test]
 fn vertices_become_an_avatar_that_plays_them() {
@@ -172,6 +183,7 @@ fn vertices_become_an_avatar_that_plays_them() {
         "--vertices",
         &at("v.npy"),
     ]);
+    every_fortieth_frame(&folder.path().join("v.npy"));
     let vertices = ["vertices", &at("v.npy"), "--template", &at("head.glb"), "--rate", "60"];
     let files = ["--out", &at("bank.glb"), "--weights", &at("bank.csv")];
     let told = ok(&[&vertices[..], &files, &["--json"]].concat());

@@ -90,6 +90,7 @@ fn a_segment_s_packs_give_the_take_s_weights() {
     let whole = solve_take(&skin, &capture, &map, &spec, &options, &mut || 0.0).unwrap();
 
     let joined = JoinedTake::new(&skin, &capture, &map, &options).unwrap();
+    let spec = joined.with_shapes_held(&spec);
     let operators = joined.operators(&spec).unwrap();
     let take = joined.segment(&operators, &spec, 80..310).unwrap();
     // Unrounded markers: only the settling of the low-pass at the margins differs.

@@ -10,7 +10,7 @@ use support::study_folder;
 
 /// Codes that no text of a study file can bring about; `upload` is of the archive around it,
 /// `smoothing-advised` of the captures that it names.
-const NEVER: [&str; 3] = ["shape", "upload", "smoothing-advised"];
+const NEVER: [&str; 5] = ["shape", "upload", "smoothing-advised", "clips-unlike", "not-prepared"];
 
 #[test]
 fn every_code_has_an_expected_report() {

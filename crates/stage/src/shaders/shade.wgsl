@@ -336,7 +336,9 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         f.wrap = select(vec3f(0.42, 0.20, 0.14), vec3f(0.20), clay);
         f.open = 0.25 + 0.75 * clamp(p.colour.a, 0.0, 1.0);
         let at = (p.neutral.xyz - scene.eyes_middle.xyz) / scene.eyes_middle.w;
-        if at.z > -0.6 && dot(p.strain, p.strain) > 1e-4 {
+        // The least principal strain: where nothing is pressed no crease is looked for (`lines`).
+        let least = 0.5 * (p.strain.x + p.strain.y) - length(vec2f(0.5 * (p.strain.x - p.strain.y), p.strain.z));
+        if at.z > -0.6 && at.y > -1.4 && least < -0.015 {
             let crease = creases(at, p.strain);
             n = normalize(n + 1.1 * (skin_frame(n) * crease.xy));
             f.open *= 1.0 - 0.5 * min(crease.z, 1.0);

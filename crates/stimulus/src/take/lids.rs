@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use mimique_avatar::turns_eyes;
 use mimique_clip::with_gaze_at_rest;
 use mimique_geometry::{Point, RigidMotion};
 use mimique_mocap::Capture;
-use mimique_solver::{FrontEnd, Group, MarkerSite, MethodSpec, Untold};
+use mimique_solver::{FrontEnd, Gaze, Group, MarkerSite, MethodSpec, Untold};
 
 use super::joined::{JoinedTake, metres};
 use super::lid_opening::{LidEdge, LidRange, actor_range, lid_weights};
@@ -46,7 +47,10 @@ impl JoinedTake<'_> {
             }
         }
         if spec.untold() == Untold::Hold {
-            for name in self.untold() {
+            // Eyes that markers are asked to turn are asked for by name.
+            let asked = |name: &str| spec.gaze() != Gaze::Rest && turns_eyes(name);
+            let untold: Vec<&String> = self.untold().filter(|name| !asked(name)).collect();
+            for name in untold {
                 if !spec.bounds.contains_key(name) && !spec.locked.contains(name) {
                     spec.locked.push(name.clone());
                 }
