@@ -152,7 +152,7 @@ pub enum ComparisonError {
         /// Its identifier.
         clip: String,
         /// Why.
-        error: SolvePacksError,
+        error: Box<SolvePacksError>,
     },
 }
 
@@ -276,8 +276,9 @@ impl Faces<'_> {
     ) -> Result<Shown<'c>, ComparisonError> {
         self.open(clip, source)?;
         let [operators, take] = [&source.operators, &source.take].map(|hash| self.bytes(hash));
-        let solved = solve_packs(&operators?, &take?, &source.method)
-            .map_err(|error| ComparisonError::Solve { clip: clip.id.clone(), error })?;
+        let solved = solve_packs(&operators?, &take?, &source.method).map_err(|error| {
+            ComparisonError::Solve { clip: clip.id.clone(), error: Box::new(error) }
+        })?;
         let skin = &self.skins[&source.avatar];
         let n = skin.shape_names.len();
         // Shapes of the body stand after those of the face.

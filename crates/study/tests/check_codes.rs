@@ -9,7 +9,7 @@ use mimique_study::Problem;
 use support::study_folder;
 
 /// Codes that no text of a study file can bring about; `upload` is of the archive around it,
-/// `smoothing-advised` of the captures that it names.
+/// `smoothing-advised`, `clips-unlike` and `not-prepared` of the captures and clips that it names.
 const NEVER: [&str; 5] = ["shape", "upload", "smoothing-advised", "clips-unlike", "not-prepared"];
 
 #[test]
