@@ -48,6 +48,7 @@ mod avatar;
 mod built_in;
 mod checks;
 mod exertion;
+mod face;
 mod gaze;
 mod marker_map;
 mod prepare;
@@ -73,6 +74,7 @@ pub use exertion::{
     Drawn, DrawnCourse, DrawnLine, ExertionDrawing, ExertionPart, ExertionPartError, ExertionTake,
     MotionOptions, PartFacts, built_in_bvh, built_in_motion,
 };
+pub use face::{Landmarks, MissingOpening, NoProfile, Openings, moved_by};
 pub use gaze::{GazeTrack, GazeTrackError, GivenGaze};
 pub use marker_map::{
     Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,

@@ -15,8 +15,8 @@ fn errors_mm(skin: &AvatarSkin, map: &MarkerMap, suggested: &SuggestedMap) -> Ve
         .map(|site| {
             let found = suggested.markers.iter().find(|m| m.label == site.label).unwrap();
             let right = skin.mesh.positions[site.vertex()];
-            let square: f64 = (0..3).map(|a| (found.place[a] - right[a]).powi(2)).sum();
-            1e3 * square.sqrt()
+            let place = found.vertex.map_or(found.place, |v| skin.mesh.positions[v]);
+            1e3 * (place - right).length()
         })
         .collect();
     errors.sort_by(f64::total_cmp);
@@ -117,12 +117,15 @@ fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
             worst_medians.push((median, worst));
             let head = found.to_map(skin).head;
             assert!(head.len() >= 3, "{head:?}");
-            let lower = |label: &String| label.contains("Mouth") || label.contains("Chin");
-            assert!(!head.iter().any(lower), "the head is not taken from the jaw: {head:?}");
+            let moves = |label: &String| {
+                ["Mouth", "Chin", "brow", "eye", "cheek"].iter().any(|word| label.contains(word))
+            };
+            assert!(!head.iter().any(moves), "the head is taken from the skull: {head:?}");
         }
     }
-    // The actor of AnimFace has a face of other proportions: 7.2 mm rms at best.
-    assert!(worst_medians[..6].iter().all(|m| m.0 < 11.0 && m.1 < 25.0), "{worst_medians:?}");
+    eprintln!("{worst_medians:.1?}");
+    // The actor of AnimFace has a face of other proportions: a similarity leaves 7.2 mm rms at best.
+    assert!(worst_medians[..6].iter().all(|m| m.0 < 4.0 && m.1 < 12.0), "{worst_medians:?}");
     // Labels that say nothing; a face of the avatar's own kind.
     assert!(worst_medians[6..].iter().all(|m| m.0 < 5.0 && m.1 < 10.0), "{worst_medians:?}");
 }

@@ -1,18 +1,15 @@
 //! A face that markers are to be put on: its skin, what moves it, its landmarks and its two halves.
 
-mod landmarks;
 mod mirror;
-mod openings;
-mod profile;
 mod regions;
 
-pub use landmarks::Landmarks;
 pub use mirror::{MirrorVertices, PARTNER_M};
-pub use openings::{MissingOpening, Openings};
 pub use regions::{Excluded, FacePart};
 
 use mimique_geometry::Point;
 use mimique_solver::{MirrorError, SkinGradients};
+pub use mimique_stimulus::{Landmarks, MissingOpening, Openings};
+
 use mimique_stimulus::AvatarSkin;
 
 /// An avatar's face.

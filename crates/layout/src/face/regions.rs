@@ -8,8 +8,8 @@ use mimique_geometry::Point;
 use serde::Serialize;
 
 use super::Face;
-use super::openings::moved_by;
 use crate::view::{DepthPicture, View};
+use mimique_stimulus::moved_by;
 
 /// Distance from the border of the eye that markers keep, metres.
 const LID_M: f64 = 0.005;

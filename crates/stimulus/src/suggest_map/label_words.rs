@@ -30,6 +30,24 @@ impl Side {
     }
 }
 
+/// A place that a label names to within a few millimetres, as landmarks of a face are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Named {
+    /// Inner end, middle and outer end of a brow.
+    BrowInner,
+    BrowMiddle,
+    BrowOuter,
+    /// The root of the nose between the eyes.
+    NoseRoot,
+    NoseTip,
+    /// The wing of a nostril.
+    NoseWing,
+    MouthCorner,
+    UpperLip,
+    LowerLip,
+    Chin,
+}
+
 /// Words of a region, in English and French; the first that a label holds counts, so that an eyebrow
 /// is no eye.
 const WORDS: [(&str, Option<Region>); 19] = [
@@ -67,6 +85,55 @@ pub(super) fn place_of(label: &str) -> Option<(Region, Side)> {
     Some((region, side_of(&lower)))
 }
 
+/// Words for where in its part a marker is: in English and French, and single letters between other characters.
+const INNER: [&str; 4] = ["inside", "inner", "medial", "intern"];
+const OUTER: [&str; 4] = ["outside", "outer", "lateral", "extern"];
+const MIDDLE: [&str; 4] = ["middle", "mid", "milieu", "m"];
+const UPPER: [&str; 5] = ["up", "upper", "top", "haut", "sup"];
+const LOWER: [&str; 6] = ["down", "low", "lower", "bottom", "bas", "inf"];
+const TIP: [&str; 5] = ["head", "tip", "apex", "pointe", "bout"];
+const ROOT: [&str; 6] = ["top", "root", "bridge", "up", "upper", "racine"];
+
+/// The landmark that a label names, and its side; none where it names none so closely.
+pub(super) fn named_place(label: &str) -> Option<(Named, Side)> {
+    let (region, side) = place_of(label)?;
+    let lower = label.to_lowercase();
+    // Words end where a digit, a capital or another character does.
+    let mut words: Vec<String> = vec![String::new()];
+    let mut last: Option<char> = None;
+    for letter in label.chars() {
+        let begins = letter.is_uppercase() && last.is_some_and(char::is_lowercase);
+        if begins || !letter.is_alphabetic() {
+            words.push(String::new());
+        }
+        if letter.is_alphabetic() {
+            words.last_mut().map(|word| word.extend(letter.to_lowercase()));
+        }
+        last = Some(letter);
+    }
+    let says = |list: &[&str]| {
+        words.iter().any(|word| list.contains(&word.as_str()))
+            || list.iter().any(|long| long.len() > 4 && lower.contains(long))
+    };
+    let number = lower.chars().any(|c| c.is_ascii_digit());
+    let middle = side == Side::Middle;
+    let named = match region {
+        Region::Brow if middle => return None,
+        Region::Brow if says(&INNER) => Named::BrowInner,
+        Region::Brow if says(&OUTER) => Named::BrowOuter,
+        Region::Brow if says(&MIDDLE) => Named::BrowMiddle,
+        Region::Nose if middle && says(&TIP) => Named::NoseTip,
+        Region::Nose if middle && says(&ROOT) => Named::NoseRoot,
+        Region::Nose if !middle && !says(&ROOT) => Named::NoseWing,
+        Region::MouthCorner if !middle => Named::MouthCorner,
+        Region::Mouth if middle && !number && says(&UPPER) => Named::UpperLip,
+        Region::Mouth if middle && !number && says(&LOWER) => Named::LowerLip,
+        Region::Chin if middle && !number => Named::Chin,
+        _ => return None,
+    };
+    Some((named, side))
+}
+
 fn side_of(lower: &str) -> Side {
     if lower.contains("left") || lower.contains("gauche") {
         return Side::Left;
@@ -94,6 +161,33 @@ fn side_of(lower: &str) -> Side {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labels_that_name_landmarks() {
+        for (label, place) in [
+            ("Leyebrow_Inside", Some((Named::BrowInner, Side::Left))),
+            ("Reyebrow_M", Some((Named::BrowMiddle, Side::Right))),
+            ("Leyebrow_Outside", Some((Named::BrowOuter, Side::Left))),
+            ("Eyebrow_Center", None),
+            ("NoseHead", Some((Named::NoseTip, Side::Middle))),
+            ("NoseHead_L", Some((Named::NoseWing, Side::Left))),
+            ("NoseTop", Some((Named::NoseRoot, Side::Middle))),
+            ("nose_tip", Some((Named::NoseTip, Side::Middle))),
+            ("Mouth_Lend", Some((Named::MouthCorner, Side::Left))),
+            ("mouth_corner_right", Some((Named::MouthCorner, Side::Right))),
+            ("Mouth_Up", Some((Named::UpperLip, Side::Middle))),
+            ("Mouth_UpL1", None),
+            ("lip_lower", Some((Named::LowerLip, Side::Middle))),
+            ("Mouth_DownR", None),
+            ("Chin", Some((Named::Chin, Side::Middle))),
+            ("Chin_R2", None),
+            ("Leye_Up", None),
+            ("Lcheek_Outside", None),
+            ("M07", None),
+        ] {
+            assert_eq!(named_place(label), place, "{label}");
+        }
+    }
 
     #[test]
     fn labels_of_laboratories() {

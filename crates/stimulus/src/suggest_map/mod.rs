@@ -10,6 +10,7 @@
 mod anchors;
 mod label_words;
 mod motion;
+mod named_places;
 mod registration;
 
 use std::ops::Range;
@@ -20,7 +21,9 @@ use mimique_solver::SkinMesh;
 use serde::Serialize;
 
 use self::anchors::Anchors;
+use self::label_words::{Region, place_of};
 use self::motion::{marker_motion, ranks_agree, rigid_to};
+use self::named_places::NamedPlaces;
 use self::registration::register;
 use crate::{AvatarSkin, MapOrigin, MappedMarker, MarkerMap, MarkerPlace};
 
@@ -30,6 +33,10 @@ pub const OFF_SKIN_M: f64 = 0.02;
 const SKULL_M: f64 = 1.5e-3;
 /// A marker off the skin that moves less than this against the head belongs to it, metres.
 const RIGID_M: f64 = 3e-3;
+/// A marker so far from the skin is a third as sure as one on it, millimetres.
+const FITS_MM: f64 = 10.0;
+/// How many markers are named to be looked at first.
+const LOOK_FIRST: usize = 5;
 /// Fewest markers that a face is recognised by.
 const FEWEST: usize = 6;
 
@@ -60,6 +67,9 @@ pub struct SuggestedMarker {
     pub place: Point,
     /// From there to the skin, millimetres.
     pub distance_mm: f64,
+    /// How sure the suggestion is, 0 to 1: by how near the places are that labels name, and the skin. Of labels that
+    /// say nothing it is a half at most.
+    pub confidence: f64,
 }
 
 /// A whole suggestion.
@@ -149,9 +159,18 @@ pub fn suggest_map(
     });
 
     let laid: Vec<Point> = points.iter().map(|&p| fit.apply(p)).collect();
+    let names: Vec<&str> = seen.iter().map(|&m| capture.labels[m].as_str()).collect();
+    let named = NamedPlaces::of(skin, &face, &names, anchors.swapped);
+    let laid = named.draw(&laid);
     let vertices = face.distinct(&skin.mesh, &laid);
     let labels = seen.iter().map(|&m| capture.labels[m].as_str());
+    let nearness = named.nearness(&laid);
     let mut markers = suggested(labels, &laid, &vertices, &face);
+    for (marker, near) in markers.iter_mut().zip(nearness) {
+        // The half of it is form, the other the names around.
+        let skin = libm::exp(-marker.distance_mm / FITS_MM);
+        marker.confidence = 0.5 * (1.0 + near) * skin;
+    }
     let mut notes = Vec::new();
     let unsteady: Vec<f64> =
         motion.iter().zip(&vertices).map(|(m, (vertex, _))| m * face.reach[*vertex]).collect();
@@ -182,7 +201,8 @@ fn suggested<'l>(
             let on = distance <= OFF_SKIN_M;
             let role = match (on, face.reach[vertex] < SKULL_M) {
                 (false, _) => MarkerRole::None,
-                (true, true) => MarkerRole::FaceAndHead,
+                (true, true) if !moves_by_name(label) => MarkerRole::FaceAndHead,
+                (true, true) => MarkerRole::Face,
                 (true, false) => MarkerRole::Face,
             };
             SuggestedMarker {
@@ -191,9 +211,16 @@ fn suggested<'l>(
                 vertex: on.then_some(vertex),
                 place,
                 distance_mm: 1e3 * distance,
+                confidence: 0.0,
             }
         })
         .collect()
+}
+
+/// Whether a label names a part of the face that moves against the skull.
+fn moves_by_name(label: &str) -> bool {
+    let still = [Region::Nose];
+    place_of(label).is_some_and(|(region, _)| !still.contains(&region))
 }
 
 /// What should be looked at in a suggestion.
@@ -207,6 +234,13 @@ fn remarks(markers: &[SuggestedMarker], anchors: &Anchors, agreement: f64) -> Ve
             left_out.join(", "),
             1e3 * OFF_SKIN_M
         ));
+    }
+    let mut unsure: Vec<&SuggestedMarker> =
+        markers.iter().filter(|m| m.role != MarkerRole::None && m.vertex.is_some()).collect();
+    unsure.sort_by(|a, b| a.confidence.total_cmp(&b.confidence));
+    let first: Vec<&str> = unsure.iter().take(LOOK_FIRST).map(|m| m.label.as_str()).collect();
+    if !first.is_empty() {
+        notes.push(format!("look first at {}, which are the least sure", first.join(", ")));
     }
     if anchors.swapped {
         notes.push("the labels' left is the viewer's left, the person's right".to_owned());
@@ -361,7 +395,13 @@ fn complete_head(
     if missing <= 1 {
         return;
     }
+    // What its label says to move is no part of the skull, unless there is nothing else.
     let mut steady = with(markers, &[MarkerRole::Face]);
+    let still_by_name: Vec<usize> =
+        steady.iter().copied().filter(|&i| !moves_by_name(&markers[i].label)).collect();
+    if still_by_name.len() >= 3 {
+        steady = still_by_name;
+    }
     steady.sort_by(|&a, &b| unsteady[a].total_cmp(&unsteady[b]));
     for i in steady.into_iter().take(missing) {
         markers[i].role = MarkerRole::FaceAndHead;

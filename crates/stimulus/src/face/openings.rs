@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use mimique_avatar::arkit_shapes;
 use mimique_geometry::{DVec3, Point, centroid};
 use mimique_solver::MirrorPlane;
-use mimique_stimulus::AvatarSkin;
+
+use crate::AvatarSkin;
 
 /// A border further than this from where the shapes say that its opening is belongs to something else,
 /// metres.
@@ -93,7 +94,7 @@ fn opening(
 }
 
 /// How far each vertex is moved by the shape of some names that moves it farthest, metres.
-pub(super) fn moved_by(skin: &AvatarSkin, shapes: &[&str]) -> Vec<f64> {
+pub fn moved_by(skin: &AvatarSkin, shapes: &[&str]) -> Vec<f64> {
     let mut moved = vec![0.0_f64; skin.mesh.positions.len()];
     for (name, shape) in skin.shape_names.iter().zip(&skin.mesh.shapes) {
         if !arkit_shapes(name).iter().any(|meant| shapes.contains(meant)) {
