@@ -40,8 +40,8 @@ pub(super) enum Named {
     /// The root of the nose between the eyes.
     NoseRoot,
     NoseTip,
-    /// The wing of a nostril.
-    NoseWing,
+    /// Where the wing of a nostril meets the lip.
+    NoseBase,
     MouthCorner,
     UpperLip,
     LowerLip,
@@ -124,7 +124,7 @@ pub(super) fn named_place(label: &str) -> Option<(Named, Side)> {
         Region::Brow if says(&MIDDLE) => Named::BrowMiddle,
         Region::Nose if middle && says(&TIP) => Named::NoseTip,
         Region::Nose if middle && says(&ROOT) => Named::NoseRoot,
-        Region::Nose if !middle && !says(&ROOT) => Named::NoseWing,
+        Region::Nose if !middle && says(&TIP) => Named::NoseBase,
         Region::MouthCorner if !middle => Named::MouthCorner,
         Region::Mouth if middle && !number && says(&UPPER) => Named::UpperLip,
         Region::Mouth if middle && !number && says(&LOWER) => Named::LowerLip,
@@ -170,7 +170,8 @@ mod tests {
             ("Leyebrow_Outside", Some((Named::BrowOuter, Side::Left))),
             ("Eyebrow_Center", None),
             ("NoseHead", Some((Named::NoseTip, Side::Middle))),
-            ("NoseHead_L", Some((Named::NoseWing, Side::Left))),
+            ("NoseHead_L", Some((Named::NoseBase, Side::Left))),
+            ("nose_wing_left", None),
             ("NoseTop", Some((Named::NoseRoot, Side::Middle))),
             ("nose_tip", Some((Named::NoseTip, Side::Middle))),
             ("Mouth_Lend", Some((Named::MouthCorner, Side::Left))),

@@ -5,11 +5,12 @@
 //! Gaussian process over the places of the named ones, which dies away where nothing is named.
 
 use mimique_avatar::arkit_shapes;
-use mimique_geometry::{DVec3, Displacement, Point, solve_linear};
+use mimique_geometry::{DVec3, Displacement, Point, align_rigidly, solve_linear};
 use mimique_solver::MirrorPlane;
 
 use super::Face;
-use super::label_words::{Named, Region, Side, named_place, place_of};
+use super::label_words::{Named, Side, named_place};
+use super::registration::similarity;
 use crate::{AvatarSkin, Landmarks, Openings};
 
 /// How far displacements go together, metres: about half the width of a mouth.
@@ -20,12 +21,12 @@ const NOISE: f64 = 0.3;
 const FARTHEST_M: f64 = 0.03;
 /// Fewest named markers that a face is bent by.
 const FEWEST: usize = 4;
-/// Vertices that a brow's shape moves by this share of the most are the brow.
-const BROW: f64 = 0.5;
+/// Fewest named markers that say how the face lies and how large it is.
+const FEWEST_TO_FIT: usize = 8;
+/// Vertices that a shape of a brow moves by this share of its most are the brow.
+const BROW: f64 = 0.7;
 /// The share of a brow at each of its ends.
 const END: f64 = 0.08;
-/// Markers around an eye that stand for its middle.
-const AROUND_EYE: usize = 3;
 
 /// Markers and the places that their labels name.
 pub(super) struct NamedPlaces {
@@ -39,22 +40,12 @@ impl NamedPlaces {
     pub fn of(skin: &AvatarSkin, face: &Face, labels: &[&str], swapped: bool) -> Self {
         let Some(places) = Places::of(skin, face) else { return Self { pairs: Vec::new() } };
         let own = |side: Side| if swapped { side.other() } else { side };
-        let mut pairs: Vec<(Vec<usize>, Point)> = (labels.iter().enumerate())
+        let pairs: Vec<(Vec<usize>, Point)> = (labels.iter().enumerate())
             .filter_map(|(marker, label)| {
                 let (named, side) = named_place(label)?;
                 Some((vec![marker], places.at(named, own(side))?))
             })
             .collect();
-        for side in [Side::Left, Side::Right] {
-            let around: Vec<usize> = (labels.iter().enumerate())
-                .filter(|(_, label)| place_of(label) == Some((Region::Eye, side)))
-                .map(|(marker, _)| marker)
-                .collect();
-            let eye = usize::from(own(side) == Side::Right);
-            if around.len() >= AROUND_EYE {
-                pairs.push((around, places.landmarks.eye[eye]));
-            }
-        }
         Self { pairs }
     }
 
@@ -82,6 +73,8 @@ impl NamedPlaces {
         if pairs.len() < FEWEST {
             return laid.to_vec();
         }
+        let (laid, pairs) = fitted(laid, pairs);
+        let laid = &laid[..];
         let near =
             |a: Point, b: Point| libm::exp(-(a - b).length_squared() / (2.0 * LENGTH_M * LENGTH_M));
         let count = pairs.len();
@@ -107,13 +100,28 @@ impl NamedPlaces {
     }
 }
 
+/// The laid markers turned, moved and sized so that the named ones come to their places as well as they can.
+fn fitted(
+    laid: &[Point],
+    pairs: Vec<(Point, Displacement)>,
+) -> (Vec<Point>, Vec<(Point, Displacement)>) {
+    if pairs.len() < FEWEST_TO_FIT {
+        return (laid.to_vec(), pairs);
+    }
+    let (from, to): (Vec<Point>, Vec<Point>) = pairs.iter().map(|&(p, way)| (p, p + way)).unzip();
+    let Ok(motion) = align_rigidly(&from, &to) else { return (laid.to_vec(), pairs) };
+    let fit = similarity(&from, &to, motion);
+    let ways = from.iter().zip(&to).map(|(&p, &q)| (fit.apply(p), q - fit.apply(p)));
+    (laid.iter().map(|&p| fit.apply(p)).collect(), ways.collect())
+}
+
 /// Landmarks of an avatar, and what its brows' shapes move.
 struct Places {
     landmarks: Landmarks,
     /// Inner end, middle and outer end of the left and the right brow.
     brows: [Option<[Point; 3]>; 2],
-    /// The wings of the nostrils.
-    wings: [Option<Point>; 2],
+    /// Where the wings of the nostrils meet the lip.
+    nose_bases: [Option<Point>; 2],
 }
 
 impl Places {
@@ -121,9 +129,13 @@ impl Places {
         let plane = MirrorPlane::of(&skin.mesh).ok()?;
         let openings = Openings::of(skin, &plane).ok()?;
         let landmarks = Landmarks::of(&skin.mesh, &openings, &plane).ok()?;
-        let brows = ["browDownLeft", "browDownRight"].map(|shape| brow(skin, face, shape, &plane));
-        let wings = [1.0, -1.0].map(|side| wing(skin, face, &landmarks, &plane, side));
-        Some(Self { landmarks, brows, wings })
+        let brows = [
+            (["browDownLeft", "browOuterUpLeft", "browInnerUp"], 1.0),
+            (["browDownRight", "browOuterUpRight", "browInnerUp"], -1.0),
+        ]
+        .map(|(shapes, side)| brow(skin, face, shapes, &plane, side));
+        let nose_bases = [1.0, -1.0].map(|side| nose_base(skin, face, &landmarks, &plane, side));
+        Some(Self { landmarks, brows, nose_bases })
     }
 
     fn at(&self, named: Named, side: Side) -> Option<Point> {
@@ -136,43 +148,54 @@ impl Places {
             Named::BrowOuter => self.brows[own]?[2],
             Named::NoseRoot => marks.nasion,
             Named::NoseTip => marks.pronasale,
-            Named::NoseWing => self.wings[own]?,
+            Named::NoseBase => self.nose_bases[own]?,
             Named::MouthCorner => marks.cheilion[own],
             // The borders of the red of the lips lie about half way to the nose's base, and to the fold below.
-            Named::UpperLip => between(marks.stomion, marks.subnasale, 0.5),
+            Named::UpperLip => between(marks.stomion, marks.subnasale, 0.6),
             Named::LowerLip => between(marks.stomion, marks.sublabiale, 0.6),
-            Named::Chin => between(marks.pogonion, marks.gnathion, 0.7),
+            Named::Chin => between(marks.pogonion, marks.gnathion, 0.5),
         })
     }
 }
 
-/// Inner end, middle and outer end of what a shape lowers.
-fn brow(skin: &AvatarSkin, face: &Face, shape: &str, plane: &MirrorPlane) -> Option<[Point; 3]> {
-    let index = skin.shape_names.iter().position(|name| arkit_shapes(name) == [shape])?;
-    let moved = &skin.mesh.shapes[index];
-    let reach = |v: usize| {
-        moved.vertices.binary_search(&(v as u32)).map_or(0.0, |at| moved.deltas[at].length())
-    };
-    let most = face.vertices.iter().map(|&v| reach(v)).fold(0.0, f64::max);
-    let mut own: Vec<(f64, Point, f64)> = (face.vertices.iter())
-        .map(|&v| (v, reach(v)))
-        .filter(|(_, reach)| most > 0.0 && *reach > BROW * most)
-        .map(|(v, reach)| {
-            let p = skin.mesh.positions[v];
-            (plane.distance(p).abs(), p, (reach / most).powi(8))
-        })
+/// Inner end, middle and outer end of what the shapes of a brow move: each of them by some share of its most.
+fn brow(
+    skin: &AvatarSkin,
+    face: &Face,
+    shapes: [&str; 3],
+    plane: &MirrorPlane,
+    side: f64,
+) -> Option<[Point; 3]> {
+    let mut share = vec![0.0_f64; skin.mesh.positions.len()];
+    for (name, shape) in skin.shape_names.iter().zip(&skin.mesh.shapes) {
+        if !shapes.iter().any(|wanted| arkit_shapes(name).contains(wanted)) {
+            continue;
+        }
+        let on_side = |v: usize| side * plane.distance(skin.mesh.positions[v]) > 0.0;
+        let moved = || shape.vertices.iter().map(|&v| v as usize).zip(&shape.deltas);
+        let most =
+            moved().filter(|(v, _)| on_side(*v)).map(|(_, d)| d.length()).fold(0.0, f64::max);
+        for (v, d) in moved().filter(|(v, _)| most > 0.0 && on_side(*v)) {
+            share[v] = share[v].max(d.length() / most);
+        }
+    }
+    let mut own: Vec<(f64, Point)> = (face.vertices.iter())
+        .filter(|&&v| share[v] > BROW)
+        .map(|&v| (plane.distance(skin.mesh.positions[v]).abs(), skin.mesh.positions[v]))
         .collect();
     own.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let end = ((END * own.len() as f64).ceil() as usize).max(1).min(own.len());
-    let mean = |some: &[(f64, Point, f64)]| mimique_geometry::centroid(some.iter().map(|s| s.1));
-    let total: f64 = own.iter().map(|each| each.2).sum();
-    let middle = own.iter().map(|(_, p, weight)| *weight * p.0).sum::<DVec3>() / total;
-    (!own.is_empty()).then(|| [mean(&own[..end]), Point(middle), mean(&own[own.len() - end..])])
+    let (first, last) = (own.first()?.0, own.last()?.0);
+    let at = |place: f64| {
+        let aside = first + place * (last - first);
+        let near = own.iter().filter(|each| (each.0 - aside).abs() <= END * (last - first));
+        mimique_geometry::centroid(near.map(|each| each.1))
+    };
+    Some([at(0.0), at(0.5), at(1.0)])
 }
 
-/// The wing of a nostril: of the skin beside the nose's tip and base, what stands out farthest sideways before it falls
-/// back to the cheek.
-fn wing(
+/// Where the wing of a nostril meets the lip: below what stands out farthest sideways of the nose before it falls back to
+/// the cheek.
+fn nose_base(
     skin: &AvatarSkin,
     face: &Face,
     marks: &Landmarks,
@@ -189,5 +212,8 @@ fn wing(
             && plane.distance(*p).abs() < 0.3 * size
     };
     let own = face.vertices.iter().map(|&v| skin.mesh.positions[v]).filter(beside);
-    own.max_by(|a, b| plane.distance(*a).abs().total_cmp(&plane.distance(*b).abs()))
+    let wing = own.max_by(|a, b| plane.distance(*a).abs().total_cmp(&plane.distance(*b).abs()))?;
+    // Its base, where it meets the lip.
+    let base = marks.subnasale + (wing - marks.subnasale) * 0.75;
+    Some(Point::new(base.x, marks.subnasale.y, base.z))
 }

@@ -144,7 +144,7 @@ fn settle(
 
 /// The motion with the size of the one set in units of the other's. Their spreads say it: the least
 /// squares' own size shrinks with every step, as nearest points are never too far.
-fn similarity(from: &[Point], to: &[Point], motion: RigidMotion) -> Similarity {
+pub(super) fn similarity(from: &[Point], to: &[Point], motion: RigidMotion) -> Similarity {
     let [a, b] = [from, to].map(|all| centroid(all.iter().copied()));
     let spread = |points: &[Point], centre: Point| -> f64 {
         points.iter().map(|p| (*p - centre).length_squared()).sum()
