@@ -14,9 +14,9 @@ use super::registration::similarity;
 use crate::{AvatarSkin, Landmarks, Openings};
 
 /// How far displacements go together, metres: about half the width of a mouth.
-const LENGTH_M: f64 = 0.03;
+const LENGTH_M: f64 = 0.045;
 /// The standard error of a landmark in units of the displacements' own deviation.
-const NOISE: f64 = 0.3;
+const NOISE: f64 = 0.5;
 /// A landmark farther from its marker belongs to another label, metres.
 const FARTHEST_M: f64 = 0.03;
 /// Fewest named markers that a face is bent by.
@@ -25,6 +25,8 @@ const FEWEST: usize = 4;
 const FEWEST_TO_FIT: usize = 8;
 /// Vertices that a shape of a brow moves by this share of its most are the brow.
 const BROW: f64 = 0.7;
+/// The power of the share by which a vertex is lowered, as a weight of its height.
+const LOWERED: i32 = 6;
 /// The share of a brow at each of its ends.
 const END: f64 = 0.08;
 
@@ -144,7 +146,7 @@ impl Places {
         let between = |a: Point, b: Point, share: f64| a + (b - a) * share;
         Some(match named {
             Named::BrowInner => self.brows[own]?[0],
-            Named::BrowMiddle => self.brows[own]?[1],
+            Named::BrowMiddle => return None,
             Named::BrowOuter => self.brows[own]?[2],
             Named::NoseRoot => marks.nasion,
             Named::NoseTip => marks.pronasale,
@@ -166,29 +168,41 @@ fn brow(
     plane: &MirrorPlane,
     side: f64,
 ) -> Option<[Point; 3]> {
-    let mut share = vec![0.0_f64; skin.mesh.positions.len()];
-    for (name, shape) in skin.shape_names.iter().zip(&skin.mesh.shapes) {
-        if !shapes.iter().any(|wanted| arkit_shapes(name).contains(wanted)) {
-            continue;
-        }
+    let of = |wanted: &str| -> Vec<f64> {
+        let mut share = vec![0.0_f64; skin.mesh.positions.len()];
         let on_side = |v: usize| side * plane.distance(skin.mesh.positions[v]) > 0.0;
-        let moved = || shape.vertices.iter().map(|&v| v as usize).zip(&shape.deltas);
-        let most =
-            moved().filter(|(v, _)| on_side(*v)).map(|(_, d)| d.length()).fold(0.0, f64::max);
-        for (v, d) in moved().filter(|(v, _)| most > 0.0 && on_side(*v)) {
-            share[v] = share[v].max(d.length() / most);
+        for (name, shape) in skin.shape_names.iter().zip(&skin.mesh.shapes) {
+            if !arkit_shapes(name).contains(&wanted) {
+                continue;
+            }
+            let moved = || {
+                let all = shape.vertices.iter().map(|&v| v as usize).zip(&shape.deltas);
+                all.filter(|(v, _)| on_side(*v))
+            };
+            let most = moved().map(|(_, d)| d.length()).fold(0.0, f64::max);
+            moved()
+                .filter(|_| most > 0.0)
+                .for_each(|(v, d)| share[v] = share[v].max(d.length() / most));
         }
-    }
-    let mut own: Vec<(f64, Point)> = (face.vertices.iter())
-        .filter(|&&v| share[v] > BROW)
-        .map(|&v| (plane.distance(skin.mesh.positions[v]).abs(), skin.mesh.positions[v]))
+        share
+    };
+    let [lowered, outer, inner] = shapes.map(of);
+    let any = |v: usize| lowered[v].max(outer[v]).max(inner[v]);
+    // How far the brow goes is what any of its shapes moves; its height is where it is lowered.
+    let mut own: Vec<(f64, Point, f64)> = (face.vertices.iter())
+        .filter(|&&v| any(v) > BROW)
+        .map(|&v| {
+            let p = skin.mesh.positions[v];
+            (plane.distance(p).abs(), p, lowered[v].powi(LOWERED) + 1e-9)
+        })
         .collect();
     own.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (first, last) = (own.first()?.0, own.last()?.0);
     let at = |place: f64| {
         let aside = first + place * (last - first);
-        let near = own.iter().filter(|each| (each.0 - aside).abs() <= END * (last - first));
-        mimique_geometry::centroid(near.map(|each| each.1))
+        let near = || own.iter().filter(|each| (each.0 - aside).abs() <= END * (last - first));
+        let total: f64 = near().map(|each| each.2).sum();
+        Point(near().map(|(_, p, weight)| *weight * p.0).sum::<DVec3>() / total)
     };
     Some([at(0.0), at(0.5), at(1.0)])
 }
