@@ -11,6 +11,8 @@ export class Matching {
   #picture;
   #state = { markers: [] };
   #chosen = null;
+  /// How sure a suggestion is of each marker that nobody has placed since, 0 to 1.
+  #confidences = new Map();
 
   /// `page`: {avatarKey(), avatarShapes(), mapChanged(state), report(error)}
   constructor(page) {
@@ -26,8 +28,14 @@ export class Matching {
     for (const id of ["neutral-first", "neutral-end"]) $(id).addEventListener("change", () => this.#neutral());
   }
 
-  /// Shows a map as the worker tells it.
+  /// Shows a map as the worker tells it: suggested, or read from a file.
   put(state) {
+    this.#confidences = new Map((state.suggestion?.markers ?? []).map(({ label, confidence }) => [label, confidence]));
+    this.#list(state);
+  }
+
+  /// Shows a map that was corrected here.
+  #list(state) {
     this.#state = state;
     if (!state.markers.some(({ label }) => label === this.#chosen)) this.#chosen = null;
     this.#chosen ??= state.markers.find(({ position }) => !position)?.label ?? state.markers[0]?.label ?? null;
@@ -46,7 +54,9 @@ export class Matching {
     const off = made("button", { type: "button", disabled: vertex === null, ariaLabel: `Take ${label} off` }, "Off");
     off.addEventListener("click", () => this.#place(label, null, rigid.checked));
     const place = made("td", { className: vertex === null ? "unplaced" : "" }, vertex === null ? "–" : String(vertex));
-    const row = made("tr", {}, made("td", {}, name), place, made("td", {}, rigid), made("td", {}, off));
+    const sure = this.#confidences.get(label);
+    const confidence = made("td", {}, vertex === null || sure === undefined ? "" : `${Math.round(100 * sure)} %`);
+    const row = made("tr", {}, made("td", {}, name), place, confidence, made("td", {}, rigid), made("td", {}, off));
     row.dataset.label = label;
     row.setAttribute("aria-selected", String(label === this.#chosen));
     return row;
@@ -59,15 +69,16 @@ export class Matching {
   }
 
   #place(label, vertex, head) {
+    if (vertex !== this.#state.markers.find((each) => each.label === label)?.vertex) this.#confidences.delete(label);
     return callWorker("place", label, vertex ?? undefined, head)
-      .then((state) => (this.put(state), this.#page.mapChanged(state)))
+      .then((state) => (this.#list(state), this.#page.mapChanged(state)))
       .catch(this.#page.report);
   }
 
   #neutral() {
     const [first, end] = [Number($("neutral-first").value), Number($("neutral-end").value)];
     callWorker("setNeutral", first, end)
-      .then((state) => (this.put(state), this.#page.mapChanged(state)))
+      .then((state) => (this.#list(state), this.#page.mapChanged(state)))
       .catch(this.#page.report);
   }
 

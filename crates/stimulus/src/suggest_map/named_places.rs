@@ -4,7 +4,6 @@
 //! named markers some 7 mm beside their landmarks. The rest of the way is a smooth field of displacements, a
 //! Gaussian process over the places of the named ones, which dies away where nothing is named.
 
-use mimique_avatar::arkit_shapes;
 use mimique_geometry::{DVec3, Displacement, Point, align_rigidly, solve_linear};
 use mimique_solver::MirrorPlane;
 
@@ -16,19 +15,13 @@ use crate::{AvatarSkin, Landmarks, Openings};
 /// How far displacements go together, metres: about half the width of a mouth.
 const LENGTH_M: f64 = 0.045;
 /// The standard error of a landmark in units of the displacements' own deviation.
-const NOISE: f64 = 0.5;
+const NOISE: f64 = 0.35;
 /// A landmark farther from its marker belongs to another label, metres.
 const FARTHEST_M: f64 = 0.03;
 /// Fewest named markers that a face is bent by.
 const FEWEST: usize = 4;
 /// Fewest named markers that say how the face lies and how large it is.
 const FEWEST_TO_FIT: usize = 8;
-/// Vertices that a shape of a brow moves by this share of its most are the brow.
-const BROW: f64 = 0.7;
-/// The power of the share by which a vertex is lowered, as a weight of its height.
-const LOWERED: i32 = 6;
-/// The share of a brow at each of its ends.
-const END: f64 = 0.08;
 
 /// Markers and the places that their labels name.
 pub(super) struct NamedPlaces {
@@ -117,7 +110,7 @@ fn fitted(
     (laid.iter().map(|&p| fit.apply(p)).collect(), ways.collect())
 }
 
-/// Landmarks of an avatar, and what its brows' shapes move.
+/// Landmarks of an avatar, its brows and the bases of its nostrils.
 struct Places {
     landmarks: Landmarks,
     /// Inner end, middle and outer end of the left and the right brow.
@@ -131,11 +124,7 @@ impl Places {
         let plane = MirrorPlane::of(&skin.mesh).ok()?;
         let openings = Openings::of(skin, &plane).ok()?;
         let landmarks = Landmarks::of(&skin.mesh, &openings, &plane).ok()?;
-        let brows = [
-            (["browDownLeft", "browOuterUpLeft", "browInnerUp"], 1.0),
-            (["browDownRight", "browOuterUpRight", "browInnerUp"], -1.0),
-        ]
-        .map(|(shapes, side)| brow(skin, face, shapes, &plane, side));
+        let brows = [0, 1].map(|own| brow(skin, face, &landmarks, own));
         let nose_bases = [1.0, -1.0].map(|side| nose_base(skin, face, &landmarks, &plane, side));
         Some(Self { landmarks, brows, nose_bases })
     }
@@ -146,7 +135,7 @@ impl Places {
         let between = |a: Point, b: Point, share: f64| a + (b - a) * share;
         Some(match named {
             Named::BrowInner => self.brows[own]?[0],
-            Named::BrowMiddle => return None,
+            Named::BrowMiddle => self.brows[own]?[1],
             Named::BrowOuter => self.brows[own]?[2],
             Named::NoseRoot => marks.nasion,
             Named::NoseTip => marks.pronasale,
@@ -155,56 +144,29 @@ impl Places {
             // The borders of the red of the lips lie about half way to the nose's base, and to the fold below.
             Named::UpperLip => between(marks.stomion, marks.subnasale, 0.6),
             Named::LowerLip => between(marks.stomion, marks.sublabiale, 0.6),
-            Named::Chin => between(marks.pogonion, marks.gnathion, 0.5),
+            Named::Chin => between(marks.pogonion, marks.gnathion, 0.7),
         })
     }
 }
 
-/// Inner end, middle and outer end of what the shapes of a brow move: each of them by some share of its most.
-fn brow(
-    skin: &AvatarSkin,
-    face: &Face,
-    shapes: [&str; 3],
-    plane: &MirrorPlane,
-    side: f64,
-) -> Option<[Point; 3]> {
-    let of = |wanted: &str| -> Vec<f64> {
-        let mut share = vec![0.0_f64; skin.mesh.positions.len()];
-        let on_side = |v: usize| side * plane.distance(skin.mesh.positions[v]) > 0.0;
-        for (name, shape) in skin.shape_names.iter().zip(&skin.mesh.shapes) {
-            if !arkit_shapes(name).contains(&wanted) {
-                continue;
-            }
-            let moved = || {
-                let all = shape.vertices.iter().map(|&v| v as usize).zip(&shape.deltas);
-                all.filter(|(v, _)| on_side(*v))
-            };
-            let most = moved().map(|(_, d)| d.length()).fold(0.0, f64::max);
-            moved()
-                .filter(|_| most > 0.0)
-                .for_each(|(v, d)| share[v] = share[v].max(d.length() / most));
-        }
-        share
+/// Inner end, middle and outer end of a brow (Farkas 1994): it begins above the inner corner of the eye and ends on the line
+/// from the wing of the nose past the outer corner, at about the height of the glabella.
+fn brow(skin: &AvatarSkin, face: &Face, marks: &Landmarks, own: usize) -> Option<[Point; 3]> {
+    let [inner, outer] = [marks.endocanthion[own], marks.exocanthion[own]];
+    let aside = outer - inner;
+    let size = marks.glabella.y - marks.nasion.y;
+    let front = |at: Point, above: f64| {
+        let y = marks.brow_y + above * size;
+        let beside = |p: &Point| (p.x - at.x).hypot(p.y - y);
+        let near = face.vertices.iter().map(|&v| skin.mesh.positions[v]);
+        let found = near.min_by(|a, b| beside(a).total_cmp(&beside(b)))?;
+        Some(Point::new(at.x, y, found.z))
     };
-    let [lowered, outer, inner] = shapes.map(of);
-    let any = |v: usize| lowered[v].max(outer[v]).max(inner[v]);
-    // How far the brow goes is what any of its shapes moves; its height is where it is lowered.
-    let mut own: Vec<(f64, Point, f64)> = (face.vertices.iter())
-        .filter(|&&v| any(v) > BROW)
-        .map(|&v| {
-            let p = skin.mesh.positions[v];
-            (plane.distance(p).abs(), p, lowered[v].powi(LOWERED) + 1e-9)
-        })
-        .collect();
-    own.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (first, last) = (own.first()?.0, own.last()?.0);
-    let at = |place: f64| {
-        let aside = first + place * (last - first);
-        let near = || own.iter().filter(|each| (each.0 - aside).abs() <= END * (last - first));
-        let total: f64 = near().map(|each| each.2).sum();
-        Point(near().map(|(_, p, weight)| *weight * p.0).sum::<DVec3>() / total)
-    };
-    Some([at(0.0), at(0.5), at(1.0)])
+    Some([
+        front(inner - aside * 0.25, -0.1)?,
+        front(inner + aside * 0.6, 0.2)?,
+        front(outer + aside * 0.4, -0.3)?,
+    ])
 }
 
 /// Where the wing of a nostril meets the lip: below what stands out farthest sideways of the nose before it falls back to
