@@ -54,10 +54,10 @@ pub use power::{
     power_csv, power_curve, power_markdown, power_runs,
 };
 pub use preregistration::{Preregistration, preregistration};
-pub use report::{Report, ReportFile, analyze};
+pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
     ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
     Rating, Recognition, SimulatedSession, Simulation, Times,
 };
-pub use trials::error::ExportError;
+pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

@@ -2,6 +2,8 @@
 
 #[path = "support/simulated.rs"]
 mod simulated;
+#[path = "report/stimulus_measures.rs"]
+mod stimulus_measures;
 mod support;
 
 use std::collections::BTreeSet;

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use mimique_analysis::{Language, analyze};
+use mimique_analysis::{ExportError, Language, analyze_with_stimuli};
 use mimique_stats::Table;
 use mimique_study::Study;
 
@@ -20,12 +20,22 @@ pub struct Args {
     /// Study file that the answers belong to
     #[arg(long)]
     study: PathBuf,
+    /// Table of stimuli, as `mimique export --stimuli` writes it, or with a laboratory's own measures in further columns:
+    /// answers are held against them
+    #[arg(long, value_name = "FILE.csv")]
+    stimuli: Option<PathBuf>,
     /// Folder for the report; an earlier report in it is replaced
     #[arg(long)]
     out: PathBuf,
     /// Language of the report: en or fr
     #[arg(long, default_value = "en", value_parser = language)]
     language: Language,
+}
+
+fn read_table(path: &Path) -> anyhow::Result<Table> {
+    let bytes = std::fs::read(path)
+        .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))?;
+    Ok(Table::parse(bytes)?)
 }
 
 /// A language that reports are written in.
@@ -40,11 +50,17 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| place(&args.study))?;
     let study = Study::from_text(&text).with_context(|| place(&args.study))?;
-    let report = std::fs::read(&args.export)
-        .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
-        .and_then(|bytes| Ok(Table::parse(bytes)?))
-        .and_then(|table| Ok(analyze(&table, &study, args.language)?))
-        .with_context(|| place(&args.export))?;
+    let table = read_table(&args.export).with_context(|| place(&args.export))?;
+    let stimuli = match &args.stimuli {
+        Some(path) => Some(read_table(path).with_context(|| place(path))?),
+        None => None,
+    };
+    let report =
+        analyze_with_stimuli(&table, stimuli.as_ref(), &study, args.language).map_err(|error| {
+            let of_stimuli = matches!(error, ExportError::Stimuli(_));
+            let file = args.stimuli.as_ref().filter(|_| of_stimuli).unwrap_or(&args.export);
+            anyhow::Error::from(error).context(place(file))
+        })?;
     report_folder::write(&report.files, &args.out).with_context(|| place(&args.out))?;
 
     let mut out = std::io::stdout().lock();

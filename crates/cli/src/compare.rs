@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, bail};
 use mimique_comparison::{
     ComparedFace, Difference, FaceMotion, MarkerCorrelation, Measures, difference,
-    marker_correlation, measures,
+    marker_correlation, measures, median_correlation,
 };
 use mimique_mocap::{CaptureFile, ReadOptions, WeightOptions, WeightsTable};
 use mimique_solver::{Method, MethodSpec};
@@ -85,7 +85,7 @@ pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
             file: path.clone(),
             measures: measures(&face, &motion),
             difference,
-            marker_correlation: median(&markers),
+            marker_correlation: median_correlation(&markers),
             markers,
         });
         reference.get_or_insert(motion);
@@ -174,18 +174,6 @@ fn displacements(args: &Args, skin: &AvatarSkin) -> anyhow::Result<Option<Displa
     let operators = joined.operators(&spec).map_err(|e| blame(map, e))?;
     let motion = joined.motion(&operators, &spec).map_err(|e| blame(capture, e))?;
     Ok(Some(Displacements { sites: joined.sites().to_vec(), rows: motion.displacements }))
-}
-
-/// The median of the correlations that there are.
-fn median(markers: &[MarkerCorrelation]) -> Option<f64> {
-    let mut r: Vec<f64> = markers.iter().filter_map(|marker| marker.r).collect();
-    r.sort_by(f64::total_cmp);
-    let middle = r.len() / 2;
-    match r.len() {
-        0 => None,
-        odd if odd % 2 == 1 => Some(r[middle]),
-        _ => Some(f64::midpoint(r[middle - 1], r[middle])),
-    }
 }
 
 /// A table with a row per file and part.

@@ -4,8 +4,10 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mimique_server::export::{Cells, Export, Format, Options, Part};
+use mimique_server::export::{Cells, Export, Format, Options, Part, stimuli};
 use mimique_storage::Storage;
+
+use crate::output;
 
 /// Options.
 #[derive(clap::Args)]
@@ -23,6 +25,9 @@ pub struct Args {
     /// File to write (for psych-ds a folder, or a file ending in .zip); standard output if not given
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write the table of stimuli here, too: a row per clip, with its factors and what was measured of it
+    #[arg(long, value_name = "FILE.csv")]
+    stimuli: Option<PathBuf>,
     /// Add the identifiers of the recruitment platform
     #[arg(long)]
     with_identifiers: bool,
@@ -57,6 +62,10 @@ async fn write(args: &Args, storage: &Storage, json: bool) -> anyhow::Result<()>
     let named = || Storage::without_password(&args.database);
     let cells = if args.for_spreadsheet { Cells::Neutralised } else { Cells::AsTheyAre };
     let options = Options { with_identifiers: args.with_identifiers, cells };
+    if let Some(path) = &args.stimuli {
+        let table = stimuli(storage, args.study.as_deref()).await.with_context(named)?;
+        output::write(path, &table.1)?;
+    }
     let export = Export::open(storage, args.study.as_deref(), args.format, options).await;
     let mut export = export.with_context(named)?;
     let mut stdout = std::io::stdout().lock();

@@ -57,10 +57,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         place()
     );
     let checked = checked_study(&args.study)?;
-    let clips = prepare_study(&args.study, checked.study(), &args.packs)
+    let hosting = prepare_study(&args.study, checked.study(), &args.packs)
         .map_err(|problem| anyhow::anyhow!(problem))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
-    let hosted = HostedStudy::new(checked.value().clone(), clips, stage)?;
+    let hosted = HostedStudy::new(checked.value().clone(), hosting.clips, stage)?;
 
     // Written beside and moved into place: a site is whole or absent.
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_server::{
-    Access, App, Assets, HostedStudy, Network, PackStore, Settings, Stage, prepare_hosting,
+    Access, App, Assets, HostedStudy, Hosting, Network, PackStore, Settings, Stage, prepare_hosting,
 };
 use mimique_stimulus::Places;
 use mimique_storage::{Storage, durable_file};
@@ -270,8 +270,9 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
         }
         let Some(checked) = report.study else { continue };
         match prepare_study(file, checked.study(), packs) {
-            Ok(clips) => {
-                let study = HostedStudy::new(checked.value().clone(), clips, stage)?;
+            Ok(hosting) => {
+                let study = HostedStudy::new(checked.value().clone(), hosting.clips, stage)?
+                    .with_measures(hosting.measures);
                 studies.push(study.with_places(Places::of(file, packs)));
             }
             Err(problem) => problems.push(problem),
@@ -281,13 +282,11 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
     Ok(studies)
 }
 
-type Clips = std::collections::BTreeMap<String, mimique_study::ClipSource>;
-
 pub fn prepare_study(
     file: &Path,
     study: &mimique_study::Study,
     packs: &Path,
-) -> Result<Clips, String> {
+) -> Result<Hosting, String> {
     // Hidden where no terminal is.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
@@ -303,7 +302,7 @@ pub fn prepare_study(
     for (pointer, text) in &prepared.warnings {
         eprintln!("warning: {}: {pointer}: {text}", file.display());
     }
-    Ok(prepared.clips)
+    Ok(prepared)
 }
 
 /// An address that a browser on this machine can open.

@@ -32,6 +32,7 @@ impl Kept {
                 config_hash: "c".repeat(64),
                 file: "{}".into(),
                 clips: "{}".into(),
+                measures: "[]".into(),
             };
             storage.register_study(&version, 1).await.expect("the study");
             for person in ["a", "b"] {

@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod clip_measures;
 mod difference;
 mod face;
 mod lips;
@@ -30,9 +31,10 @@ mod measures;
 mod motion;
 mod same_but_method;
 
+pub use clip_measures::ClipMeasures;
 pub use difference::{Difference, NotComparable, PartDifference, difference};
 pub use face::ComparedFace;
-pub use markers::{MarkerCorrelation, marker_correlation};
+pub use markers::{MarkerCorrelation, marker_correlation, median_correlation};
 pub use measures::{Measures, measures};
 pub use motion::FaceMotion;
 pub use same_but_method::{

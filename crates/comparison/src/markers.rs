@@ -27,25 +27,51 @@ pub fn marker_correlation(
     displacements: &[f64],
     weights: &[f64],
 ) -> Vec<MarkerCorrelation> {
-    let n = mesh.shapes.len().max(1);
-    let width = 3 * sites.len();
+    let n = mesh.shapes.len();
+    let mut rows = Vec::with_capacity(3 * sites.len() * n);
+    for site in sites {
+        let deltas: Vec<_> = (0..n).map(|k| site.delta(mesh, k)).collect();
+        (0..3).for_each(|axis| rows.extend(deltas.iter().map(|d| d[axis])));
+    }
+    let labels: Vec<&str> = sites.iter().map(|site| site.label.as_str()).collect();
+    correlations(&labels, &rows, displacements, weights)
+}
+
+/// The same by the rows of D: 3P x N, metres per unit of weight.
+pub(crate) fn correlations(
+    labels: &[impl AsRef<str>],
+    marker_deltas: &[f64],
+    displacements: &[f64],
+    weights: &[f64],
+) -> Vec<MarkerCorrelation> {
+    let width = 3 * labels.len();
+    let n = (marker_deltas.len() / width.max(1)).max(1);
     assert_eq!(displacements.len() / width.max(1), weights.len() / n, "as many frames");
-    sites
-        .iter()
-        .enumerate()
-        .map(|(m, site)| {
-            let deltas: Vec<_> = (0..mesh.shapes.len()).map(|k| site.delta(mesh, k)).collect();
-            let mut sums = Sums::default();
-            for axis in 0..3 {
-                let own = displacements.chunks_exact(width).map(|row| row[3 * m + axis]);
-                let skin = weights
-                    .chunks_exact(n)
-                    .map(|row| row.iter().zip(&deltas).map(|(w, d)| w * d[axis]).sum::<f64>());
-                sums.add(own.zip(skin).filter(|(a, b)| a.is_finite() && b.is_finite()).collect());
-            }
-            MarkerCorrelation { label: site.label.clone(), r: sums.r() }
-        })
-        .collect()
+    let of_marker = |m: usize, label: &str| {
+        let mut sums = Sums::default();
+        for row in 3 * m..3 * m + 3 {
+            let deltas = &marker_deltas[row * n..(row + 1) * n];
+            let own = displacements.chunks_exact(width).map(|frame| frame[row]);
+            let skin = weights
+                .chunks_exact(n)
+                .map(|frame| frame.iter().zip(deltas).map(|(w, d)| w * d).sum::<f64>());
+            sums.add(own.zip(skin).filter(|(a, b)| a.is_finite() && b.is_finite()).collect());
+        }
+        MarkerCorrelation { label: label.to_owned(), r: sums.r() }
+    };
+    labels.iter().enumerate().map(|(m, label)| of_marker(m, label.as_ref())).collect()
+}
+
+/// The median of the correlations that there are.
+pub fn median_correlation(markers: &[MarkerCorrelation]) -> Option<f64> {
+    let mut r: Vec<f64> = markers.iter().filter_map(|marker| marker.r).collect();
+    r.sort_by(f64::total_cmp);
+    let middle = r.len() / 2;
+    match r.len() {
+        0 => None,
+        odd if odd % 2 == 1 => Some(r[middle]),
+        _ => Some(f64::midpoint(r[middle - 1], r[middle])),
+    }
 }
 
 /// Products of deviations from the mean, over the axes.

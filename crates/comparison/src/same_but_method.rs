@@ -7,14 +7,18 @@ use std::collections::BTreeMap;
 
 use mimique_avatar::pack::{PackError, decode_pack};
 use mimique_avatar::{EyeAngles, GazeShapes, blinks};
-use mimique_clip::{SolvePacksError, SolvedTake, solve_packs};
+use mimique_clip::{
+    MarkerTake, SolvePacksError, SolvedTake, TakeContent, decode_operators, decode_take,
+    marker_motion, solve_packs,
+};
 use mimique_solver::{MeshError, Method};
 use mimique_stimulus::AvatarSkin;
 use mimique_study::{Clip, ClipSource, Study};
 use serde::{Deserialize, Serialize};
 
 use crate::difference::{Difference, difference};
-use crate::{ComparedFace, FaceMotion};
+use crate::markers::{correlations, median_correlation};
+use crate::{ClipMeasures, ComparedFace, FaceMotion, measures};
 
 /// Eyes that look this many degrees aside from each other are seen to.
 const GAZE_DEG: f64 = 1.0;
@@ -31,6 +35,8 @@ pub struct StudyComparison {
     pub unlike: Vec<Unlike>,
     /// How far apart the faces of every two clips of one segment and one avatar are.
     pub differences: Vec<ClipDifference>,
+    /// What is measured of each clip.
+    pub measures: Vec<ClipMeasures>,
 }
 
 /// What two clips of one segment have not in common.
@@ -191,6 +197,7 @@ pub fn compare_clips(
                 hold(a, b, &faces, &mut comparison);
             }
         }
+        comparison.measures.extend(shown.iter().map(|own| measured(own, &shown, &faces)));
     }
     Ok(comparison)
 }
@@ -198,11 +205,36 @@ pub fn compare_clips(
 /// A clip as it is shown.
 struct Shown<'c> {
     clip: &'c Clip,
+    method: Method,
     solved: SolvedTake,
+    /// Median correlation of the skin with the markers; none of recorded weights and moved surfaces.
+    marker_correlation: Option<f64>,
     motion: FaceMotion,
     eyes: Vec<EyeAngles>,
     /// By how much the eyes are shut in each frame; empty where no shape shuts them.
     shut: Vec<f64>,
+}
+
+/// What is measured of a clip: by itself, against its markers, and against the recorded face of its segment.
+fn measured(own: &Shown<'_>, all: &[Shown<'_>], faces: &Faces<'_>) -> ClipMeasures {
+    let face = &faces.faces[&own.clip.avatar];
+    let mut found = ClipMeasures::of_motion(&own.clip.id, &measures(face, &own.motion));
+    let residual = own.solved.statistics.as_ref().map(|statistics| statistics.residual_rms_mm);
+    found.add("residual_mm", residual);
+    found.add("marker_correlation", own.marker_correlation);
+    let recorded = |other: &&Shown<'_>| {
+        other.method == Method::Recorded
+            && other.clip.avatar == own.clip.avatar
+            && other.clip.id != own.clip.id
+    };
+    // Of two recordings neither is the one that was meant.
+    let mut recordings = all.iter().filter(recorded);
+    if let (Some(recording), None) = (recordings.next(), recordings.next())
+        && let Ok(difference) = difference(face, &recording.motion, &own.motion)
+    {
+        found.add_recorded(&difference);
+    }
+    found
 }
 
 /// What one clip has that the other has not, and how far apart they are.
@@ -261,6 +293,27 @@ fn blink_apart(a: &[f64], b: &[f64]) -> Option<Disagreement> {
     Some(Disagreement::Blink { shut: [a, b], frame })
 }
 
+/// How the skin goes with the markers; none where nothing was solved for shapes.
+fn with_markers(
+    operators: &[u8],
+    take: &[u8],
+    source: &ClipSource,
+    solved: &SolvedTake,
+) -> Result<Option<f64>, SolvePacksError> {
+    let take = decode_take(take)?;
+    let TakeContent::Markers(markers) = &take.content else { return Ok(None) };
+    let operators = decode_operators(operators)?;
+    let parts = operators.parts();
+    if parts.shape_names.len() != solved.shape_names.len() {
+        return Ok(None);
+    }
+    let marker_take = MarkerTake { markers, rate_hz: take.rate_hz, played: take.played.clone() };
+    let motion = marker_motion(&operators, &marker_take, &source.method)?;
+    let of =
+        |rows| correlations(&parts.marker_labels, rows, &motion.displacements, &solved.weights);
+    Ok(median_correlation(&of(&parts.marker_deltas)))
+}
+
 /// Avatars that were opened: skins by their packs, faces by the avatars' identifiers.
 struct Faces<'r> {
     read: ReadPack<'r>,
@@ -276,9 +329,12 @@ impl Faces<'_> {
     ) -> Result<Shown<'c>, ComparisonError> {
         self.open(clip, source)?;
         let [operators, take] = [&source.operators, &source.take].map(|hash| self.bytes(hash));
-        let solved = solve_packs(&operators?, &take?, &source.method).map_err(|error| {
-            ComparisonError::Solve { clip: clip.id.clone(), error: Box::new(error) }
-        })?;
+        let (operators, take) = (operators?, take?);
+        let failed =
+            |error| ComparisonError::Solve { clip: clip.id.clone(), error: Box::new(error) };
+        let solved = solve_packs(&operators, &take, &source.method).map_err(failed)?;
+        let marker_correlation =
+            with_markers(&operators, &take, source, &solved).map_err(failed)?;
         let skin = &self.skins[&source.avatar];
         let n = skin.shape_names.len();
         // Shapes of the body stand after those of the face.
@@ -295,7 +351,8 @@ impl Faces<'_> {
             shutting.iter().map(|&k| row[k]).sum::<f64>() / shutting.len().max(1) as f64
         };
         let shut = if shutting.is_empty() { Vec::new() } else { frames().map(mean).collect() };
-        Ok(Shown { clip, motion, eyes, shut, solved })
+        let method = source.method.method;
+        Ok(Shown { clip, method, motion, eyes, shut, solved, marker_correlation })
     }
 
     /// The skin of a clip's pack, and the face of its avatar: a moved surface has the avatar's vertices and none of

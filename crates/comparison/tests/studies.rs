@@ -51,6 +51,23 @@ fn methods_are_compared_in_millimetres_and_are_else_the_same() {
         let whole = each.difference.parts.last().unwrap();
         assert!(whole.rms_mm > 0.01 && whole.rms_mm < 5.0 && whole.largest_mm > whole.rms_mm);
     }
+    // A moved surface has no shapes to follow the markers by.
+    assert_eq!(value(&told, "joy2.surface", "marker_correlation"), None);
+    let [lsts, plain] = ["joy2.lsts", "joy2.box"].map(|clip| {
+        ["residual_mm", "marker_correlation"].map(|name| value(&told, clip, name).unwrap())
+    });
+    // The box comes nearest to the markers: nothing else draws it.
+    assert!(
+        plain[0] < lsts[0] && plain[1] >= lsts[1] - 1e-6 && plain[1] > 0.9,
+        "{plain:?} {lsts:?}"
+    );
+    assert_eq!(value(&told, "joy2.box", "recorded_rms_mm"), None, "nothing was recorded");
+}
+
+/// What is measured of a clip.
+fn value(told: &StudyComparison, clip: &str, name: &str) -> Option<f64> {
+    let of_clip = told.measures.iter().find(|each| each.clip == clip).unwrap();
+    of_clip.values.iter().find(|(own, _)| own == name).map(|(_, value)| *value)
 }
 
 #[test]
@@ -71,4 +88,11 @@ fn eyes_that_look_elsewhere_in_the_performance_itself_are_found_until_a_gaze_is_
     let gaze =
         |unlike: &mimique_comparison::Unlike| matches!(unlike.what, Disagreement::Gaze { .. });
     assert!(!told.unlike.iter().any(gaze), "{:?}", told.unlike);
+    // What is told of the clip is what is told of the two.
+    let apart = &told.differences[0];
+    let whole = apart.difference.parts.last().unwrap();
+    assert_eq!(value(&told, "joy2.lsts", "recorded_rms_mm"), Some(whole.rms_mm));
+    assert_eq!(value(&told, "joy2.real", "recorded_rms_mm"), None);
+    assert_eq!(value(&told, "joy2.real", "residual_mm"), None);
+    assert!(value(&told, "joy2.real", "range_mm_face").unwrap() > 0.1);
 }

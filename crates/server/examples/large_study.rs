@@ -44,6 +44,7 @@ async fn main() -> Result<(), Box<dyn std::error::Error>> {
         config_hash: mimique_study::config_hash(&file),
         file: file.to_string(),
         clips: "{}".to_owned(),
+        measures: "[]".to_owned(),
     };
     let cluster = match database.as_str() {
         "postgres" => match postgres::Cluster::start_with("large_study", "") {

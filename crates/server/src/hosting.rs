@@ -4,11 +4,23 @@
 use std::collections::BTreeMap;
 
 use crate::comparison::comparison_of;
-use mimique_stimulus::{Places, Prepared, Progress, prepare};
+use mimique_comparison::ClipMeasures;
+use mimique_stimulus::{Places, Progress, prepare};
 use mimique_storage::durable_file;
 use mimique_study::{ClipSource, MEDIA_PREFIX, Study, media_type, resolve_path};
 use serde_json::json;
 use sha2::{Digest as _, Sha256};
+
+/// What a study needs to be hosted.
+#[derive(Debug)]
+pub struct Hosting {
+    /// Its clips and media, by identifier.
+    pub clips: BTreeMap<String, ClipSource>,
+    /// What was measured of the clips.
+    pub measures: Vec<ClipMeasures>,
+    /// What should be looked at: the place in the study file, and a sentence.
+    pub warnings: Vec<(String, String)>,
+}
 
 /// Prepares the clips of a study, and keeps its pictures and videos by content hash beside their packs.
 ///
@@ -18,7 +30,7 @@ pub fn prepare_hosting(
     study: &Study,
     places: &Places,
     progress: &mut dyn FnMut(Progress<'_>),
-) -> Result<Prepared, String> {
+) -> Result<Hosting, String> {
     let mut prepared = prepare(study, places, &mut *progress).map_err(|error| error.to_string())?;
     add_media(study, places, &mut prepared.clips)?;
     let comparison = comparison_of(study, &prepared.clips, &places.packs)?;
@@ -26,7 +38,11 @@ pub fn prepare_hosting(
         let (what, remedy) = unlike.words();
         ("/stimuli/segments".to_owned(), format!("{what}; {remedy}"))
     }));
-    Ok(prepared)
+    Ok(Hosting {
+        clips: prepared.clips,
+        measures: comparison.measures,
+        warnings: prepared.warnings,
+    })
 }
 
 /// Puts every picture and video into the folder of the packs, and names it among the clips.

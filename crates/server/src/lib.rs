@@ -55,7 +55,7 @@ mod uploads;
 pub use accounts::links::reset_link;
 pub use files::assets::{Assets, AssetsError};
 pub use files::packs::{PackError, PackStore};
-pub use hosting::prepare_hosting;
+pub use hosting::{Hosting, prepare_hosting};
 pub use http::router;
 pub use participant::withdrawal::withdrawal_hash;
 pub use retention::{ClockDoubt, Sweep, Swept, clock_doubt, confirm_clock, sweep_overdue};

@@ -58,7 +58,7 @@ pub use test::kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
 pub use test::mann_whitney::{MannWhitney, mann_whitney};
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};
-pub use test::spearman::{Spearman, spearman};
+pub use test::spearman::{Spearman, bonett_wright_interval, spearman};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
 pub use undefined::Undefined;
 pub use words::{format_number, format_p};

@@ -17,6 +17,7 @@
 //!     config_hash: "9f".repeat(32),
 //!     file: "{}".into(),
 //!     clips: "{}".into(),
+//!     measures: "[]".into(),
 //! };
 //! let registered = storage.register_study(&version, 1_767_225_600_000).await?;
 //! assert_eq!(registered.version, 1);

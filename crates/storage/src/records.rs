@@ -16,6 +16,8 @@ pub struct StudyVersion {
     pub file: String,
     /// Its clips and their packs (`wire::Bundle::clips`), JSON text.
     pub clips: String,
+    /// What was measured of its clips, a JSON list; `[]` where nothing was.
+    pub measures: String,
 }
 
 /// A session to start.

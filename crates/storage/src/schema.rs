@@ -49,6 +49,11 @@ pub(crate) const MIGRATIONS: &[Migration] = &[
         sqlite: include_str!("migrations/sqlite/0007_sums_and_roles.sql"),
         postgres: include_str!("migrations/postgres/0007_sums_and_roles.sql"),
     },
+    Migration {
+        version: 8,
+        sqlite: include_str!("migrations/sqlite/0008_measures.sql"),
+        postgres: include_str!("migrations/postgres/0008_measures.sql"),
+    },
 ];
 
 /// The version of today's schema.

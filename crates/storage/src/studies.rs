@@ -39,15 +39,17 @@ impl Storage {
                 .await?;
         let known: Option<String> = known.map(|row| row.get("clips")).transpose()?;
         query(
-            "INSERT INTO study_versions (study_id, config_hash, file, clips, first_served_ms) \
-             VALUES ($1, $2, $3, $4, $5) \
-             ON CONFLICT (study_id, config_hash) DO UPDATE SET clips = excluded.clips",
+            "INSERT INTO study_versions (study_id, config_hash, file, clips, first_served_ms, measures) \
+             VALUES ($1, $2, $3, $4, $5, $6) \
+             ON CONFLICT (study_id, config_hash) \
+             DO UPDATE SET clips = excluded.clips, measures = excluded.measures",
         )
         .bind(&version.study_id)
         .bind(&version.config_hash)
         .bind(&version.file)
         .bind(&version.clips)
         .bind(now_ms)
+        .bind(&version.measures)
         .execute(&mut transaction)
         .await?;
         let number = number(&mut transaction, version).await?;
@@ -77,7 +79,7 @@ impl Storage {
         config_hash: &str,
     ) -> Result<Option<StudyVersion>, StorageError> {
         let row = query(
-            "SELECT study_id, config_hash, file, clips FROM study_versions \
+            "SELECT study_id, config_hash, file, clips, measures FROM study_versions \
              WHERE study_id = $1 AND config_hash = $2",
         )
         .bind(study_id)
@@ -90,7 +92,7 @@ impl Storage {
     /// Every version of every study ever served, in order of study and first service.
     pub async fn study_versions(&self) -> Result<Vec<StudyVersion>, StorageError> {
         let rows = query(
-            "SELECT study_id, config_hash, file, clips FROM study_versions \
+            "SELECT study_id, config_hash, file, clips, measures FROM study_versions \
              ORDER BY study_id, first_served_ms, config_hash",
         )
         .fetch_all(&self.readers)
@@ -105,6 +107,7 @@ fn study_version(row: &Row) -> Result<StudyVersion, StorageError> {
         config_hash: row.get("config_hash")?,
         file: row.get("file")?,
         clips: row.get("clips")?,
+        measures: row.get("measures")?,
     })
 }
 

@@ -20,6 +20,7 @@ use mimique_study::Study;
 use crate::language::Language;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
+use crate::trials::stimulus_measures::StimulusMeasures;
 use document::{Block, Document};
 
 /// One file of a report.
@@ -47,12 +48,24 @@ pub struct Report {
 /// Computes the report. Refuses an export without the columns of the tidy form or without any trial
 /// that can be used.
 pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, ExportError> {
+    analyze_with_stimuli(table, None, study, language)
+}
+
+/// The same, with the table of stimuli: answers are held against what was measured of them, too. Refuses a table without the
+/// column `stimulus`, or with text in a column of numbers.
+pub fn analyze_with_stimuli(
+    table: &Table,
+    stimuli: Option<&Table>,
+    study: &Study,
+    language: Language,
+) -> Result<Report, ExportError> {
+    let stimuli = stimuli.map(|table| StimulusMeasures::read(table, study)).transpose()?;
     let export = Export::read(table, study)?;
     if export.trials.is_empty() {
         return Err(export.flow.no_trial());
     }
     let section::Sections { document, results, readings, replay } =
-        section::write(&export, study, language);
+        section::write(&export, study, stimuli.as_ref(), language);
     let mut files = document_files(&document, language);
     files.push(ReportFile { path: "results.json".to_owned(), text: results });
     files.extend(replay);

@@ -15,6 +15,9 @@ pub enum ExportError {
         /// The column.
         column: &'static str,
     },
+    /// The table of stimuli cannot be used.
+    #[error(transparent)]
+    Stimuli(#[from] StimuliError),
     /// A cell that every row has is blank.
     #[error("column \"{column}\": line {line}: the cell is blank; export the study again")]
     Blank {
@@ -55,6 +58,28 @@ pub enum ExportError {
         "column \"answer\": no answer of a trial is left after the study's exclusions; give an export with answers"
     )]
     NoAnswer,
+}
+
+/// Why a table of stimuli cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StimuliError {
+    /// It does not say which stimulus a row is about.
+    #[error(
+        "column \"stimulus\": there is no such column; give the table that `mimique export --stimuli` writes"
+    )]
+    NoStimulus,
+    /// A cell of a column of numbers is none.
+    #[error(
+        "column \"{column}\": line {line}: \"{cell}\" is not a number; correct it, or leave the cell blank"
+    )]
+    NotANumber {
+        /// The column.
+        column: String,
+        /// Line of the file, from 1.
+        line: usize,
+        /// The cell.
+        cell: String,
+    },
 }
 
 /// The reasons and their counts, in brackets; empty where there are none.

@@ -8,5 +8,6 @@ pub(crate) mod export;
 pub(crate) mod measure;
 pub(crate) mod reason;
 mod sessions;
+pub(crate) mod stimulus_measures;
 pub(crate) mod straight_lining;
 pub(crate) mod trial_rows;

@@ -51,7 +51,12 @@ pub(super) fn dictionary(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
 
 /// The first line of a CSV file.
 pub(super) fn header(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
-    records(std::iter::once(columns.iter().map(|column| column.name.clone())))
+    header_of(columns.iter().map(|column| column.name.as_str()))
+}
+
+/// The same of columns by their names.
+pub(super) fn header_of<'n>(names: impl Iterator<Item = &'n str>) -> Result<Vec<u8>, ExportError> {
+    records(std::iter::once(names.map(str::to_owned)))
 }
 
 fn records(

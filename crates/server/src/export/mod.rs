@@ -23,6 +23,7 @@ mod parts;
 mod pieces;
 mod psych_ds;
 pub(crate) mod sources;
+mod stimuli;
 mod unstored;
 mod zipped;
 
@@ -34,6 +35,7 @@ use mimique_storage::Storage;
 pub use parts::{Export, Part};
 pub(crate) use pieces::exclusions;
 use sources::Sources;
+pub use stimuli::stimuli;
 pub use unstored::{Unstored, Written};
 pub(crate) use zipped::zip;
 

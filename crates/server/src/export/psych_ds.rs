@@ -5,6 +5,7 @@ use mimique_study::Multilingual as _;
 
 use super::error::ExportError;
 use super::sources::Sources;
+use super::stimuli;
 
 /// Where the tidy table stands in the data set.
 pub(super) fn data_file(study_id: &str) -> String {
@@ -29,6 +30,7 @@ pub(super) fn explaining(
         ("dataset_description.json".to_owned(), description),
     ];
     let name = keyword(&sources.study_id);
+    files.push((format!("materials/study-{name}_stimuli.csv"), stimuli::table(sources)?));
     for version in &sources.versions {
         let short = &version.config_hash[..version.config_hash.len().min(12)];
         let text = serde_json::to_vec_pretty(&version.file).map_err(form)?;
@@ -50,6 +52,7 @@ fn readme(sources: &Sources, (participants, rows): (usize, usize)) -> Result<Str
         "# {title}\n\n{description}\n\n\
          {participants} participants, {rows} responses; one row a participant x trial x response.\n\
          The columns are described in `dataset_description.json`; `materials/` holds the study\n\
-         file, one for each version that was served (column `config_hash`).\n",
+         file, one for each version that was served (column `config_hash`), and the table of stimuli:\n\
+         a row per clip, its factors, and what was measured of it.\n",
     ))
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_comparison::ClipMeasures;
 use mimique_session::wire::SessionStarted;
 use mimique_storage::{SessionRecord, Storage, StorageError, StudyVersion};
 use mimique_study::{ClipSource, Study};
@@ -21,6 +22,8 @@ pub(crate) struct Version {
     pub file: Value,
     pub study: Study,
     pub clips: BTreeMap<String, ClipSource>,
+    /// What was measured of the clips; empty where nothing was.
+    pub measures: Vec<ClipMeasures>,
 }
 
 impl Version {
@@ -29,10 +32,12 @@ impl Version {
         let damaged = |problem: String| StorageError::Damaged { table: "study_versions", problem };
         let file: Value = serde_json::from_str(&stored.file).map_err(|e| damaged(e.to_string()))?;
         let clips = serde_json::from_str(&stored.clips).map_err(|e| damaged(e.to_string()))?;
+        let measures = serde_json::from_str(&stored.measures);
+        let measures = measures.map_err(|e| damaged(e.to_string()))?;
         let study = Study::from_value(&file).map_err(|error| {
             damaged(format!("study {}, {}: {error}", stored.study_id, stored.config_hash))
         })?;
-        Ok(Self { config_hash: stored.config_hash.clone(), file, study, clips })
+        Ok(Self { config_hash: stored.config_hash.clone(), file, study, clips, measures })
     }
 }
 

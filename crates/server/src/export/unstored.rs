@@ -50,7 +50,8 @@ impl Unstored {
     ) -> Result<Self, StudyFileError> {
         let study = mimique_study::Study::from_value(&file)?;
         let study_id = study.id.clone();
-        let version = Version { config_hash: config_hash(&file), file, study, clips };
+        let version =
+            Version { config_hash: config_hash(&file), file, study, clips, measures: Vec::new() };
         let sources = Sources { study_id, versions: vec![version] };
         let form = if format == Format::Json { Form::JsonLines } else { CSV };
         let tidy = Layout::tidy(form, &sources, &[]);

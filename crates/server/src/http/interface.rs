@@ -116,11 +116,11 @@ fn interface() -> Interface {
 fn describe_downloads(interface: Interface) -> Interface {
     const STUDY: &str = "/researcher/studies/{study}";
     let mut words: Vec<&str> = Format::ALL.iter().map(|format| format.word()).collect();
-    words.extend(["dictionary", "study"]);
+    words.extend(["dictionary", "stimuli", "study"]);
     let export = Download {
         summary: "Export: csv is the tidy table, wide one row a participant, json the tidy rows as JSON \
             lines, events what is stored as JSON lines, psych-ds a folder in an archive, dictionary \
-            what every column means, study the study file",
+            what every column means, stimuli a row per clip with what was measured of it, study the study file",
         words: &[("format", &words)],
         flags: &[
             ("with_identifiers", "Recruitment identifiers stand in columns of their own"),

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_analysis::{Language, Report, analyze};
+use mimique_analysis::{Language, Report, analyze_with_stimuli};
 use mimique_stats::Table;
 use mimique_storage::Storage;
 use mimique_study::Study;
 use tokio::sync::Semaphore;
 
 use crate::error::Error;
-use crate::export::{Format, Options, export};
+use crate::export::{Format, Options, export, stimuli};
 use crate::state::hosted_study::HostedStudy;
 
 /// A report takes a core for some seconds: one at a time.
@@ -49,8 +49,9 @@ impl Reports {
         let _turn = TURN.acquire().await.map_err(closed)?;
         let exported = export(storage, Some(study.id()), Format::Csv, Options::default()).await?;
         let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
+        let (_, stimuli) = stimuli(storage, Some(study.id())).await?;
         let study = study.study().clone();
-        let made = tokio::task::spawn_blocking(move || make(&csv, &study, language));
+        let made = tokio::task::spawn_blocking(move || make(&csv, &stimuli, &study, language));
         let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
         let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
@@ -62,10 +63,13 @@ impl Reports {
     }
 }
 
-fn make(csv: &[u8], study: &Study, language: Language) -> Result<Report, Error> {
+fn make(csv: &[u8], stimuli: &[u8], study: &Study, language: Language) -> Result<Report, Error> {
     // Without any row there is no table.
     let table = Table::parse(csv).map_err(no_report)?;
-    analyze(&table, study, language).map_err(no_report)
+    // A study of tables has no stimuli.
+    let shown = !study.clips().is_empty();
+    let stimuli = shown.then(|| Table::parse(stimuli)).transpose().map_err(no_report)?;
+    analyze_with_stimuli(&table, stimuli.as_ref(), study, language).map_err(no_report)
 }
 
 fn no_report(refusal: impl ToString) -> Error {

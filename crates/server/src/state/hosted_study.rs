@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_comparison::ClipMeasures;
 use mimique_session::wire::{Bundle, StudySummary};
 use mimique_stimulus::Places;
 use mimique_storage::{StorageError, StudyVersion};
@@ -39,6 +40,8 @@ pub struct HostedStudy {
     stage: Stage,
     file: Value,
     bundle: Bundle,
+    /// What was measured of its clips; empty where nothing was.
+    measures: Vec<ClipMeasures>,
     /// Where the files are that its study file names, where that is known.
     places: Option<Places>,
 }
@@ -56,8 +59,8 @@ impl HostedStudy {
 
     /// A version as it was stored.
     pub(crate) fn from_version(version: &StudyVersion, stage: Stage) -> Result<Self, StorageError> {
-        let Version { file, study, clips, .. } = Version::read(version)?;
-        Ok(Self::from_parts(file, study, clips, stage))
+        let Version { file, study, clips, measures, .. } = Version::read(version)?;
+        Ok(Self::from_parts(file, study, clips, stage).with_measures(measures))
     }
 
     fn from_parts(
@@ -72,13 +75,19 @@ impl HostedStudy {
             study: study.projection(),
             clips,
         };
-        Self { study, stage, file, bundle, places: None }
+        Self { study, stage, file, bundle, measures: Vec::new(), places: None }
     }
 
     /// The same, its files lying there: what previews compute anew is computed of them.
     #[must_use]
     pub fn with_places(self, places: Places) -> Self {
         Self { places: Some(places), ..self }
+    }
+
+    /// The same, with what was measured of its clips: exports and reports tell of it.
+    #[must_use]
+    pub fn with_measures(self, measures: Vec<ClipMeasures>) -> Self {
+        Self { measures, ..self }
     }
 
     /// Where its files are, where that is known.
@@ -128,6 +137,7 @@ impl HostedStudy {
             config_hash: self.bundle.config_hash.clone(),
             file: self.file.to_string(),
             clips: serde_json::to_string(&self.bundle.clips).unwrap_or_default(),
+            measures: serde_json::to_string(&self.measures).unwrap_or_default(),
         }
     }
 

@@ -220,6 +220,7 @@ async fn prepare_and_host(
         }
         let hosted = HostedStudy::new(study.value().clone(), prepared.clips, Stage::Pilot)
             .map_err(|error| error.to_string())?
+            .with_measures(prepared.measures)
             .with_places(places);
         Ok::<_, String>((hosted, packs, warnings))
     };

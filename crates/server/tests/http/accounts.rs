@@ -244,6 +244,7 @@ pub async fn each_role_may_do_what_it_may(server: &TestServer) {
         (format!("{study}/export/events"), [LogIn, Refused, Page, Page]),
         (format!("{study}/export/psych-ds"), [LogIn, Refused, Page, Page]),
         (format!("{study}/export/dictionary"), [LogIn, Refused, Page, Page]),
+        (format!("{study}/export/stimuli"), [LogIn, Refused, Page, Page]),
         (format!("{study}/export/study"), [LogIn, Refused, Page, Page]),
         ("/researcher/people".to_owned(), [LogIn, Refused, Refused, Page]),
         ("/researcher/log".to_owned(), [LogIn, Refused, Refused, Page]),

@@ -156,6 +156,11 @@ pub async fn the_other_forms_hold_the_same_answers(server: &TestServer) {
 
 pub async fn a_psych_ds_folder_explains_every_column(server: &TestServer) {
     take_part(server).await;
+    let clip = study::demo().study().clips()[0].id.clone();
+    let mut versions = server.storage.study_versions().await.unwrap();
+    versions.retain(|version| version.study_id == "demo");
+    versions[0].measures = json!([{"clip": clip, "values": [["jerk_m_per_s3", 2.5]]}]).to_string();
+    server.storage.register_study(&versions[0], 0).await.unwrap();
     let exported = exported(server, Format::PsychDs).await;
     let file = |name: &str| {
         &exported
@@ -179,6 +184,22 @@ pub async fn a_psych_ds_folder_explains_every_column(server: &TestServer) {
     let material = file(&format!("materials/study-demo_version-{short}.json"));
     let material: Value = serde_json::from_slice(material).unwrap();
     assert_eq!(mimique_study::config_hash(&material), study::demo().config_hash());
+
+    // What was measured of a clip stands in its row; videos and unmeasured clips have a row, too.
+    let (_, stimuli) =
+        mimique_server::export::stimuli(&server.storage, Some("demo")).await.unwrap();
+    assert_eq!(file("materials/study-demo_stimuli.csv"), &stimuli);
+    let demo = study::demo();
+    let told = rows(&stimuli);
+    let clips = demo.study().clips();
+    assert_eq!(told.len(), clips.len());
+    for row in &told {
+        let own = clips.iter().find(|own| own.id == row["stimulus"]).unwrap();
+        assert_eq!((&row["segment"], &row["method"]), (&own.segment, &own.method));
+        assert_eq!(row["expression"], own.factors["expression"].to_string());
+        let jerk = if row["stimulus"] == clip { "2.5" } else { "" };
+        assert_eq!(row["jerk_m_per_s3"], jerk, "{row:?}");
+    }
 
     // The archive holds the same files.
     assert_eq!(unpacked(&archive(exported.clone())), exported.files);
@@ -236,7 +257,10 @@ pub async fn each_session_is_read_by_its_own_version(server: &TestServer) {
     }
     // Both files go along; a participant of the old version can still be given it.
     let files = self::exported(&server, Format::PsychDs).await.files;
-    assert_eq!(files.iter().filter(|(name, _)| name.starts_with("materials/")).count(), 2);
+    assert_eq!(
+        files.iter().filter(|(name, _)| name.starts_with("materials/study-demo_version")).count(),
+        2
+    );
     let old = study::demo().config_hash().to_owned();
     let bundle: Value = server.get(&format!("/api/studies/demo?config_hash={old}")).await.ok();
     assert_eq!(bundle["config_hash"], old);

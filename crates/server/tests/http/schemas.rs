@@ -14,7 +14,7 @@ use crate::postgres::Cluster;
 use crate::study::sha256;
 
 /// Version that this binary writes.
-const LATEST: usize = 7;
+const LATEST: usize = 8;
 
 fn dump(kind: &str, version: usize) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -94,6 +94,10 @@ async fn is_all_there(url: &str, version: usize) {
     assert_eq!(roles, if version < 7 { vec![] } else { vec![("faces", Role::Analyst)] });
     let kept = storage.kept_sums_of(&[sessions[0].key], 1).await.unwrap();
     assert_eq!(kept.len(), usize::from(version >= 7));
+    // From version 8 on a version of a study keeps what was measured of its clips.
+    let versions = storage.study_versions().await.unwrap();
+    let measured = versions[0].measures.contains("jerk_m_per_s3");
+    assert_eq!((measured, versions[0].measures.starts_with('[')), (version >= 8, true));
     assert_eq!(storage.server_key("tokens", || "new".into()).await.unwrap(), "k1");
     // Life goes on: nobody gets a number or a slot that is taken.
     storage.append(&sha256("token12"), vec![crate::client::event(2)], 0).await.unwrap();
@@ -104,7 +108,7 @@ async fn is_all_there(url: &str, version: usize) {
         next.conditions = vec!["plain".into()];
     }
     let next = storage.start(next).await.unwrap();
-    let slot = [6, 6, 5, 4, 4, 4, 4][version - 1];
+    let slot = [6, 6, 5, 4, 4, 4, 4, 4][version - 1];
     assert_eq!((next.participant, next.slot), (6, slot));
     assert_eq!(next.condition, (version >= 4).then(|| "plain".into()));
     storage.close().await;

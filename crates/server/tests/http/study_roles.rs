@@ -57,6 +57,7 @@ pub async fn a_role_in_one_study_is_none_in_another(server: &TestServer) {
             ("/export/csv", Role::Analyst),
             ("/export/wide", Role::Analyst),
             ("/export/psych-ds", Role::Analyst),
+            ("/export/stimuli", Role::Analyst),
             ("/export/study", Role::Analyst),
         ] {
             let own = browser.open(server, &format!("/researcher/studies/faces{path}")).await;

@@ -66,6 +66,7 @@ async fn fill(url: &str) -> String {
         config_hash: hosted.config_hash().to_owned(),
         file: hosted.file().to_string(),
         clips: "{}".to_owned(),
+        measures: "[]".to_owned(),
     };
     storage.register_study(&version, 1).await.unwrap();
     let token = "ab".repeat(16);

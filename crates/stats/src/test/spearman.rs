@@ -90,13 +90,7 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
     if n <= 3 {
         warnings.push(format!("{n} pairs are too few for an interval"));
     }
-    let z_reach = normal_quantile_upper(0.025);
-    let interval = |variance_times: f64| {
-        (n > 3 && !perfect).then(|| {
-            let reach = z_reach * (variance_times / (size - 3.0)).sqrt();
-            [(rho.atanh() - reach).tanh(), (rho.atanh() + reach).tanh()]
-        })
-    };
+    let interval = |variance_times| interval(rho, n, variance_times);
     Ok(Outcome::Ok(Spearman {
         test: "spearman",
         variant: significance.variant(),
@@ -111,10 +105,25 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
         p_by_semantics: significance.by_semantics(),
         ci95_fisher: interval(1.0),
         ci95_fieller: interval(1.06),
-        ci95_bonett_wright: interval(1.0 + rho * rho / 2.0),
+        ci95_bonett_wright: bonett_wright_interval(rho, n),
         kendall_tau_b,
         warnings,
     }))
+}
+
+/// Bonett and Wright's 95 % interval of a rank correlation of `n` pairs, variance (1 + rho^2 / 2) / (n - 3) of Fisher's z
+/// (Psychometrika 65, 2000, p. 23); none of fewer than four pairs, or of a perfect correlation.
+pub fn bonett_wright_interval(rho: f64, n: usize) -> Option<[f64; 2]> {
+    interval(rho, n, 1.0 + rho * rho / 2.0)
+}
+
+/// A 95 % interval by Fisher's z, whose variance is so many times 1 / (n - 3).
+fn interval(rho: f64, n: usize, variance_times: f64) -> Option<[f64; 2]> {
+    let perfect = 1.0 - rho * rho < 1e-15;
+    (n > 3 && !perfect).then(|| {
+        let reach = normal_quantile_upper(0.025) * (variance_times / (n as f64 - 3.0)).sqrt();
+        [(rho.atanh() - reach).tanh(), (rho.atanh() + reach).tanh()]
+    })
 }
 
 /// Sum of squared differences of doubled ranks, and Kendall's tau-b.

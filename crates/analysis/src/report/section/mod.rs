@@ -10,6 +10,7 @@ pub(crate) mod measures;
 pub(crate) mod notes;
 pub(crate) mod people;
 pub(crate) mod recognition;
+pub(crate) mod stimulus_measures;
 pub(crate) mod timing;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,6 +30,7 @@ use crate::report::section::hypotheses::tested;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
+use crate::trials::stimulus_measures::StimulusMeasures;
 
 /// Levels beyond which a column is no factor that people compare.
 pub(crate) const MOST_LEVELS: usize = 12;
@@ -53,10 +55,17 @@ pub(crate) struct Writer<'a> {
     pub results: Results<'a>,
     /// Factors with several levels in the trials used, `method` first.
     pub factors: Vec<String>,
+    /// What was measured of the stimuli, where a table of it is given.
+    pub stimuli: Option<&'a StimulusMeasures>,
 }
 
 /// Writes all sections.
-pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Sections {
+pub(crate) fn write(
+    export: &Export,
+    study: &Study,
+    stimuli: Option<&StimulusMeasures>,
+    language: Language,
+) -> Sections {
     let mut writer = Writer {
         naming: Naming { language, study },
         export,
@@ -71,6 +80,7 @@ pub(crate) fn write(export: &Export, study: &Study, language: Language) -> Secti
             ..Results::default()
         },
         factors: factors_in_use(export, study),
+        stimuli,
     };
     let asked = export.questions(study);
     let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
@@ -143,6 +153,7 @@ fn of_measures<'a>(
     for layout in &study.tables {
         parts.push(Box::new(|part| part.layout(layout, hypotheses)));
     }
+    parts.push(Box::new(|part| part.stimulus_measures(measures)));
     parts.push(Box::new(|part| part.course_of_the_session(&over_time)));
     parts.push(Box::new(|part| part.timing()));
     parts

@@ -338,6 +338,10 @@ pub(crate) async fn export(
             let bytes = export::dictionary(&app.storage, &study).await?;
             (format!("{study}_dictionary.csv"), bytes)
         }
+        (None, "stimuli") => {
+            let (id, bytes) = export::stimuli(&app.storage, Some(&study)).await?;
+            (format!("{id}_stimuli.csv"), bytes)
+        }
         (None, "study") => {
             (format!("{study}.json"), export::study_file(&app.storage, &study).await?)
         }

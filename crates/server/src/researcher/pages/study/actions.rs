@@ -110,6 +110,9 @@ pub(super) fn exports(frame: &Frame, id: &str) -> Markup {
             a.button href={ (base) "/export/dictionary" } download {
                 (frame.say("Data dictionary", "Dictionnaire des données"))
             }
+            a.button href={ (base) "/export/stimuli" } download {
+                (frame.say("Stimuli and their measures", "Stimuli et leurs mesures"))
+            }
             a.button href={ (base) "/export/study" } download { (frame.say("Study file", "Fichier de l’étude")) }
             a.button.primary href={ (base) "/report/" (frame.language.code()) "/report.html" } {
                 (frame.say("Statistical report", "Rapport statistique"))
