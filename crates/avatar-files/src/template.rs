@@ -6,7 +6,7 @@ use mimique_avatar::Part;
 
 use crate::read::unit_of;
 use crate::settings::AvatarSettings;
-use crate::{ReadError, glb, obj};
+use crate::{ReadError, glb, obj, ply};
 
 /// A mesh, its vertices in the file's order.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Template {
     pub unit_metres: f64,
 }
 
-/// Reads a mesh: an OBJ file (all its vertices), or the skin of a GLB or glTF file (its meshes one after
+/// Reads a mesh: an OBJ or PLY file (all its vertices), or the skin of a GLB or glTF file (its meshes one after
 /// another, as `mimique solve --vertices` writes them).
 ///
 /// # Errors
@@ -29,13 +29,27 @@ pub fn read_template(path: &Path) -> Result<Template, ReadError> {
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let bytes =
         std::fs::read(path).map_err(|source| ReadError::Io { place: file.clone(), source })?;
-    let is_obj = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
+    read_template_bytes(&file, &bytes, path.parent())
+}
+
+/// The same of a file that is open already; `folder` is where a `.gltf` file's buffers are looked for.
+///
+/// # Errors
+/// As [`read_template`].
+pub fn read_template_bytes(
+    file: &str,
+    bytes: &[u8],
+    folder: Option<&Path>,
+) -> Result<Template, ReadError> {
+    let ending = Path::new(file).extension();
+    let is_obj = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
     let (mut positions, triangles) = match is_obj {
-        true => obj::mesh_of(&file, &bytes)?,
-        false => skin_of(&bytes, path.parent())?,
+        true => obj::mesh_of(file, bytes)?,
+        false if bytes.starts_with(ply::MAGIC) => ply::mesh_of(file, bytes)?,
+        false => skin_of(bytes, folder)?,
     };
     if triangles.is_empty() {
-        return Err(ReadError::broken(&file, "no triangle", "export the mesh with its faces"));
+        return Err(ReadError::broken(file, "no triangle", "export the mesh with its faces"));
     }
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for p in &positions {
@@ -46,7 +60,7 @@ pub fn read_template(path: &Path) -> Result<Template, ReadError> {
     let extent = (0..3).map(|a| f64::from(high[a] - low[a]).powi(2)).sum::<f64>().sqrt();
     if !(extent > 0.0 && extent.is_finite()) {
         let what = format!("{extent} units from one corner to the other");
-        return Err(ReadError::broken(&file, what, "export the mesh again"));
+        return Err(ReadError::broken(file, what, "export the mesh again"));
     }
     let unit_metres = unit_of(extent);
     if unit_metres != 1.0 {

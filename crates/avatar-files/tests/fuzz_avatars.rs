@@ -126,6 +126,10 @@ fn rich() -> (Value, Vec<u8>) {
     let encoder = jpeg_encoder::Encoder::new(&mut jpeg, 80);
     encoder.encode(&[90; 768], 16, 16, jpeg_encoder::ColorType::Rgb).unwrap();
     let jpeg = view(&jpeg, None);
+    let keys: Vec<u8> = [0.0_f32, 0.1, 0.3].into_iter().flat_map(f32::to_le_bytes).collect();
+    let times = view(&keys, None);
+    let keys: Vec<u8> = (0..6).map(|key| 0.2 * key as f32).flat_map(f32::to_le_bytes).collect();
+    let moved = view(&keys, None);
     let accessor = |view: usize, component: u32, count: usize, kind: &str, normalised: bool| {
         json!({"bufferView": view, "componentType": component, "count": count, "type": kind,
             "normalized": normalised})
@@ -148,6 +152,8 @@ fn rich() -> (Value, Vec<u8>) {
         "skins": [{"joints": [1, 2]}],
         "meshes": [{"primitives": [primitive(0), primitive(1)],
             "extras": {"targetNames": ["jawOpen", "AU12_L"]}}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
+            "samplers": [{"input": 7, "output": 8, "interpolation": "LINEAR"}]}],
         "materials": [material(0, "MASK"), material(1, "OPAQUE")],
         "textures": [{"source": 0}, {"source": 1}],
         "images": [{"bufferView": png}, {"bufferView": jpeg}],
@@ -161,10 +167,33 @@ fn rich() -> (Value, Vec<u8>) {
             accessor(weights, 5126, 25, "VEC4", false),
             accessor(joints, 5121, 25, "VEC4", false),
             accessor(uvs, 5126, 25, "VEC2", false),
+            accessor(times, 5126, 3, "SCALAR", false),
+            accessor(moved, 5126, 6, "SCALAR", false),
         ],
         "bufferViews": views, "buffers": [{"byteLength": binary.len()}],
     });
     (document, binary)
+}
+
+/// A mesh of four vertices and a face of four corners as text, or little-endian.
+fn ply(text: bool) -> Vec<u8> {
+    let order = if text { "ascii" } else { "binary_little_endian" };
+    let header = format!(
+        "ply\nformat {order} 1.0\ncomment a template\nelement vertex 4\nproperty float x\nproperty float y\n\
+         property float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    );
+    let mut bytes = header.into_bytes();
+    if text {
+        bytes.extend(b"0 0 0 9\n0.1 0 0 9\n0.1 0.2 0 9\n0 0.2 0.01 9\n4 0 1 2 3\n");
+        return bytes;
+    }
+    for place in [[0.0_f32, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.2, 0.0], [0.0, 0.2, 0.01]] {
+        bytes.extend(place.into_iter().flat_map(f32::to_le_bytes));
+        bytes.push(9);
+    }
+    bytes.push(4);
+    bytes.extend((0..4_i32).flat_map(i32::to_le_bytes));
+    bytes
 }
 
 fn bank() -> Vec<(String, String)> {
@@ -288,7 +317,7 @@ fn mutate_json(value: &mut Value, random: &mut Random) {
 /// The next file: whole container formats, and what is inside them.
 fn next(random: &mut Random, seeds: &Seeds) -> (Kind, Vec<u8>) {
     let (mut document, mut binary) = seeds.rich.clone();
-    match random.below(8) {
+    match random.below(9) {
         0 => {
             let mut bytes = seeds.glb.clone();
             mutate_bytes(&mut bytes, random);
@@ -315,6 +344,11 @@ fn next(random: &mut Random, seeds: &Seeds) -> (Kind, Vec<u8>) {
             mutate_bytes(&mut bytes, random);
             files[index].1 = String::from_utf8_lossy(&bytes).into_owned();
             (Kind::Bank, tar_of(&files))
+        }
+        7 => {
+            let mut bytes = [ply(true), ply(false)][random.below(2)].clone();
+            mutate_bytes(&mut bytes, random);
+            (Kind::Template, bytes)
         }
         6 => {
             let mut value: Value = serde_json::from_str(SETTINGS).unwrap();
@@ -386,6 +420,8 @@ fn the_corpus_of_the_fuzzer_is_replayed() {
             ("avatar_file/seed-zip", &seeds.zip),
             ("avatar_file/seed-tar", &seeds.tar),
             ("avatar_file/seed-tar-gz", &seeds.tar_gz),
+            ("avatar_file/seed-ply-text", &ply(true)),
+            ("avatar_file/seed-ply-binary", &ply(false)),
             ("avatar_settings/seed-all-keys", &SETTINGS.as_bytes().to_vec()),
             ("avatar_settings/seed-one-pattern", &br#"{"parts": {"h*d": "eyeLeft"}}"#.to_vec()),
             ("avatar_pack/seed-pack", &seeds.pack),

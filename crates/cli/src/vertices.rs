@@ -16,7 +16,7 @@ use crate::output;
 pub struct Args {
     /// Positions, frames x vertices x 3, or frames x 3 vertices (.npy, .npz), in the template's unit
     sequence: PathBuf,
-    /// The mesh at rest (.obj, .glb), its vertices in the order of the sequence
+    /// The mesh at rest (.obj, .ply, .glb), its vertices in the order of the sequence
     #[arg(long, value_name = "MESH")]
     template: PathBuf,
     /// Frames per second

@@ -135,11 +135,12 @@ fn sampled(tracks: &[Track], place: &str) -> Result<WeightAnimation, ReadError> 
     let last = tracks.iter().map(|t| t.times[t.times.len() - 1]).fold(0.0, f64::max);
     let longest = tracks.iter().max_by_key(|t| t.times.len()).map_or(&[][..], |t| &t.times);
     let rate_hz = even_rate(longest).unwrap_or(USUAL_RATE_HZ);
-    let frames = ((last - first) * rate_hz).round() as usize + 1;
-    if frames > MOST_FRAMES {
-        let what = format!("{frames} frames at {rate_hz} Hz");
+    let steps = ((last - first) * rate_hz).round();
+    if steps.is_nan() || steps >= MOST_FRAMES as f64 {
+        let what = format!("{} s at {rate_hz} Hz", last - first);
         return Err(ReadError::broken(place, what, "export an hour at most"));
     }
+    let frames = steps as usize + 1;
     let mut shape_names: Vec<String> = Vec::new();
     let mut from: Vec<(usize, usize)> = Vec::new();
     for (number, track) in tracks.iter().enumerate() {

@@ -2,7 +2,9 @@
 
 use mimique_avatar::pack::{decode_pack, encode_pack, seal_plain};
 use mimique_avatar::{Avatar, Image};
-use mimique_avatar_files::{AvatarSettings, read_avatar_bytes};
+use mimique_avatar_files::{
+    AvatarSettings, read_avatar_bytes, read_template_bytes, read_weight_animation,
+};
 
 /// Poses with settings of their own, to which other settings are applied.
 const BANK: &[u8] = include_bytes!("../../../../fuzz/corpus/avatar_file/seed-tar");
@@ -14,12 +16,27 @@ pub enum Kind {
     Bank,
     Settings,
     Pack,
+    Template,
 }
 
 /// Reads a file and everything in it.
 pub fn consume(kind: Kind, bytes: &[u8]) {
     match kind {
-        Kind::Gltf | Kind::Bank => read(bytes, AvatarSettings::default()),
+        Kind::Gltf => {
+            read(bytes, AvatarSettings::default());
+            template(bytes);
+            match read_weight_animation(bytes, None) {
+                Ok(None) => {}
+                Ok(Some(read)) => {
+                    assert!(read.rate_hz.is_finite() && read.rate_hz > 0.0);
+                    assert!(read.weights.len().is_multiple_of(read.shape_names.len().max(1)));
+                    assert!(read.weights.iter().all(|weight| weight.is_finite()));
+                }
+                Err(error) => explained(&error.to_string()),
+            }
+        }
+        Kind::Template => template(bytes),
+        Kind::Bank => read(bytes, AvatarSettings::default()),
         Kind::Settings => match AvatarSettings::from_json("avatar.json", bytes) {
             Ok(settings) => read(BANK, settings),
             Err(error) => explained(&error.to_string()),
@@ -39,6 +56,17 @@ pub fn consume(kind: Kind, bytes: &[u8]) {
 fn read(bytes: &[u8], settings: AvatarSettings) {
     match read_avatar_bytes(bytes.to_vec(), "fuzz", None, Some(settings)) {
         Ok(read) => sound(&read.avatar),
+        Err(error) => explained(&error.to_string()),
+    }
+}
+
+fn template(bytes: &[u8]) {
+    match read_template_bytes("fuzz", bytes, None) {
+        Ok(read) => {
+            let count = read.positions.len();
+            assert!(read.triangles.iter().flatten().all(|v| (*v as usize) < count));
+            assert!(read.positions.iter().flatten().all(|x| x.is_finite()));
+        }
         Err(error) => explained(&error.to_string()),
     }
 }
