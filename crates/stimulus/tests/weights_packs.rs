@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 
+use mimique_actor::{Density, HeadSpec, build_head};
 use mimique_avatar::pack::decode_pack;
 use mimique_clip::{
     SolvedTake, TakeContent, TakePack, decode_take, encode_take_in_steps, solve_packs,
 };
+use mimique_mocap::npy_header;
 use mimique_stimulus::{Places, prepare, weight_steps};
 use mimique_study::Study;
-use serde_json::json;
+use serde_json::{Value, json};
 
 const RATE_HZ: f64 = 60.0;
 
@@ -85,4 +87,48 @@ fn at_playing_rate(solved: &SolvedTake) -> Vec<f64> {
             row(low).iter().zip(row((low + 1).min(last))).map(between)
         })
         .collect()
+}
+
+#[test]
+fn arrays_of_weights_are_read_at_the_rate_that_the_study_says_and_refused_without() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = HeadSpec { density: Density::nearest(2000), ..HeadSpec::person(3) };
+    let n = build_head(&spec).face_shapes().len();
+    let planted: Vec<f64> = (0..30 * n).map(|i| f64::from((i % 11) as u8) / 16.0).collect();
+    let mut bytes = npy_header("<f8", &[30, n]);
+    bytes.extend(planted.iter().flat_map(|weight| weight.to_le_bytes()));
+    std::fs::write(folder.path().join("weights.npy"), bytes).unwrap();
+    let study = |capture: Value| {
+        Study::from_value(&json!({
+            "id": "arrays", "studyMetadata": {"title": "Arrays", "version": "1"},
+            "languages": ["en"], "components": {}, "sequence": {"order": "fixed", "components": []},
+            "stimuli": {
+                "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+                "captures": {"array": capture},
+                "segments": [{"id": "part", "capture": "array", "first": 6, "end": 24}],
+                "methods": {"recorded": {"method": "recorded"}},
+            },
+        }))
+        .unwrap()
+    };
+    let packs = folder.path().join("packs");
+    let places = Places { study: folder.path().into(), data: None, packs: packs.clone() };
+    let known = study(json!({"file": "weights.npy", "fileRateHz": 30.0}));
+    let prepared = prepare(&known, &places, &mut |_| {}).unwrap();
+    let clip = prepared.clips.values().next().unwrap();
+    assert_eq!(clip.duration_ms, 600.0);
+    let take = decode_take(&std::fs::read(packs.join(&clip.take)).unwrap()).unwrap();
+    let TakeContent::Weights { weights, shape_names } = take.content else { panic!("markers") };
+    assert_eq!((take.rate_hz, weights.len()), (30.0, 18 * shape_names.len()));
+    // The shapes of the body, behind those of the face, rest.
+    for (row, planted) in
+        weights.chunks_exact(shape_names.len()).zip(planted.chunks_exact(n).skip(6))
+    {
+        let apart = row.iter().zip(planted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Packs keep weights in steps.
+        assert!(apart < 2e-4 && row[n..].iter().all(|weight| *weight == 0.0), "{apart}");
+    }
+    let unknown = study(json!({"file": "weights.npy"}));
+    let error = prepare(&unknown, &places, &mut |_| {}).unwrap_err().to_string();
+    assert!(error.contains("/stimuli/captures/array/file") && error.contains("rate"), "{error}");
 }

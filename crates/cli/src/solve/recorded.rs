@@ -21,7 +21,7 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     let avatar =
         mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
     let options =
-        WeightOptions { rate_hz: args.mocap_rate, shape_names: &avatar.avatar.shape_names };
+        WeightOptions { rate_hz: args.mocap_rate, shape_names: avatar.avatar.face_shapes() };
     let Performance { table: recorded, format } =
         read_performance(&args.mocap, &options).map_err(|e| blame(&args.mocap, e))?;
     let mut notes = vec![format!("read as {format}")];

@@ -37,7 +37,7 @@ pub(crate) const ROTATIONS: [&str; 9] = [
 pub struct WeightOptions<'a> {
     /// Frames per second, for a file without times.
     pub rate_hz: Option<f64>,
-    /// Names of the columns, for a file without names: an avatar's shapes in their order.
+    /// Names of the columns, for a file without names: the shapes of an avatar's face in their order.
     pub shape_names: &'a [String],
 }
 

@@ -234,7 +234,7 @@ fn recorded_clip(
     remarks: &mut Remarks,
 ) -> Result<Ingredients, PrepareError> {
     let avatar = sources.avatar(&clip.avatar)?;
-    let recording = sources.recording(&clip.segment)?;
+    let recording = sources.recording(&clip.segment, avatar.avatar.face_shapes())?;
     let take = cache.store(recorded(&recording, &avatar.avatar, &mut remarks.warnings)?)?;
     Ok(Ingredients {
         spec: spec.clone(),

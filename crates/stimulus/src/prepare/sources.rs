@@ -249,7 +249,7 @@ impl<'a> Sources<'a> {
             (Some(CaptureSource::Builtin(actor)), None) => builtin::training(actor),
             (Some(CaptureSource::File(path)), Some(weights_file)) => {
                 let source = &self.study.stimuli.captures[id];
-                let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
+                let capture = self.read_capture(path, Some(source), &capture_at)?.1;
                 let at = format!("{at}/weights");
                 let path = self.path(weights_file, &at)?;
                 let weights = read_performance(&path, &WeightOptions::default())
@@ -273,9 +273,14 @@ impl<'a> Sources<'a> {
     }
 
     /// The segment of that identifier as recorded weights, at the rate that is shown.
-    pub fn recording(&self, segment: &str) -> Result<Recording, PrepareError> {
+    pub fn recording(
+        &self,
+        segment: &str,
+        shape_names: &[String],
+    ) -> Result<Recording, PrepareError> {
         let (segment, at) = self.segment(segment)?;
-        let recording = Recording { gaze: self.gaze(segment)?, ..self.recorded(segment, at)? };
+        let recording =
+            Recording { gaze: self.gaze(segment)?, ..self.recorded(segment, at, shape_names)? };
         let id = &segment.capture;
         match self.study.stimuli.captures.get(id).and_then(|c| c.rate_hz) {
             Some(rate_hz) => {
@@ -285,7 +290,12 @@ impl<'a> Sources<'a> {
         }
     }
 
-    fn recorded(&self, segment: &Segment, at: String) -> Result<Recording, PrepareError> {
+    fn recorded(
+        &self,
+        segment: &Segment,
+        at: String,
+        shape_names: &[String],
+    ) -> Result<Recording, PrepareError> {
         let pointer = format!("{}/file", pointer(&["stimuli", "captures", &segment.capture]));
         let entry = self.study.stimuli.captures.get(&segment.capture);
         let file = match (entry.and_then(|c| c.source()), segment.span()) {
@@ -314,7 +324,9 @@ impl<'a> Sources<'a> {
             }
         };
         let path = self.path(file, &pointer)?;
-        let table = read_performance(&path, &WeightOptions::default())
+        // An array has the avatar's shapes in their order.
+        let rate_hz = entry.and_then(|capture| capture.file_rate_hz);
+        let table = read_performance(&path, &WeightOptions { rate_hz, shape_names })
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?
             .table;
         match segment.span() {
@@ -404,9 +416,8 @@ impl<'a> Sources<'a> {
                 if let Some(found) = self.captures.borrow().get(id) {
                     return Ok(found.clone());
                 }
-                let unit = entry.and_then(|c| c.unit.as_deref());
                 let at = pointer(&["stimuli", "captures", id]);
-                let (key, capture, repair) = self.read_capture(path, unit, &at)?;
+                let (key, capture, repair) = self.read_capture(path, entry, &at)?;
                 (id.clone(), CaptureFile { repair, ..CaptureFile::new(key, capture) })
             }
             (None, _) => {
@@ -433,12 +444,15 @@ impl<'a> Sources<'a> {
     fn read_capture(
         &self,
         file: &str,
-        unit: Option<&str>,
+        entry: Option<&mimique_study::Capture>,
         at: &str,
     ) -> Result<(String, Capture, Option<String>), PrepareError> {
         let at_file = format!("{at}/file");
         let path = self.path(file, &at_file)?;
-        let options = ReadOptions { unit: unit_of(unit, &format!("{at}/unit"))?, rate_hz: None };
+        let unit = entry.and_then(|entry| entry.unit.as_deref());
+        let file_rate_hz = entry.and_then(|entry| entry.file_rate_hz);
+        let unit_read = unit_of(unit, &format!("{at}/unit"))?;
+        let options = ReadOptions { unit: unit_read, rate_hz: file_rate_hz };
         let recording = mimique_mocap::CaptureFile::open(&path)
             .and_then(|mut file| file.recording(&options))
             .map_err(|e| PrepareError::new(&at_file, format!("{}: {e}", path.display())))?;
@@ -446,7 +460,13 @@ impl<'a> Sources<'a> {
         let repair = RepairSidecar::beside(&path, || Ok(hash.clone()))
             .map_err(|e| PrepareError::new(&at_file, e))?
             .map(|sidecar| sidecar.hash());
-        let key = Provenance::default().json("file", hash).json("unit", json!(unit)).hash();
+        let key = Provenance::default().json("file", hash).json("unit", json!(unit));
+        // Of a file that says its rate, the key is as it was.
+        let key = match file_rate_hz {
+            Some(rate_hz) => key.json("fileRateHz", rate_hz),
+            None => key,
+        };
+        let key = key.hash();
         Ok((key, recording.capture, repair))
     }
 

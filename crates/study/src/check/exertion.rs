@@ -9,7 +9,7 @@ use crate::study_file::{Capture, ExertionCapture, ExertionSource};
 /// The longest exertion, seconds: a day.
 const LONGEST_S: f64 = 86_400.0;
 /// Frames per second with which a gait can be followed.
-const SLOWEST_HZ: f64 = 10.0;
+pub(super) const SLOWEST_HZ: f64 = 10.0;
 /// The most work that a body does in a second, J/kg.
 const MOST_WORK: f64 = 120.0;
 

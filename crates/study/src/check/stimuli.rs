@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::exertion::SLOWEST_HZ;
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::{FileLookup, Subject, avatars, exertion};
@@ -81,6 +82,10 @@ fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
     }
     if let Some(hertz) = capture.head_lowpass_hz.filter(|hertz| *hertz <= 0.0) {
         issues.error(below(pointer, "headLowpassHz"), Problem::NothingPasses { hertz });
+    }
+    let recorded_hz = capture.file_rate_hz;
+    if let Some(hertz) = recorded_hz.filter(|hertz| !(*hertz >= SLOWEST_HZ && hertz.is_finite())) {
+        issues.error(below(pointer, "fileRateHz"), Problem::FrameRate { hertz });
     }
     if let Some(hertz) = capture.rate_hz.filter(|hertz| !RATES_HZ.contains(hertz)) {
         issues.error(below(pointer, "rateHz"), Problem::FrameRate { hertz });

@@ -152,6 +152,9 @@ pub struct Capture {
     /// Unit of the file's coordinates where the file does not say: `m`, `cm`, `mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// Frames per second of the file where the file does not say: arrays of vertices or weights (`.npy`, `.npz`), tables without times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file_rate_hz: Option<f64>,
     /// Marker map: a JSON or CSV file that says where each marker sits on the avatar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub markers: Option<String>,
