@@ -1,5 +1,7 @@
 //! Sums of exponentials and the place of the highest number, the same bits on every target.
 
+pub(crate) use mimique_stats::dot;
+
 /// ln(sum of e^x); minus infinity of none.
 pub(crate) fn log_sum(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -47,11 +49,6 @@ fn sum(a: &[f64], b: &[f64], of: impl Fn(f64, f64) -> f64) -> f64 {
 
 fn together([a, b, c, d, e, f, g, h]: [f64; LANES]) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
-}
-
-/// Sum of the products.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sum(a, b, |a, b| a * b)
 }
 
 /// Sum of the squared differences.

@@ -1,10 +1,10 @@
 //! A decision tree: CART with Gini impurity, some columns drawn at each node (Breiman, Machine
 //! Learning 2001), leaves of one label.
 
+use mimique_stats::Stream;
 use serde::{Deserialize, Serialize};
 
 use crate::Examples;
-use crate::random::Stream;
 
 /// A node: a question, or a leaf.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

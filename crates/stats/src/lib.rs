@@ -20,6 +20,7 @@
 mod adjust;
 mod distributions;
 mod estimate;
+mod numerics;
 mod outcome;
 mod procedure;
 mod ranks;
@@ -32,26 +33,35 @@ mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
 pub use distributions::tail::{
-    Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_upper,
+    Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_quantile, f_upper,
     normal_quantile_upper, normal_tail, normal_upper, t_quantile_upper, t_two_sided, t_upper,
 };
 pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
+pub use numerics::dot;
+pub use numerics::minimise::{Minimum, Stop, minimise};
+pub use numerics::random::Stream;
 pub use outcome::{Labelled, Outcome};
 pub use procedure::arguments::{Arguments, Choice, ProcedureOption, Required, Takes};
 pub use procedure::row::{Term, TestNames, TestResult, TestRow};
 pub use procedure::{Answer, PROCEDURES, Procedure, Sample};
 pub use ranks::Ranks;
-pub use refusal::Refusal;
+pub use refusal::{Refusal, Unfit};
 pub use summary::confusion::{Confusion, confusion};
 pub use summary::describe::{Description, describe, median, moments, quantile_sorted};
 pub use table::blocks::Blocks;
+pub use table::comparisons::{Chosen, Compared, PairedComparisons, Presentation};
 pub use table::contingency::Contingency;
 pub use table::factor::Factor;
 pub use table::number::parse_number;
 pub use table::pairs::{paired_differences, rounded};
 pub use table::{Numbers, Table, TableError};
 pub use test::aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
+pub use test::bradley_terry::{
+    BradleyTerry, BradleyTerryOptions, DefaultTest, EqualWorths, LackOfFit, LikelihoodRatio,
+    PenalisedWorths, Resampling, Separation, SideOrTie, WinsTest, WorthContrast, WorthEstimates,
+    bradley_terry,
+};
 pub use test::chi_square::{ChiSquare, ChiSquareVariant, GTest, chi_square};
 pub use test::friedman::{Friedman, ImanDavenport, PairwiseHolm, Quade, friedman};
 pub use test::kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
@@ -60,5 +70,5 @@ pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, sche
 pub use test::sign::{Sign, sign};
 pub use test::spearman::{Spearman, spearman};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
-pub use undefined::Undefined;
+pub use undefined::{NoEstimate, Undefined};
 pub use words::{format_number, format_p};

@@ -9,6 +9,7 @@
 //! | statistics | `expected.json` with `cases` | `mimique-stats` |
 //! | solver | `toy.json`, `operators.json`, `frames/` | `mimique-solver`, `mimique-stimulus` |
 //! | annotation | `segmentation.json`, `features.json`, `classify/`, `hmm/`, `evaluate/`, `elan/` | `mimique-annotate` |
+//! | psychophysics | `NAME.expected.json` with `kind` | `mimique-stats`, `mimique-adaptive` |
 //!
 //! A number that is wrong is a wrong [`Case`]; a file that cannot be read is a [`VerifyError`]. Names,
 //! values and, where a case has them, tolerances come from the files.
@@ -38,6 +39,7 @@ mod annotation;
 mod case;
 mod document;
 mod error;
+mod psychophysics;
 mod solver;
 mod statistics;
 
@@ -62,8 +64,12 @@ pub trait Family: Sync {
 }
 
 /// Every family.
-pub static FAMILIES: [&dyn Family; 3] =
-    [&statistics::Statistics, &solver::Solver, &annotation::Annotation];
+pub static FAMILIES: [&dyn Family; 4] = [
+    &statistics::Statistics,
+    &solver::Solver,
+    &annotation::Annotation,
+    &psychophysics::Psychophysics,
+];
 
 /// How many folders below the one that is named are looked into.
 const DEPTH: usize = 3;

@@ -88,3 +88,13 @@ fn annotation() {
     }
     assert!(values(&cases) > 20_000, "only {} values were compared", values(&cases));
 }
+
+#[test]
+fn psychophysics() {
+    let Some(cases) = all_right("psychophysics", "psychophysics") else { return };
+    let folder = real_file("psychophysics", "psychophysics/open").unwrap();
+    let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name());
+    let expected = files.filter(|name| name.to_string_lossy().ends_with(".expected.json")).count();
+    assert_eq!(cases.len(), expected);
+    assert!(values(&cases) > 1500, "only {} values were compared", values(&cases));
+}

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use mimique_stats::Stream;
+
 use crate::AnnotateError;
-use crate::random::Stream;
 
 /// Takes that train, and takes that test.
 #[derive(Debug, Clone, PartialEq, Eq)]

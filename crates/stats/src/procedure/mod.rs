@@ -14,8 +14,8 @@ use crate::outcome::Outcome;
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::test::{
-    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
-    sign, spearman, wilcoxon,
+    aligned_rank_transform, bradley_terry, chi_square, friedman, kruskal_wallis, mann_whitney,
+    scheirer_ray_hare, sign, spearman, wilcoxon,
 };
 use crate::{adjust, summary};
 use arguments::{Arguments, ProcedureOption};
@@ -58,12 +58,14 @@ pub enum Sample {
     TwoFactors,
     /// Values, two factors, their blocks, and the number of the effect from 1.
     TwoFactorsInBlocks,
+    /// Participants, left items, right items, answers.
+    Comparisons,
     /// Something else: no test.
     Other,
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 12] = [
+pub static PROCEDURES: [&Procedure; 13] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -73,6 +75,7 @@ pub static PROCEDURES: [&Procedure; 12] = [
     &spearman::PROCEDURE,
     &friedman::PROCEDURE,
     &aligned_rank_transform::PROCEDURE,
+    &bradley_terry::PROCEDURE,
     &summary::describe::PROCEDURE,
     &summary::confusion::PROCEDURE,
     &adjust::PROCEDURE,
@@ -99,6 +102,16 @@ impl Answer {
         // Results are structs of numbers and texts, which JSON always has a form for.
         let json = serde_json::to_string_pretty(outcome).unwrap_or_else(|error| error.to_string());
         Self { json, text, test: None }
+    }
+
+    /// Of a result that says itself whether it is defined.
+    pub(crate) fn of_result<T: Serialize>(
+        result: &T,
+        text: String,
+        test: Option<(TestNames, Vec<Outcome<TestRow>>)>,
+    ) -> Self {
+        let json = serde_json::to_string_pretty(result).unwrap_or_else(|error| error.to_string());
+        Self { json, text, test }
     }
 
     /// The same of a test, which has rows in a table of tests.

@@ -1,6 +1,7 @@
 //! A file per statistical test. None of them knows what a study is.
 
 pub(crate) mod aligned_rank_transform;
+pub(crate) mod bradley_terry;
 pub(crate) mod chi_square;
 pub(crate) mod friedman;
 mod kendall;
