@@ -1,11 +1,61 @@
 // The preview of a study's stimuli: two clips side by side, played in step, scrubbed, slowed down.
 import { backend, openStage, prepareClip, preparedClip, refreshPeriod } from "../stage/host.js";
 import { Player, made } from "../stage/player.js";
+import { ExertionPictures } from "../drawing/exertion.js";
+import { ShownComparison } from "./comparison.js";
 
 const $ = (id) => document.getElementById(id);
 const study = document.body.dataset.study;
 
 const player = new Player();
+
+/// The body of a clip whose capture is an exertion, and its courses: of panel A, else of panel B.
+class ShownExertion {
+  #pictures = new ExertionPictures();
+  #of = new Map();
+
+  constructor() {
+    const { body, courses, clip } = this.#pictures;
+    $("exertion-pictures").append(body, courses, clip);
+  }
+
+  /// A panel shows another clip, or none (null).
+  async put(panel, id) {
+    this.#of.set(panel, { id, drawing: null });
+    this.#show();
+    if (id === null) return;
+    const answer = await fetch(`/preview/${encodeURIComponent(study)}/exertion?${new URLSearchParams({ clip: id })}`);
+    const told = await answer.json();
+    if (!answer.ok) throw new Error(`${id}: ${told.message}; ${told.remedy}`);
+    if (this.#of.get(panel).id !== id) return;
+    this.#of.set(panel, { id, drawing: told });
+    this.#show();
+  }
+
+  at(timeMs) {
+    if (!$("exertion").hidden) this.#pictures.at(timeMs);
+  }
+
+  #show() {
+    const shown = player.panels.map((panel) => this.#of.get(panel)).find((own) => own?.drawing);
+    $("exertion").hidden = !shown;
+    $("exertion-clip").textContent = shown?.id ?? "";
+    this.#pictures.put(shown?.drawing ?? null);
+    this.#pictures.at(player.timeMs);
+  }
+}
+
+const exertion = new ShownExertion();
+const comparison = new ShownComparison((frame) => {
+  const rate = player.panels[0]?.clip()?.rate_hz;
+  if (rate) player.seek((1000 * frame) / rate);
+});
+
+/// Shows how the clips of both panels differ.
+function compare() {
+  const [a, b] = player.panels.map((panel) => panel.wanted());
+  comparison.put(a ?? null, b ?? null);
+}
 
 class Panel {
   #element;
@@ -48,13 +98,19 @@ class Panel {
     return this.#clipId === null ? null : preparedClip(this.#clipId);
   }
 
+  wanted() {
+    return this.#wanted;
+  }
+
   async choose(id) {
     this.#wanted = id;
+    compare();
     this.#select.value = id;
     this.#element.classList.toggle("empty", id === "");
     this.#clipId = null;
     this.#facts.replaceChildren();
     this.#notices.replaceChildren();
+    exertion.put(this, id === "" ? null : id).catch((error) => this.#wanted === id && this.#notices.append(made("p", { className: "notice warn" }, error.message)));
     if (id === "") return player.draw();
     const bar = made("progress", { max: 1, value: 0 });
     const words = made("span", {}, "Loading and solving");
@@ -128,7 +184,7 @@ class Panel {
     this.#facts.replaceChildren(
       ...rows.map(([name, value]) => made("div", {}, made("dt", {}, name), made("dd", { className: "number" }, value))),
     );
-    this.#notices.replaceChildren(
+    this.#notices.append(
       ...summary.warnings.map((warning) => made("p", { className: "notice warn" }, warning)),
     );
   }
@@ -167,8 +223,10 @@ async function start() {
   );
   player.onRate = (rate, longest) =>
     ($("rate").textContent = `${rate.toFixed(1)} frames/s, longest ${longest.toFixed(1)} ms`);
+  player.onDraw = (ms) => exertion.at(ms);
   player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
   refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
+  comparison.load(study).then(compare, problem);
   // B: the same take solved by another method, where the study has one.
   const other = ids.find((id) => clips[id].take === clips[ids[0]].take && id !== ids[0]) ?? "";
   await Promise.all([player.panels[0].choose(ids[0]), player.panels[1].choose(other)]);

@@ -27,7 +27,7 @@ function follow(live) {
     due = false;
     busy = true;
     try {
-      const response = await fetch(location.pathname, { credentials: "same-origin", cache: "no-store", headers: { accept: "text/html" } });
+      const response = await fetch(location.pathname + location.search, { credentials: "same-origin", cache: "no-store", headers: { accept: "text/html" } });
       // Logged out meanwhile: the page to log in says so.
       if (response.redirected) return location.reload();
       if (!response.ok) throw new Error(String(response.status));

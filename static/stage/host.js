@@ -246,7 +246,7 @@ class Stage {
       clip.pictures.widths,
       clip.pictures.pixels,
     );
-    if (shapes !== clip.shapes) {
+    if (shapes < clip.shapes) {
       throw new Error(`clip ${clip.clip}: ${clip.shapes} weights per frame, its avatar has ${shapes} blendshapes`);
     }
   }

@@ -10,6 +10,8 @@ import { refreshPeriod } from "./clock.js";
 const LATE = 1.5;
 // So long an adapter that is busy at the end may take for the last frame.
 const LAST_FRAME_MS = 500;
+// A play that shows nothing for so long is lost: its adapter, or its video, gives no frames any more.
+const SILENT_MS = 10_000;
 
 export class Playback {
   #parts;
@@ -103,8 +105,17 @@ export class Playback {
   #loop(durationMs, resolve) {
     const began = performance.now();
     let request = 0;
+    const lost = (why) => {
+      this.#failure = why;
+      this.abort(`renderer lost: ${why}`);
+    };
+    const watch = setInterval(() => {
+      const frame = this.#frames[this.#frames.length - 1];
+      if (performance.now() - (frame ? frame[0] : began) > SILENT_MS) lost("no frame for 10 s");
+    }, 1000);
     this.#finish = () => {
       cancelAnimationFrame(request);
+      clearInterval(watch);
       resolve();
     };
     const tick = (now) => {
@@ -125,15 +136,14 @@ export class Playback {
           frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
         }
       } catch (error) {
-        this.#failure = String(error?.message ?? error);
-        this.abort(`renderer lost: ${this.#failure}`);
+        lost(String(error?.message ?? error));
         return;
       }
       // A video has no frame for the end.
       const ended = shown !== null || this.#clock || time >= durationMs + LAST_FRAME_MS;
       if (clipMs >= durationMs && frames.length > 0 && ended) {
         this.#endMs = now;
-        resolve();
+        this.#finish();
         return;
       }
       request = requestAnimationFrame(tick);

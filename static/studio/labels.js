@@ -1,6 +1,6 @@
 // Labels of a take: a model suggests, a person confirms, relabels and moves; learnt from again.
 import { made } from "../stage/player.js";
-import { draw, style } from "./curves.js";
+import { draw, style } from "../drawing/lines.js";
 import { movable } from "./drag.js";
 import { callWorker } from "./worker-calls.js";
 

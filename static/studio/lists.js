@@ -163,7 +163,7 @@ const typed = (input) => ({ text: input.value, bad: input.validity.badInput });
 /// Locked blendshapes, and bounds of single ones.
 export class ShapeTable extends NamedTable {
   #own = new Set();
-  #held = new Set();
+  #told = new Map();
   #parameters = [];
   #ends = [0, 1];
 
@@ -186,10 +186,9 @@ export class ShapeTable extends NamedTable {
     if (!same) this.fill();
   }
 
-  /// Those that are held since no marker sees them.
-  putHeld(held) {
-    if (held.length === this.#held.size && held.every((name) => this.#held.has(name))) return;
-    this.#held = new Set(held);
+  /// How each shape gets its weight, and how well the markers tell it.
+  putTold(told) {
+    this.#told = new Map(told.map((row) => [row.shape, row]));
     const rows = this.element.querySelectorAll("tbody tr");
     for (const row of rows) row.querySelector(".note")?.replaceWith(this.notes(row.dataset.name)[0]);
   }
@@ -203,8 +202,18 @@ export class ShapeTable extends NamedTable {
   }
 
   notes(name) {
-    const words = this.#own.has(name) ? "locked by the avatar's own settings" : this.#held.has(name) ? "at 0: no marker sees it" : "";
+    const words = this.#own.has(name) ? "locked by the avatar's own settings" : this.#toldWords(this.#told.get(name));
     return [made("span", { className: "note soft" }, words)];
+  }
+
+  #toldWords(told) {
+    if (!told) return "";
+    const { state, standardError, confusedWith } = told;
+    const error = standardError === undefined ? "" : `± ${standardError.toFixed(2)} per mm of noise`;
+    if (state === "solved") return error;
+    if (state === "shared") return `${error}, told together with ${confusedWith?.[0] ?? "others"}`;
+    if (state === "untold") return `${error}, though no marker tells it`;
+    return { held: "at 0: no marker tells it", atRest: "at 0: no gaze is given", driven: "driven by lid markers or the gaze" }[state] ?? "";
   }
 
   isChanged(name) {

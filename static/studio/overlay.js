@@ -1,22 +1,11 @@
 // Markers drawn over a picture of the head, with the picture's own camera.
+import { fitted } from "../drawing/lines.js";
 
 /// Where a point (metres) lies on a canvas: [x, y, depth 0..1].
 export function project(camera, [x, y, z], width, height) {
   const row = (r) => camera[r] * x + camera[4 + r] * y + camera[8 + r] * z + camera[12 + r];
   const w = row(3);
   return [(row(0) / w / 2 + 0.5) * width, (0.5 - row(1) / w / 2) * height, row(2) / w];
-}
-
-/// Fits a canvas's pixels to its size on the page; answers its context and size in CSS pixels.
-export function fitted(canvas) {
-  const { width, height } = canvas.getBoundingClientRect();
-  const ratio = devicePixelRatio || 1;
-  const [w, h] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
-  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  return { context, width, height };
 }
 
 /// What the markers ask (open circles), where the skin is (dots), and the way between: `points` holds
@@ -56,6 +45,40 @@ export function drawMap(canvas, camera, markers, chosen) {
       context.fillText(label, at[0] + 12, at[1] + 5);
     }
   }
+}
+
+/// Whether skin with this normal faces the picture's camera.
+export function facesCamera(camera, [x, y, z]) {
+  // The fourth row grows along the line of sight.
+  return camera[3] * x + camera[7] * y + camera[11] * z < 0;
+}
+
+/// A layout: numbered dots, those on the far side faint, head markers as dark ones without a number.
+export function drawLayout(canvas, camera, { markers, head }, chosen) {
+  const { context, width, height } = fitted(canvas);
+  const at = (position) => project(camera, position, width, height);
+  for (const { position } of head) {
+    dot(context, at(position), 5, "#1d3557");
+    ring(context, at(position), 5, "#ffffff");
+  }
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const size = Math.min(1, width / 420);
+  const each = markers.map((marker, index) => ({ ...marker, index }));
+  // Those in front are drawn last, the chosen one on top.
+  each.sort((a, b) => (a.index === chosen) - (b.index === chosen) || at(b.position)[2] - at(a.position)[2]);
+  for (const { position, normal, allowed, index } of each) {
+    const place = at(position);
+    const own = index === chosen;
+    context.globalAlpha = own || !normal || facesCamera(camera, normal) ? 1 : 0.25;
+    const radius = size * (own ? 11 : 9);
+    dot(context, place, radius, own ? "#b3001b" : "#ffd34d");
+    ring(context, place, radius, allowed ? "rgb(0 0 0 / 70%)" : "#b3001b");
+    context.font = `600 ${size * (own ? 12.5 : 11)}px system-ui, sans-serif`;
+    context.fillStyle = own ? "#ffffff" : "#000000";
+    context.fillText(String(index + 1), place[0], place[1] + 0.5);
+  }
+  context.globalAlpha = 1;
 }
 
 function dot(context, [x, y], radius, colour) {

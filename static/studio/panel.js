@@ -146,7 +146,8 @@ export class MethodPanel {
       }
       this.choose(spec.method);
       this.#controls();
-      this.#parameters.take(spec);
+      const byName = JSON.stringify([spec.locked, spec.bounds, spec.importance]);
+      this.#parameters.take(byName.includes("*") ? await callWorker("namedMethod", JSON.stringify(spec)) : spec);
     } catch (error) {
       this.#page.report(new Error(`${file.name}: ${error.message}`));
     } finally {
@@ -188,7 +189,7 @@ export class MethodPanel {
     this.#veil.textContent = "Solving";
     try {
       const started = performance.now();
-      const facts = await callWorker("solve", this.#slot, JSON.stringify(this.#parameters.spec()), this.#parameters.hold);
+      const facts = await callWorker("solve", this.#slot, JSON.stringify(this.#parameters.spec()));
       const took = performance.now() - started;
       if (facts.problems) {
         const words = facts.problems.map(({ place, text }) => `${place}: ${text}`).join("\n");
@@ -301,8 +302,10 @@ export class MethodPanel {
     if (facts.head_lowpass_hz !== undefined) {
       this.#row("Head low-pass", facts.head_lowpass_hz === null ? "none" : `${facts.head_lowpass_hz} Hz`);
     }
+    if (facts.gaze && !(facts.gaze_at_rest?.length > 0)) this.#row("Gaze", facts.gaze);
     if (facts.gaze_at_rest?.length > 0) this.#row("Gaze", `at rest: none is given (${facts.gaze_at_rest.length} shapes at 0)`);
-    if (facts.held?.length > 0) this.#row("Held at 0", facts.held.join(", "));
+    const held = (facts.shapes_told ?? []).filter(({ state }) => state === "held").map(({ shape }) => shape);
+    if (held.length > 0) this.#row("Held at 0", held.join(", "));
     this.#row("Weights", facts.weights_hash.slice(0, 16));
     this.#notices.replaceChildren(...facts.warnings.map((text) => made("p", { className: "notice warn" }, text)));
   }

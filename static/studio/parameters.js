@@ -15,7 +15,6 @@ export class Parameters {
   #fields = made("div", { className: "parameters" });
   #shapes;
   #markers;
-  #hold = null;
   #changed;
 
   /// `changed` is called when something is typed.
@@ -29,21 +28,11 @@ export class Parameters {
     this.tables = [this.#shapes.element, this.#markers.element];
   }
 
-  /// Whether what no marker sees is held at 0.
-  get hold() {
-    return this.#hold?.checked ?? true;
-  }
-
   /// The controls of a method: its name, and its rows of the solver's table of parameters.
   choose({ name, parameters }) {
     [this.#method, this.#parameters] = [name, parameters];
     const rows = parameters.filter(({ kind }) => !BY_NAME.includes(kind)).map((row) => this.#control(row));
     const keys = parameters.map(({ key }) => key);
-    if (keys.includes("locked")) {
-      this.#hold = made("input", { type: "checkbox", checked: true });
-      this.#hold.addEventListener("change", this.#changed);
-      rows.push(made("label", { className: "preview-check" }, this.#hold, " Hold what no marker sees at 0"));
-    } else this.#hold = null;
     this.#fields.replaceChildren(...rows);
     this.element.hidden = rows.length === 0;
     this.#shapes.choose(keys, this.#ends());
@@ -74,9 +63,9 @@ export class Parameters {
     this.#markers.put(markers);
   }
 
-  /// What the solver answered: those that it held.
-  solved({ held = [] }) {
-    this.#shapes.putHeld(held);
+  /// What the solver answered: how each shape gets its weight.
+  solved({ shapes_told: told = [] }) {
+    this.#shapes.putTold(told);
   }
 
   #share(row, label) {

@@ -2,8 +2,10 @@
 import { Player } from "../stage/player.js";
 import { Curves } from "./curves.js";
 import { callWorker } from "./worker-calls.js";
+import { Exertion } from "./exertion.js";
 import { save, wireExports } from "./export.js";
 import { Labels } from "./labels.js";
+import { Layouts } from "./layouts.js";
 import { Matching } from "./matching.js";
 import { MethodPanel } from "./panel.js";
 import { Timeline } from "./timeline.js";
@@ -14,7 +16,7 @@ const SLOTS = ["a", "b", "c", "d"];
 const SECOND_METHODS = ["box", "lsts-norm", "kouadio"];
 
 const player = new Player();
-const here = { avatar: null, avatars: 0, take: null, map: null, methods: [], segments: [], training: null };
+const here = { panels: [], avatar: null, avatars: 0, take: null, map: null, methods: [], segments: [], training: null };
 
 const methods = callWorker("methods").then((all) => (here.methods = all));
 
@@ -48,12 +50,13 @@ const page = {
   avatar: () => here.avatar,
   avatarShapes: () => here.avatar.shapes.length,
   faceMarkers: () => (here.map?.markers ?? []).filter(({ vertex }) => vertex !== null).map(({ label }) => label),
+  mapIsThere: () => (here.map?.markers ?? []).some(({ vertex }) => vertex !== null),
   trainingMissing: () => (here.training ? here.training.missing : "open a range of motion and its weights"),
   showMarkers: () => $("show-markers").checked,
-  first: () => player.panels[0],
-  panels: () => player.panels,
+  first: () => here.panels[0],
+  panels: () => here.panels,
   panel: (slot) => player.panels.find((each) => each.slot === slot),
-  slot: () => player.panels.find((panel) => panel.facts)?.slot ?? "",
+  slot: () => here.panels.find((panel) => panel.facts)?.slot ?? "",
   seek: (ms) => (player.pause(), player.seek(ms)),
   timeMs: () => player.timeMs,
   pause: () => player.pause(),
@@ -63,49 +66,73 @@ const page = {
   mapChanged(state) {
     here.map = state;
     mapFacts();
-    for (const panel of player.panels) {
+    for (const panel of here.panels) {
       panel.sourcesChanged();
       panel.solveSoon();
     }
   },
   trainingChanged(state) {
     here.training = state;
-    for (const panel of player.panels) panel.trainingChanged();
+    for (const panel of here.panels) panel.trainingChanged();
+    layouts.sourcesChanged().catch(report);
   },
+  takeIsMotion: () => here.take?.kind === "markers",
   captureOptions: () => [$("take-unit").value || undefined, Number($("take-rate").value) || undefined],
   busy,
   changed() {
-    const solved = player.panels.filter((panel) => panel.facts);
-    $("transport").hidden = $("curves").hidden = $("exports").hidden = solved.length === 0;
-    $("export-slot").replaceChildren(...solved.map((panel) => new Option(panel.title(), panel.slot)));
+    const faces = player.panels.filter((panel) => panel.facts);
+    $("transport").hidden = player.durationMs() === 0;
+    $("curves").hidden = !here.panels.some((panel) => panel.facts);
+    $("exports").hidden = faces.length === 0;
+    const chosen = $("export-slot").value;
+    $("export-slot").replaceChildren(...faces.map((panel) => new Option(panel.title(), panel.slot)));
+    if (faces.some((panel) => panel.slot === chosen)) $("export-slot").value = chosen;
+    fillRange();
     curves.update().catch(report);
   },
   remove(panel) {
     panel.close();
-    player.panels = player.panels.filter((each) => each !== panel);
+    putPanels(here.panels.filter((each) => each !== panel));
     $("add-panel").hidden = false;
     page.changed();
   },
 };
 
+// The panels of methods, and that of the exertion behind them.
+function putPanels(panels) {
+  here.panels = panels;
+  player.panels = [...panels, exertion];
+}
+
+const exertion = new Exertion(page);
+putPanels([]);
 const curves = new Curves(page);
 const matching = new Matching(page);
+const layouts = new Layouts(page);
 const timeline = new Timeline({
   ...page,
   changed(segments) {
     here.segments = segments;
-    const range = $("range");
-    const before = range.value;
-    range.replaceChildren(new Option("the whole take", ""), ...segments.map((segment, i) => new Option(segment.label, String(i))));
-    range.value = segments[Number(before)] && before !== "" ? before : "";
-    choosePart();
+    fillRange();
   },
 });
 const labels = new Labels({ ...page, expressions: (segments) => timeline.take(segments) });
-wireExports(page);
+wireExports({ ...page, panels: () => player.panels });
 new TrainingFiles(page);
 
+// What can be played: all, a segment, and, where a take is longer, the window of the exertion.
+function fillRange() {
+  const range = $("range");
+  const before = range.value;
+  const window = here.panels.length > 0 && exertion.clip() ? [new Option("the exertion's window", "exertion")] : [];
+  range.replaceChildren(new Option("the whole take", ""), ...window, ...here.segments.map((segment, i) => new Option(segment.label, String(i))));
+  range.value = before;
+  if (range.selectedIndex < 0) range.value = "";
+  choosePart();
+}
+
 function choosePart() {
+  if ($("range").value === "exertion") return void (player.part = [0, exertion.clip().duration_ms]);
   const segment = here.segments[Number($("range").value)];
   player.part = $("range").value !== "" && segment ? segment.clip_s.map((s) => 1000 * s) : null;
 }
@@ -121,6 +148,7 @@ function mapFacts() {
   }
   $("map-facts").textContent = placed === 0 ? "none" : words.join("; ");
   $("map-save").disabled = placed === 0;
+  layouts.mapChanged();
 }
 
 async function avatarHere(facts) {
@@ -152,6 +180,7 @@ async function takeHere(facts) {
 
 // A new avatar or take: the map as the worker has it, a suggestion where there is none, methods anew.
 async function sourcesChanged() {
+  exertion.sourcesChanged();
   $("matching").hidden = !here.avatar || here.take?.kind !== "markers";
   $("expressions").hidden = !here.take;
   $("next").textContent = here.avatar ? (here.take ? "" : "Now open a capture, or take the built-in actor.") : "Now open an avatar, or take the built-in head.";
@@ -163,16 +192,17 @@ async function sourcesChanged() {
     await matching.show();
   } else here.map = null;
   mapFacts();
+  await layouts.sourcesChanged();
   if (!here.take) return;
   await methods;
   const recorded = here.take.kind === "weights";
-  if (player.panels.length === 0) addPanel(recorded ? "recorded" : "lsts");
-  for (const panel of player.panels) {
+  if (here.panels.length === 0) addPanel(recorded ? "recorded" : "lsts");
+  for (const panel of here.panels) {
     if (recorded !== panel.isRecorded()) panel.choose(recorded ? "recorded" : "lsts");
     panel.sourcesChanged();
   }
-  $("add-panel").hidden = player.panels.length >= SLOTS.length;
-  await Promise.all(player.panels.map((panel) => panel.solve()));
+  $("add-panel").hidden = here.panels.length >= SLOTS.length;
+  await Promise.all(here.panels.map((panel) => panel.solve()));
 }
 
 async function suggest() {
@@ -185,10 +215,10 @@ async function suggest() {
 
 function addPanel(method) {
   const slot = SLOTS.find((each) => !page.panel(each));
-  const panel = new MethodPanel(slot, page, method, player.panels.length > 0);
-  player.panels = [...player.panels, panel];
+  const panel = new MethodPanel(slot, page, method, here.panels.length > 0);
+  putPanels([...here.panels, panel]);
   $("panels").append(panel.element);
-  $("add-panel").hidden = player.panels.length >= SLOTS.length;
+  $("add-panel").hidden = here.panels.length >= SLOTS.length;
   return panel;
 }
 
@@ -234,7 +264,7 @@ function wire() {
   $("take-built-in").addEventListener("click", () => builtInTake().catch(report));
   $("map-suggest").addEventListener("click", () => suggest().then(() => here.map && page.mapChanged(here.map)));
   $("map-save").addEventListener("click", async () => save("markers.json", await callWorker("mapJson")));
-  $("add-panel").addEventListener("click", () => addPanel(SECOND_METHODS[player.panels.length - 1] ?? "lsts").solve());
+  $("add-panel").addEventListener("click", () => addPanel(SECOND_METHODS[here.panels.length - 1] ?? "lsts").solve());
   $("show-markers").addEventListener("change", () => player.draw());
   $("range").addEventListener("change", () => (choosePart(), player.seek(player.part?.[0] ?? 0)));
   player.wire({ m: () => $("show-markers").click() });

@@ -1,6 +1,6 @@
 // The expressions of a take: suggested, dragged, typed, saved.
 import { made } from "../stage/player.js";
-import { draw } from "./curves.js";
+import { draw } from "../drawing/lines.js";
 import { movable } from "./drag.js";
 import { callWorker } from "./worker-calls.js";
 

@@ -8,6 +8,8 @@ const JSON_CALLS = new Set([
   "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
   "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",
   "labelsFromExpressions", "labelsToExpressions",
+  "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",
+  "layoutState", "exertion", "exertionFile", "exertionModel",
 ]);
 
 let worker = null;

@@ -95,6 +95,20 @@ test("frame log: a busy adapter gets the last frame later, but is not waited for
   assert.deepEqual([never.log.frames.length, never.log.end_ms], [2, 540]);
 });
 
+test("frame log: a play that shows nothing for ten seconds is lost, before its first frame and after", async () => {
+  for (const busyFrom of [0, 2]) {
+    clock = 0;
+    const play = new Playback([{ draw: (ms) => ms < busyFrom }]);
+    const log = play.run(1000);
+    await settle();
+    for (const time of [0, 20, 40]) await frame(time);
+    clock = 11_000;
+    const { aborted, failure, frames } = await log;
+    assert.deepEqual([aborted, failure], ["renderer lost: no frame for 10 s", "no frame for 10 s"]);
+    assert.equal(frames.length, busyFrom === 0 ? 0 : 1);
+  }
+});
+
 test("frame log: a hidden page ends the play, and what was shown stays", async () => {
   const play = new Playback([{ draw: () => true }]);
   const log = play.run(1000);

@@ -134,6 +134,20 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
     assert.ok(counts.replace(/\s+/g, " ").includes(expected), `${counts} has: ${expected}`);
     await look("dashboard");
 
+    // Those of one standing are listed alone, and the page goes on following.
+    await page.getByRole("link", { name: "completed" }).click();
+    await page.waitForURL("**/researcher/studies/moods?standing=completed");
+    const listed = () => page.locator("[data-live] td.browser").count();
+    assert.equal(await listed(), 2);
+    await look("completed", [[1280, "light"], [360, "dark"]]);
+    await page.waitForSelector("text=Live: the page follows");
+    await takePart(server, "moods", "e", 5, false);
+    await page.waitForFunction(() => /under way\s*2/.test(document.querySelector("dl.counts").innerText), undefined, { timeout: 10_000 });
+    assert.equal(await listed(), 2, "who is under way is counted, and not listed here");
+    await page.getByRole("link", { name: "all", exact: true }).click();
+    await page.waitForURL("**/researcher/studies/moods");
+    assert.equal(await listed(), 4);
+
     // One is excluded with a reason.
     await page.getByRole("link", { name: "p0002" }).click();
     await page.waitForURL("**/participants/2");

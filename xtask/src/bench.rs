@@ -5,13 +5,17 @@
 //! measurement at a time, so that what else the machine does falls on all of them alike. Times are
 //! processor time; a ratio is the median of the ratios of the rounds.
 
-use std::io::{BufRead, BufReader, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
+use crate::bench_annotate;
+use crate::bench_figures::{extremes, median, print, record};
+use crate::bench_layout;
+use crate::bench_partner::{Partner, number, text};
 use crate::bench_plot;
+use crate::bench_server;
 use crate::bench_stats;
 use crate::install;
 use crate::process::{cargo, output, root, say, show, target};
@@ -23,6 +27,18 @@ pub struct Args {
     /// The statistics beside SciPy and polars instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot"])]
     stats: bool,
+    /// The server with a study of a million events, on each database: exports, dashboard, restart
+    #[arg(long, conflicts_with_all = ["stats", "browser", "plot"])]
+    server: bool,
+    /// With --server: the study, by its name in study-config
+    #[arg(long, default_value = "demo", requires = "server")]
+    study: String,
+    /// The annotation beside scikit-learn and hmmlearn instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "server"])]
+    annotate: bool,
+    /// Measure marker layouts beside scikit-learn and NumPy instead of the solver
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate"])]
+    layout: bool,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -32,27 +48,24 @@ pub struct Args {
     /// Draw set-up time and memory against the number of vertices, up to a million
     #[arg(long)]
     plot: bool,
-    /// Write the figures into docs/measured/solver-benchmarks.md, or docs/measured/statistics-benchmarks.md
+    /// Write the figures into the document of docs/measured that holds them
     #[arg(long)]
     record: bool,
 }
-
-/// A process that answers lines with lines of JSON.
-pub struct Partner {
-    child: Child,
-    to: Option<ChildStdin>,
-    from: BufReader<ChildStdout>,
-    /// Its first line.
-    pub greeting: String,
-}
-
-/// Seconds of one measurement, and what they were spent on.
-type Seconds = Vec<f64>;
 
 /// Measures, prints, and records where asked.
 pub fn run(args: &Args) -> Result<()> {
     if args.stats {
         return bench_stats::run(args.rounds.max(1), args.record);
+    }
+    if args.server {
+        return bench_server::run_bench(&args.study, args.record);
+    }
+    if args.annotate {
+        return bench_annotate::run(args.rounds.max(1), args.record);
+    }
+    if args.layout {
+        return bench_layout::run(args.rounds.max(1), args.record);
     }
     let data = crate::test::data();
     if !data.join("lsts/frames").is_dir() {
@@ -93,6 +106,9 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
+/// The baselines, each timed on the whole take beside `lsts`.
+const BASELINES: [&str; 6] = ["box", "ridge", "a2f", "sparse", "smooth-sparse", "greedy"];
+
 /// The processes whose figures are compared: they wait for questions, so that every round asks all of them.
 struct Partners {
     ours: Partner,
@@ -125,7 +141,12 @@ impl Partners {
         let (lsts_wasm, _) = self.wasm("lsts")?;
         let (lsts_norm_wasm, memory) = self.wasm("lsts-norm")?;
         let ours = &mut self.ours;
+        let mut baselines = [0.0; BASELINES.len()];
+        for (rate, name) in baselines.iter_mut().zip(BASELINES) {
+            *rate = ours.rate(name)?;
+        }
         Ok(Round {
+            baselines,
             lsts: ours.rate("lsts")?,
             lsts_peer: self.peers.rate("lsts")?,
             lsts_norm: ours.rate("lsts-norm")?,
@@ -187,6 +208,8 @@ impl Differences {
 
 /// The figures of one round: frames per second, seconds of a set-up, bytes of memory.
 struct Round {
+    /// Of [`BASELINES`].
+    baselines: [f64; BASELINES.len()],
     lsts: f64,
     lsts_peer: f64,
     lsts_norm: f64,
@@ -231,7 +254,7 @@ fn rows(rounds: &[Round]) -> Vec<Row> {
     let bvls = against(|r| [r.lsts, r.lsts_peer], "bvls");
     let fine = format!("{:.2} of the skin's", of(|r| r.lsts_fine / r.lsts));
     let (alone, memory) = (String::new, format!("{:.1} MiB", of(|r| r.wasm_memory) / 1048576.0));
-    vec![
+    let mut rows = vec![
         row("`lsts`, solve alone", rate(|r| r.lsts), bvls, "80 x"),
         row("`lsts-norm`, solve alone", rate(|r| r.lsts_norm), tight, "60 x"),
         row("", alone(), default, ""),
@@ -258,7 +281,14 @@ fn rows(rounds: &[Round]) -> Vec<Row> {
             "160 ms",
         ),
         row("wasm memory", memory, "after both methods on 5,660 frames".into(), "150 MiB"),
-    ]
+    ];
+    for (k, name) in BASELINES.iter().enumerate() {
+        let own = median(rounds.iter().map(|round| round.baselines[k]).collect());
+        let ratio = median(rounds.iter().map(|round| round.baselines[k] / round.lsts).collect());
+        let what = format!("`{name}`, solve alone");
+        rows.push(row(&what, format!("{own:.0} frames/s"), format!("{ratio:.2} of `lsts`"), ""));
+    }
+    rows
 }
 
 /// 54 clips solved by the page's own worker.
@@ -303,106 +333,10 @@ fn figures(data: &Path) -> Command {
     command
 }
 
-impl Partner {
-    /// Starts it and waits for its greeting.
-    pub fn start(command: &mut Command) -> Result<Partner> {
-        let shown = show(command);
-        say(&shown);
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .with_context(|| format!("could not start: {shown}"))?;
-        let (to, from) = (child.stdin.take(), child.stdout.take());
-        let from = BufReader::new(from.context("no standard output")?);
-        let mut partner = Partner { child, to, from, greeting: String::new() };
-        partner.greeting = partner.line().with_context(|| format!("failed: {shown}"))?;
-        Ok(partner)
-    }
-
-    fn line(&mut self) -> Result<String> {
-        loop {
-            let mut line = String::new();
-            if self.from.read_line(&mut line)? == 0 {
-                bail!("it ended before it answered");
-            }
-            if line.starts_with('{') {
-                return Ok(line);
-            }
-        }
-    }
-
-    /// The answer to a line.
-    pub fn ask(&mut self, what: &str) -> Result<String> {
-        let to = self.to.as_mut().context("it takes no more questions")?;
-        writeln!(to, "{what}")?;
-        to.flush()?;
-        self.line().with_context(|| what.to_owned())
-    }
-
-    /// Units a second.
-    fn rate(&mut self, what: &str) -> Result<f64> {
-        let line = self.ask(what)?;
-        Ok(number(&line, "\"units\":")? / number(&line, "\"seconds\":")?)
-    }
-}
-
-impl Drop for Partner {
-    fn drop(&mut self) {
-        // The end of its input is its end.
-        drop(self.to.take());
-        let _ = self.child.wait();
-    }
-}
-
-/// The number after a key of one line of JSON that we write ourselves.
-pub fn number(line: &str, key: &str) -> Result<f64> {
-    let rest = line.split_once(key).with_context(|| format!("no {key} in {line}"))?.1;
-    let end = rest.find([',', '}', ']']).unwrap_or(rest.len());
-    rest[..end].trim().parse().with_context(|| format!("{key} in {line}"))
-}
-
-/// The text after a key of one line of JSON that we write ourselves.
-pub fn text<'l>(line: &'l str, key: &str) -> Result<&'l str> {
-    let rest = line.split_once(&format!("\"{key}\": \"")).with_context(|| format!("no {key}"))?.1;
-    Ok(rest.split('"').next().unwrap_or_default())
-}
-
-/// The least and the greatest of positive figures.
-pub fn extremes(values: &[f64]) -> [f64; 2] {
-    values.iter().fold([f64::MAX, 0.0], |[least, most], &value| [least.min(value), most.max(value)])
-}
-
-/// Median.
-pub fn median(mut values: Seconds) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
-}
-
 fn table(rows: &[[String; 4]]) -> String {
     let mut out = String::from("| measure | measured | beside | target |\n|---|---|---|---|\n");
     for [what, figure, beside, goal] in rows {
         out.push_str(&format!("| {what} | {figure} | {beside} | {goal} |\n"));
     }
     out
-}
-
-/// Prints a table.
-#[expect(clippy::print_stdout, reason = "xtask talks to the person at the terminal")]
-pub fn print(table: &str) {
-    println!("{table}");
-}
-
-/// Writes the figures between the marks of a document.
-pub fn record(document: &str, figures: &str) -> Result<()> {
-    let file = root().join(document);
-    let (start, end) = ("<!-- figures -->\n", "<!-- end of figures -->");
-    let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
-    let parts =
-        text.split_once(start).and_then(|(head, rest)| Some((head, rest.split_once(end)?.1)));
-    let (head, tail) = parts.with_context(|| format!("{document} has lost its marks"))?;
-    std::fs::write(&file, format!("{head}{start}{figures}{end}{tail}"))?;
-    say(&format!("recorded: {}", file.display()));
-    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use crate::bench::number;
+use crate::bench_partner::number;
 use crate::process::say;
 
 /// One size of mesh.

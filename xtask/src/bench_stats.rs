@@ -12,7 +12,8 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::bench::{Partner, extremes, median, number, print, record, text};
+use crate::bench_figures::{extremes, median, print, record};
+use crate::bench_partner::{Partner, number, text};
 use crate::demo;
 use crate::install;
 use crate::process::{cargo, root, say, show, target};
@@ -150,14 +151,15 @@ fn commands(
 }
 
 /// A run of a command.
-struct Run {
-    seconds: f64,
+pub struct Run {
+    /// From its start to its end.
+    pub seconds: f64,
     /// Peak resident bytes, where the machine tells.
-    memory: Option<f64>,
+    pub memory: Option<f64>,
 }
 
 /// The quickest of some runs.
-fn best(runs: usize, command: &mut Command) -> Result<Run> {
+pub fn best(runs: usize, command: &mut Command) -> Result<Run> {
     let shown = show(command);
     let mut best = Run { seconds: f64::INFINITY, memory: None };
     for _ in 0..runs {
@@ -185,7 +187,7 @@ fn best(runs: usize, command: &mut Command) -> Result<Run> {
 }
 
 /// Peak resident memory that the system states of a process.
-fn peak(status: &str) -> Option<f64> {
+pub fn peak(status: &str) -> Option<f64> {
     let text = std::fs::read_to_string(status).ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM"))?;
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)

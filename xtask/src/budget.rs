@@ -46,8 +46,9 @@ const BUDGETS: [Budget; 4] = [
         ],
         // The goal is 110. The decompositions of nalgebra (29), the words and places of panics, serde's reader
         // of a method and the printing of numbers are what stands between; docs/measured/page-speed.md has
-        // the parts.
-        kilobytes: 178.0,
+        // the parts. 10 are the baselines of other groups (a2f, sparse, smooth-sparse, greedy),
+        // 2 patterns of names.
+        kilobytes: 192.0,
     },
     Budget {
         name: "the WebGPU canvas",

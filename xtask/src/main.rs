@@ -2,11 +2,18 @@
 //!
 //! - `cargo xtask demo`: install what is missing, build everything, start the built-in study;
 //! - `cargo xtask test`: install what tests need, then every check and test there is;
-//! - `cargo xtask bench`: the solver (or with `--stats` the statistics) and its peers, and their ratios;
+//! - `cargo xtask bench`: the solver (or with `--stats` the statistics) and its peers, and their ratios; with
+//!   `--server` the server with a study of a million events;
 //! - `cargo xtask web`: build the wasm modules and the pages alone.
 
 mod bench;
+mod bench_annotate;
+mod bench_figures;
+mod bench_layout;
+mod bench_partner;
+mod bench_peers;
 mod bench_plot;
+mod bench_server;
 mod bench_stats;
 mod budget;
 mod demo;
@@ -31,7 +38,7 @@ enum Command {
     Demo(demo::Args),
     /// Install what tests need, then run every check and test
     Test(test::Args),
-    /// Measure the solver, or the statistics, beside their peers and print the ratios
+    /// Measure the solver, or the statistics, beside their peers and print the ratios; or the server
     Bench(bench::Args),
     /// Build the wasm modules and the pages into target/web-dist
     Web(web::Args),

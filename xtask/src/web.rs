@@ -8,6 +8,7 @@
 //! | `studio` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
+//! | `exertion_bits` | an example of `web/solver` | `web-solver` | exertion's numbers, for a test; not a part of the pages |
 //! | `panicking` | an example of `web/panics` | `web` | a solver that panics, for a test; not a part of the pages |
 //!
 //! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
@@ -27,7 +28,7 @@ use crate::process::{cargo, locked, root, run as run_program, say, target};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (app, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
+    /// Build only these modules (app, exertion_bits, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
     /// static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
@@ -47,7 +48,7 @@ struct Module {
     opt_level: &'static str,
 }
 
-const MODULES: [Module; 7] = [
+const MODULES: [Module; 8] = [
     Module {
         name: "app",
         package: "mimique-app",
@@ -65,6 +66,15 @@ const MODULES: [Module; 7] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
+    },
+    Module {
+        name: "exertion_bits",
+        package: "mimique-web-solver",
+        library: "exertion_bits",
+        example: true,
+        features: None,
+        profile: "web-solver",
+        opt_level: "-O3",
     },
     Module {
         name: "panicking",

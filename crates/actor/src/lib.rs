@@ -1,5 +1,5 @@
 //! The built-in actor: a head made wholly by code, any number of people from a seed; its performances
-//! of emotions, and synthetic motion capture of them.
+//! of emotions, and synthetic motion capture of them; and a body that walks, runs and sprints.
 //!
 //! ```
 //! use mimique_actor::{Clip, Density, Emotion, HeadSpec, build_head, marker_sites, synthetic_take};
@@ -19,8 +19,11 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+mod gait;
 mod head;
 mod performance;
+
+pub use gait::{Gait, gait_bvh};
 
 /// The built-in head's shapes, and what each is of a face (`Left/Right` are two shapes):
 ///
@@ -29,6 +32,6 @@ mod performance;
 pub use head::SHAPE_NAMES;
 pub use head::{Density, HeadSpec, Identity, MarkerSites, build_head, marker_sites};
 pub use performance::{
-    Clip, Emotion, HeadPose, NOISE_MM, Performance, Segment, SyntheticTake, performance_weights,
-    range_of_motion, range_of_motion_take, synthetic_take,
+    Clip, Emotion, HeadPose, NOISE_MM, Performance, Phases, Segment, SyntheticTake,
+    performance_weights, range_of_motion, range_of_motion_take, synthetic_take,
 };

@@ -71,7 +71,10 @@ fn each_emotion_uses_its_action_units_and_grows_with_intensity() {
             ],
         ),
         (Emotion::Anger, &["browDownLeft", "eyeWideLeft", "eyeSquintLeft", "mouthPressLeft"]),
-        (Emotion::Disgust, &["noseSneerLeft", "mouthFrownLeft", "mouthLowerDownLeft"]),
+        (
+            Emotion::Disgust,
+            &["noseSneerLeft", "mouthUpperUpLeft", "mouthFrownLeft", "mouthShrugLower"],
+        ),
         (Emotion::Surprise, &["browInnerUp", "browOuterUpLeft", "eyeWideLeft", "jawOpen"]),
     ];
     for (emotion, shapes) in units {
@@ -84,6 +87,22 @@ fn each_emotion_uses_its_action_units_and_grows_with_intensity() {
             assert!(a > 0.04 && b > 1.3 * a && c > 1.2 * b, "{emotion:?} {shape}: {a} {b} {c}");
         }
     }
+}
+
+/// Both raise brows and upper lids; fear draws the brows together, tenses the lower lids and stretches
+/// the lips (AU 4, 7, 20), surprise drops the jaw (AU 26).
+#[test]
+fn fear_is_not_surprise() {
+    let play = |emotion| {
+        performance_weights(&names(), &Clip { emotion, intensity: 3, seed: 9 }, 60.0, 4.0)
+    };
+    let (fear, surprise) = (play(Emotion::Fear), play(Emotion::Surprise));
+    for shape in ["browDownLeft", "eyeSquintLeft", "mouthStretchLeft"] {
+        assert!(peak(&fear, shape) > 0.2, "{shape}: {}", peak(&fear, shape));
+        assert_eq!(peak(&surprise, shape), 0.0, "{shape}");
+    }
+    assert!(peak(&surprise, "jawOpen") > 4.0 * peak(&fear, "jawOpen"));
+    assert_eq!(peak(&fear, "mouthSmileLeft"), 0.0);
 }
 
 fn course(p: &Performance, shape: &str) -> Vec<f64> {

@@ -37,6 +37,17 @@ mod report;
 mod simulate;
 mod trials;
 
+/// What reports are made of: blocks of a document, tables, figures. Reports of other things than a
+/// study (`mimique annotate evaluate`) are made of the same.
+pub mod components {
+    pub use crate::report::document::{Block, DataTable, Document, Figure, slug};
+    pub use crate::report::document_files;
+    pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
+    pub use crate::report::figure::{
+        ConfusionRow, ConfusionWords, CoursePanel, confusion_matrix, time_courses,
+    };
+}
+
 pub use language::Language;
 pub use power::{
     Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, no_effect, power,

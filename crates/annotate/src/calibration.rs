@@ -10,44 +10,109 @@ use crate::{AnnotateError, Rows};
 /// Bins of the calibration error.
 pub const BINS: usize = 10;
 
-/// Expected calibration error: over even bins (lo, hi] of the answers' probabilities, |share that
-/// is right - mean probability|, weighted by the bins' sizes; 0 of no answers.
+/// How often answers are right by how probable they were held to be: counts of frames in even bins
+/// (lo, hi] of probability, of one take or several.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reliability {
+    bins: Vec<ReliabilityBin>,
+    /// Sum of (probability - 1 where right, 0 elsewhere) squared.
+    squares: f64,
+}
+
+/// Answers whose probability lies in a bin.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ReliabilityBin {
+    /// Answers.
+    pub n: u64,
+    /// Sum of their probabilities.
+    pub probability: f64,
+    /// How many are right.
+    pub right: u64,
+}
+
+impl Default for Reliability {
+    fn default() -> Self {
+        Self::new(BINS)
+    }
+}
+
+impl Reliability {
+    /// Nothing counted; one bin at least.
+    pub fn new(bins: usize) -> Self {
+        Self { bins: vec![ReliabilityBin::default(); bins.max(1)], squares: 0.0 }
+    }
+
+    /// Count an answer of a probability from 0 to 1. One on a border is in the lower bin, 0 in the
+    /// lowest.
+    pub fn count(&mut self, probability: f64, right: bool) {
+        let bins = self.bins.len();
+        let mut place = ((probability * bins as f64).ceil() as usize).clamp(1, bins) - 1;
+        while place > 0 && probability <= place as f64 / bins as f64 {
+            place -= 1;
+        }
+        while place + 1 < bins && probability > (place + 1) as f64 / bins as f64 {
+            place += 1;
+        }
+        let bin = &mut self.bins[place];
+        bin.n += 1;
+        bin.probability += probability;
+        bin.right += u64::from(right);
+        let away = probability - f64::from(u8::from(right));
+        self.squares += away * away;
+    }
+
+    /// Add another's counts, of as many bins.
+    pub fn add(&mut self, other: &Self) {
+        for (own, other) in self.bins.iter_mut().zip(&other.bins) {
+            own.n += other.n;
+            own.probability += other.probability;
+            own.right += other.right;
+        }
+        self.squares += other.squares;
+    }
+
+    /// The bins, by rising probability.
+    pub fn bins(&self) -> &[ReliabilityBin] {
+        &self.bins
+    }
+
+    /// Answers counted.
+    pub fn n(&self) -> u64 {
+        self.bins.iter().map(|bin| bin.n).sum()
+    }
+
+    /// Expected calibration error: |share that is right - mean probability| of the bins, weighted by
+    /// their sizes; none of no answers.
+    pub fn expected_error(&self) -> Option<f64> {
+        let apart = |bin: &ReliabilityBin| (bin.probability - bin.right as f64).abs();
+        self.mean(self.bins.iter().map(apart).sum())
+    }
+
+    /// Brier's score: mean of (probability - 1 where right, 0 elsewhere) squared; none of no answers.
+    pub fn brier(&self) -> Option<f64> {
+        self.mean(self.squares)
+    }
+
+    fn mean(&self, sum: f64) -> Option<f64> {
+        let n = self.n();
+        (n > 0).then(|| sum / n as f64)
+    }
+}
+
+/// The reliability of answers: their probabilities, and whether they are right.
 ///
 /// # Errors
 /// [`AnnotateError::Count`]; [`AnnotateError::Setting`] for probabilities outside 0 to 1 and 0 bins.
-pub fn expected_error(
+pub fn reliability(
     probability: &[f64],
     right: &[bool],
     bins: usize,
-) -> Result<f64, AnnotateError> {
+) -> Result<Reliability, AnnotateError> {
     check(probability, right)?;
     above_zero("bins", bins as f64)?;
-    let mut sums = vec![(0.0, 0.0); bins];
-    for (&p, &right) in probability.iter().zip(right) {
-        // A probability on a border is in the lower bin; 0 in the lowest.
-        let mut bin = ((p * bins as f64).ceil() as usize).clamp(1, bins) - 1;
-        while bin > 0 && p <= bin as f64 / bins as f64 {
-            bin -= 1;
-        }
-        while bin + 1 < bins && p > (bin + 1) as f64 / bins as f64 {
-            bin += 1;
-        }
-        sums[bin].0 += p;
-        sums[bin].1 += f64::from(u8::from(right));
-    }
-    let apart: f64 = sums.iter().map(|(p, right)| (p - right).abs()).sum();
-    Ok(apart / probability.len().max(1) as f64)
-}
-
-/// Brier's score: mean of (probability - 1 where right, 0 elsewhere) squared; 0 of no answers.
-///
-/// # Errors
-/// As [`expected_error`].
-pub fn brier(probability: &[f64], right: &[bool]) -> Result<f64, AnnotateError> {
-    check(probability, right)?;
-    let square = |(p, right): (&f64, &bool)| (p - f64::from(u8::from(*right))).powi(2);
-    let sum: f64 = probability.iter().zip(right).map(square).sum();
-    Ok(sum / probability.len().max(1) as f64)
+    let mut counts = Reliability::new(bins);
+    probability.iter().zip(right).for_each(|(&p, &right)| counts.count(p, right));
+    Ok(counts)
 }
 
 fn check(probability: &[f64], right: &[bool]) -> Result<(), AnnotateError> {
@@ -131,6 +196,11 @@ impl Temperature {
         softmax(scores);
     }
 
+    /// The score whose probability, beside others of the same kind, is `share`: T ln(share).
+    pub(crate) fn score_of(self, share: f64) -> f64 {
+        self.0 * libm::log(share.max(f64::MIN_POSITIVE))
+    }
+
     /// Mean log loss of softmax(scores / T).
     ///
     /// # Errors
@@ -141,7 +211,8 @@ impl Temperature {
         let mut sum = 0.0;
         for (row, &label) in scores.iter().zip(truth) {
             cooled.iter_mut().zip(row).for_each(|(c, s)| *c = s / self.0);
-            sum += log_sum(&cooled) - cooled[label];
+            let own = cooled[label];
+            sum += log_sum(&mut cooled) - own;
         }
         Ok(sum / truth.len() as f64)
     }
@@ -188,10 +259,14 @@ mod tests {
     #[test]
     fn a_border_belongs_to_the_lower_bin() {
         // 0.3 in the bin to 0.3 with 0.25: |0.55 - 1| / 2.
-        let found = expected_error(&[0.3, 0.25], &[true, false], 10).unwrap();
-        assert!((found - 0.225).abs() < 1e-12);
-        assert!((brier(&[1.0, 0.5], &[true, false]).unwrap() - 0.125).abs() < 1e-15);
-        assert!(expected_error(&[1.5], &[true], 10).is_err());
+        let found = reliability(&[0.3, 0.25], &[true, false], 10).unwrap();
+        assert!((found.expected_error().unwrap() - 0.225).abs() < 1e-12);
+        assert_eq!((found.n(), found.bins()[2].n), (2, 2));
+        let found = reliability(&[1.0, 0.5], &[true, false], 10).unwrap();
+        assert!((found.brier().unwrap() - 0.125).abs() < 1e-15);
+        assert_eq!(Reliability::default().expected_error(), None);
+        assert!(reliability(&[1.5], &[true], 10).is_err());
+        assert!(reliability(&[0.5], &[true], 0).is_err());
         assert!(Temperature::new(0.0).is_err());
     }
 }

@@ -111,7 +111,7 @@ pub enum AnnotateError {
         known: u32,
     },
     /// A take's rate is not that of the others, or of the model.
-    #[error("take of {found} Hz among {expected} Hz; bring all takes to one rate")]
+    #[error("take of {} Hz among {} Hz; bring all takes to one rate", shown(*found), shown(*expected))]
     Rate {
         /// Its rate, Hz.
         found: f64,
@@ -132,6 +132,25 @@ pub enum AnnotateError {
         /// Takes that have it.
         takes: usize,
     },
+    /// A label stands in no take that is left to learn from.
+    #[error(
+        "label {label}: in take {take}, but in none that is not held out with it; mark it in others, \
+         or hold out otherwise"
+    )]
+    HeldOut {
+        /// Index of the label.
+        label: usize,
+        /// Index of the take.
+        take: usize,
+    },
+    /// No take of one expression, which the short paper's way of learning needs.
+    #[error(
+        "no take shows one expression beside the neutral face; give such takes, or learn from labels"
+    )]
+    NoneIsolated,
+    /// A model was changed since it was written.
+    #[error("model: its hash is not that of what it holds; learn it again, or take the file anew")]
+    Hash,
     /// A take's shapes are not the model's.
     #[error("shape {shape:?} is missing; give takes with the shapes of the model")]
     Shapes {
@@ -154,6 +173,11 @@ pub enum AnnotateError {
     },
 }
 
+/// A rate as people read it: it is told by times that files round.
+fn shown(rate_hz: f64) -> f64 {
+    (rate_hz * 1e3).round() / 1e3
+}
+
 /// Refuses a setting that is not above 0 and finite.
 pub(crate) fn above_zero(setting: &'static str, value: f64) -> Result<(), AnnotateError> {
     if value > 0.0 && value.is_finite() {
@@ -174,4 +198,12 @@ pub(crate) fn as_many(
 /// Refuses more than a limit allows.
 pub(crate) fn at_most(what: &'static str, found: usize, most: usize) -> Result<(), AnnotateError> {
     if found <= most { Ok(()) } else { Err(AnnotateError::Limit { what, found, most }) }
+}
+
+/// Rates are told by the times of frames, which files round: a thousandth of each other is the same.
+pub(crate) fn same_rate(found: f64, expected: f64) -> Result<(), AnnotateError> {
+    if (found - expected).abs() <= 1e-3 * expected {
+        return Ok(());
+    }
+    Err(AnnotateError::Rate { found, expected })
 }

@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{as_many, at_most};
 use crate::numbers::highest;
-use crate::{AnnotateError, Examples, Tree};
+use crate::{AnnotateError, Examples, Rows, Tree};
+
+/// Rows that go through a tree together.
+const BLOCK: usize = 256;
 
 /// What the user decides of a forest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,6 +81,28 @@ impl Forest {
         Ok(sum)
     }
 
+    /// The same of every row of a table, a row after the other: tree by tree, which takes less time.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Count`] when the rows have another width.
+    pub fn probabilities_of(&self, rows: &Rows) -> Result<Vec<f64>, AnnotateError> {
+        as_many("columns", rows.width(), self.width)?;
+        let mut sums = vec![0.0; rows.len() * self.count];
+        let blocks = sums.par_chunks_mut(BLOCK * self.count);
+        blocks.zip(rows.values().par_chunks(BLOCK * self.width)).for_each(|(sums, rows)| {
+            for tree in &self.trees {
+                tree.add_shares_of(rows, self.width, sums, self.count);
+            }
+            sums.iter_mut().for_each(|s| *s /= self.trees.len() as f64);
+        });
+        Ok(sums)
+    }
+
+    /// How many labels there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// The trees.
     pub fn trees(&self) -> &[Tree] {
         &self.trees
@@ -122,7 +147,6 @@ fn out_of_bag(examples: &Examples, grown: &[(Tree, Vec<usize>)]) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rows;
     use mimique_test_support::Random;
 
     fn rings() -> Examples {
@@ -158,6 +182,8 @@ mod tests {
         let larger = Forest::fit(&scaled, &ForestOptions::default()).unwrap();
         for point in [[0.1, 0.2], [2.0, -1.0], [0.9, 0.5]] {
             let one = forest.probabilities(&point).unwrap();
+            let table = Rows::new(point.repeat(300), 2).unwrap();
+            assert_eq!(forest.probabilities_of(&table).unwrap(), one.repeat(300));
             assert_eq!(one, larger.probabilities(&point.map(|p| p * 1024.0)).unwrap());
             assert!((one.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         }

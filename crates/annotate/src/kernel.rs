@@ -1,8 +1,9 @@
 //! Kernels of the support vector machine.
 
+use mimique_solver::exp_all;
 use serde::{Deserialize, Serialize};
 
-use crate::numbers::{dot, squared_distance};
+use crate::numbers::{dots, squared_distances};
 
 /// How alike two rows are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -18,11 +19,15 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// The kernel of two rows.
-    pub fn of(self, a: &[f64], b: &[f64]) -> f64 {
+    /// The kernel of a row with each row of a table of the same width.
+    pub(crate) fn of_all(self, rows: &[f64], row: &[f64], out: &mut [f64]) {
         match self {
-            Self::Linear => dot(a, b),
-            Self::Rbf { gamma } => libm::exp(-gamma * squared_distance(a, b)),
+            Self::Linear => dots(rows, row, out),
+            Self::Rbf { gamma } => {
+                squared_distances(rows, row, out);
+                out.iter_mut().for_each(|d| *d *= -gamma);
+                exp_all(out);
+            }
         }
     }
 }

@@ -76,7 +76,7 @@ impl LabelPath {
             (0..labels).flat_map(|from| (0..labels).map(move |to| of(from, to))).collect();
         let start = vec![-libm::log(labels as f64); labels];
         let tempered = log_scores.iter().map(|s| self.temper * s).collect();
-        best_path(&start, &transition, &Emissions::of(tempered, labels))
+        best_path(&start, &transition, Emissions::of(tempered, labels))
             .map(|path| path.states)
             .ok_or(AnnotateError::Impossible { sequence: 0 })
     }

@@ -1,10 +1,14 @@
 //! Labels: a vocabulary, what a word of an annotator means, and intervals that bear labels.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use crate::AnnotateError;
+
+/// What annotators and suggestions write where they do not know.
+pub const UNKNOWN: &str = "?";
 
 /// What an interval is: a label, or the way from one to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -48,6 +52,16 @@ impl Vocabulary {
         Self::new(labels.into_iter().map(|label| (label.clone(), label)))
     }
 
+    /// The words of annotators where nobody has named them: all that are written, but `?` and what is
+    /// two of the others joined (`NA`) or about a `>` (`neutral>anger`). Each word is its own label.
+    pub fn found_in<'t>(words: impl IntoIterator<Item = &'t str>) -> Self {
+        let words: BTreeSet<&str> =
+            words.into_iter().filter(|w| !w.is_empty() && *w != UNKNOWN).collect();
+        let all = Self::of_labels(words.iter().map(|&word| word.to_owned()));
+        let two = |word: &str| all.parts(word).chain(all.named_parts(word)).next().is_some();
+        Self::of_labels(words.into_iter().filter(|word| !two(word)).map(str::to_owned))
+    }
+
     /// The labels, by index.
     pub fn labels(&self) -> impl ExactSizeIterator<Item = &str> {
         self.entries.iter().map(|(label, _)| label.as_str())
@@ -61,28 +75,81 @@ impl Vocabulary {
     /// What a word means: a label, or a transition, which is two words joined. None for anything
     /// else, and for what can be parted in two ways.
     pub fn read(&self, text: &str) -> Option<Mark> {
-        let of = |word: &str| self.entries.iter().position(|(_, own)| own == word);
-        if let Some(label) = of(text) {
-            return Some(Mark::Stable(label));
+        match self.of_word(text) {
+            Some(label) => Some(Mark::Stable(label)),
+            None => only(self.parts(text)),
         }
-        let parts = text.char_indices().filter_map(|(at, _)| {
+    }
+
+    /// The transitions that a text can be: two words joined.
+    fn parts(&self, text: &str) -> impl Iterator<Item = Mark> {
+        text.char_indices().filter_map(move |(at, _)| {
             let (from, to) = text.split_at(at);
-            Some(Mark::Transition(of(from)?, of(to)?))
-        });
-        only(parts)
+            Some(Mark::Transition(self.of_word(from)?, self.of_word(to)?))
+        })
+    }
+
+    fn of_word(&self, word: &str) -> Option<usize> {
+        self.entries.iter().position(|(_, own)| own == word)
+    }
+
+    /// The index of a label.
+    pub fn label(&self, name: &str) -> Option<usize> {
+        self.entries.iter().position(|(label, _)| label == name)
     }
 
     /// What a name means: a label's name, or two of them about a `>`.
     pub fn read_name(&self, text: &str) -> Option<Mark> {
-        let of = |name: &str| self.entries.iter().position(|(label, _)| label == name);
-        if let Some(label) = of(text) {
-            return Some(Mark::Stable(label));
+        match self.label(text) {
+            Some(label) => Some(Mark::Stable(label)),
+            None => only(self.named_parts(text)),
         }
-        only(
-            text.match_indices('>').filter_map(|(at, _)| {
-                Some(Mark::Transition(of(&text[..at])?, of(&text[at + 1..])?))
-            }),
-        )
+    }
+
+    /// The transitions that a text can be: two names about a `>`.
+    fn named_parts(&self, text: &str) -> impl Iterator<Item = Mark> {
+        text.match_indices('>').filter_map(move |(at, _)| {
+            Some(Mark::Transition(self.label(&text[..at])?, self.label(&text[at + 1..])?))
+        })
+    }
+
+    /// The marks of intervals, in any order, each with what is written there: a word, two joined, or
+    /// names as [`Vocabulary::name`] writes them. With `rest`, frames in none of the intervals have
+    /// that label.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Interval`] for intervals that are empty, overlap or reach beyond the take.
+    pub fn marks(
+        &self,
+        intervals: &[(Range<usize>, &str)],
+        frames: usize,
+        rest: Option<usize>,
+    ) -> Result<ReadMarks, AnnotateError> {
+        let mut sorted: Vec<&(Range<usize>, &str)> = intervals.iter().collect();
+        sorted.sort_by_key(|(own, _)| (own.start, own.end));
+        apart(sorted.iter().map(|(own, _)| own), frames)?;
+        let mut read = ReadMarks::default();
+        let mut unknown: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut before = 0;
+        for (own, text) in sorted {
+            if let Some(label) = rest
+                && before < own.start
+            {
+                read.marked.push(Marked { frames: before..own.start, mark: Mark::Stable(label) });
+            }
+            before = own.end;
+            match self.read_name(text).or_else(|| self.read(text)) {
+                Some(mark) => read.marked.push(Marked { frames: own.clone(), mark }),
+                None => *unknown.entry(text).or_default() += 1,
+            }
+        }
+        if let Some(label) = rest
+            && before < frames
+        {
+            read.marked.push(Marked { frames: before..frames, mark: Mark::Stable(label) });
+        }
+        read.unknown = unknown.into_iter().map(|(word, n)| (word.to_owned(), n)).collect();
+        Ok(read)
     }
 
     /// The name of a mark: a label's, or two of them about a `>`.
@@ -101,9 +168,14 @@ fn only<T>(mut items: impl Iterator<Item = T>) -> Option<T> {
     items.next().is_none().then_some(first)
 }
 
-/// The frame of a time: milliseconds times rate / 1000, halves up.
-pub fn frame_of_ms(ms: u64, rate_hz: f64) -> usize {
-    (ms as f64 * rate_hz / 1000.0 + 0.5).floor() as usize
+/// What an annotator has written of a take, read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ReadMarks {
+    /// The marks, in order of time.
+    pub marked: Vec<Marked>,
+    /// Words that are neither a label nor two joined, each once, with how often they stand there:
+    /// their frames have no label.
+    pub unknown: Vec<(String, usize)>,
 }
 
 /// Refuses intervals that are empty, overlap, are out of order, or reach beyond the take.
@@ -111,8 +183,16 @@ pub fn frame_of_ms(ms: u64, rate_hz: f64) -> usize {
 /// # Errors
 /// [`AnnotateError::Interval`] with the first such interval.
 pub fn check(marked: &[Marked], frames: usize) -> Result<(), AnnotateError> {
+    apart(marked.iter().map(|marked| &marked.frames), frames)
+}
+
+/// Refuses ranges as [`check`] does.
+fn apart<'r>(
+    ranges: impl Iterator<Item = &'r Range<usize>>,
+    frames: usize,
+) -> Result<(), AnnotateError> {
     let mut before = 0;
-    for Marked { frames: Range { start, end }, .. } in marked {
+    for Range { start, end } in ranges {
         if start >= end || *start < before || *end > frames {
             return Err(AnnotateError::Interval { first: *start, end: *end, frames });
         }
@@ -174,8 +254,32 @@ mod tests {
     }
 
     #[test]
-    fn frames_of_times_and_the_truth_of_a_segment() {
-        assert_eq!([frame_of_ms(25, 60.0), frame_of_ms(24, 60.0), frame_of_ms(0, 60.0)], [2, 1, 0]);
+    fn words_of_annotators_are_labels_unless_two_are_joined() {
+        let found = Vocabulary::found_in(["N", "NA", "A", "Sa", "Su", "SaSu", "?", "", "A>N", "N"]);
+        assert_eq!(found.labels().collect::<Vec<_>>(), ["A", "N", "Sa", "Su"]);
+        assert_eq!(found.label("Su"), Some(3));
+        assert_eq!(Vocabulary::found_in([]).labels().len(), 0);
+    }
+
+    #[test]
+    fn intervals_are_read_and_what_is_between_is_what_the_user_says() {
+        let words = words();
+        let given = [(30..40, "Sa"), (5..10, "neutral"), (20..30, "?"), (10..20, "NSa")];
+        let stable = |frames, label| Marked { frames, mark: Mark::Stable(label) };
+        let way = Marked { frames: 10..20, mark: Mark::Transition(1, 2) };
+        let read = words.marks(&given, 50, None).unwrap();
+        assert_eq!(read.marked, [stable(5..10, 1), way.clone(), stable(30..40, 2)]);
+        assert_eq!(read.unknown, [("?".to_owned(), 1)]);
+        let rest = words.marks(&given, 50, Some(1)).unwrap().marked;
+        let all = [stable(0..5, 1), stable(5..10, 1), way, stable(30..40, 2), stable(40..50, 1)];
+        assert_eq!(rest, all);
+        let beyond = words.marks(&given, 39, None).unwrap_err();
+        assert_eq!(beyond, AnnotateError::Interval { first: 30, end: 40, frames: 39 });
+        assert!(words.marks(&[(0..5, "N"), (4..6, "A")], 9, None).is_err());
+    }
+
+    #[test]
+    fn the_truth_of_a_segment() {
         let stable = |frames, label| Marked { frames, mark: Mark::Stable(label) };
         let way = Marked { frames: 10..30, mark: Mark::Transition(1, 0) };
         let marked = [stable(0..10, 1), way, stable(30..35, 0), stable(35..40, 1)];

@@ -13,17 +13,22 @@
 //!
 //! | source | here |
 //! |---|---|
-//! | thesis 4.4, 4.5: energies and borders | [`stretches`] |
+//! | thesis 4.4, 4.5: energies and borders | [`Segmentation`] |
 //! | thesis 4.6: mean of a segment | [`features`] |
 //! | thesis 4.5: neighbours, support vector machines, forest | [`Neighbours`], [`Svm`], [`Forest`] |
 //! | short paper 6-8: a hidden Markov model a label, joined | [`Composite`] |
+//!
+//! The classifiers and hidden Markov models are our own, as no kept crate fits: linfa 0.8 does
+//! not build for wasm32 as it is, draws a forest's columns per tree and has support vector machines one
+//! against all; smartcore 0.7 has an approximate support vector machine, and its saved models break between
+//! versions; of the crates for hidden Markov models none has mixtures without LAPACK.
 //!
 //! # Example
 //!
 //! A smile of two seconds is learnt from one take and found in another:
 //!
 //! ```
-//! use mimique_annotate::{AnnotatedTake, Decode, Lesson, Mark, Marked, Method, Take};
+//! use mimique_annotate::{AnnotatedTake, Decode, Decoding, Lesson, Mark, Marked, Method, Take};
 //!
 //! // Weights of one shape at 30 Hz: two seconds of neutral, two of a smile.
 //! let smile = |height: f64| {
@@ -33,6 +38,7 @@
 //! let annotated = AnnotatedTake {
 //!     name: "first".to_owned(),
 //!     person: "a".to_owned(),
+//!     kind: "posed".to_owned(),
 //!     take: smile(0.8)?,
 //!     marked: vec![
 //!         Marked { frames: 0..60, mark: Mark::Stable(0) },
@@ -40,10 +46,12 @@
 //!     ],
 //! };
 //! let lesson = Lesson {
+//!     channel: "affect".to_owned(),
 //!     labels: vec!["neutral".to_owned(), "joy".to_owned()],
 //!     shapes: vec!["mouthSmile".to_owned()],
 //!     method: Method::Knn { k: 3 },
-//!     thinned_to_hz: 10.0,
+//!     thinned_to_hz: Some(10.0),
+//!     decoding: Decoding::default(),
 //! };
 //! let model = lesson.learn(&[annotated])?;
 //! let answer = model.label(&smile(0.7)?, &Decode::default())?;
@@ -71,6 +79,7 @@ mod rows;
 mod smo;
 pub mod stretches;
 mod take;
+mod tiles;
 mod tree;
 
 pub use calibration::Temperature;
@@ -79,15 +88,16 @@ pub use forest::{Forest, ForestOptions};
 pub use hmm::{BaumWelch, Beginning, BestPath, Composite, Hmm, Learnt, Posterior, Topology};
 pub use kernel::Kernel;
 pub use label_path::{LabelPath, Run, runs};
-pub use labels::{Mark, Marked, Vocabulary};
+pub use labels::{Mark, Marked, ReadMarks, Vocabulary};
 pub use logistic::{Logistic, LogisticOptions};
 pub use mixture::Mixture;
 pub use model::{
-    AnnotatedTake, Answer, Classifier, Decode, HmmOptions, LARGEST, LearntFrom, LearntLabel,
-    LearntTake, Lesson, Method, Model, Suggested, VERSION,
+    AnnotatedTake, Answer, Classifier, Decode, Decoding, HmmOptions, Isolation, LARGEST,
+    LearntFrom, LearntLabel, LearntTake, Lesson, Method, Model, Suggested, VERSION, columns,
 };
 pub use neighbours::{Neighbours, Vote};
 pub use one_against_one::{Pair, Svm, SvmOptions};
 pub use rows::{ClassWeight, Examples, Rows};
+pub use stretches::Segmentation;
 pub use take::{CUTOFF_HZ, Take};
 pub use tree::Tree;

@@ -7,7 +7,7 @@ use mimique_stats::{Stop, minimise};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{above_zero, as_many, at_most};
-use crate::numbers::{dot, softmax};
+use crate::numbers::{dot, softmax, softmax_and_log_sum};
 use crate::{AnnotateError, ClassWeight, Examples, Rows};
 
 /// What the user decides of a logistic regression.
@@ -63,11 +63,11 @@ impl Objective<'_> {
         for (row, &label) in self.examples.rows().iter().zip(self.examples.labels()) {
             scores(at, row, &self.present, &mut probability);
             let score = probability[label];
-            let all = crate::numbers::log_sum(&probability);
+            let all = softmax_and_log_sum(&mut probability);
             let price = self.price[label];
             value += price * (all - score);
             for (k, slope) in gradient.chunks_exact_mut(width + 1).enumerate() {
-                let share = libm::exp(probability[k] - all) - f64::from(u8::from(k == label));
+                let share = probability[k] - f64::from(u8::from(k == label));
                 let pull = price * share;
                 slope[..width].iter_mut().zip(row).for_each(|(g, x)| *g += pull * x);
                 slope[width] += pull;

@@ -3,10 +3,11 @@
 
 use std::f64::consts::PI;
 
+use mimique_solver::widest;
 use serde::{Deserialize, Serialize};
 
 use crate::error::as_many;
-use crate::numbers::{log_sum, weighted_distance};
+use crate::numbers::{BLOCK, LANES, log_sum, together};
 use crate::{AnnotateError, Rows};
 
 /// A mixture of M Gaussians in D dimensions.
@@ -102,7 +103,8 @@ impl Mixture {
     pub fn log_density(&self, row: &[f64]) -> Result<f64, AnnotateError> {
         as_many("columns", row.len(), self.mean.width())?;
         let mut components = vec![0.0; self.weight.len()];
-        Ok(self.density().of(row, &mut components))
+        self.density().components(row, &mut components);
+        Ok(log_sum(&mut components))
     }
 }
 
@@ -114,23 +116,92 @@ pub(crate) struct Density<'a> {
 }
 
 impl Density<'_> {
-    /// ln of the density; that of each component goes to `components`.
-    pub(crate) fn of(&self, row: &[f64], components: &mut [f64]) -> f64 {
-        let own = self.mean.iter().zip(self.precision.chunks_exact(row.len()));
-        for ((out, constant), (mean, precision)) in
-            components.iter_mut().zip(&self.constant).zip(own)
-        {
-            if *constant == f64::NEG_INFINITY {
-                *out = *constant;
-                continue;
-            }
-            *out = constant - weighted_distance(row, mean, precision);
+    /// ln of each component's part of the density at a block of frames, one after the other; the parts
+    /// of a frame go to `components`, M numbers a frame. Fewer frames than a block are allowed.
+    pub(crate) fn components(&self, frames: &[f64], components: &mut [f64]) {
+        let width = self.mean.width();
+        if frames.len() == BLOCK * width {
+            block_of_components(
+                frames,
+                &self.constant,
+                self.mean.values(),
+                &self.precision,
+                components,
+            );
+            return;
         }
-        log_sum(components)
+        let each = frames.chunks_exact(width).zip(components.chunks_exact_mut(self.constant.len()));
+        for (frame, components) in each {
+            frame_of_components(
+                frame,
+                &self.constant,
+                self.mean.values(),
+                &self.precision,
+                components,
+            );
+        }
     }
 
-    pub(crate) fn components(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.constant.len()
+    }
+}
+
+/// constant - sum (x - mean)^2 precision, in the lanes of [`crate::numbers::dot`].
+#[inline(always)]
+fn component(frame: &[f64], constant: f64, mean: &[f64], precision: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    let (frame, frame_rest) = frame.as_chunks::<LANES>();
+    let (mean, mean_rest) = mean.as_chunks::<LANES>();
+    let (precision, precision_rest) = precision.as_chunks::<LANES>();
+    for ((x, m), p) in frame.iter().zip(mean).zip(precision) {
+        for lane in 0..LANES {
+            let way = x[lane] - m[lane];
+            sums[lane] += way * way * p[lane];
+        }
+    }
+    let mut sum = together(sums);
+    for ((x, m), p) in frame_rest.iter().zip(mean_rest).zip(precision_rest) {
+        sum += (x - m) * (x - m) * p;
+    }
+    constant - sum
+}
+
+widest! {
+    /// The components at one frame.
+    fn frame_of_components(
+        frame: &[f64],
+        constants: &[f64],
+        means: &[f64],
+        precisions: &[f64],
+        out: &mut [f64]
+    ) {
+        let width = frame.len();
+        for m in 0..constants.len() {
+            let own = m * width..(m + 1) * width;
+            out[m] = component(frame, constants[m], &means[own.clone()], &precisions[own]);
+        }
+    }
+}
+
+widest! {
+    /// The components at [`BLOCK`] frames.
+    fn block_of_components(
+        frames: &[f64],
+        constants: &[f64],
+        means: &[f64],
+        precisions: &[f64],
+        out: &mut [f64]
+    ) {
+        let (width, count) = (frames.len() / BLOCK, constants.len());
+        for m in 0..count {
+            let own = m * width..(m + 1) * width;
+            let (mean, precision) = (&means[own.clone()], &precisions[own]);
+            for f in 0..BLOCK {
+                let frame = &frames[f * width..(f + 1) * width];
+                out[f * count + m] = component(frame, constants[m], mean, precision);
+            }
+        }
     }
 }
 

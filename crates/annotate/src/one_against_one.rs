@@ -87,6 +87,11 @@ impl Svm {
         Ok(Self { kernel: options.kernel, count: examples.count(), vectors, pairs })
     }
 
+    /// How many labels there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// The machines, by first label, then second.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
@@ -98,7 +103,8 @@ impl Svm {
     /// [`AnnotateError::Count`] when the row has another width.
     pub fn decisions(&self, row: &[f64]) -> Result<Vec<f64>, AnnotateError> {
         as_many("columns", row.len(), self.vectors.width())?;
-        let kernels: Vec<f64> = self.vectors.iter().map(|v| self.kernel.of(v, row)).collect();
+        let mut kernels = vec![0.0; self.vectors.len()];
+        self.kernel.of_all(self.vectors.values(), row, &mut kernels);
         let sum = |pair: &Pair| pair.coefficients.iter().map(|&(v, a)| a * kernels[v]).sum::<f64>();
         Ok(self.pairs.iter().map(|pair| sum(pair) + pair.bias).collect())
     }
@@ -136,6 +142,11 @@ impl Svm {
         Ok(scores.map(|(votes, s)| votes + s / (3.0 * (s.abs() + 1.0))).collect())
     }
 
+    /// The label that [`Svm::label`] gives, of the scores of a row: they are within 1/3 of the votes.
+    pub(crate) fn label_of_scores(scores: &[f64]) -> usize {
+        highest(&scores.iter().map(|score| score.round()).collect::<Vec<f64>>())
+    }
+
     /// Whether what was read is a classifier of that many labels.
     pub(crate) fn fits(&self, labels: usize) -> bool {
         let pair = |pair: &Pair| {
@@ -160,8 +171,10 @@ fn fit_pair(
     let of = |row: &usize| labels.contains(&examples.labels()[*row]);
     let members: Vec<usize> = (0..examples.labels().len()).filter(of).collect();
     let own: Vec<usize> = members.iter().map(|&row| examples.labels()[row]).collect();
+    let rows = examples.rows().select(members.iter().copied());
     let problem = TwoClasses {
-        rows: members.iter().map(|&row| examples.rows().row(row)).collect(),
+        rows: rows.values(),
+        width: rows.width(),
         sign: own.iter().map(|&label| if label == labels[0] { 1.0 } else { -1.0 }).collect(),
         bound: own.iter().map(|&label| options.c * weights[label]).collect(),
         kernel: options.kernel,
@@ -175,4 +188,34 @@ fn fit_pair(
         objective: optimum.objective,
         coefficients: coefficients.collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mimique_test_support::Random;
+
+    #[test]
+    fn scores_tell_the_label_that_the_votes_give() {
+        let mut random = Random::new(12);
+        let labels: Vec<usize> = (0..90).map(|i| i % 5).collect();
+        let values = labels.iter().flat_map(|&l| {
+            [(l as f64 * 1.3).sin(), (l as f64 * 1.3).cos()].map(|c| c + 1.5 * random.normal())
+        });
+        let rows = Rows::new(values.collect(), 2).unwrap();
+        let examples = Examples::new(rows, labels, 5).unwrap();
+        let mut tied = 0;
+        for kernel in [Kernel::Linear, Kernel::Rbf { gamma: 0.2 }] {
+            let svm = Svm::fit(&examples, &SvmOptions { kernel, ..SvmOptions::default() }).unwrap();
+            for step in 0..1000 {
+                let row = [f64::from(step % 40) / 10.0 - 2.0, f64::from(step / 40) / 6.0 - 2.0];
+                let votes = svm.votes(&svm.decisions(&row).unwrap());
+                let most = votes.iter().copied().fold(0.0, f64::max);
+                tied += usize::from(votes.iter().filter(|v| **v == most).count() > 1);
+                let scores = svm.scores(&row).unwrap();
+                assert_eq!(Svm::label_of_scores(&scores), svm.label(&row).unwrap());
+            }
+        }
+        assert!(tied > 0, "no tie was tried");
+    }
 }

@@ -8,8 +8,10 @@ use crate::{AnnotateError, Kernel};
 
 /// A two-class problem.
 pub(crate) struct TwoClasses<'a> {
-    /// The rows.
-    pub rows: Vec<&'a [f64]>,
+    /// The rows, one after the other.
+    pub rows: &'a [f64],
+    /// Columns of a row.
+    pub width: usize,
     /// +1 or -1 of each.
     pub sign: Vec<f64>,
     /// Upper bound of each multiplier.
@@ -51,9 +53,8 @@ impl KernelRows<'_, '_> {
         }
         let recycled = (self.oldest.len() >= self.most).then(|| self.oldest.pop_front()).flatten();
         let mut row = recycled.and_then(|old| self.rows[old].take()).unwrap_or_default();
-        row.clear();
-        let (rows, kernel) = (&self.problem.rows, self.problem.kernel);
-        row.extend(rows.iter().map(|other| kernel.of(rows[i], other)));
+        row.resize(self.problem.sign.len(), 0.0);
+        self.problem.kernel.of_all(self.problem.rows, self.problem.row(i), &mut row);
         self.rows[i] = Some(row);
         self.oldest.push_back(i);
     }
@@ -74,23 +75,34 @@ struct State<'p, 'a> {
 }
 
 impl TwoClasses<'_> {
+    fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.width..(i + 1) * self.width]
+    }
+
+    /// The kernel of a row with itself.
+    fn own_kernel(&self, i: usize) -> f64 {
+        let mut own = [0.0];
+        self.kernel.of_all(self.row(i), self.row(i), &mut own);
+        own[0]
+    }
+
     /// Solve.
     ///
     /// # Errors
     /// [`AnnotateError::NotConverged`] after 10,000,000 pairs, or 100 a row if that is more.
     pub(crate) fn solve(&self) -> Result<Optimum, AnnotateError> {
-        self.solve_keeping(KEPT / self.rows.len().max(1))
+        self.solve_keeping(KEPT / self.sign.len().max(1))
     }
 
     /// Solve, keeping that many rows of the kernel matrix, two at least.
     fn solve_keeping(&self, kept: usize) -> Result<Optimum, AnnotateError> {
-        let n = self.rows.len();
+        let n = self.sign.len();
         let most = kept.max(2);
         let mut state = State {
             problem: self,
             alpha: vec![0.0; n],
             gradient: vec![-1.0; n],
-            diagonal: self.rows.iter().map(|row| self.kernel.of(row, row)).collect(),
+            diagonal: (0..n).map(|i| self.own_kernel(i)).collect(),
             kernels: KernelRows {
                 problem: self,
                 rows: vec![None; n],
@@ -232,7 +244,8 @@ mod tests {
 
     fn problem<'a>(rows: &'a [[f64; 2]], sign: &[f64], bound: f64) -> TwoClasses<'a> {
         TwoClasses {
-            rows: rows.iter().map(|r| &r[..]).collect(),
+            rows: rows.as_flattened(),
+            width: 2,
             sign: sign.to_vec(),
             bound: vec![bound; rows.len()],
             kernel: Kernel::Linear,

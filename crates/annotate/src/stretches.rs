@@ -2,93 +2,60 @@
 //!
 //! | thesis | here |
 //! |---|---|
-//! | E_VelBS (4.4), E_AccBS (4.5) | [`Activity::velocity`], [`Activity::acceleration`] |
-//! | E = E_VelBS^2 + E_AccBS^2 | [`Activity::energy`], time in units of `time_unit_s` |
-//! | peaks of E | [`mimique_stimulus::peaks`], as `mimique segment` has them |
-//! | peaks where dE/dt in a window passes a threshold | [`Literal`] |
+//! | E_VelBS (4.4), E_AccBS (4.5), E_VelBS^2 + E_AccBS^2 | [`Segmentation::activity`] |
+//! | peaks of E | [`BorderRule`]: of `mimique segment`, or the wording of the thesis |
+//! | segments | [`Segmentation::stretches`] |
+//!
+//! The engine is that of `mimique segment` and of the studio (`mimique_stimulus`).
 
 use std::ops::Range;
 
-use mimique_stimulus::{Activity, ActivityOptions, Channels, nearest_quantile, peaks};
+use mimique_stimulus::{Activity, ActivityOptions, BorderRule, Channels, Literal};
+use serde::{Deserialize, Serialize};
 
 use crate::{AnnotateError, Take};
 
-/// Velocity, acceleration and energy of a take, a number a frame.
-///
-/// # Errors
-/// [`AnnotateError::Filter`] when the cut-off does not fit the rate.
-pub fn activity(take: &Take, options: &ActivityOptions) -> Result<Activity, AnnotateError> {
-    let weights = &take.weights;
-    let channels =
-        Channels { values: weights.values(), count: weights.width(), rate_hz: take.rate_hz };
-    Ok(Activity::of(channels, options)?)
+/// How a take is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Segmentation {
+    /// How fast the face changes.
+    pub activity: ActivityOptions,
+    /// Which of its peaks are borders.
+    pub rule: BorderRule,
 }
 
-/// The square root of the energy, which the rule of `mimique segment` looks at.
-pub fn root(activity: &Activity) -> Vec<f64> {
-    activity.energy.iter().map(|e| e.sqrt()).collect()
-}
-
-/// Borders as `mimique segment` finds them, frames in ascending order.
-pub fn borders(activity: &Activity, rate_hz: f64) -> Vec<usize> {
-    peaks(&root(activity), rate_hz)
-}
-
-/// The rule as the thesis words it (4.4.2), with the two numbers that it leaves out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Literal {
-    /// Half width of the window about a peak, seconds.
-    pub window_s: f64,
-    /// Share of the 95 % order statistic of |dE/dt| that a window's highest reaches.
-    pub share: f64,
-}
-
-impl Default for Literal {
-    fn default() -> Self {
-        Self { window_s: 0.1, share: 0.15 }
+impl Segmentation {
+    /// All blendshapes, both energies, the rule as the thesis words it.
+    pub fn as_in_the_thesis() -> Self {
+        let activity = ActivityOptions::AS_IN_THE_THESIS;
+        Self { activity, rule: BorderRule::Literal(Literal::default()) }
     }
-}
 
-impl Literal {
-    /// Local maxima of the energy (above the frame before, not below the one after) with a steep
-    /// slope near by. Slopes are central differences, one-sided at the ends.
-    pub fn borders(&self, energy: &[f64], rate_hz: f64) -> Vec<usize> {
-        let frames = energy.len();
-        if frames < 3 {
-            return Vec::new();
-        }
-        let slope: Vec<f64> = (0..frames)
-            .map(|f| {
-                let (before, after) = (f.saturating_sub(1), (f + 1).min(frames - 1));
-                ((energy[after] - energy[before]) * rate_hz / (after - before) as f64).abs()
-            })
-            .collect();
-        let mut sorted = slope.clone();
-        sorted.sort_by(f64::total_cmp);
-        let least = self.share * nearest_quantile(&sorted, 0.95);
-        let window = (self.window_s * rate_hz).round().max(0.0) as usize;
-        let steepest = |f: usize| {
-            let near = f.saturating_sub(window)..(f + window + 1).min(frames);
-            slope[near].iter().copied().fold(0.0, f64::max)
-        };
-        (1..frames - 1)
-            .filter(|&f| energy[f] > energy[f - 1] && energy[f] >= energy[f + 1])
-            .filter(|&f| steepest(f) >= least)
-            .collect()
+    /// Velocity, acceleration and energy of a take, a number a frame. `shapes` names its columns;
+    /// without names all of them count.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Filter`] when the cut-off does not fit the rate.
+    pub fn activity(&self, take: &Take, shapes: &[String]) -> Result<Activity, AnnotateError> {
+        let (values, count) = (take.weights.values(), take.weights.width());
+        let channels = Channels { values, count, rate_hz: take.rate_hz, names: shapes };
+        Ok(Activity::of(channels, &self.activity)?)
     }
-}
 
-/// What lies between 0, the borders and the end; empty ones left out.
-pub fn stretches(borders: &[usize], frames: usize) -> Vec<Range<usize>> {
-    let mut start = 0;
-    let mut found = Vec::with_capacity(borders.len() + 1);
-    for end in borders.iter().copied().filter(|&b| b < frames).chain([frames]) {
-        if end > start {
-            found.push(start..end);
-            start = end;
-        }
+    /// The stretches of a take, in order of time: together all of it.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Filter`] when the cut-off does not fit the rate.
+    pub fn stretches(
+        &self,
+        take: &Take,
+        shapes: &[String],
+    ) -> Result<Vec<Range<usize>>, AnnotateError> {
+        let activity = self.activity(take, shapes)?;
+        let borders = self.rule.borders(&activity, take.rate_hz);
+        Ok(mimique_stimulus::stretches(&borders, take.frames()))
     }
-    found
 }
 
 #[cfg(test)]
@@ -96,39 +63,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stretches_cover_the_take_once() {
-        assert_eq!(stretches(&[3, 3, 7, 12], 10), [0..3, 3..7, 7..10]);
-        assert_eq!(stretches(&[], 4), [Range { start: 0, end: 4 }]);
-        assert!(stretches(&[], 0).is_empty());
-    }
-
-    #[test]
-    fn energy_and_borders_do_not_depend_on_the_order_of_shapes() {
+    fn energy_and_stretches_do_not_depend_on_the_order_of_shapes() {
         let wave = |f: usize, c: usize| ((f * (c + 2)) as f64 * 0.01).sin();
-        let frame = |order: [usize; 3]| -> Vec<f64> {
-            (0..300).flat_map(|f| order.map(|c| wave(f, c))).collect()
+        let take = |order: [usize; 3]| {
+            let values = (0..300).flat_map(|f| order.map(|c| wave(f, c))).collect();
+            Take::new(values, 3, 60.0).unwrap()
         };
-        let of = |order| {
-            let take = Take::new(frame(order), 3, 60.0).unwrap();
-            activity(&take, &ActivityOptions::default()).unwrap()
-        };
-        let (one, other) = (of([0, 1, 2]), of([2, 0, 1]));
-        for (a, b) in one.energy.iter().zip(&other.energy) {
-            assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0));
+        let (one, other) = (take([0, 1, 2]), take([2, 0, 1]));
+        for of in [Segmentation::default(), Segmentation::as_in_the_thesis()] {
+            let energy = |take: &Take| of.activity(take, &[]).unwrap().energy;
+            for (a, b) in energy(&one).iter().zip(&energy(&other)) {
+                assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0));
+            }
+            let found = of.stretches(&one, &[]).unwrap();
+            assert_eq!(found, of.stretches(&other, &[]).unwrap());
+            assert!(found.len() > 1 && found[0].start == 0 && found[found.len() - 1].end == 300);
         }
-        assert_eq!(borders(&one, 60.0), borders(&other, 60.0));
     }
 
     #[test]
-    fn the_literal_rule_keeps_a_steep_peak_and_leaves_a_ripple() {
-        let energy: Vec<f64> = (0..200)
-            .map(|f| {
-                let x = f as f64;
-                10.0 * (-((x - 60.0) / 8.0).powi(2)).exp() + 0.01 * (x * 0.5).sin().max(0.0)
-            })
-            .collect();
-        let found = Literal::default().borders(&energy, 100.0);
-        assert!(found.iter().any(|f| f.abs_diff(60) <= 1), "{found:?}");
-        assert!(found.iter().all(|f| f.abs_diff(60) < 45), "{found:?}");
+    fn a_change_between_two_faces_is_one_border_and_a_blink_none() {
+        let names = ["mouthSmileLeft", "browDownLeft", "eyeBlinkLeft"].map(str::to_owned);
+        let way = |f: usize, at: f64| ((f as f64 - at) / 12.0 + 0.5).clamp(0.0, 1.0);
+        let values = (0..400).flat_map(|f| {
+            let blink = 1.0 - ((f as f64 - 100.0) / 6.0).abs().min(1.0);
+            [way(f, 200.0), 1.0 - way(f, 200.0), blink]
+        });
+        let take = Take::new(values.collect(), 3, 60.0).unwrap();
+        let found = Segmentation::default().stretches(&take, &names).unwrap();
+        let [first, second] = &found[..] else { panic!("{found:?}") };
+        assert!(first.end.abs_diff(200) <= 2 && second.end == 400, "{found:?}");
     }
 }

@@ -19,7 +19,7 @@ pub(crate) fn part_eyes(avatar: &mut Avatar) -> Vec<String> {
     let mut parted = Vec::new();
     let mut meshes = Vec::with_capacity(avatar.meshes.len());
     for mesh in std::mem::take(&mut avatar.meshes) {
-        let eye = matches!(mesh.part, Part::EyeLeft | Part::EyeRight);
+        let eye = mesh.part.is_eye();
         let Some(middle) = eye.then(|| middle_plane(&mesh)).flatten() else {
             meshes.push(mesh);
             continue;

@@ -3,7 +3,7 @@
 use crate::ReadError;
 use crate::part_words::{NamedPart, Side, named_part};
 use crate::settings::{AvatarSettings, fits};
-use mimique_avatar::{Avatar, Eyeball, Look, Part, arkit_shapes};
+use mimique_avatar::{Avatar, Eyeball, LOOK_DEGREES, Look, Part, arkit_shapes};
 
 /// What is known of a mesh before its part is.
 pub(crate) struct PartName<'a> {
@@ -75,11 +75,6 @@ fn part_of_name(name: &str, positions: &[[f32; 3]]) -> Option<Part> {
     })
 }
 
-/// Angles of the four eye-look shapes at weight 1, degrees. ARKit publishes none; these are the
-/// usual ranges of rigs that carry its names, within the eye's own 25 to 35 degrees of easy gaze.
-const LOOKS: [(&str, f32); 4] =
-    [("eyeLookUp", 25.0), ("eyeLookDown", 30.0), ("eyeLookIn", 30.0), ("eyeLookOut", 30.0)];
-
 /// The eyeballs of an avatar: each mesh that is an eye, with its centre, and the looks that turn it.
 ///
 /// Looks are those shapes whose name means ARKit's `eyeLookUp`, `Down`, `In` or `Out` of that eye
@@ -115,7 +110,7 @@ fn look_of_name(name: &str, shape: usize, left: bool) -> Option<Look> {
     let side = if left { "Left" } else { "Right" };
     let (word, degrees) = arkit_shapes(name).into_iter().find_map(|meant| {
         let feature = meant.strip_suffix(side)?;
-        LOOKS.into_iter().find(|(word, _)| *word == feature)
+        LOOK_DEGREES.into_iter().find(|(word, _)| *word == feature)
     })?;
     // Out is away from the nose: towards +X for the left eye, which is a turn about +Y.
     let outward = if left { 1.0 } else { -1.0 };
@@ -125,7 +120,7 @@ fn look_of_name(name: &str, shape: usize, left: bool) -> Option<Look> {
         "eyeLookOut" => [0.0, outward, 0.0],
         _ => [0.0, -outward, 0.0],
     };
-    Some(Look { shape, axis, radians: degrees.to_radians() })
+    Some(Look { shape, axis, radians: (degrees as f32).to_radians() })
 }
 
 /// Centre of the sphere that fits the points best (least squares of |p|^2 = 2 c.p + k); the middle

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::ReadError;
 use crate::eye_pairs::part_eyes;
 use crate::files::Files;
+use crate::lids_follow::let_lids_follow;
 use crate::parts::find_eyeballs;
 use crate::settings::{AvatarSettings, avatar_name, fits};
 use mimique_avatar::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, arkit_shapes};
@@ -109,9 +110,10 @@ impl ReadAvatar {
             scale(&mut avatar, unit_metres);
         }
         within_reach(&avatar)?;
-        let known = avatar.shape_names.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
-        if known < avatar.shape_names.len() {
-            let all = avatar.shape_names.len();
+        let face = avatar.face_shapes();
+        let known = face.iter().filter(|n| !arkit_shapes(n).is_empty()).count();
+        if known < face.len() {
+            let all = face.len();
             notes.push(format!("{known} of {all} shapes are ARKit's by name, the rest are kept"));
         }
         let pairs = part_eyes(&mut avatar);
@@ -121,11 +123,12 @@ impl ReadAvatar {
         }
         within_most(
             "meshes, eyeballs",
-            avatar.meshes.iter().filter(|m| is_eye(m)).count(),
+            avatar.meshes.iter().filter(|mesh| mesh.part.is_eye()).count(),
             MOST_EYEBALLS,
             "leave layers out, or call them eyeOverlay, under \"parts\" in the JSON beside the avatar",
         )?;
         avatar.eyeballs = find_eyeballs(&avatar);
+        notes.extend(let_lids_follow(&mut avatar));
         let locked = locked(&avatar.shape_names, settings)?;
         Ok(Self { avatar, unit_metres, locked, notes })
     }
@@ -137,10 +140,6 @@ fn within_most(place: &str, found: usize, most: usize, remedy: &str) -> Result<(
         return Ok(());
     }
     Err(ReadError::broken(place, format!("{found} of them, at most {most} can be drawn"), remedy))
-}
-
-fn is_eye(mesh: &Mesh) -> bool {
-    matches!(mesh.part, Part::EyeLeft | Part::EyeRight)
 }
 
 /// Leaves shapes out and renames shapes as the settings ask.
@@ -214,7 +213,7 @@ fn skin_extent(avatar: &Avatar) -> Option<f64> {
 
 /// A face is 0.15 m high, a person 2 m: below 5 units metres, below 100 centimetres (a head and
 /// its shoulders), above it millimetres.
-fn unit_of(extent: f64) -> f64 {
+pub(crate) fn unit_of(extent: f64) -> f64 {
     match extent {
         e if e < 5.0 => 1.0,
         e if e < 100.0 => 0.01,

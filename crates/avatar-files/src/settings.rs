@@ -28,6 +28,7 @@ use serde_json::{Map, Value};
 
 use crate::{Driven, ReadError};
 use mimique_avatar::Part;
+use wildmatch::WildMatchPattern;
 
 /// What the user says of an avatar; everything empty when there is no such file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -133,18 +134,8 @@ pub(crate) fn avatar_name(path: &Path) -> String {
 
 /// Whether a name fits a pattern, in which `*` stands for any letters.
 pub(crate) fn fits(pattern: &str, name: &str) -> bool {
-    let mut pieces = pattern.split('*');
-    let first = pieces.next().unwrap_or_default();
-    let Some(mut rest) = name.strip_prefix(first) else { return false };
-    let pieces: Vec<&str> = pieces.collect();
-    let Some((last, middle)) = pieces.split_last() else { return rest.is_empty() };
-    for piece in middle {
-        match rest.find(piece) {
-            Some(at) => rest = &rest[at + piece.len()..],
-            None => return false,
-        }
-    }
-    rest.ends_with(last)
+    // A question mark is a letter like others.
+    WildMatchPattern::<'*', '\0'>::new(pattern).matches(name)
 }
 
 fn unit(at: &Place<'_>, value: &Value) -> Result<f64, ReadError> {

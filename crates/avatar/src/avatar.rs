@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use crate::shape_names::shows_body;
+
 /// Most blendshapes of an avatar: so many weights and turns fit into the 16 KiB of constants that
 /// every browser gives a shader.
 pub const MOST_SHAPES: usize = 2048;
@@ -16,7 +18,8 @@ pub const MOST_EYEBALLS: usize = 16;
 pub struct Avatar {
     /// Name shown to people and written into marker maps.
     pub name: String,
-    /// The N blendshape names, in the file's own order. Weights are always in this order.
+    /// The N blendshape names, in the file's own order. Weights are always in this order; those of the
+    /// shapes at the end may be left out, and are 0.
     pub shape_names: Vec<String>,
     /// The meshes; each has exactly N entries in [`Mesh::shapes`].
     pub meshes: Vec<Mesh>,
@@ -120,6 +123,11 @@ impl Part {
         Self::Other,
     ];
 
+    /// Whether it is an eyeball, which turns and does not deform.
+    pub fn is_eye(self) -> bool {
+        matches!(self, Self::EyeLeft | Self::EyeRight)
+    }
+
     /// Its name in files.
     pub fn name(self) -> &'static str {
         match self {
@@ -165,6 +173,13 @@ impl Avatar {
         self.shape_names.iter().position(|n| n == name)
     }
 
+    /// The shapes that show expressions: all but those of the body ([`crate::BODY_SHAPES`]) at the end, which
+    /// no marker tells. Methods solve for these.
+    pub fn face_shapes(&self) -> &[String] {
+        let body = self.shape_names.iter().rev().take_while(|name| shows_body(name)).count();
+        &self.shape_names[..self.shape_names.len() - body]
+    }
+
     /// The first skin mesh, on which markers are placed.
     pub fn skin(&self) -> Option<&Mesh> {
         self.meshes.iter().find(|m| m.part == Part::Skin)
@@ -183,14 +198,12 @@ impl SparseShape {
 }
 
 impl Mesh {
-    /// Positions of the mesh at the given weights (N of them), metres: neutral + sum of w times delta.
-    ///
-    /// # Panics
-    /// If `weights` is shorter than `self.shapes`.
+    /// Positions of the mesh at the given weights, metres: neutral + sum of w times delta. Shapes without a
+    /// weight rest.
     pub fn posed(&self, weights: &[f64]) -> Vec<[f32; 3]> {
         let mut out = self.positions.clone();
-        for (k, shape) in self.shapes.iter().enumerate() {
-            let w = weights[k] as f32;
+        for (shape, &w) in self.shapes.iter().zip(weights) {
+            let w = w as f32;
             if w == 0.0 {
                 continue;
             }

@@ -32,6 +32,7 @@
 //! ```
 
 mod avatar;
+mod gaze;
 mod image;
 pub mod pack;
 mod shape_names;
@@ -40,6 +41,11 @@ mod texture;
 pub use avatar::{
     Avatar, Eyeball, Look, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, SparseShape, Texture, Textured,
 };
+pub use gaze::{
+    EyeAngles, GazeAngles, GazeShapes, LOOK_DEGREES, VERGENCE_DEGREES, VERTICAL_DISPARITY_DEGREES,
+};
 pub use image::{Image, MOST_TEXTURE_SIDE};
-pub use shape_names::{ARKIT_SHAPES, ShapeMap, arkit_shapes, map_shapes, turns_eyes};
+pub use shape_names::{
+    ARKIT_SHAPES, BODY_SHAPES, ShapeMap, arkit_shapes, blinks, map_shapes, shows_body, turns_eyes,
+};
 pub use texture::TextureError;

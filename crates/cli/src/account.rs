@@ -1,5 +1,6 @@
 //! `mimique account`: the way back to an account for one who can reach the database.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 
 use anyhow::Context as _;
@@ -69,12 +70,19 @@ async fn print(what: &What, storage: &Storage, json: bool) -> anyhow::Result<()>
             for account in storage.accounts().await? {
                 let (email, role) = (&account.email, Role::word(account.role));
                 let disabled = account.disabled_ms.is_some();
+                let studies = storage.study_roles_of(account.key).await?;
+                let studies: BTreeMap<String, &str> =
+                    studies.into_iter().map(|(study, role)| (study, role.word())).collect();
                 if json {
-                    let line =
-                        serde_json::json!({"email": email, "role": role, "disabled": disabled});
+                    let line = serde_json::json!({
+                        "email": email, "role": role, "studies": studies, "disabled": disabled,
+                    });
                     writeln!(out, "{line}")?;
                 } else {
-                    writeln!(out, "{email}  {role}{}", if disabled { "  disabled" } else { "" })?;
+                    let studies = studies.iter().map(|(study, role)| format!("  {study}: {role}"));
+                    let studies: String = studies.collect();
+                    let disabled = if disabled { "  disabled" } else { "" };
+                    writeln!(out, "{email}  {role}{studies}{disabled}")?;
                 }
             }
         }

@@ -1,11 +1,16 @@
 //! `mimique check`: every problem of a study file at once, each with its place and a remedy.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use mimique_comparison::{ClipDifference, StudyComparison, compare_clips};
+use mimique_stimulus::{
+    ADVISED_SMOOTHING, AdvisedMethod, Places, PrepareError, advised_methods, prepare,
+};
 use mimique_study::text::template;
-use mimique_study::{Problem, Report, Severity, check, json_schema, resolve_path};
+use mimique_study::{Issue, Problem, Report, Severity, Study, check, json_schema, resolve_path};
 
 /// Options.
 #[derive(clap::Args)]
@@ -20,6 +25,9 @@ pub struct Args {
     /// `translations` of a study file
     #[arg(long, value_name = "LANGUAGE", value_parser = language)]
     words: Option<String>,
+    /// Leave the clips alone: they are not prepared, nor held against each other
+    #[arg(long, requires = "study")]
+    without_clips: bool,
 }
 
 /// The code of a language.
@@ -48,7 +56,20 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
         return Ok(());
     };
-    let report = check_file(&file)?;
+    let mut report = check_file(&file)?;
+    let mut comparison = None;
+    if let Some(checked) = &report.study {
+        let advised = advised(checked.study(), &file);
+        let clips = if args.without_clips { None } else { Some(clips(checked.study(), &file)?) };
+        report.issues.extend(advised);
+        if let Some(clips) = clips {
+            report.issues.extend(clips.issues);
+            comparison = clips.comparison;
+        }
+        if report.errors() > 0 {
+            report.study = None;
+        }
+    }
     if json {
         let text = serde_json::json!({
             "file": file.display().to_string(),
@@ -57,13 +78,102 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "warnings": report.warnings(),
             "config_hash": report.study.as_ref().map(|study| study.config_hash()),
             "issues": report.issues,
+            "comparison": comparison,
         });
         writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
     } else {
         print(&mut out, &file, &report)?;
+        if let Some(comparison) = &comparison {
+            differences(&mut out, comparison)?;
+        }
     }
     // Everything was said above.
     anyhow::ensure!(report.study.is_some(), "");
+    Ok(())
+}
+
+/// What the captures of a study gain by a smoothed adaptation of shape.
+fn advised(study: &Study, file: &Path) -> Vec<Issue> {
+    // Nothing is packed.
+    let places = Places::of(file, PathBuf::new());
+    let issue = |AdvisedMethod { pointer, capture, advice }| Issue {
+        pointer,
+        severity: Severity::Warning,
+        problem: Problem::SmoothingAdvised {
+            capture,
+            why: advice.reason.to_string(),
+            residual_mm: advice.residual_mm,
+            smoothed_mm: advice.smoothed_mm,
+            smoothing: ADVISED_SMOOTHING,
+        },
+    };
+    advised_methods(study, &places).into_iter().map(issue).collect()
+}
+
+/// What the clips of a study tell when they are prepared.
+struct Clips {
+    issues: Vec<Issue>,
+    comparison: Option<StudyComparison>,
+}
+
+/// Prepares the clips, as `serve` does, in a folder that goes away, and holds those of one segment against each
+/// other.
+fn clips(study: &Study, file: &Path) -> anyhow::Result<Clips> {
+    let folder = tempfile::tempdir().context("a folder for the clips")?;
+    let issue = |pointer: String, severity, problem| Issue { pointer, severity, problem };
+    let prepared = match prepare(study, &Places::of(file, folder.path()), &mut |_| ()) {
+        Ok(prepared) => prepared,
+        Err(PrepareError { pointer, message }) => {
+            let problem = Problem::NotPrepared { message };
+            let issues = vec![issue(pointer, Severity::Error, problem)];
+            return Ok(Clips { issues, comparison: None });
+        }
+    };
+    let read = |hash: &str| std::fs::read(folder.path().join(hash));
+    let comparison = compare_clips(study, &prepared.clips, &read)?;
+    let unlike = comparison.unlike.iter().map(|unlike| {
+        let (what, remedy) = unlike.words();
+        let at = study.stimuli.segments.iter().position(|s| s.id == unlike.segment);
+        let pointer = format!("/stimuli/segments/{}", at.unwrap_or_default());
+        issue(pointer, Severity::Warning, Problem::ClipsUnlike { what, remedy })
+    });
+    Ok(Clips { issues: unlike.collect(), comparison: Some(comparison) })
+}
+
+/// In which millimetres methods differ: for every two of them the mean over the segments, and the frame of the
+/// largest distance.
+fn differences(out: &mut impl std::io::Write, comparison: &StudyComparison) -> std::io::Result<()> {
+    let mut pairs: BTreeMap<(&str, &[String; 2]), Vec<&ClipDifference>> = BTreeMap::new();
+    for each in &comparison.differences {
+        pairs.entry((&each.avatar, &each.methods)).or_default().push(each);
+    }
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "methods in millimetres on the skin, root mean square over the frames of all segments:"
+    )?;
+    for ((avatar, [first, second]), clips) in pairs {
+        let parts = &clips[0].difference.parts;
+        let mean = |place: usize| {
+            let squares = clips.iter().map(|clip| clip.difference.parts[place].rms_mm.powi(2));
+            (squares.sum::<f64>() / clips.len() as f64).sqrt()
+        };
+        let told: Vec<String> = (0..parts.len())
+            .map(|place| format!("{} {:.2}", parts[place].part, mean(place)))
+            .collect();
+        let worst = clips.iter().flat_map(|clip| {
+            let whole = clip.difference.parts.last();
+            whole.map(|part| (part.largest_mm, part.largest_frame, &clip.segment))
+        });
+        let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
+        write!(out, "  {avatar}: {first} and {second}: {}", told.join(", "))?;
+        if let Some((most, frame, segment)) = worst {
+            write!(out, "; at most {most:.2} in frame {frame} of {segment}")?;
+        }
+        writeln!(out)?;
+    }
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mimique_server::export::{Cells, Format, Options, export};
+use mimique_server::export::{Cells, Export, Format, Options, Part};
 use mimique_storage::Storage;
 
 /// Options.
@@ -43,34 +43,44 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         "--json: the export itself goes to standard output; write it to a file by --out"
     );
     let runtime = tokio::runtime::Runtime::new().context("the export's threads")?;
-    let exported = runtime.block_on(async {
-        let storage = Storage::open_existing(&args.database).await?;
-        let cells = if args.for_spreadsheet { Cells::Neutralised } else { Cells::AsTheyAre };
-        let options = Options { with_identifiers: args.with_identifiers, cells };
-        let exported = export(&storage, args.study.as_deref(), args.format, options).await;
+    runtime.block_on(async {
+        let named = || Storage::without_password(&args.database);
+        let storage = Storage::open_existing(&args.database).await.with_context(named)?;
+        let outcome = write(&args, &storage, json).await;
         storage.close().await;
-        anyhow::Ok(exported?)
-    });
-    let exported = exported.with_context(|| Storage::without_password(&args.database))?;
+        outcome
+    })
+}
+
+/// Writes the export while it is made.
+async fn write(args: &Args, storage: &Storage, json: bool) -> anyhow::Result<()> {
+    let named = || Storage::without_password(&args.database);
+    let cells = if args.for_spreadsheet { Cells::Neutralised } else { Cells::AsTheyAre };
+    let options = Options { with_identifiers: args.with_identifiers, cells };
+    let export = Export::open(storage, args.study.as_deref(), args.format, options).await;
+    let mut export = export.with_context(named)?;
     let mut stdout = std::io::stdout().lock();
-    let Some(out) = args.out else {
-        for (_, bytes) in &exported.files {
-            stdout.write_all(bytes)?;
+    let Some(out) = &args.out else {
+        while let Some(part) = export.next().await.with_context(named)? {
+            if let Part::Bytes(bytes) = part {
+                stdout.write_all(&bytes)?;
+            }
         }
-        return Ok(());
+        return Ok(stdout.flush()?);
     };
-    let (study_id, participants, rows) =
-        (exported.study_id.clone(), exported.participants, exported.rows);
-    let written = exported.write(&out)?;
+    let study_id = export.study_id().to_owned();
+    let written = export.write(out).await.with_context(named)?;
+    let (participants, rows) = (written.participants, written.rows);
     if json {
-        let written: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        let paths = written.paths.iter().map(|path| path.display().to_string());
+        let paths: Vec<String> = paths.collect();
         let line = serde_json::json!({
-            "study": study_id, "participants": participants, "rows": rows, "files": written,
+            "study": study_id, "participants": participants, "rows": rows, "files": paths,
         });
         writeln!(stdout, "{line}")?;
     } else {
         writeln!(stdout, "{study_id}: {participants} participants, {rows} rows")?;
-        for path in &written {
+        for path in &written.paths {
             writeln!(stdout, "  {}", path.display())?;
         }
     }

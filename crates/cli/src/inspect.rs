@@ -1,4 +1,4 @@
-//! `mimique inspect`: what an avatar, a capture, a weight file, a marker map, a study or a pack
+//! `mimique inspect`: what an avatar, a capture, a weight file, an activity, a marker map, a study or a pack
 //! holds, told from the file's content.
 
 mod facts;
@@ -10,12 +10,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use mimique_avatar::pack::{decode_pack, pack_kind};
-use mimique_mocap::{CaptureFacts, ReadError, ReadOptions, WeightOptions, formats};
+use mimique_mocap::{
+    CaptureFacts, ReadError, ReadOptions, WeightOptions, activity_formats, formats,
+    read_activity_bytes, recognise, recognise_activity,
+};
 use mimique_stimulus::{AvatarSkin, BankDiagnosis, MarkerMap};
 use serde_json::{Value, json};
 
 use self::facts::{
-    avatar_facts, avatar_file, map_facts, operators_facts, study_facts, take_facts, weights_facts,
+    activity_facts, avatar_facts, avatar_file, map_facts, operators_facts, study_facts, take_facts,
+    weights_facts,
 };
 use self::opened::Opened;
 use self::text::{shorten_presence, tell};
@@ -23,11 +27,14 @@ use self::text::{shorten_presence, tell};
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Avatar (a file, or a folder of OBJ poses), capture, weight file, marker map, study or pack
+    /// Avatar (a file, or a folder of OBJ poses), capture, weight file, activity, marker map, study or pack
     file: PathBuf,
     /// Hold the avatar's bank of shapes against Kouadio's five rules
     #[arg(long)]
     bank: bool,
+    /// Frames per second of a file that has none
+    #[arg(long, value_name = "HZ")]
+    mocap_rate: Option<f64>,
     /// With --bank: marker map of the avatar, for the rules about markers
     #[arg(long, value_name = "MAP", requires = "bank")]
     markers: Option<PathBuf>,
@@ -41,7 +48,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     }
     let opened = Opened::new(&args.file)
         .map_err(|e| blame(format!("open: {e}; check the path and its permissions")))?;
-    let mut facts = facts(&opened).map_err(|e| blame(e.to_string()))?;
+    let mut facts = facts(&opened, args.mocap_rate).map_err(|e| blame(e.to_string()))?;
     facts["file"] = json!(args.file);
     facts["bytes"] = json!(opened.length);
     let mut out = std::io::stdout().lock();
@@ -84,7 +91,7 @@ fn bank(args: &Args, json: bool) -> anyhow::Result<()> {
 }
 
 /// The facts of a file, by what it holds.
-fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
+fn facts(opened: &Opened<'_>, rate_hz: Option<f64>) -> anyhow::Result<Value> {
     let (file, head) = (opened.file, &opened.head);
     if let Some(kind) = pack_kind(head) {
         let bytes = opened.bytes()?;
@@ -96,18 +103,24 @@ fn facts(opened: &Opened<'_>) -> anyhow::Result<Value> {
     }
     let archives: [&[u8]; 3] = [b"PK\x03\x04", b"\x1f\x8b", b"\xfd7zXZ\0"];
     let is_tar = head.get(257..262) == Some(b"ustar");
-    let is_archive = is_tar || archives.iter().any(|opening| head.starts_with(opening));
+    // A zip archive may be NumPy's.
+    let is_archive = (is_tar || archives.iter().any(|opening| head.starts_with(opening)))
+        && recognise(head).is_none();
     if file.is_dir() || is_archive || head.starts_with(b"glTF") {
         return avatar_file(file, &opened.bytes()?);
+    }
+    if recognise_activity(head).is_some() {
+        return Ok(activity_facts(&read_activity_bytes(&opened.bytes()?)?));
     }
     let mut capture = opened.capture()?;
     match capture.format() {
         Some(format) if format.holds_weights() => {
-            let table = capture.weights(&WeightOptions::default())?;
+            let table = capture.weights(&WeightOptions { rate_hz, ..WeightOptions::default() })?;
             return Ok(weights_facts(format.name, &table));
         }
         Some(_) => {
-            let recording = capture.recording(&ReadOptions::default())?;
+            let recording =
+                capture.recording(&ReadOptions { rate_hz, ..ReadOptions::default() })?;
             let mut facts = serde_json::to_value(CaptureFacts::of(&recording))?;
             facts["kind"] = json!("capture");
             return Ok(facts);
@@ -138,9 +151,12 @@ fn unknown(error: Option<ReadError>) -> anyhow::Error {
         None => String::new(),
     };
     let formats: Vec<&str> = formats().iter().map(|format| format.name).collect();
+    let activities: Vec<&str> = activity_formats().iter().map(|format| format.name).collect();
     anyhow!(
         "byte 0: not a file that Mimique knows{found}; give an avatar (.glb, .gltf, a folder or an archive of OBJ \
-         poses), a capture or weights ({}), a marker map (CSV with a column marker, or JSON), a study file or a pack",
-        formats.join(", ")
+         poses), a capture or weights ({}), an activity ({}), a marker map (CSV with a column marker, or JSON), a study file \
+         or a pack",
+        formats.join(", "),
+        activities.join(", ")
     )
 }

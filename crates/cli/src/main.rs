@@ -5,19 +5,27 @@
 
 mod account;
 mod analyze;
+mod annotate;
 mod backup;
+mod border_options;
 mod capture_options;
 mod check;
+mod compare;
+mod eaf_file;
 mod erase;
+mod exertion;
 mod export;
 mod export_site;
 mod import;
 mod inspect;
+mod layout;
+mod motion;
 mod order;
 mod output;
 mod power;
 mod preview;
 mod repair;
+mod report_folder;
 mod restore;
 mod sample;
 mod segment;
@@ -27,6 +35,7 @@ mod solve;
 mod study_file;
 mod test_command;
 mod verify;
+mod vertices;
 
 use std::process::ExitCode;
 
@@ -55,14 +64,24 @@ enum Command {
     Order(order::Args),
     /// Tell what an avatar, a capture, a weight file, a pack or a study holds
     Inspect(inspect::Args),
-    /// Write an avatar, a capture and a marker map to try the commands on
+    /// Write an avatar, a capture, a marker map and motions of a body to try the commands on
     Sample(sample::Args),
     /// Turn marker trajectories into blendshape weights
     Solve(Box<solve::Args>),
+    /// Hold weights of one performance against each other: in millimetres, in smoothness, in what the markers did
+    Compare(compare::Args),
+    /// Choose how many markers a face needs, and where; or check a map
+    Layout(Box<layout::Args>),
+    /// Turn a sequence of vertices into an avatar and the weights that play it
+    Vertices(vertices::Args),
     /// Repair a capture: swaps, spikes, gaps; filter, resample, hold the head still
     Repair(Box<repair::Args>),
     /// Suggest the expressions in a long take; convert between CSV and ELAN
     Segment(Box<segment::Args>),
+    /// Learn the labels of facial motion from annotated takes, suggest and evaluate them
+    Annotate(annotate::Args),
+    /// Turn a body's motion, or what a watch recorded, into weights of a face that shows it
+    Exertion(Box<exertion::Args>),
     /// Recover a researcher's account; list the accounts
     Account(account::Args),
     /// Write the responses of a study to a file
@@ -106,8 +125,13 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(args, json),
         Command::Sample(args) => sample::run(args, json),
         Command::Solve(args) => solve::run(*args, json),
+        Command::Compare(args) => compare::run(&args, json),
+        Command::Layout(args) => layout::run(*args, json),
+        Command::Vertices(args) => vertices::run(&args, json),
         Command::Repair(args) => repair::run(*args, json),
         Command::Segment(args) => segment::run(*args, json),
+        Command::Annotate(args) => annotate::run(args, json),
+        Command::Exertion(args) => exertion::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),

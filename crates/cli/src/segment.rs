@@ -3,19 +3,18 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{anyhow, bail};
-use mimique_geometry::coordinates;
-use mimique_mocap::{CaptureFile, Format, WeightOptions, stabilise};
 use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, EafSegments, LeftOut, SuggestOptions, TakeSegment, cut,
     read_segments, study_segments, suggest, write_segments,
 };
-use mimique_study::iso_time;
 use serde_json::json;
 
+use crate::border_options::{BorderOptions, Rule};
 use crate::capture_options::CaptureOptions;
+use crate::eaf_file::{document, is_eaf};
+use crate::motion::{self, Motion};
 use crate::output;
 use crate::solve::Span;
 
@@ -51,22 +50,13 @@ pub struct Args {
     /// Print the segments of a study file instead, as cuts of its capture of this identifier
     #[arg(long, value_name = "CAPTURE")]
     study: Option<String>,
+    /// Which peaks of the energy are borders: peaks, one a change, or literal, as the thesis words it
+    #[arg(long, value_name = "RULE", default_value = "peaks")]
+    borders: Rule,
+    #[command(flatten)]
+    activity: BorderOptions,
     #[command(flatten)]
     read: CaptureOptions,
-}
-
-/// What is cut: channels over time.
-struct Take {
-    values: Vec<f64>,
-    count: usize,
-    rate_hz: f64,
-    notes: Vec<String>,
-}
-
-impl Take {
-    fn frames(&self) -> usize {
-        self.values.len() / self.count.max(1)
-    }
 }
 
 /// That the options can be what they say.
@@ -86,7 +76,7 @@ fn check(args: &Args) -> anyhow::Result<()> {
 }
 
 /// The segments of a file, all of which lie in the take; what of the file is none is noted.
-fn read_of(file: &Path, tier: &str, take: &mut Take) -> anyhow::Result<Vec<TakeSegment>> {
+fn read_of(file: &Path, tier: &str, take: &mut Motion) -> anyhow::Result<Vec<TakeSegment>> {
     let EafSegments { segments, left_out } = read(file, tier, take.rate_hz)?;
     let said = left_out.sentence().map(|left_out| format!("{}: {left_out}", file.display()));
     take.notes.extend(said);
@@ -106,12 +96,18 @@ fn read_of(file: &Path, tier: &str, take: &mut Take) -> anyhow::Result<Vec<TakeS
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     check(&args)?;
     let blame = |e: String| anyhow!("{}: {e}", args.take.display());
-    let mut take = take(&args)?;
-    let channels = Channels { values: &take.values, count: take.count, rate_hz: take.rate_hz };
+    let mut take = motion::read(&args.take, &args.read)?;
+    let channels = Channels {
+        values: &take.values,
+        count: take.names.len(),
+        rate_hz: take.rate_hz,
+        names: take.shape_names(),
+    };
     let options = SuggestOptions {
+        activity: args.activity.options()?,
+        rule: args.borders.0,
         neutral: args.neutral.as_ref().map(|n| n.0.clone()),
         labels: args.labels.clone(),
-        ..SuggestOptions::default()
     };
     let mut found = suggest(channels, &options).map_err(|e| blame(e.to_string()))?;
     if let Some(file) = &args.from {
@@ -149,7 +145,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 fn print_segments(
     out: &mut impl Write,
     args: &Args,
-    take: &Take,
+    take: &Motion,
     segments: &[TakeSegment],
 ) -> std::io::Result<()> {
     writeln!(
@@ -176,42 +172,6 @@ fn print_segments(
     take.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))
 }
 
-/// The take's channels: weights as they are, or the markers in a still head.
-fn take(args: &Args) -> anyhow::Result<Take> {
-    let blame = |e: String| anyhow!("{}: {e}", args.take.display());
-    let mut file = CaptureFile::open(&args.take).map_err(|e| blame(e.to_string()))?;
-    match file.format() {
-        Some(format) if format.holds_weights() => {
-            let rate_hz = args.read.mocap_rate;
-            let options = WeightOptions { rate_hz, ..WeightOptions::default() };
-            let table = file.weights(&options).map_err(|e| blame(e.to_string()))?;
-            let rate_hz = rate_hz.or(table.rate_hz()).ok_or_else(|| {
-                blame("column time: no rate; give it with --mocap-rate".to_owned())
-            })?;
-            let count = table.shape_names.len();
-            let notes = file.format().map(Format::taken_for).into_iter().collect();
-            Ok(Take { values: table.weights, count, rate_hz, notes })
-        }
-        _ => {
-            let recording = args.read.recording(&args.take, &mut file)?;
-            let (mut capture, head) = (recording.capture, args.read.head()?);
-            let mut notes = vec![recording.format.taken_for()];
-            notes.append(&mut capture.notes);
-            if head.is_empty() {
-                notes.push(
-                    "no head markers are named: head motion is taken for expression; use --head"
-                        .to_owned(),
-                );
-            } else {
-                stabilise(&mut capture, &head).map_err(|e| blame(e.to_string()))?;
-            }
-            let count = 3 * capture.labels.len();
-            let values = coordinates(&capture.positions).to_vec();
-            Ok(Take { values, count, rate_hz: capture.rate_hz, notes })
-        }
-    }
-}
-
 /// Segments from a CSV or an ELAN document.
 fn read(file: &Path, tier: &str, rate_hz: f64) -> anyhow::Result<EafSegments> {
     let blame = |e: String| anyhow!("{}: {e}", file.display());
@@ -230,32 +190,15 @@ fn read(file: &Path, tier: &str, rate_hz: f64) -> anyhow::Result<EafSegments> {
 fn written(
     out: &Path,
     segments: &[TakeSegment],
-    take: &Take,
+    take: &Motion,
     args: &Args,
 ) -> anyhow::Result<String> {
     if !is_eaf(out) {
         return Ok(write_segments(segments, take.rate_hz));
     }
-    let blame = |e: String| anyhow!("{}: {e}", out.display());
-    let document = match std::fs::read_to_string(out) {
-        Ok(text) => EafDocument::parse(&text),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            EafDocument::new(&now(), args.media.as_deref())
-        }
-        Err(e) => return Err(blame(format!("open: {e}; check the path"))),
-    };
+    let document = document(out, args.media.as_deref())?;
     let annotations: Vec<EafAnnotation> =
         segments.iter().map(|s| EafAnnotation::of(s, take.rate_hz)).collect();
-    let with = document.and_then(|d| d.with_tier(&args.tier, &annotations));
-    Ok(with.map_err(|e| blame(e.to_string()))?.text().to_owned())
-}
-
-fn is_eaf(file: &Path) -> bool {
-    file.extension().is_some_and(|e| e.eq_ignore_ascii_case("eaf"))
-}
-
-/// The present time as ISO 8601.
-fn now() -> String {
-    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
-    iso_time(since_1970.map_or(0.0, |since| since.as_secs() as f64 * 1000.0))
+    let with = document.with_tier(&args.tier, &annotations);
+    Ok(with.map_err(|e| anyhow!("{}: {e}", out.display()))?.text().to_owned())
 }

@@ -75,6 +75,9 @@ pub struct Args {
     /// Connections of one address at once; further ones are closed
     #[arg(long, default_value_t = Settings::default().connections_per_address)]
     connections_per_address: usize,
+    /// Sessions that begin from one address in a minute; further pages wait
+    #[arg(long, default_value_t = Settings::default().starts_per_minute)]
+    starts_per_minute: u32,
     /// Requests a second from one address in the long run; ten times as many at once
     #[arg(long, default_value_t = Settings::default().requests_per_second)]
     requests_per_second: u32,
@@ -111,6 +114,7 @@ impl Args {
             most_connections: self.most_connections,
             connections_per_address: self.connections_per_address,
             requests_per_second: self.requests_per_second,
+            starts_per_minute: self.starts_per_minute,
             ..Settings::default()
         })
     }
@@ -266,7 +270,10 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
         }
         let Some(checked) = report.study else { continue };
         match prepare_study(file, checked.study(), packs) {
-            Ok(clips) => studies.push(HostedStudy::new(checked.value().clone(), clips, stage)?),
+            Ok(clips) => {
+                let study = HostedStudy::new(checked.value().clone(), clips, stage)?;
+                studies.push(study.with_places(Places::of(file, packs)));
+            }
             Err(problem) => problems.push(problem),
         }
     }

@@ -1,25 +1,26 @@
 //! `mimique solve`: avatar, capture and marker map in, weights a frame and a report out.
 
 mod args;
+mod gaze;
 mod method_options;
 mod parameter_options;
 mod print;
 mod recorded;
 mod values;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 use indicatif::ProgressBar;
 use mimique_mocap::{
-    CaptureFile, LengthUnit, ReadOptions, Recording, WeightOptions, WeightsTable,
-    read_weights_file, weights_files,
+    CaptureFile, LengthUnit, ReadOptions, Recording, WeightOptions, WeightsTable, weights_files,
 };
 use mimique_solver::{FrontEndError, Method, MethodSpec, TrainingError};
 use mimique_stimulus::{
     AvatarSkin, MarkerMap, RepairSidecar, ScaleRule, SolveError, TakeOptions, Training,
-    VertexFrames, lock_shapes, sha256_of_file, solve_take, split_shapes,
+    VertexFrames, lock_shapes, read_performance, sha256_of_file, solve_take, split_shapes,
+    weights_for_file,
 };
 use serde_json::json;
 
@@ -28,8 +29,8 @@ use crate::output;
 pub use self::args::Args;
 use self::method_options::method_spec;
 use self::print::print;
-pub(crate) use self::values::Span;
 use self::values::unique;
+pub(crate) use self::values::{Length, Named, Span};
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
@@ -57,17 +58,17 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let seconds = || origin.elapsed().as_secs_f64();
 
     progress.set_message("reading");
-    let read = read(&args, markers, &mut spec)?;
+    let mut read = read(&args, markers, &mut spec)?;
     let read_seconds = seconds();
 
     progress.set_message(format!("solving {} frames", read.recording.capture.frames()));
-    let Inputs { skin, recording, map, options, notes } = &read;
+    let Inputs { skin, recording, map, options, notes } = &mut read;
     let mut solved = solve_take(skin, &recording.capture, map, &spec, options, &mut || seconds())
         .map_err(|e| blame(at_fault(&e, &args), e))?;
 
     progress.set_message("writing");
     let start = seconds();
-    write_weights(&solved.table, &args.out)?;
+    notes.extend(write_weights(&solved.table, &args.out)?);
     if let Some(path) = &args.vertices {
         let mut npy = VertexFrames::new(skin, &solved);
         output::write_with(path, |out| npy.write(out))?;
@@ -119,6 +120,7 @@ fn read(args: &Args, markers: &Path, spec: &mut MethodSpec) -> anyhow::Result<In
             markers: unique("--scale", &args.scale)?.into_iter().map(|(k, f)| (k, f.0)).collect(),
         },
         depth: args.depth,
+        gaze: gaze::given(args)?,
         training: training(args, &avatar.avatar.shape_names)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
@@ -150,21 +152,44 @@ fn training(args: &Args, shape_names: &[String]) -> anyhow::Result<Option<Traini
     };
     Ok(Some(Training {
         capture: capture(args, take)?.capture,
-        weights: read_weights_file(
+        weights: read_performance(
             weights,
             &WeightOptions { rate_hz: args.mocap_rate, shape_names },
         )
-        .map_err(|e| blame(weights, e))?,
+        .map_err(|e| blame(weights, e))?
+        .table,
         neutral: args.training_neutral.as_ref().map(|s| s.0.clone()),
         head: None,
     }))
 }
 
-/// Writes weights in the format that the file's name asks for.
-fn write_weights(table: &WeightsTable, path: &Path) -> anyhow::Result<()> {
-    let files =
-        weights_files(table, path).map_err(|e| anyhow!("--out: {}: {e}", path.display()))?;
-    files.iter().try_for_each(|(path, bytes)| output::write(path, bytes))
+/// Writes weights in the format that the file's name asks for. Answers what is to be said of it: the shapes
+/// that the format has no column for.
+fn write_weights(table: &WeightsTable, path: &Path) -> anyhow::Result<Option<String>> {
+    let (files, note) = weights_in_files(table, path)?;
+    files.iter().try_for_each(|(path, bytes)| output::write(path, bytes))?;
+    Ok(note)
+}
+
+/// A file's path and bytes.
+pub(crate) type FileToWrite = (PathBuf, Vec<u8>);
+
+/// The files that weights become, and what is to be said of them.
+pub(crate) fn weights_in_files(
+    table: &WeightsTable,
+    path: &Path,
+) -> anyhow::Result<(Vec<FileToWrite>, Option<String>)> {
+    let blame = |e: String| anyhow!("--out: {}: {e}", path.display());
+    let (table, left_out) = weights_for_file(table, path).map_err(|e| blame(e.to_string()))?;
+    let files = weights_files(&table, path).map_err(|e| blame(e.to_string()))?;
+    let note = (!left_out.is_empty()).then(|| {
+        format!(
+            "{}: its format has no column for {}: left out",
+            path.display(),
+            left_out.join(", ")
+        )
+    });
+    Ok((files, note))
 }
 
 /// The file or option that an error of the solve comes from.
@@ -178,7 +203,8 @@ fn at_fault<'a>(error: &SolveError, args: &'a Args) -> &'a Path {
         SolveError::Training(_) | SolveError::TrainingMarkers { .. } => {
             args.training.as_deref().unwrap_or(Path::new("--training"))
         }
-        SolveError::Surface(_) => &args.avatar,
+        SolveError::Surface(_) | SolveError::NoGazeShapes => &args.avatar,
+        SolveError::NoGazeTarget { .. } => Path::new("--gaze-target"),
         SolveError::NoScaledMarker { .. } | SolveError::ScaleFrames { .. } => markers,
         SolveError::Mesh(_) | SolveError::Operators(_) => &args.avatar,
         SolveError::FrontEnd(FrontEndError::Alignment(_) | FrontEndError::Rbf(_)) => markers,

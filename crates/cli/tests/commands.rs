@@ -48,7 +48,16 @@ fn solve_gives_the_stored_weights_of_lsts_and_box() {
             args.extend([option.to_owned(), text(&path)]);
         }
         // The stored optima are of a head that was not filtered, every shape solved.
-        let more = ["--neutral", "0:60", "--head-lowpass", "none", "--gaze", "markers"];
+        let more = [
+            "--neutral",
+            "0:60",
+            "--head-lowpass",
+            "none",
+            "--gaze",
+            "markers",
+            "--untold",
+            "solve",
+        ];
         args.extend(more.map(str::to_owned));
         if let Some(alpha) = alpha {
             args.extend(["--alpha".to_owned(), alpha.to_owned()]);
@@ -209,7 +218,8 @@ fn statistical_tests_print_the_expected_values() {
 fn check_accepts_the_studies_of_the_repository_and_names_every_mistake() {
     let study = |name: &str| text(&repository().join("study-config").join(name));
     ok(&["check", &study("demo.json")]);
-    ok(&["check", &study("template.json")]);
+    ok(&["check", &study("template.json"), "--without-clips"]);
+    ok(&["check", &study("baselines.json"), "--without-clips"]);
     let folder = tempfile::tempdir().expect("a folder");
     let bad = folder.path().join("bad.json");
     std::fs::write(&bad, r#"{ "id": "x", "languges": ["en"], "components": {} }"#).expect("a file");

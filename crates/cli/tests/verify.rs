@@ -67,6 +67,8 @@ fn what_is_no_folder_of_cases_ends_with_2() {
     std::fs::remove_file(folder.path().join("expected.json")).unwrap();
     let said = refused(&["verify", &path]);
     assert!(said.contains("holds no case that is known; give a folder of cases ("), "{said}");
+    let said = refused(&["verify", &text(&folder.path().join("four.csv"))]);
+    assert!(said.contains("four.csv: a file, and cases are folders; give the folder"), "{said}");
     let said = refused(&["verify", &text(Path::new("/nowhere/at/all"))]);
     assert!(said.contains("/nowhere/at/all: cannot be read ("), "{said}");
 }

@@ -10,7 +10,7 @@ use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 15] = [
+const OF_OTHERS: [&str; 19] = [
     // cargo and its tests
     "--release",
     "--test",
@@ -26,6 +26,10 @@ const OF_OTHERS: [&str; 15] = [
     "--plot",
     "--rounds",
     "--stats",
+    "--annotate",
+    "--layout",
+    "--server",
+    "--study",
     "--runs",
     // chmod's long name, in a recipe
     "--chmod",

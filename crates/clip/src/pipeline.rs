@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use mimique_geometry::RigidMotion;
 use mimique_solver::{
-    Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch, MarkerColumns,
-    MarkerFrames, MarkerScales, MethodSpec, Operators, SurfaceDepth,
+    Adaptation, Fit, FitError, FrameReport, FrontEnd, FrontEndError, FrontEndScratch, Gaze, Group,
+    MarkerColumns, MarkerFrames, MarkerScales, MethodSpec, Operators, SurfaceDepth,
 };
 
-use crate::gaze::{gaze_at_rest, with_gaze_at_rest};
+use crate::gaze::{bring_eyes_together, gaze_at_rest, with_gaze_at_rest};
 use crate::packs::SegmentMarkers;
 use crate::unsolved::{UnsolvedFrames, settle};
 
@@ -108,10 +108,18 @@ pub fn solve_markers(
     let front_end = clock();
     let mut solution = fit.solve_take(&motion.displacements)?;
     let width = 3 * fit.marker_count();
-    settle(&mut solution, spec.unsolved.unwrap_or_default(), |frame, weights| {
+    let residual = |frame: usize, weights: &[f64]| {
         fit.residual(&motion.displacements[frame * width..(frame + 1) * width], weights)
-    })
-    .map_err(PipelineError::Unsolved)?;
+    };
+    settle(&mut solution, spec.unsolved.unwrap_or_default(), residual)
+        .map_err(PipelineError::Unsolved)?;
+    if spec.gaze() == Gaze::Together && spec.method.uses(Group::Shapes) {
+        bring_eyes_together(&mut solution.weights, shape_names);
+        let rows = solution.weights.chunks_exact(shape_names.len());
+        for (frame, (report, row)) in solution.reports.iter_mut().zip(rows).enumerate() {
+            report.residual = residual(frame, row);
+        }
+    }
     put_driven(&mut solution.weights, shape_names, take);
     let seconds = PipelineSeconds {
         set_up: set_up - start,
@@ -121,7 +129,7 @@ pub fn solve_markers(
     Ok(MarkerSolution {
         motion,
         fit,
-        gaze_at_rest: gaze_at_rest(&spec, shape_names),
+        gaze_at_rest: gaze_at_rest(&spec, shape_names, &take.markers.driven_shapes),
         weights: solution.weights,
         reports: solution.reports,
         seconds,
@@ -138,7 +146,7 @@ pub fn marker_motion(
     spec: &MethodSpec,
 ) -> Result<MarkerMotion, PipelineError> {
     let MarkerTake { markers, rate_hz, played } = take;
-    let front_end = front_end(operators, markers)?;
+    let front_end = front_end(operators, markers, spec)?;
     let lowpass = spec.head_lowpass(*rate_hz).map_err(FrontEndError::Lowpass)?;
     let frames = MarkerFrames { positions: &markers.positions, columns: markers.labels.len() };
     let mut poses = front_end.segment_poses(frames, lowpass.as_ref())?;
@@ -158,7 +166,11 @@ pub fn marker_motion(
 }
 
 /// The front end that the take was fitted with, its face markers in the order of the operators.
-fn front_end(operators: &Operators, markers: &SegmentMarkers) -> Result<FrontEnd, PipelineError> {
+fn front_end(
+    operators: &Operators,
+    markers: &SegmentMarkers,
+    spec: &MethodSpec,
+) -> Result<FrontEnd, PipelineError> {
     let parts = operators.parts();
     let mut order = Vec::new();
     for label in &parts.marker_labels {
@@ -177,7 +189,7 @@ fn front_end(operators: &Operators, markers: &SegmentMarkers) -> Result<FrontEnd
         markers.head_reference.clone(),
         order.iter().map(|&i| markers.neutral[i]).collect(),
         parts.marker_positions.clone(),
-        depth,
+        Adaptation { depth, smoothing: spec.rbf_smoothing() },
     )?;
     Ok(front_end.with_scales(scales)?)
 }

@@ -63,12 +63,16 @@ struct Take {
 
 impl Take {
     fn of(spec: &MethodSpec) -> Self {
+        Self::named(spec, SHAPES.map(str::to_owned), truth)
+    }
+
+    /// The same with other names of the shapes, and other weights.
+    fn named(spec: &MethodSpec, names: [String; 4], truth: impl Fn(usize) -> [f64; 4]) -> Self {
         let mesh = sheet();
         let vertices = [0, 8, 22, 40, 57, 58, 66, 67, 72, 80, 13];
         let sites: Vec<MarkerSite> =
             vertices.iter().map(|&v| MarkerSite::at_vertex(format!("m{v}"), v)).collect();
         let labels: Vec<String> = sites.iter().map(|site| site.label.clone()).collect();
-        let names = SHAPES.map(str::to_owned);
         let options = OperatorOptions::of(spec);
         let mut operators = Operators::build_at(&mesh, &names, &sites, &options).unwrap();
         let neutral = operators.parts().marker_positions.clone();
@@ -87,7 +91,7 @@ impl Take {
             let width = rest.len();
             let inputs: Vec<f64> =
                 positions.iter().enumerate().map(|(i, x)| x - rest[i % width]).collect();
-            let outputs: Vec<f64> = (0..FRAMES).flat_map(truth).collect();
+            let outputs: Vec<f64> = (0..FRAMES).flat_map(&truth).collect();
             let options = TrainingOptions { capacity: None, given: [None; 3] };
             let learnt = Regression::train(&inputs, width, &outputs, 4, &options).unwrap();
             operators = operators.with_regression(learnt).unwrap();
@@ -157,4 +161,26 @@ fn what_is_locked_or_bounded_already_stays_so() {
     assert_eq!(with_gaze_at_rest(&held, &names), held);
     let surface = MethodSpec::new(Method::ThinShellSurface);
     assert_eq!(with_gaze_at_rest(&surface, &names), surface);
+}
+
+/// Both eyes in ARKit's names: a frame of what a method may say of them.
+#[test]
+fn markers_that_are_asked_for_one_gaze_never_turn_the_eyes_apart() {
+    let mut spec = MethodSpec { gaze: Some(Gaze::Markers), ..MethodSpec::new(Method::Box) };
+    let names = ["eyeLookOutLeft", "eyeLookOutRight", "eyeLookUpLeft", "eyeLookUpRight"];
+    let take = Take::named(&spec, names.map(str::to_owned), |_| [0.4, 0.2, 0.3, 0.1]);
+    let rows = |spec: &MethodSpec| {
+        let marker_take = MarkerTake { markers: &take.markers, rate_hz: 100.0, played: 0..FRAMES };
+        solve_markers(&take.operators, &marker_take, spec, &mut || 0.0).unwrap()
+    };
+    let apart = rows(&spec);
+    assert!((apart.weights[0] - 0.4).abs() < 0.02 && (apart.weights[1] - 0.2).abs() < 0.02);
+    spec.gaze = Some(Gaze::Together);
+    let together = rows(&spec);
+    // Azimuths of 12 and -6 degrees are one of 3, which no inward shape of this bank shows on the right.
+    let [out, right, up, also] = [0, 1, 2, 3].map(|k| together.weights[k]);
+    assert!((out - 0.1).abs() < 0.02 && right == 0.0, "{out} {right}");
+    assert!((up - also).abs() < 1e-12 && (up - 0.2).abs() < 0.02, "{up} {also}");
+    // What is shown is what is measured against.
+    assert!(together.reports[0].residual > apart.reports[0].residual);
 }

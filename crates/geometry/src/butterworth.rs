@@ -30,38 +30,52 @@ impl Butterworth {
     /// stretch needs, and each run starts as if its first value had always been there: a constant or,
     /// with an extension that the filter's memory fades in, a straight line passes unchanged.
     pub fn filter(&self, samples: &mut [f64], extension: usize) {
+        let lanes: &mut [[f64; 1]] = bytemuck::cast_slice_mut(samples);
+        self.filter_lanes(lanes, extension);
+    }
+
+    /// The same of several signals side by side, each by itself: a processor goes on with the others
+    /// while it waits for one.
+    pub fn filter_lanes<const N: usize>(&self, samples: &mut [[f64; N]], extension: usize) {
         let n = samples.len();
         if n < 2 {
             return;
         }
         let (first, last) = (samples[0], samples[n - 1]);
         let period = 2 * (n - 1) as isize;
-        let mirrored = |i: isize| {
+        let mirrored = |i: isize| -> [f64; N] {
             let (turn, place) = (i.div_euclid(period), i.rem_euclid(period));
-            let value = match samples.get(place as usize) {
-                Some(&sample) => sample,
-                None => 2.0 * last - samples[(period - place) as usize],
-            };
-            value + turn as f64 * 2.0 * (last - first)
+            std::array::from_fn(|k| {
+                let value = match samples.get(place as usize) {
+                    Some(sample) => sample[k],
+                    None => 2.0 * last[k] - samples[(period - place) as usize][k],
+                };
+                value + turn as f64 * 2.0 * (last[k] - first[k])
+            })
         };
         let beyond = extension as isize;
-        let mut extended: Vec<f64> = (-beyond..n as isize + beyond).map(mirrored).collect();
+        let mut extended = Vec::with_capacity(n + 2 * extension);
+        extended.extend((-beyond..0).map(mirrored));
+        extended.extend_from_slice(samples);
+        extended.extend((n as isize..n as isize + beyond).map(mirrored));
         self.run(extended.iter_mut());
         self.run(extended.iter_mut().rev());
         samples.copy_from_slice(&extended[extension..extension + n]);
     }
 
     /// One run, transposed direct form II, from the steady state of the first sample.
-    fn run<'a>(&self, mut samples: impl Iterator<Item = &'a mut f64>) {
+    fn run<'a, const N: usize>(&self, mut samples: impl Iterator<Item = &'a mut [f64; N]>) {
         let ([b0, b1, b2], [a1, a2]) = (self.b, self.a);
         let Some(first) = samples.next() else { return };
-        let mut z2 = (b2 - a2) * *first;
-        let mut z1 = (b1 - a1) * *first + z2;
-        let mut step = |x: &mut f64| {
-            let y = b0 * *x + z1;
-            z1 = b1 * *x - a1 * y + z2;
-            z2 = b2 * *x - a2 * y;
-            *x = y;
+        let mut z2 = first.map(|x| (b2 - a2) * x);
+        let mut z1: [f64; N] = std::array::from_fn(|k| (b1 - a1) * first[k] + z2[k]);
+        let mut step = |x: &mut [f64; N]| {
+            for k in 0..N {
+                let y = b0 * x[k] + z1[k];
+                z1[k] = b1 * x[k] - a1 * y + z2[k];
+                z2[k] = b2 * x[k] - a2 * y;
+                x[k] = y;
+            }
         };
         step(first);
         samples.for_each(step);
@@ -92,6 +106,21 @@ mod tests {
         (27, 8.006204187943109),
         (39, 14.083564359773344),
     ];
+
+    #[test]
+    fn lanes_are_filtered_as_if_each_were_alone() {
+        let alone = |k: u32| -> Vec<f64> {
+            (0..50).map(|i| (0.2 * f64::from(i + k)).sin() + 0.1 * f64::from(i * k)).collect()
+        };
+        let filter = Butterworth::low_pass(0.07).unwrap();
+        let mut lanes: Vec<[f64; 3]> = (0..50).map(|i| [0, 1, 2].map(|k| alone(k)[i])).collect();
+        filter.filter_lanes(&mut lanes, 43);
+        for k in 0..3 {
+            let mut own = alone(k);
+            filter.filter(&mut own, 43);
+            assert!(own.iter().zip(&lanes).all(|(a, b)| a.to_bits() == b[k as usize].to_bits()));
+        }
+    }
 
     #[test]
     fn constants_pass_at_any_length_and_there_is_no_filter_beyond_half_the_rate() {

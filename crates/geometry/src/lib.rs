@@ -31,5 +31,5 @@ pub use alignment::{RigidError, align_rigidly, best_pose, pose_between};
 pub use butterworth::Butterworth;
 pub use decompositions::{eigenvectors, orthogonal_triangular, pseudo_inverse, solve_linear};
 pub use glam::{DMat3, DQuat, DVec3};
-pub use point::{Displacement, Point, centroid, coordinates};
+pub use point::{Displacement, Point, centroid, coordinates, rows_mut};
 pub use rigid_motion::{Pose, RigidMotion};

@@ -197,6 +197,11 @@ pub fn coordinates<T: Pod>(points: &[T]) -> &[f64] {
     bytemuck::cast_slice(points)
 }
 
+/// Points or displacements as rows of three numbers, to be changed.
+pub fn rows_mut<T: Pod>(points: &mut [T]) -> &mut [[f64; 3]] {
+    bytemuck::cast_slice_mut(points)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

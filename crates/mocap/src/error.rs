@@ -39,6 +39,14 @@ pub enum ReadError {
         /// The names of the formats of weights that are read.
         readable: Vec<&'static str>,
     },
+    /// Not a file of an activity.
+    #[error("byte 0: no activity in a known format, {found}; give one of {}", names(readable))]
+    NotActivity {
+        /// What the file starts with.
+        found: String,
+        /// The names of the formats of activities that are read.
+        readable: Vec<&'static str>,
+    },
     /// What stands beside the file and belongs to it is wrong.
     #[error("{file}, beside it: {what}; {remedy}")]
     Beside {
@@ -56,6 +64,16 @@ pub enum ReadError {
         offset: u64,
         /// Part of the file, e.g. `parameter section`.
         section: &'static str,
+        /// What is wrong, with the value.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// A JSON document is wrong at a value.
+    #[error("{at}: {what}; {remedy}")]
+    Json {
+        /// Which value, e.g. `frame 12, weights`.
+        at: String,
         /// What is wrong, with the value.
         what: String,
         /// What to do about it.
@@ -134,6 +152,15 @@ impl ReadError {
         remedy: &'static str,
     ) -> Self {
         Self::Binary { offset, section, what: what.into(), remedy }
+    }
+
+    /// An error at a value of a JSON document.
+    pub(crate) fn in_json(
+        at: impl Into<String>,
+        what: impl Into<String>,
+        remedy: &'static str,
+    ) -> Self {
+        Self::Json { at: at.into(), what: what.into(), remedy }
     }
 
     /// An error at a line of a text file.

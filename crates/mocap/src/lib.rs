@@ -1,5 +1,7 @@
 //! Marker trajectories: the capture vocabulary, readers and writers, repair and filters.
 //!
+//! [`read_activity`] reads what a watch or a bicycle computer records: power, speed, heart rate.
+//!
 //! A file of any known system comes in through [`CaptureFile`], read as a stream (or from bytes,
 //! [`read_bytes`]); what comes out is a [`Capture`]: labels, rate, unit and positions, a missing
 //! marker NaN in all three coordinates. The format is recognised by content, never by name.
@@ -22,6 +24,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod activity;
+mod body_joints;
 mod capture;
 mod error;
 mod facts;
@@ -30,12 +34,17 @@ mod read;
 mod repair;
 mod write;
 
+pub use activity::{
+    Activity, ActivityColumn, ActivityFormat, Sport, activity_formats, is_activity, read_activity,
+    read_activity_bytes, recognise_activity,
+};
+pub use body_joints::{BodyJoint, BodyJoints, BodyJointsError};
 pub use capture::{Capture, Event, LengthUnit, Recording, WeightOptions, WeightsTable};
 pub use error::{ReadError, WriteError};
 pub use facts::{CaptureFacts, Frozen, Jump, MarkerPresence, Stillest, stillest};
 pub use formats::{
-    C3dOptions, C3dStorage, Format, Processor, WIDE_CSV, formats, npy_header, write_c3d, write_csv,
-    write_trc,
+    C3dOptions, C3dStorage, Format, Processor, VertexArray, WIDE_CSV, formats, npy_header,
+    read_vertex_array, write_c3d, write_csv, write_trc,
 };
 pub use read::{
     CaptureFile, ReadOptions, read, read_bytes, read_recording, read_weights, read_weights_file,
@@ -46,4 +55,4 @@ pub use repair::{
     RepairPlan, RepairRecord, Repaired, RepairedGap, RepairedSwap, ResampleError, Spike,
     Stabilisation, StabiliseError, Swap, fill_gaps, gaps, repair, resample, stabilise,
 };
-pub use write::{capture_file, weights_files};
+pub use write::{capture_file, weights_files, written_columns};

@@ -146,12 +146,7 @@ impl<'a> CaptureFile<'a> {
 
     /// The first bytes of the file, fit to print.
     fn beginning(&mut self) -> Result<String, ReadError> {
-        let bytes = source::beginning(&mut *self.source, 24)?;
-        if bytes.is_empty() {
-            return Ok("the file is empty".to_owned());
-        }
-        let head: String = bytes.iter().flat_map(|b| b.escape_ascii()).map(char::from).collect();
-        Ok(format!("it starts with \"{head}\""))
+        source::shown_beginning(&mut *self.source)
     }
 }
 

@@ -11,16 +11,15 @@ use crate::{Capture, WeightsTable, WriteError};
 /// [`WriteError`]: no such format is written, or it cannot hold the capture.
 pub fn capture_file(capture: &Capture, path: &Path) -> Result<Vec<u8>, WriteError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let writer = formats().iter().find_map(|format| match format.write {
-        Some(Write::Capture(write)) if format.has_extension_of(path) => Some(write),
-        _ => None,
-    });
-    let write = writer.ok_or_else(|| unknown(path, |write| matches!(write, Write::Capture(_))))?;
-    write(capture, &name)
+    match asked_for(path, |write| matches!(write, Write::Capture(_))) {
+        Some(Write::Capture(write)) => write(capture, &name),
+        _ => Err(unknown(path, |write| matches!(write, Write::Capture(_)))),
+    }
 }
 
 /// The files that a table of weights becomes in the format that the file's name asks for, each with
-/// its path: `path` itself is the last.
+/// its path: `path` itself is the last. Columns that the format has and the table has not are 0; see
+/// [`written_columns`].
 ///
 /// # Errors
 /// [`WriteError::Extension`]: no such format is written.
@@ -28,12 +27,51 @@ pub fn weights_files(
     table: &WeightsTable,
     path: &Path,
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, WriteError> {
-    let writer = formats().iter().find_map(|format| match format.write {
-        Some(Write::Weights(write)) if format.has_extension_of(path) => Some(write),
-        _ => None,
+    match asked_for(path, holds_weights) {
+        Some(Write::Weights { columns: None, write }) => Ok(write(table, path)),
+        Some(Write::Weights { columns: Some(columns), write }) => {
+            Ok(write(&under(table, columns), path))
+        }
+        _ => Err(unknown(path, holds_weights)),
+    }
+}
+
+/// The columns of files of weights in the format that the file's name asks for; `None` where it takes any
+/// (or is none that is written). A table whose shapes have other names is to be joined to these first.
+pub fn written_columns(path: &Path) -> Option<&'static [&'static str]> {
+    match asked_for(path, holds_weights)? {
+        Write::Weights { columns, .. } => *columns,
+        Write::Capture(_) => None,
+    }
+}
+
+fn holds_weights(write: &Write) -> bool {
+    matches!(write, Write::Weights { .. })
+}
+
+/// The writer of that kind that the file's name asks for: the one with the longest ending, the first of
+/// these in the table.
+fn asked_for(path: &Path, kind: impl Fn(&Write) -> bool) -> Option<&'static Write> {
+    let writers = formats().iter().rev().filter_map(|format| {
+        let write = format.write.as_ref().filter(|write| kind(write))?;
+        Some((format.asked_for_by(path)?, write))
     });
-    let write = writer.ok_or_else(|| unknown(path, |write| matches!(write, Write::Weights(_))))?;
-    Ok(write(table, path))
+    writers.max_by_key(|(length, _)| *length).map(|(_, write)| write)
+}
+
+/// A table with those columns, by their names.
+fn under(table: &WeightsTable, columns: &[&str]) -> WeightsTable {
+    let of = |column: &&str| table.shape_names.iter().position(|name| name == column);
+    let from: Vec<Option<usize>> = columns.iter().map(of).collect();
+    let weights = (0..table.frames.len()).flat_map(|row| {
+        let row = table.row(row);
+        from.iter().map(move |k| k.map_or(0.0, |k| row[k]))
+    });
+    WeightsTable {
+        weights: weights.collect(),
+        shape_names: columns.iter().map(|name| (*name).to_owned()).collect(),
+        ..table.clone()
+    }
 }
 
 fn unknown(path: &Path, kind: impl Fn(&Write) -> bool) -> WriteError {

@@ -43,10 +43,17 @@ fn told(bytes: &[u8], weights: bool) -> Result<Told, ReadError> {
         let rate = table.rate_hz().map(|rate| format!("{rate:.6}"));
         return Ok(Told {
             content: (table.shape_names, format!("{rate:?}"), bits(&table.weights)),
-            notes: table.filled.iter().map(|span| format!("filled {span:?}")).collect(),
+            notes: table
+                .filled
+                .iter()
+                .map(|span| format!("filled {span:?}"))
+                .chain(table.notes)
+                .collect(),
         });
     }
-    let recording = file.recording(&ReadOptions::default())?;
+    // An array of vertices has no rate; other files are held to their own.
+    let rate_hz = file.format().filter(|format| format.id == "npy-vertices").map(|_| 60.0);
+    let recording = file.recording(&ReadOptions { rate_hz, ..ReadOptions::default() })?;
     let facts = CaptureFacts::of(&recording);
     let capture = recording.capture;
     Ok(Told {

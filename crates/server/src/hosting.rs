@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::comparison::comparison_of;
 use mimique_stimulus::{Places, Prepared, Progress, prepare};
 use mimique_storage::durable_file;
 use mimique_study::{ClipSource, MEDIA_PREFIX, Study, media_type, resolve_path};
@@ -20,6 +21,11 @@ pub fn prepare_hosting(
 ) -> Result<Prepared, String> {
     let mut prepared = prepare(study, places, &mut *progress).map_err(|error| error.to_string())?;
     add_media(study, places, &mut prepared.clips)?;
+    let comparison = comparison_of(study, &prepared.clips, &places.packs)?;
+    prepared.warnings.extend(comparison.unlike.iter().map(|unlike| {
+        let (what, remedy) = unlike.words();
+        ("/stimuli/segments".to_owned(), format!("{what}; {remedy}"))
+    }));
     Ok(prepared)
 }
 

@@ -36,6 +36,7 @@
 
 mod accounts;
 mod clock;
+mod comparison;
 mod connections;
 mod error;
 pub mod export;

@@ -22,6 +22,7 @@ use tokio::net::{TcpListener, TcpStream};
 
 use crate::connections::{Paced, Places};
 use crate::http::router;
+use crate::researcher::dashboard::keeper;
 use crate::retention;
 use crate::state::App;
 use crate::state::rate_limit::{Peer, Reserve};
@@ -55,6 +56,7 @@ pub async fn serve(
 ) -> Result<(), ServeError> {
     let following = tokio::spawn(follow_uploads(app.clone()));
     let watching = tokio::spawn(retention::watch(app.clone()));
+    let keeping = tokio::spawn(keeper::keep(app.clone()));
     let router = router(app.clone());
     let graceful = GracefulShutdown::new();
     let settings = Arc::clone(&app.settings);
@@ -107,6 +109,7 @@ pub async fn serve(
     }
     watching.abort();
     following.abort();
+    keeping.abort();
     app.storage.close().await;
     outcome
 }

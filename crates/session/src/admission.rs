@@ -56,14 +56,16 @@ pub struct SessionLimits {
 }
 
 impl SessionLimits {
-    /// Those of a session with so many steps. A step has some dozens of events and, with the frames of a clip
-    /// that is replayed, some hundred kilobytes; a slider that is drawn to and fro has more.
-    fn of(steps: usize) -> Self {
-        const MEBIBYTE: u64 = 1024 * 1024;
-        let steps = steps as u64;
+    /// Those of a session with so many steps that ask so many questions in all. A step has some dozens of
+    /// events and, with the frames of a clip that is replayed, some hundred kilobytes; a question that is
+    /// answered to and fro (a slider, a text) has some dozens more.
+    fn of(steps: usize, questions: usize) -> Self {
+        const KIBIBYTE: u64 = 1024;
+        let (steps, questions) = (steps as u64, questions as u64);
+        let kibibytes = 4096 + 512 * steps + 64 * questions;
         Self {
-            events: (2000 + 300 * steps).min(100_000),
-            bytes: (4 * MEBIBYTE + steps * MEBIBYTE / 2).min(256 * MEBIBYTE),
+            events: (2000 + 200 * steps + 100 * questions).min(100_000),
+            bytes: (kibibytes * KIBIBYTE).min(256 * 1024 * KIBIBYTE),
         }
     }
 }
@@ -123,9 +125,10 @@ impl Admission {
         self.required.iter().all(|step| done.contains(step.as_str()))
     }
 
-    /// How much of the session is kept.
+    /// How much of the session is kept, by its steps and what they ask.
     pub fn limits(&self) -> SessionLimits {
-        SessionLimits::of(self.steps.len())
+        let asked = |step: &Allowed| self.asked.get(step.asked).map_or(0, Vec::len);
+        SessionLimits::of(self.steps.len(), self.steps.values().map(asked).sum())
     }
 
     /// Why an event cannot be one of the session's, if it cannot.

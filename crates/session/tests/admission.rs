@@ -42,6 +42,31 @@ fn whatever_a_page_sends_is_admitted() {
 }
 
 #[test]
+fn a_session_has_room_by_its_steps_and_questions() {
+    let limits = |change: &dyn Fn(&mut Value)| {
+        let mut file = mimique_study::parse(&study_text("demo.json")).unwrap();
+        change(&mut file);
+        Admission::of(&Page::open(&file.to_string(), 1).plan).limits()
+    };
+    let plain = limits(&|_| {});
+    let shared = limits(&|file| {
+        let more = json!({"id": "more", "prompt": "Why?", "type": "longText"});
+        file["questions"].as_array_mut().unwrap().push(more);
+        let trials = &mut file["components"]["faces"]["questions"];
+        trials.as_array_mut().unwrap().push(json!("more"));
+    });
+    // One question more in each of twelve trials, at a hundred events and 64 KiB each.
+    assert_eq!(shared.events, plain.events + 12 * 100);
+    assert_eq!(shared.bytes, plain.bytes + 12 * 64 * 1024);
+    let page = limits(&|file| {
+        file["components"]["after"] = json!({"type": "questionnaire", "questions": [
+            {"id": "age2", "prompt": "Age?", "type": "number", "min": 1, "max": 120}]});
+        file["sequence"]["components"].as_array_mut().unwrap().push(json!("after"));
+    });
+    assert_eq!(page.events, plain.events + 200 + 100);
+}
+
+#[test]
 fn what_no_page_of_the_plan_could_send_is_no_event_of_the_session() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     while !page.stored.iter().any(|event| event.body["type"] == "trial_finished") {

@@ -36,6 +36,11 @@ fn take(c: &mut Criterion) {
         (Method::Lsts, Some(0.3)),
         (Method::LstsNorm, Some(0.5)),
         (Method::LstsShort, Some(0.5)),
+        (Method::Ridge, None),
+        (Method::A2f, None),
+        (Method::Sparse, None),
+        (Method::SmoothSparse, None),
+        (Method::Greedy, None),
         (Method::Box, None),
     ] {
         let mut spec = MethodSpec::new(method);

@@ -41,6 +41,8 @@
 //! | Dm (eq. 5.21) | displacements `d`, [`FrontEnd::displacements`] | 3P per frame | m |
 //! | l^2 = tr(D^T D) / N | [`Operators::data_scale`] | | m^2 |
 //! | tau = tr(H) / N | [`Operators::shell_scale`] | | m^2 |
+//! | lambda, mu (Racković et al.) | [`MethodSpec::lambda`], [`MethodSpec::mu`]; [`WINDOW_FRAMES`], [`LOOK_AHEAD`] | | 1 |
+//! | L1, L2, T, Y (Audio2Face-3D) | [`MethodSpec::l1`], [`MethodSpec::l2`], [`MethodSpec::temporal`], [`MethodSpec::symmetry`] | | 1 |
 //! | E_b, l_inf, l_sup, s (eq. 5.24) | [`MethodSpec::soft_bounds`], [`MethodSpec::s`] | | |
 //! | F, u_k, q (eq. 5.18-5.20) | [`Rbf`] | P + 4 | m |
 //! | K of eq. 2.16, its P x P for the whole surface | [`SurfaceResponse`] | S x S, P x P | 1 |
@@ -66,6 +68,7 @@ mod fit;
 mod front_end;
 mod gaussian_process;
 mod kouadio;
+mod layout;
 mod linear_algebra;
 mod mesh;
 mod method;
@@ -75,12 +78,14 @@ mod quadratic;
 mod surface;
 
 pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
+pub use energy::sensitivity::{ShapeSensitivity, ToldBy, is_told, shape_sensitivities};
 pub use energy::thin_shell::{apply_shell, shell_gram};
 pub use fit::frame::FrameSolver;
 pub use fit::problem::FitError;
 pub use fit::report::{
     FrameReport, FrameSolution, FrameWarning, LARGEST_DISPLACEMENT, LARGEST_WEIGHT, TakeSolution,
 };
+pub use fit::window::{LOOK_AHEAD, WINDOW_FRAMES};
 pub use fit::{CHUNK_FRAMES, Fit};
 pub use front_end::error::FrontEndError;
 pub use front_end::head_lowpass::{HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE};
@@ -91,15 +96,29 @@ pub use front_end::marker_scales::{
 };
 pub use front_end::rbf::{Rbf, RbfError};
 pub use front_end::surface_depth::{FanTriangle, SurfaceDepth};
-pub use front_end::take::{FrontEnd, FrontEndScratch};
+pub use front_end::take::{Adaptation, FrontEnd, FrontEndScratch};
 pub use gaussian_process::exact::{ExactProcess, Kernel, log_marginal_likelihood};
 pub use gaussian_process::hyper_parameters::maximise_likelihood;
+pub use gaussian_process::input_scale::InputScale;
 pub use gaussian_process::regression::{
     LEAST_TRAINING_FRAMES, MOST_EXACT_FRAMES, Regression, TrainingError, TrainingOptions,
 };
-pub use gaussian_process::sparse::SparseProcess;
+pub use gaussian_process::sparse::{Learning, SparseProcess};
 pub use kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 pub use kouadio::bank::{BankColumns, Combination, DEPENDENT_SHARE, bank_columns, dead_rows};
+pub use layout::cluster_markers::{ClusterMarkers, StandsFor, stands_for_pairs};
+pub use layout::farthest::farthest_first;
+pub use layout::greedy::{Criterion, Greedy, MarkerUnit};
+pub use layout::head_spread::{FaceMoments, best_heads, head_error};
+pub use layout::kmeans::{KMeans, KMeansStep, spread_centres};
+pub use layout::pivoted_qr::{PivotedQr, PivotedRow};
+pub use layout::slip::SkinGradients;
+#[cfg(feature = "surface")]
+pub use layout::surface_greedy::SurfaceGreedy;
+pub use layout::trajectory_rows::{
+    STILL_M, TrajectoryRows, VertexTrajectories, WeightMotion, motion_rows,
+};
+pub use linear_algebra::exp::exp_all;
 pub use mesh::laplacian::{Laplacian, mixed_voronoi_areas};
 pub use mesh::marker_site::{MarkerSite, SurfacePoint};
 pub use mesh::skin_mesh::{MeshError, SkinMesh, SparseDeltas, Welded};
@@ -107,7 +126,9 @@ pub use mesh::symmetry::{FALL_OFF_M, MirrorError, MirrorPlane, split_delta};
 pub use mesh::synthesis::Synthesis;
 pub use method::definition::Needs;
 pub use method::names::Method;
-pub use parameters::choices::{Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved};
+pub use parameters::choices::{
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
+};
 pub use parameters::group::Group;
 pub use parameters::kind::{Kind, NamesOf, Quantity, Range};
 pub use parameters::problem::{SpecError, SpecFault};

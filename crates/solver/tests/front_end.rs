@@ -13,14 +13,16 @@ use mimique_test_support::real_data;
 
 type Points = Vec<Point>;
 
-/// SciPy 1.17's cubic RBF with degree 1 on 40 points of a face, and the same in 40-digit arithmetic;
-/// millimetres.
+/// SciPy 1.17's cubic RBF with degree 1 on 40 points of a face, and the same in 40-digit arithmetic, as it
+/// interpolates and with a smoothing of 0.1; millimetres.
 struct Golden {
     actor: Points,
     avatar: Points,
     points: Points,
     scipy: Points,
     exact: Points,
+    smooth_scipy: Points,
+    smooth: Points,
 }
 
 fn golden() -> Golden {
@@ -35,6 +37,8 @@ fn golden() -> Golden {
         points: points("points"),
         scipy: points("scipy"),
         exact: points("exact"),
+        smooth_scipy: points("smooth_scipy"),
+        smooth: points("smooth"),
     }
 }
 
@@ -63,6 +67,35 @@ fn rbf_interpolates_and_equals_scipy() {
 }
 
 #[test]
+fn a_smoothed_rbf_equals_scipy_in_every_unit_and_position() {
+    let g = golden();
+    let smoothed = |actor: &Points, avatar: &Points, points: &Points, smoothing: f64| -> Points {
+        let rbf = Rbf::smooth(actor, avatar, smoothing).unwrap();
+        points.iter().map(|&p| rbf.apply(p)).collect()
+    };
+    let found = smoothed(&g.actor, &g.avatar, &g.points, 0.1);
+    let (ours, scipys) =
+        (worst_distance(&found, &g.smooth), worst_distance(&g.smooth_scipy, &g.smooth));
+    assert!(ours < 2e-12 && scipys < 2e-12, "{ours:e} {scipys:e}");
+    assert!(worst_distance(&found, &g.exact) > 0.5, "smoothing changes the function");
+    let scaled =
+        |points: &Points| -> Points { points.iter().map(|p| p.map(|x| 1e-3 * x)).collect() };
+    let metres = smoothed(&scaled(&g.actor), &scaled(&g.avatar), &scaled(&g.points), 0.1);
+    assert!(worst_distance(&metres, &scaled(&g.smooth)) < 1e-14);
+    let turn = motion(2.1, [300.0, -20.0, 7.0]);
+    let turned = |points: &Points| -> Points { points.iter().map(|&p| turn.apply(p)).collect() };
+    let moved = smoothed(&turned(&g.actor), &g.avatar, &turned(&g.points), 0.1);
+    assert!(worst_distance(&moved, &g.smooth) < 1e-10);
+    // Without smoothing it interpolates, bit for bit as ever; with a very large one it is affine.
+    assert_eq!(Rbf::smooth(&g.actor, &g.avatar, 0.0), Rbf::interpolate(&g.actor, &g.avatar));
+    let affine = Rbf::smooth(&g.actor, &g.avatar, 1e6).unwrap();
+    let (a, b) = (g.points[0], g.points[9]);
+    let middle = a + (b - a) * 0.5;
+    let ends = (affine.apply(a).0 + affine.apply(b).0) * 0.5;
+    assert!((affine.apply(middle).0 - ends).length() < 1e-4);
+}
+
+#[test]
 fn rbf_reproduces_affine_maps() {
     let g = golden();
     let map = |p: Point| {
@@ -73,9 +106,11 @@ fn rbf_reproduces_affine_maps() {
         )
     };
     let values: Points = g.actor.iter().map(|&p| map(p)).collect();
-    let rbf = Rbf::interpolate(&g.actor, &values).unwrap();
-    for &p in &g.points {
-        assert!(worst_distance(&[rbf.apply(p)], &[map(p)]) < 1e-11);
+    for smoothing in [0.0, 0.1, 3.0] {
+        let rbf = Rbf::smooth(&g.actor, &values, smoothing).unwrap();
+        for &p in &g.points {
+            assert!(worst_distance(&[rbf.apply(p)], &[map(p)]) < 1e-11);
+        }
     }
 }
 

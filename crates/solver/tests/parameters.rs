@@ -78,7 +78,7 @@ fn every_parameter_is_written_as_it_is_read() {
 fn every_mistake_has_its_own_pointer_and_remedy() {
     let method = json!({
         "method": "lsts", "alpha": "0.3", "kappa": 0, "laplacian": "cotan", "sigma": 0.01,
-        "lambda": 2, "locked": ["a", 5], "bounds": { "x/y": [1, 0], "b": 3 }, "kS": 0, "kB": 0,
+        "beta": 2, "locked": ["a", 5], "bounds": { "x/y": [1, 0], "b": 3 }, "kS": 0, "kB": 0,
     });
     let problems = MethodSpec::checked(&method).unwrap_err();
     let mut said: Vec<String> =
@@ -96,11 +96,11 @@ fn every_mistake_has_its_own_pointer_and_remedy() {
         said,
         [
             "/alpha [wrong-type] alpha: is \"0.3\"; give a number",
+            "/beta [unknown-key] beta: unknown parameter; correct its name or remove it",
             "/bounds/b [wrong-type] bounds.b: is 3; give two numbers [low, high]",
             "/bounds/x~1y [out-of-range] bounds.x/y: is [1, 0]; give two numbers, the lower one first",
             "/kS [no-thin-shell] kS: kS and kB are both 0, which leaves no thin shell; make one positive",
             "/kappa [out-of-range] kappa: is 0; give a number above 0",
-            "/lambda [unknown-key] lambda: unknown parameter; correct its name or remove it",
             "/laplacian [unknown-word] laplacian: is 'cotan'; use uniform, umbrella, cotan-clamped or cotan-literal",
             "/locked/1 [wrong-type] locked.1: is 5; give a list of names",
             unused.as_str(),

@@ -5,7 +5,7 @@ mod common;
 
 use mimique_geometry::Point;
 use mimique_solver::{
-    ExactProcess, Fit, FitError, FrameWarning, Inference, Kernel, Method, MethodSpec,
+    ExactProcess, Fit, FitError, FrameWarning, Inference, Kernel, Learning, Method, MethodSpec,
     OperatorOptions, Operators, Regression, SkinMesh, SparseDeltas, SparseProcess, TrainingError,
     TrainingOptions, log_marginal_likelihood, maximise_likelihood,
 };
@@ -183,7 +183,9 @@ fn sparse_form_with_room_for_all_is_the_exact_one() {
     // An example seen again and again takes no place, and is believed the more.
     let mut twice = full.clone();
     let before = twice.predict(&x[..WIDTH], &mut mean);
-    (0..5).for_each(|_| twice.learn(&x[..WIDTH], &y[..OUTPUTS]));
+    (0..5).for_each(|_| {
+        assert_eq!(twice.learn(&x[..WIDTH], &y[..OUTPUTS]), Learning::Projected);
+    });
     assert_eq!(twice.len(), 120);
     assert!(twice.predict(&x[..WIDTH], &mut mean) < before);
     assert!(common::worst(&mean, &y[..OUTPUTS]) < 0.05);

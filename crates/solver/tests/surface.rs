@@ -9,7 +9,7 @@ use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
     Fit, FitError, FrameWarning, Hold, Laplacian, LaplacianKind, METRES_PER_WEIGHT, MarkerSite,
     Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas, SurfaceError,
-    SurfaceResponse,
+    SurfaceGreedy, SurfaceResponse,
 };
 
 const WIDTH: usize = 13;
@@ -375,4 +375,48 @@ fn what_does_not_fit_is_refused() {
     );
     assert!(say(&MethodSpec { alpha: Some(0.3), ..spec.clone() }).contains("does not use it"));
     assert_eq!(spec.resolved().hold, Some(Hold::Unmoved));
+}
+
+#[test]
+fn markers_taken_one_by_one_leave_what_the_surface_of_all_of_them_leaves() {
+    let mesh = sheet(3.0);
+    let held: Vec<bool> = (0..WIDTH * WIDTH)
+        .map(|i| [i % WIDTH, i / WIDTH].iter().any(|&c| c == 0 || c == WIDTH - 1))
+        .collect();
+    let options = options(LaplacianKind::Uniform);
+    // Two smooth fields, at rest where the sheet is held.
+    let field = |i: usize| {
+        let (x, y) = ((i / 2 % WIDTH) as f64, (i / 2 / WIDTH) as f64);
+        (0.3 * x + 0.5 * y).sin() + if i.is_multiple_of(2) { 0.5 } else { (0.6 * x).cos() }
+    };
+    let motion: Vec<f64> =
+        (0..2 * WIDTH * WIDTH).map(|i| if held[i / 2] { 0.0 } else { field(i) }).collect();
+    let mut greedy = SurfaceGreedy::new(&mesh, &held, &options, motion.clone(), 2).unwrap();
+    let mut markers: Vec<usize> = Vec::new();
+    let mut last = greedy.mean_square();
+    for _ in 0..6 {
+        let worst = (0..WIDTH * WIDTH)
+            .max_by(|&a, &b| greedy.square_at(a).total_cmp(&greedy.square_at(b)))
+            .unwrap();
+        assert!(greedy.take(worst).unwrap());
+        assert!(!greedy.take(worst).unwrap(), "a marker twice");
+        markers.push(worst);
+        let whole = SurfaceResponse::build(&mesh, &markers, &held, &options).unwrap();
+        for v in 0..WIDTH * WIDTH {
+            let left = (0..2).map(|k| {
+                let of =
+                    |m: usize| whole.fields[v * markers.len() + m] * motion[2 * markers[m] + k];
+                motion[2 * v + k] - (0..markers.len()).map(of).sum::<f64>()
+            });
+            let square: f64 = left.map(|x| x * x).sum();
+            assert!((greedy.square_at(v) - square).abs() < 1e-9 * (1.0 + square), "{v}");
+        }
+        assert!(greedy.square_at(worst) < 1e-20);
+    }
+    last -= greedy.mean_square();
+    assert!(last > 0.0, "six markers tell something");
+    assert!(!greedy.take(0).unwrap(), "what is held has no marker");
+    let nothing_held = vec![false; WIDTH * WIDTH];
+    let mut rests = SurfaceGreedy::new(&mesh, &nothing_held, &options, motion, 2).unwrap();
+    assert!(!rests.take(84).unwrap(), "a piece without a vertex at rest rests");
 }

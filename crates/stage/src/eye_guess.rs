@@ -65,7 +65,8 @@ fn moved_box(avatar: &Avatar) -> Option<(Vec3, Vec3)> {
     let mut moved: Vec<(Vec3, f32)> = Vec::new();
     for mesh in skins(avatar) {
         let mut ways = vec![0f32; mesh.positions.len()];
-        for shape in &mesh.shapes {
+        // A breath moves no face.
+        for shape in mesh.shapes.iter().take(avatar.face_shapes().len()) {
             for (v, d) in shape.vertices.iter().zip(&shape.deltas) {
                 if let Some(way) = ways.get_mut(*v as usize) {
                     *way = way.max(Vec3::from(*d).length());

@@ -2,7 +2,7 @@
 //!
 //! | table | one entry a | holds |
 //! |---|---|---|
-//! | `neutral` | vertex | position; how far along a lash |
+//! | `neutral` | vertex | position; how far along a lash, or in from the hair's border |
 //! | `vertices` | vertex | where its deltas and its ring start, how many, its eyeball |
 //! | `entries` | (vertex, blendshape) that is not zero | displacement, blendshape |
 //! | `rings` | (vertex, triangle round it) | the triangle's other two corners, in order |
@@ -16,6 +16,7 @@ use glam::Vec3;
 use mimique_avatar::{Avatar, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part};
 
 use crate::StageError;
+use crate::along_hair::along_hair;
 use crate::framing::{Landmarks, bounds_centre};
 use crate::layouts::Material;
 
@@ -159,8 +160,7 @@ impl Geometry {
         }
 
         let material = material_code(mesh, eye);
-        let lashes =
-            if mesh.part == Part::Lashes { lash_length(mesh, landmarks) } else { Vec::new() };
+        let lengths = along_hair(mesh, landmarks);
         for v in 0..count {
             let own = mesh.vertex_colours.get(v).copied();
             // The iris of an eye is drawn a pixel, not a vertex.
@@ -168,7 +168,7 @@ impl Geometry {
             let colour = own.unwrap_or(mesh.base_colour);
             let root = colour.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0).round() as u8);
             self.colours.push([root[0], root[1], root[2], material]);
-            if let Some(&length) = lashes.get(v) {
+            if let Some(&length) = lengths.get(v) {
                 self.neutral[base as usize + v][3] = length;
             }
         }
@@ -362,17 +362,4 @@ fn measure_eye(mesh: &Mesh, centre: Vec3, looks: Vec<mimique_avatar::Look>) -> E
     // 1 - cosine: the iris lies between 11 and 22 degrees off the axis, the white beyond 40.
     let (iris, white) = (within(0.018, 0.073), within(0.25, 0.7));
     Eye { centre, radius, forward, looks, iris, white }
-}
-
-/// How far along a lash each vertex lies: 0 at the lid, 1 at the longest tip, measured as distance
-/// from the nearer eye.
-fn lash_length(mesh: &Mesh, landmarks: &Landmarks) -> Vec<f32> {
-    let eyes = [Vec3::from(landmarks.eye_right), Vec3::from(landmarks.eye_left)];
-    let nearer = |p: [f32; 3]| {
-        eyes.map(|e| e.distance(Vec3::from(p))).into_iter().fold(f32::INFINITY, f32::min)
-    };
-    let distances: Vec<f32> = mesh.positions.iter().map(|&p| nearer(p)).collect();
-    let low = distances.iter().copied().fold(f32::INFINITY, f32::min);
-    let high = distances.iter().copied().fold(0.0, f32::max);
-    distances.iter().map(|d| (d - low) / (high - low).max(1e-6)).collect()
 }

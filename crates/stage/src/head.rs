@@ -7,19 +7,21 @@ use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Buffer, Device, Queue, TextureFormat, TextureView,
 };
 
-use crate::StageError;
 use crate::framing::Landmarks;
 use crate::geometry::{Draw, Eye, Geometry};
 use crate::layouts::{EyeballPose, Gaze, LIST_TABLE_WIDTH, Pose, Scene, VERTEX_TABLE_WIDTH};
-use crate::pipelines::{Layouts, OCCLUSION_FORMAT, Pipelines};
+use crate::pipelines::{Layouts, OCCLUSION_FORMAT, Pipelines, STRAIN_FORMAT};
 use crate::tables;
 use crate::textures::Textures;
+use crate::{Look, StageError};
 
 /// An avatar ready to be drawn by the renderer that loaded it.
 pub struct Head {
     pub(crate) landmarks: Landmarks,
     pub(crate) shape_count: usize,
     pub(crate) eyes: Vec<Eye>,
+    /// Places of the shapes `flush` and `sweat`, where the avatar has them.
+    body_shapes: [Option<usize>; 2],
     pub(crate) draws: Vec<Draw>,
     pub(crate) indices: Buffer,
     pub(crate) colours: Buffer,
@@ -32,6 +34,7 @@ pub struct Head {
     pub(crate) surfaces: TextureView,
     /// `surfaces` with the visibility softened an odd number of times.
     pub(crate) softened: TextureView,
+    pub(crate) strains: TextureView,
     pub(crate) occlusions: TextureView,
     pub(crate) groups: PassGroups,
 }
@@ -43,6 +46,7 @@ pub(crate) struct PassGroups {
     pub(crate) surface: BindGroup,
     /// From `surfaces` to `softened`, and back.
     pub(crate) soften: [BindGroup; 2],
+    pub(crate) strain: BindGroup,
     pub(crate) occlusion: BindGroup,
     pub(crate) shade: BindGroup,
 }
@@ -56,6 +60,7 @@ struct Tables {
     positions: TextureView,
     surfaces: TextureView,
     softened: TextureView,
+    strains: TextureView,
     occlusions: TextureView,
 }
 
@@ -81,6 +86,7 @@ impl Tables {
             positions: target("positions", float),
             surfaces: target("surfaces", float),
             softened: target("softened", float),
+            strains: target("strains", STRAIN_FORMAT),
             occlusions: target("occlusions", OCCLUSION_FORMAT),
         })
     }
@@ -94,8 +100,17 @@ impl PassGroups {
         tables: &Tables,
         [pose, scene]: [&Buffer; 2],
     ) -> Self {
-        let Tables { neutral, vertices, entries, rings, positions, surfaces, occlusions, .. } =
-            tables;
+        let Tables {
+            neutral,
+            vertices,
+            entries,
+            rings,
+            positions,
+            surfaces,
+            strains,
+            occlusions,
+            ..
+        } = tables;
         let view = BindingResource::TextureView;
         let sampler = || BindingResource::Sampler(shadow.1);
         let (pose, scene) = (pose.as_entire_binding(), || scene.as_entire_binding());
@@ -103,13 +118,22 @@ impl PassGroups {
         let to_surface =
             [scene(), view(vertices), view(rings), view(positions), view(shadow.0), sampler()];
         let to_occlusion = [scene(), view(positions), view(shadow.0), sampler(), view(surfaces)];
-        let to_shade = [scene(), view(positions), view(surfaces), view(neutral), view(occlusions)];
+        let to_strain = [view(vertices), view(rings), view(positions), view(neutral)];
+        let to_shade = [
+            scene(),
+            view(positions),
+            view(surfaces),
+            view(neutral),
+            view(occlusions),
+            view(strains),
+        ];
         Self {
             deform: group(&layouts.deform, &[pose, view(neutral), view(vertices), view(entries)]),
             light: group(&layouts.light, &[scene(), view(positions)]),
             surface: group(&layouts.surface, &to_surface),
             soften: [surfaces, &tables.softened]
                 .map(|from| group(&layouts.soften, &[view(vertices), view(rings), view(from)])),
+            strain: group(&layouts.strain, &to_strain),
             occlusion: group(&layouts.occlusion, &to_occlusion),
             shade: group(&layouts.shade, &to_shade),
         }
@@ -163,12 +187,13 @@ impl Head {
             group(device, &pipelines.layouts.picture, &[texture, sampler])
         };
         let picture_groups = geometry.draws.iter().map(picture).collect();
-        let Tables { positions, surfaces, softened, occlusions, .. } = tables;
+        let Tables { positions, surfaces, softened, strains, occlusions, .. } = tables;
         Ok(Self {
             landmarks,
             picture_groups,
             shape_count: geometry.shape_count,
             eyes: geometry.eyes,
+            body_shapes: ["flush", "sweat"].map(|name| avatar.shape_index(name)),
             draws: geometry.draws,
             indices: buffer(
                 "indices",
@@ -182,6 +207,7 @@ impl Head {
             positions,
             surfaces,
             softened,
+            strains,
             occlusions,
             groups,
         })
@@ -205,12 +231,21 @@ impl Head {
         pose
     }
 
-    /// The eyes' own frames at the given weights, as `shade.wgsl` reads them; `iris` colours those
-    /// that came without a colour.
-    pub(crate) fn gaze(&self, weights: &[f32], iris: [f32; 3]) -> [Gaze; MOST_EYEBALLS] {
+    /// How red and how wet the skin is at the given weights, as `shade.wgsl` reads it.
+    pub(crate) fn body(&self, weights: &[f32]) -> [f32; 4] {
+        let [flush, sweat] = self.body_shapes.map(|shape| {
+            let weight = shape.and_then(|k| weights.get(k)).copied();
+            weight.filter(|w| w.is_finite()).map_or(0.0, |w| w.clamp(0.0, 1.0))
+        });
+        [flush, sweat, 0.0, 0.0]
+    }
+
+    /// The eyes' own frames at the given weights, as `shade.wgsl` reads them. The look colours irises
+    /// that came without a colour, and all where nothing is painted.
+    pub(crate) fn gaze(&self, weights: &[f32], look: &Look) -> [Gaze; MOST_EYEBALLS] {
         let mut out: [Gaze; MOST_EYEBALLS] = bytemuck::Zeroable::zeroed();
         for (slot, eye) in out.iter_mut().zip(&self.eyes) {
-            let [r, g, b] = eye.iris.unwrap_or(iris);
+            let [r, g, b] = eye.iris.filter(|_| look.paint).unwrap_or(look.iris);
             slot.iris = [r, g, b, 0.0];
             let head_from_eye = turn(eye, weights) * frame(eye.forward);
             for (row, (axis, c)) in

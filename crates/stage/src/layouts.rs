@@ -62,6 +62,8 @@ pub(crate) struct Scene {
     pub brows: [f32; 4],
     /// Exposure.
     pub light: [f32; 4],
+    /// How red the skin is, how wet; 0 to 1.
+    pub body: [f32; 4],
     pub gaze: [Gaze; MOST_EYEBALLS],
 }
 

@@ -1,6 +1,6 @@
 //! Renders heads with wgpu: WebGPU, WebGL2 and offscreen.
 //!
-//! One WGSL path that WebGL2 can run: no compute, no storage buffers. A frame is five steps, all
+//! One WGSL path that WebGL2 can run: no compute, no storage buffers. A frame is six steps, all
 //! over tables that stay on the GPU; the CPU writes two small uniform buffers.
 //!
 //! | pass | shader | a fragment a | gives |
@@ -9,7 +9,8 @@
 //! | 2 light | `shade.wgsl` | pixel of the key light's view | depth |
 //! | 3 surface | `surface.wgsl` | vertex | normal of the deformed surface, visibility of the key light |
 //! | 4 soften | `soften.wgsl` | vertex, four times | visibility averaged with the vertices round it |
-//! | 5 picture | `shade.wgsl` | pixel, 4x MSAA | colour |
+//! | 5 strain | `strain.wgsl` | vertex | how the skin is stretched and pressed |
+//! | 6 picture | `shade.wgsl`, `hair.wgsl`, `creases.wgsl` | pixel, 4x MSAA | colour, creases where skin is pressed |
 //!
 //! Colours are computed in linear light, pass a filmic response and are stored in an sRGB format,
 //! so that the resolve of the samples is linear too; a target that does not encode sRGB by itself
@@ -33,6 +34,7 @@
 //!
 //! and drawn by a [`Renderer`] that has loaded it, in a browser or offscreen (`offscreen`).
 
+mod along_hair;
 mod error;
 mod eye_guess;
 mod framing;

@@ -31,11 +31,12 @@ impl Look {
         paint: true,
     };
 
-    /// The look of reference clips, which nobody should take for a stimulus: uniform blue-grey clay.
+    /// The look of reference clips, which nobody should take for a stimulus: uniform grey clay, darker
+    /// than the backdrop.
     pub const REFERENCE: Self = Self {
-        skin_tint: [0.52, 0.72, 1.05],
+        skin_tint: [0.80, 0.79, 0.78],
         skin_roughness: 0.60,
-        iris: [0.22, 0.24, 0.26],
+        iris: [0.20, 0.20, 0.20],
         paint: false,
         ..Self::STIMULUS
     };

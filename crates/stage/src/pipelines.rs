@@ -22,6 +22,8 @@ pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
 /// Sums over directions of the sky; a half float takes 24 of them without loss that could be seen.
 pub(crate) const OCCLUSION_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Strains, from -1 to 1: a half float holds them to a thousandth.
+pub(crate) const STRAIN_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// Blending that adds.
 const ADD: wgpu::BlendState = wgpu::BlendState {
     color: wgpu::BlendComponent {
@@ -37,6 +39,7 @@ pub(crate) struct Layouts {
     pub deform: BindGroupLayout,
     pub surface: BindGroupLayout,
     pub soften: BindGroupLayout,
+    pub strain: BindGroupLayout,
     pub occlusion: BindGroupLayout,
     pub shade: BindGroupLayout,
     pub light: BindGroupLayout,
@@ -50,6 +53,7 @@ pub(crate) struct Pipelines {
     pub light: RenderPipeline,
     pub surface: RenderPipeline,
     pub soften: RenderPipeline,
+    pub strain: RenderPipeline,
     pub occlusion: RenderPipeline,
     closed: RenderPipeline,
     sheet: RenderPipeline,
@@ -81,6 +85,12 @@ impl Layouts {
         ];
         let soften =
             [table(0, fragment, integer), table(1, fragment, integer), table(2, fragment, float)];
+        let strain = [
+            table(0, fragment, integer),
+            table(1, fragment, integer),
+            table(2, fragment, float),
+            table(3, fragment, float),
+        ];
         let occlusion = [
             uniform(0, fragment),
             table(1, fragment, float),
@@ -94,6 +104,7 @@ impl Layouts {
             table(2, vertex, float),
             table(3, vertex, float),
             table(4, vertex, float),
+            table(5, vertex, float),
         ];
         let picture = [
             table(0, fragment, TextureSampleType::Float { filterable: true }),
@@ -103,6 +114,7 @@ impl Layouts {
             deform: layout("deform", &deform),
             surface: layout("surface", &surface),
             soften: layout("soften", &soften),
+            strain: layout("strain", &strain),
             occlusion: layout("occlusion", &occlusion),
             shade: layout("shade", &shade),
             light: layout("light", &[uniform(0, both), table(1, vertex, float)]),
@@ -119,7 +131,11 @@ impl Pipelines {
         let surface_module = module("surface.wgsl", bare!("surface.wgsl"));
         let soften_module = module("soften.wgsl", bare!("soften.wgsl"));
         let occlusion_module = module("occlusion.wgsl", bare!("occlusion.wgsl"));
-        let shade_module = module("shade.wgsl", bare!("shade.wgsl"));
+        let strain_module = module("strain.wgsl", bare!("strain.wgsl"));
+        let shade_module = module(
+            "shade.wgsl",
+            concat!(bare!("shade.wgsl"), bare!("hair.wgsl"), bare!("creases.wgsl")),
+        );
 
         let layouts = Layouts::new(device);
         let float32 = TextureFormat::Rgba32Float.into();
@@ -141,6 +157,12 @@ impl Pipelines {
                 &float32,
             ),
             soften: cover(&soften_module, &layouts.soften, ["cover_softened", "soften"], &float32),
+            strain: cover(
+                &strain_module,
+                &layouts.strain,
+                ["cover_strain", "strain"],
+                &STRAIN_FORMAT.into(),
+            ),
             occlusion: cover(
                 &occlusion_module,
                 &layouts.occlusion,
@@ -293,7 +315,8 @@ fn picture_pass(
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format,
-                blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                // Sheets of hair thin out over the skin, which is drawn before them.
+                blend: (layer != Layer::Closed).then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

@@ -167,6 +167,7 @@ impl Renderer {
             fill_table(&mut encoder, &head.softened, &passes.soften, onward, clear);
             fill_table(&mut encoder, &head.surfaces, &passes.soften, back, clear);
         }
+        fill_table(&mut encoder, &head.strains, &passes.strain, &head.groups.strain, clear);
         match (&self.encoder, &self.targets.resolved) {
             (Some(encode), Some((resolved, group))) => {
                 self.picture_pass(&mut encoder, head, resolved);
@@ -283,7 +284,8 @@ impl Renderer {
             skin: with(self.look.skin_tint, self.look.skin_roughness),
             brows: with(self.look.brows, if self.look.paint { 1.0 } else { 0.0 }),
             light: [self.look.exposure, 0.0, 0.0, 0.0],
-            gaze: head.gaze(weights, self.look.iris),
+            body: head.body(weights),
+            gaze: head.gaze(weights, &self.look),
         }
     }
 

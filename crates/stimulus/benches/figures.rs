@@ -12,7 +12,6 @@ mod mesh;
 use std::hint::black_box;
 use std::io::BufRead as _;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use mimique_avatar_files::read_avatar;
 use mimique_clip::{encode_operators, encode_take, solve_packs};
@@ -21,6 +20,7 @@ use mimique_solver::{
     SkinMesh, Synthesis,
 };
 use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, TakeOptions};
+use mimique_test_support::Clock;
 use serde_json::json;
 
 /// Every twentieth frame goes to the peers, which are slow.
@@ -260,34 +260,6 @@ fn peak_memory(forget: bool) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
     Some(1024 * line.split_whitespace().nth(1)?.parse::<u64>().ok()?)
-}
-
-/// Processor time of all threads; the clock's where the system does not tell.
-struct Clock {
-    processor: Option<u64>,
-    wall: Instant,
-}
-
-impl Clock {
-    fn start() -> Clock {
-        Clock { processor: processor_nanoseconds(), wall: Instant::now() }
-    }
-
-    fn seconds(&self) -> f64 {
-        match (self.processor, processor_nanoseconds()) {
-            (Some(start), Some(end)) if end > start => 1e-9 * (end - start) as f64,
-            _ => self.wall.elapsed().as_secs_f64(),
-        }
-    }
-}
-
-fn processor_nanoseconds() -> Option<u64> {
-    let threads = std::fs::read_dir("/proc/self/task").ok()?;
-    let spent = threads.filter_map(|thread| {
-        let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
-        text.split_whitespace().next()?.parse::<u64>().ok()
-    });
-    Some(spent.sum())
 }
 
 /// The folder of the real data; `cargo xtask bench` has looked that it is there.

@@ -47,6 +47,8 @@
 mod avatar;
 mod built_in;
 mod checks;
+mod exertion;
+mod gaze;
 mod marker_map;
 mod prepare;
 mod provenance;
@@ -55,31 +57,47 @@ mod suggest_map;
 mod take;
 mod weights;
 
-pub use avatar::{AvatarSkin, SplitError, VertexFrames, lock_shapes, split_shapes, surface_avatar};
-pub use built_in::{built_in_capture, built_in_map, built_in_training, built_in_weights};
+pub use avatar::{
+    AvatarSkin, SplitError, VertexBank, VertexBankError, VertexBankOptions, VertexFrames,
+    lock_shapes, split_shapes, surface_avatar,
+};
+pub use built_in::{
+    built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,
+};
 pub use checks::{
-    BankDiagnosis, DependentShape, HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM,
+    ADVISED_SMOOTHING, BankDiagnosis, DependentShape, GazeBeyond, GazeFault, GazeStatistics,
+    HeadMarker, LabelFault, LabelProblem, MarkerDiagnosis, STILL_MM, SmoothingAdvice,
+    SmoothingReason,
 };
+pub use exertion::{
+    Drawn, DrawnCourse, DrawnLine, ExertionDrawing, ExertionPart, ExertionPartError, ExertionTake,
+    MotionOptions, PartFacts, built_in_bvh, built_in_motion,
+};
+pub use gaze::{GazeTrack, GazeTrackError, GivenGaze};
 pub use marker_map::{
-    Depth, MapError, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
-    REACH_M, ScaleRule, TOLERANCE_M,
+    Depth, MapError, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap,
+    MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,
 };
-pub use prepare::{Places, PrepareError, Prepared, Progress, avatar_key, is_source, prepare};
+pub use prepare::{
+    AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
+    exertion_drawing, is_source, prepare,
+};
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
-    Activity, ActivityOptions, Channels, EafAnnotation, EafDocument, EafError, EafSegments,
-    EafTier, LeftOut, SegmentFileError, SuggestError, SuggestOptions, Suggestion, TakeSegment,
-    Timeline, TimelineSegment, bridge, cut, nearest_quantile, peaks, read_segments, study_segments,
-    suggest, write_segments,
+    Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,
+    EafSegments, EafTier, LeftOut, Literal, SegmentFileError, SuggestError, SuggestOptions,
+    Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
+    read_segments, stretches, study_segments, suggest, write_segments, write_segments_with,
 };
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,
 };
 pub use take::{
     FileHash, FrameRow, JoinedTake, Lid, LidEdge, RegressionSummary, RepairSidecar, SetUp,
-    SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds, TakeOptions, Training,
-    sidecar_path, solve_take,
+    ShapeRow, ShapeState, SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds,
+    TakeOptions, Training, sidecar_path, solve_take,
 };
 pub use weights::{
-    Driven, RecordedNames, RecordedWeights, WeightBeyondSense, WeightSteps, weight_steps,
+    Driven, Performance, PerformanceError, RecordedNames, RecordedWeights, WeightBeyondSense,
+    WeightSteps, read_performance, weight_steps, weights_for_file,
 };

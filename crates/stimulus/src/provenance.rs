@@ -112,7 +112,7 @@ mod tests {
         // printf '{"a":"é","b":{"x":[1,null],"y":0.5}}' | sha256sum
         assert_eq!(made.hash(), "93fc7b12f7cd07f9a838f8da9eb73feab2213570dde5928dafceb3f1fdc44844");
         let spec = MethodSpec { head_lowpass_hz: Some(10.0), ..MethodSpec::new(Method::Lsts) };
-        let text = r#"{"method":{"alpha":0.3,"gain":1,"gaze":"rest","headLowpassHz":10,"kB":1,"kS":1,"kappa":0.1,"laplacian":"uniform","method":"lsts"}}"#;
+        let text = r#"{"method":{"alpha":0.3,"gain":1,"gaze":"rest","headLowpassHz":10,"kB":1,"kS":1,"kappa":0.1,"laplacian":"uniform","method":"lsts","rbfSmoothing":0,"untold":"hold"}}"#;
         assert_eq!(Provenance::default().method(&spec).hash(), sha256_hex(text.as_bytes()));
         let numbers = Provenance::default().numbers("n", &[1.0, f64::NAN]);
         let bytes = [1f64.to_le_bytes(), f64::NAN.to_le_bytes()].concat();

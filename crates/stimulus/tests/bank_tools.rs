@@ -291,7 +291,7 @@ fn halves_add_up_to_the_shape_on_every_mesh() {
     let solved =
         solve_take(&skin, &scene.capture, map, &spec, &TakeOptions::default(), &mut || 0.0)
             .unwrap();
-    assert_eq!(solved.table.shape_names, split.shape_names);
+    assert_eq!(solved.table.shape_names, split.face_shapes());
     for (shapes, says) in [
         (vec!["noSuchShape".to_owned()], "no shape"),
         (vec![scene.avatar.shape_names[0].clone(); 1], ""),

@@ -1,13 +1,18 @@
 //! A study file's stimuli to packs: built-in ones and real ones, reuse, refusals.
 
+#[path = "support/study.rs"]
+mod study_of_stimuli;
+
 use std::path::{Path, PathBuf};
 
 use mimique_avatar::pack::decode_pack;
 use mimique_clip::{sha256_hex, solve_packs};
+use mimique_solver::Method;
 use mimique_stimulus::{Places, Prepared, prepare};
 use mimique_study::Study;
 use mimique_test_support::real_data;
 use serde_json::{Value, json};
+use study_of_stimuli::study_of;
 
 fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
@@ -15,15 +20,7 @@ fn repository() -> PathBuf {
 
 /// A study of the given stimuli and nothing else.
 fn study(stimuli: Value) -> Study {
-    Study::from_value(&json!({
-        "id": "test",
-        "studyMetadata": {"title": "Test", "version": "1"},
-        "languages": ["en"],
-        "components": {},
-        "sequence": {"order": "fixed", "components": []},
-        "stimuli": stimuli,
-    }))
-    .unwrap()
+    study_of(&stimuli)
 }
 
 fn builtin() -> Value {
@@ -56,7 +53,12 @@ fn played(prepared: &Prepared, packs: &Path, clip: &str) -> f64 {
     let solved =
         solve_packs(&fetch(&source.operators), &fetch(&source.take), &source.method).unwrap();
     assert_eq!(solved.weights_hash, source.weights_hash);
-    assert_eq!(solved.shape_names, avatar.shape_names);
+    let shapes = if source.method.method == Method::Recorded {
+        &avatar.shape_names[..]
+    } else {
+        avatar.face_shapes()
+    };
+    assert_eq!(solved.shape_names, shapes);
     let duration = solved.frames() as f64 / solved.rate_hz * 1e3;
     assert!((duration - source.duration_ms).abs() < 1e-6);
     let n = solved.shape_names.len();
@@ -415,14 +417,16 @@ fn the_actor_s_own_head_shows_the_performance_that_a_solve_recovers() {
         (solved.shape_names, solved.weights)
     };
     let (names, planted) = weights("joy3.real");
-    let (_, found) = weights("joy3.lsts");
-    assert_eq!(planted.len(), found.len());
+    let (face, found) = weights("joy3.lsts");
+    // What was performed has the shapes of the body behind those of the face.
+    assert_eq!(names[..face.len()], face);
+    assert_eq!(planted.len() / names.len(), found.len() / face.len());
     // The shapes of the smile itself, over the whole clip.
-    let n = names.len();
     for name in ["mouthSmileLeft", "mouthSmileRight", "mouthSmile_L", "mouthSmile_R"] {
         let Some(k) = names.iter().position(|each| each == name) else { continue };
-        let column = |w: &[f64]| -> Vec<f64> { w.iter().skip(k).step_by(n).copied().collect() };
-        let (planted, found) = (column(&planted), column(&found));
+        let column =
+            |w: &[f64], n: usize| -> Vec<f64> { w.iter().skip(k).step_by(n).copied().collect() };
+        let (planted, found) = (column(&planted, names.len()), column(&found, face.len()));
         let top = planted.iter().copied().fold(0.0, f64::max);
         assert!(top > 0.5, "{name} reaches {top}");
         let worst = planted.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -508,6 +512,44 @@ fn swapped_labels_of_a_capture_are_said_once_at_their_capture() {
     assert_eq!(pointer, "/stimuli/captures/take");
     assert!(labels.iter().all(|l| sentence.contains(l)), "{labels:?}: {sentence}");
     assert!(sentence.contains("300:420"), "{sentence}");
+}
+
+#[test]
+fn another_face_is_advised_to_be_smoothed_with_the_gain_on_its_take() {
+    let stimuli = |methods: Value| {
+        json!({
+            "avatars": {"ada": {"builtin": {"seed": 3, "vertices": 2000}}},
+            "captures": {"take": {"file": "take.csv", "markers": "map.csv", "neutral": [0, 60]}},
+            "segments": [{"id": "a", "capture": "take", "first": 100, "end": 200},
+                         {"id": "b", "capture": "take", "first": 500, "end": 600}],
+            "methods": methods,
+        })
+    };
+    let folder = tempfile::tempdir().unwrap();
+    labelled_take(folder.path(), 0..0);
+    let packs = folder.path().join("packs");
+    let here = Places { study: folder.path().to_owned(), data: None, packs };
+    let advised = |methods| mimique_stimulus::advised_methods(&study(stimuli(methods)), &here);
+    let methods = json!({"lsts": {"method": "lsts"}, "said": {"method": "box", "rbfSmoothing": 0},
+                         "surface": {"method": "thin-shell-surface"}});
+    let found = advised(methods.clone());
+    assert_eq!(found.len(), 1, "{found:?}");
+    let (only, advice) = (&found[0], found[0].advice);
+    assert_eq!((only.pointer.as_str(), only.capture.as_str()), ("/stimuli/methods/lsts", "take"));
+    assert!(matches!(advice.reason, mimique_stimulus::SmoothingReason::OtherFace { distance_mm }
+        if distance_mm > 1.0));
+    assert!(advice.smoothed_mm < 0.98 * advice.residual_mm, "{advice:?}");
+    // The preparation says the same, once, at the capture.
+    let prepared = prepare(&study(stimuli(methods)), &here, &mut |_| {}).unwrap();
+    let said: Vec<_> =
+        prepared.warnings.iter().filter(|(_, w)| w.contains("rbfSmoothing 0.1 lowers")).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].1.starts_with(&advice.reason.to_string()), "{said:?}");
+    // Whoever has chosen is not asked again; files that are not there say nothing here.
+    assert_eq!(advised(json!({"lsts": {"method": "lsts", "rbfSmoothing": 0.1}})), []);
+    let gone = Places { study: folder.path().join("nowhere"), ..here.clone() };
+    let all = stimuli(json!({"lsts": {"method": "lsts"}}));
+    assert_eq!(mimique_stimulus::advised_methods(&study(all), &gone), []);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use mimique_clip::{decode_operators, encode_operators, encode_take, solve_packs, solve_segment};
 use mimique_mocap::Capture;
-use mimique_solver::{Gaze, Method, MethodSpec};
+use mimique_solver::{Gaze, Method, MethodSpec, Untold};
 use mimique_stimulus::{AvatarSkin, JoinedTake, MarkerMap, TakeOptions, solve_take, suggest_map};
 use mimique_test_support::real_data;
 
@@ -29,7 +29,8 @@ fn lsts(alpha: f64) -> MethodSpec {
 
 /// A head that is not filtered, every shape solved: no frame depends on another.
 fn unfiltered(spec: MethodSpec) -> MethodSpec {
-    MethodSpec { head_lowpass_hz: Some(0.0), gaze: Some(Gaze::Markers), ..spec }
+    let (gaze, untold) = (Some(Gaze::Markers), Some(Untold::Solve));
+    MethodSpec { head_lowpass_hz: Some(0.0), gaze, untold, ..spec }
 }
 
 /// `mimique verify` holds single frames against stored optima: the whole take has the same there.
@@ -89,6 +90,7 @@ fn a_segment_s_packs_give_the_take_s_weights() {
     let whole = solve_take(&skin, &capture, &map, &spec, &options, &mut || 0.0).unwrap();
 
     let joined = JoinedTake::new(&skin, &capture, &map, &options).unwrap();
+    let spec = joined.with_shapes_held(&spec);
     let operators = joined.operators(&spec).unwrap();
     let take = joined.segment(&operators, &spec, 80..310).unwrap();
     // Unrounded markers: only the settling of the low-pass at the margins differs.

@@ -28,7 +28,11 @@ fn overlaps(found: &[TakeSegment], truth: &[TakeSegment]) -> (f64, f64) {
 }
 
 fn of(values: &[f64], count: usize, rate_hz: f64) -> Suggestion {
-    suggest(Channels { values, count, rate_hz }, &SuggestOptions::default()).unwrap()
+    of_named(values, count, rate_hz, &[])
+}
+
+fn of_named(values: &[f64], count: usize, rate_hz: f64, names: &[String]) -> Suggestion {
+    suggest(Channels { values, count, rate_hz, names }, &SuggestOptions::default()).unwrap()
 }
 
 /// The 18 performances in one take, by the built-in head; what was planted.
@@ -58,7 +62,8 @@ fn long_take() -> (mimique_actor::SyntheticTake, Vec<TakeSegment>) {
 #[test]
 fn eighteen_built_in_performances_in_one_take_from_weights() {
     let (take, truth) = long_take();
-    let found = of(&take.truth, take.shape_names.len(), take.rate_hz);
+    let names = &take.shape_names;
+    let found = of_named(&take.truth, names.len(), take.rate_hz, names);
     let (mean, least) = overlaps(&found.segments, &truth);
     eprintln!("from weights: mean overlap {mean:.3}, least {least:.3}");
     assert!(mean > 0.93 && least > 0.85, "{mean} {least}");
@@ -117,7 +122,12 @@ fn an_expression_that_becomes_another_without_neutral_is_two() {
 fn a_still_face_has_no_expression_and_short_takes_are_refused() {
     let values: Vec<f64> = (0..400).map(|f| 0.001 * f64::from(f % 3)).collect();
     assert!(of(&values, 1, 100.0).segments.len() <= 1);
-    let take = |frames: usize| Channels { values: &values[..frames], count: 1, rate_hz: 100.0 };
+    let take = |frames: usize| Channels {
+        values: &values[..frames],
+        count: 1,
+        rate_hz: 100.0,
+        names: &[],
+    };
     let error = suggest(take(50), &SuggestOptions::default()).unwrap_err().to_string();
     assert_eq!(error, "take: 50 frames of 1 channels; give a take of a second or more");
     let options = SuggestOptions { neutral: Some(390..401), ..SuggestOptions::default() };
@@ -157,7 +167,8 @@ fn the_segments_of_the_planted_capture() {
         solved.report.warnings
     );
     for (name, table) in [("planted weights", &planted), ("solved weights", &solved.table)] {
-        let found = of(&table.weights, table.shape_names.len(), 200.0);
+        let names = &table.shape_names;
+        let found = of_named(&table.weights, names.len(), 200.0, names);
         let (mean, least) = overlaps(&found.segments, &truth);
         eprintln!("{name}: mean overlap {mean:.3}, least {least:.3}");
         assert!(mean > 0.85 && least > 0.7, "{name}: {mean} {least}");

@@ -44,7 +44,7 @@ fn four_seconds_of_solved_weights_fit_in_12_kb() {
             first_frame: 0,
             played: 0..240,
             content: TakeContent::Weights {
-                shape_names: avatar.shape_names.clone(),
+                shape_names: avatar.face_shapes().to_vec(),
                 weights: weights.clone(),
             },
         };
@@ -57,7 +57,7 @@ fn four_seconds_of_solved_weights_fit_in_12_kb() {
         else {
             panic!("{id}: markers");
         };
-        let n = avatar.shape_names.len();
+        let n = avatar.face_shapes().len();
         let skin = avatar.skin().unwrap();
         let mut worst = 0f64;
         for (exact, rounded) in weights.chunks_exact(n).zip(back.chunks_exact(n)).step_by(6) {

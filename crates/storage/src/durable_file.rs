@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
@@ -23,15 +23,56 @@ pub fn write_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let file = named(path, |builder, folder| {
-        // Readable for others as far as the process lets new files be.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        builder.tempfile_in(folder)
-    })?;
-    let mut buffer = BufWriter::new(file);
-    fill(&mut buffer)?;
-    finish(buffer.into_inner()?, path)
+    let mut draft = Draft::begin(path)?;
+    fill(&mut draft)?;
+    draft.finish()
+}
+
+/// A file that is being written, and stands under its name when it is finished. One that is dropped before
+/// is removed, and what was there is still there.
+#[derive(Debug)]
+pub struct Draft {
+    buffer: BufWriter<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Draft {
+    /// Begins a file that is to stand at `path`.
+    ///
+    /// # Errors
+    /// The folder is absent or cannot be written.
+    pub fn begin(path: &Path) -> io::Result<Self> {
+        let file = named(path, |builder, folder| {
+            // Readable for others as far as the process lets new files be.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+            builder.tempfile_in(folder)
+        })?;
+        Ok(Self { buffer: BufWriter::new(file), path: path.to_owned() })
+    }
+
+    /// Where it is to stand.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Brings it to disk under its name.
+    ///
+    /// # Errors
+    /// It cannot be written; then what was there is still there.
+    pub fn finish(self) -> io::Result<()> {
+        finish(self.buffer.into_inner()?, &self.path)
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.buffer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.buffer.flush()
+    }
 }
 
 /// Makes a folder with what `fill` puts into it, in the place of what was there. Its files are not brought

@@ -43,7 +43,8 @@ mod studies;
 mod wiper;
 
 pub use accounts::records::{
-    Account, AccountLink, ApiToken, AuditEntry, Exclusion, LinkPurpose, Role, UploadedStudy,
+    Account, AccountLink, ApiToken, AuditEntry, Exclusion, LinkPurpose, Role, StudyRole,
+    UploadedStudy,
 };
 pub use backup::deletions::{read_deletions, write_deletions};
 pub use backup::error::BackupError;
@@ -53,6 +54,7 @@ pub use backup::scrub::scrub_backup;
 pub use error::{MOST_SEQUENCES_REPORTED, StorageError};
 pub use handle::Storage;
 pub use records::{
-    Appended, Completed, Deletion, NewSession, Overdue, RecruitmentEntry, Registered,
-    SessionRecord, StoredEvent, StudyVersion, TimesSeen, Withdrawal, WrittenEvent, participant_id,
+    Appended, Completed, CountedEvent, CountedSo, Deletion, FIRST_SIGN_OF_LIFE_MS, KeptSums,
+    NewSession, Overdue, RecruitmentEntry, Registered, SessionRecord, SessionState, StoredEvent,
+    StudyVersion, TimesSeen, Withdrawal, WrittenEvent, participant_id,
 };

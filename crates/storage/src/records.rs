@@ -106,7 +106,17 @@ pub struct SessionRecord {
     pub receipt: Option<(String, u64)>,
 }
 
+/// Who has begun shows at once that a page is there, by its first events: until it has, a place is held for
+/// so long and no longer, milliseconds.
+pub const FIRST_SIGN_OF_LIFE_MS: i64 = 60_000;
+
 impl SessionRecord {
+    /// What its sums are to be made of.
+    pub fn counted(&self) -> CountedSo {
+        let receipt_events = self.receipt.as_ref().map(|(_, events)| *events);
+        CountedSo { event_count: self.event_count, receipt_events }
+    }
+
     /// Whether the answers are gone and nothing more is taken.
     pub fn is_deleted(&self) -> bool {
         self.deleted_ms.is_some()
@@ -115,8 +125,65 @@ impl SessionRecord {
     /// When the next sign of life is due at the latest, milliseconds since 1970: after that the session
     /// is abandoned.
     pub fn sign_of_life_due_ms(&self) -> i64 {
-        self.last_event_ms.unwrap_or(self.started_ms).saturating_add(self.slot_lasts_ms)
+        match self.last_event_ms {
+            Some(last) => last.saturating_add(self.slot_lasts_ms),
+            None => self.started_ms.saturating_add(self.slot_lasts_ms.min(FIRST_SIGN_OF_LIFE_MS)),
+        }
     }
+}
+
+/// An event of a session that counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CountedEvent {
+    /// Its place in the session, from 0.
+    pub sequence: u64,
+    /// When it happened, milliseconds of the page's clock.
+    pub at_ms: f64,
+    /// What happened; none where this version cannot read it.
+    pub kind: Option<EventKind>,
+}
+
+/// What a session's sums are made of: they are current as long as this is the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CountedSo {
+    /// How many events were stored.
+    pub event_count: u64,
+    /// How many of them the receipt covers.
+    pub receipt_events: Option<u64>,
+}
+
+/// Of a session what a list of many needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SessionState {
+    /// Key inside the database.
+    pub key: i64,
+    /// Participant number within the study.
+    pub participant: u64,
+    /// Version of the study.
+    pub config_hash: String,
+    /// The participant's condition; none in a study without.
+    pub condition: Option<String>,
+    /// How it stands by its events, whatever the time is.
+    pub standing: Standing,
+    /// Whether its answers are gone.
+    pub is_deleted: bool,
+    /// When the next sign of life is due at the latest, milliseconds since 1970.
+    pub sign_of_life_due_ms: i64,
+    /// What its sums are to be made of.
+    pub counted: CountedSo,
+    /// What the sums that are kept of it were made of; none where none are, of the form asked for.
+    pub summed: Option<CountedSo>,
+}
+
+/// The sums of a session as they are kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptSums {
+    /// Key of the session inside the database.
+    pub session_key: i64,
+    /// What they were made of.
+    pub counted: CountedSo,
+    /// JSON, of a form that storage does not know.
+    pub sums: String,
 }
 
 /// An event as it is stored.
@@ -145,8 +212,12 @@ impl WrittenEvent {
 /// An event as it lies in the database.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoredEvent {
-    /// The event as it came.
-    pub event: Event,
+    /// Its place in the session, from 0.
+    pub sequence: u64,
+    /// When it happened, milliseconds of the page's clock.
+    pub at_ms: f64,
+    /// JSON as it was stored.
+    pub body: String,
     /// The word for why it cannot be one of the session's (`Misfit::word`).
     pub misfit: Option<String>,
 }
@@ -257,5 +328,5 @@ pub fn participant_id(number: u64) -> String {
 }
 
 /// Tables with rows of a session (`session_key`) that are deleted with its answers.
-pub(crate) const PERSONAL_TABLES: [&str; 5] =
-    ["events", "event_conflicts", "recruitment", "repeat_marks", "exclusions"];
+pub(crate) const PERSONAL_TABLES: [&str; 6] =
+    ["events", "event_conflicts", "recruitment", "repeat_marks", "exclusions", "session_sums"];

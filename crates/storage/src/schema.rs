@@ -44,6 +44,11 @@ pub(crate) const MIGRATIONS: &[Migration] = &[
         sqlite: include_str!("migrations/sqlite/0006_keeping.sql"),
         postgres: include_str!("migrations/postgres/0006_keeping.sql"),
     },
+    Migration {
+        version: 7,
+        sqlite: include_str!("migrations/sqlite/0007_sums_and_roles.sql"),
+        postgres: include_str!("migrations/postgres/0007_sums_and_roles.sql"),
+    },
 ];
 
 /// The version of today's schema.

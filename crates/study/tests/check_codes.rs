@@ -8,8 +8,9 @@ use std::collections::BTreeSet;
 use mimique_study::Problem;
 use support::study_folder;
 
-/// Codes that no text of a study file can bring about; `upload` is of the archive around it.
-const NEVER: [&str; 2] = ["shape", "upload"];
+/// Codes that no text of a study file can bring about; `upload` is of the archive around it,
+/// `smoothing-advised`, `clips-unlike` and `not-prepared` of the captures and clips that it names.
+const NEVER: [&str; 5] = ["shape", "upload", "smoothing-advised", "clips-unlike", "not-prepared"];
 
 #[test]
 fn every_code_has_an_expected_report() {

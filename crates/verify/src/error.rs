@@ -13,6 +13,12 @@ pub enum VerifyError {
         /// What the system says.
         why: String,
     },
+    /// A file in the place of a folder.
+    #[error("{}: a file, and cases are folders; give the folder that holds it", file.display())]
+    NoFolder {
+        /// The file.
+        file: PathBuf,
+    },
     /// A text is not JSON.
     #[error("{}: line {line}, column {column}: no JSON ({why}); copy the file again", file.display())]
     Json {

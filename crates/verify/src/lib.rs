@@ -9,6 +9,8 @@
 //! | statistics | `expected.json` with `cases` | `mimique-stats` |
 //! | solver | `toy.json`, `operators.json`, `frames/` | `mimique-solver`, `mimique-stimulus` |
 //! | annotation | `segmentation.json`, `features.json`, `classify/`, `hmm/`, `evaluate/`, `elan/` | `mimique-annotate` |
+//! | layouts | `kmeans_*.json`, `greedy_*.json`, `avatar_*.json` … | `mimique-solver` |
+//! | exertion | `work/`, `heart/`, `metabolism/`, `activity/`, `breathing/`, `svr/`, `train/`, `rules/`, `weights/`, `chain/`, `errors/` | `mimique-exertion`, `mimique-exertion-training` |
 //! | psychophysics | `NAME.expected.json` with `kind` | `mimique-stats`, `mimique-adaptive` |
 //!
 //! A number that is wrong is a wrong [`Case`]; a file that cannot be read is a [`VerifyError`]. Names,
@@ -39,6 +41,9 @@ mod annotation;
 mod case;
 mod document;
 mod error;
+mod exertion;
+mod files;
+mod layouts;
 mod psychophysics;
 mod solver;
 mod statistics;
@@ -64,10 +69,12 @@ pub trait Family: Sync {
 }
 
 /// Every family.
-pub static FAMILIES: [&dyn Family; 4] = [
+pub static FAMILIES: [&dyn Family; 6] = [
     &statistics::Statistics,
     &solver::Solver,
-    &annotation::Annotation,
+    &annotation::ANNOTATION,
+    &exertion::Exertion,
+    &layouts::LAYOUTS,
     &psychophysics::Psychophysics,
 ];
 
@@ -79,6 +86,9 @@ const DEPTH: usize = 3;
 /// # Errors
 /// [`VerifyError`]: files that cannot be read, or [`VerifyError::NoCase`].
 pub fn verify(folder: &Path, each: &mut dyn FnMut(Case)) -> Result<usize, VerifyError> {
+    if folder.is_file() {
+        return Err(VerifyError::NoFolder { file: folder.to_owned() });
+    }
     let mut count = 0;
     search(folder, "", DEPTH, &mut |case| {
         count += 1;

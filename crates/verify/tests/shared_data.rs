@@ -90,6 +90,59 @@ fn annotation() {
 }
 
 #[test]
+fn layouts() {
+    let Some(cases) = all_right("layouts", "layouts") else { return };
+    for (begin, least) in [
+        ("open/kmeans_plane", 1),
+        ("open/kmeans_face", 1),
+        ("open/kmeans_symmetric", 1),
+        ("open/sogp_small", 1),
+        ("open/sogp_face", 1),
+        ("open/gp_face", 1),
+        ("open/curve_face/", 4),
+        ("open/greedy_face/", 5),
+        ("open/slip_face", 1),
+        ("open/qr_face", 1),
+        ("open/head_face", 1),
+        ("open/avatar_kmeans", 1),
+        ("open/avatar_greedy/", 2),
+        ("open/avatar_curve/", 4),
+    ] {
+        let found = of(&cases, begin).len();
+        assert!(found >= least, "{begin}: {found} cases");
+    }
+    assert!(values(&cases) > 7_000, "only {} values were compared", values(&cases));
+}
+
+#[test]
+fn exertion() {
+    let Some(cases) = all_right("exertion", "exertion") else { return };
+    let folder = real_file("exertion", "exertion/open").unwrap();
+    for (name, least) in [
+        ("work", 16),
+        ("heart", 15),
+        ("metabolism", 12),
+        ("activity", 3),
+        ("breathing", 13),
+        ("svr", 12),
+        ("train", 11),
+        ("rules", 3),
+        ("weights", 13),
+        ("chain", 4),
+    ] {
+        let found = of(&cases, &format!("open/{name}/")).len();
+        let files = std::fs::read_dir(folder.join(name)).unwrap().filter(|file| {
+            file.as_ref().unwrap().path().extension().is_some_and(|ending| ending == "json")
+        });
+        assert_eq!(found, files.count(), "{name}");
+        assert!(found >= least, "{name}: {found} cases");
+    }
+    let refusals = of(&cases, "open/errors/errors/").len();
+    assert!(refusals >= 25, "{refusals} refusals");
+    assert!(values(&cases) > 25_000, "only {} values were compared", values(&cases));
+}
+
+#[test]
 fn psychophysics() {
     let Some(cases) = all_right("psychophysics", "psychophysics") else { return };
     let folder = real_file("psychophysics", "psychophysics/open").unwrap();

@@ -1,13 +1,16 @@
-//! What Mimique's tests share: real data, Python and R outside the repository, and random numbers.
+//! What Mimique's tests and benchmarks share: real data, Python and R outside the repository, random
+//! numbers, a clock.
 //!
 //! Each finder gives its find, or says that the test is skipped and gives `None`. With
 //! `MIMIQUE_NO_SKIP=1` a test that would skip fails instead.
 
+mod clock;
 mod random;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+pub use clock::Clock;
 pub use random::Random;
 
 /// The folder of the real data: `MIMIQUE_DATA`, else `../shared/data` beside the repository.
@@ -64,6 +67,27 @@ pub fn rscript(test: &str) -> Option<PathBuf> {
         return Some(path);
     }
     skip(test, "Rscript not found; install the package r-base-core");
+    None
+}
+
+/// The folder of a module of the pages, for node: what `cargo xtask web` has built, or
+/// `MIMIQUE_WEB_DIST`.
+///
+/// # Panics
+/// Under `MIMIQUE_NO_SKIP=1` when node or the module is absent.
+pub fn web_module(test: &str, name: &str) -> Option<PathBuf> {
+    let target = std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| repository().join("target"), PathBuf::from);
+    let dist =
+        std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(|| target.join("web-dist"), PathBuf::from);
+    let file = format!("{name}_bg.wasm");
+    if !runs(Path::new("node"), &["--version"]) {
+        skip(test, "node is not installed");
+    } else if !dist.join(&file).is_file() {
+        skip(test, &format!("no {file} in {}; run cargo xtask web", dist.display()));
+    } else {
+        return Some(dist);
+    }
     None
 }
 

@@ -3,7 +3,7 @@
 //! Needs node and the module built by `cargo xtask web` (in `target/web-dist`, or where
 //! `MIMIQUE_WEB_DIST` says).
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use mimique_avatar::{Avatar, Mesh, Part, SparseShape};
@@ -14,28 +14,8 @@ use mimique_solver::{MarkerSite, Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MappedMarker, MarkerMap, MarkerPlace, TakeOptions, Training,
 };
+use mimique_test_support::{repository, web_module};
 use serde_json::json;
-
-fn repository() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-/// The folder of `solver.js`, or `None` after saying that the test is skipped.
-fn web_dist(test: &str) -> Option<PathBuf> {
-    let target = std::env::var_os("CARGO_TARGET_DIR")
-        .map_or_else(|| repository().join("target"), PathBuf::from);
-    let dist =
-        std::env::var_os("MIMIQUE_WEB_DIST").map_or_else(|| target.join("web-dist"), PathBuf::from);
-    let node = Command::new("node").arg("--version").output().is_ok_and(|o| o.status.success());
-    let missing = match (node, dist.join("solver_bg.wasm").is_file()) {
-        (true, true) => return Some(dist),
-        (false, _) => "node is not installed".to_owned(),
-        (true, false) => format!("no solver_bg.wasm in {}; run cargo xtask web", dist.display()),
-    };
-    assert!(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|v| v != "1"), "{test}: {missing}");
-    eprintln!("SKIPPED {test}: {missing}");
-    None
-}
 
 /// A bulging sheet of skin whose eight shapes are bumps here and there; the last would turn the eyes.
 fn avatar() -> Avatar {
@@ -184,7 +164,8 @@ fn write_cases(folder: &Path) {
 fn the_browser_s_module_gives_the_native_bits() {
     let folder = tempfile::tempdir().unwrap();
     write_cases(folder.path());
-    let Some(dist) = web_dist("the_browser_s_module_gives_the_native_bits") else { return };
+    let test = "the_browser_s_module_gives_the_native_bits";
+    let Some(dist) = web_module(test, "solver") else { return };
     let output = Command::new("node")
         .arg(repository().join("tests/wasm/solver_bits.mjs"))
         .args([&dist, folder.path()])

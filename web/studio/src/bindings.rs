@@ -14,14 +14,14 @@ pub fn start() {
 #[wasm_bindgen]
 #[derive(Debug, Default)]
 pub struct Studio {
-    workspace: Workspace,
+    pub(crate) workspace: Workspace,
 }
 
-fn text(value: serde_json::Value) -> String {
+pub(crate) fn text(value: serde_json::Value) -> String {
     value.to_string()
 }
 
-fn error(problem: Problem) -> JsError {
+pub(crate) fn error(problem: Problem) -> JsError {
     JsError::new(&problem.0)
 }
 
@@ -152,16 +152,17 @@ impl Studio {
 
     /// [`Workspace::solve`]; of a method with wrong parameters `{"problems": [...]}`, each with the field
     /// and the entry that it is about.
-    pub fn solve(
-        &mut self,
-        slot: &str,
-        method: &str,
-        hold_unseen: bool,
-    ) -> Result<String, JsError> {
+    pub fn solve(&mut self, slot: &str, method: &str) -> Result<String, JsError> {
         if let Some(problems) = crate::method_fields::problems(method) {
             return Ok(text(problems));
         }
-        self.workspace.solve(slot, method, hold_unseen).map(text).map_err(error)
+        self.workspace.solve(slot, method).map(text).map_err(error)
+    }
+
+    /// [`Workspace::named_method`].
+    #[wasm_bindgen(js_name = namedMethod)]
+    pub fn named_method(&self, method: &str) -> Result<String, JsError> {
+        self.workspace.named_method(method).map(text).map_err(error)
     }
 
     /// [`Workspace::forget`].

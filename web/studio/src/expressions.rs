@@ -28,6 +28,8 @@ struct Track {
     values: Vec<f64>,
     count: usize,
     rate_hz: f64,
+    /// Names of the blendshapes; none of markers.
+    names: Vec<String>,
 }
 
 impl Workspace {
@@ -48,8 +50,12 @@ impl Workspace {
                 .collect(),
             ..SuggestOptions::default()
         };
-        let channels =
-            Channels { values: &track.values, count: track.count, rate_hz: track.rate_hz };
+        let channels = Channels {
+            values: &track.values,
+            count: track.count,
+            rate_hz: track.rate_hz,
+            names: &track.names,
+        };
         let mut found = suggest(channels, &options).map_err(|e| Problem::of("expressions", e))?;
         let frames = track.values.len() / track.count.max(1);
         found.segments = cut(&found.segments, frames, track.rate_hz, LEAD_S, LEAD_S);
@@ -168,12 +174,13 @@ impl Workspace {
                 values: solved.table.weights.clone(),
                 count: solved.table.shape_names.len(),
                 rate_hz: solved.rate_hz,
+                names: solved.table.shape_names.clone(),
             });
         }
         if let Some(Take::Weights { table, .. }) = &self.take {
             let (_, rate_hz) = self.length()?;
-            let count = table.shape_names.len();
-            return Ok(Track { values: table.weights.clone(), count, rate_hz });
+            let names = table.shape_names.clone();
+            return Ok(Track { values: table.weights.clone(), count: names.len(), rate_hz, names });
         }
         let mut capture = self.capture()?.clone();
         if !self.map.head.is_empty() {
@@ -183,6 +190,7 @@ impl Workspace {
             count: 3 * capture.labels.len(),
             rate_hz: capture.rate_hz,
             values: coordinates(&capture.positions).to_vec(),
+            names: Vec::new(),
         })
     }
 }

@@ -15,8 +15,10 @@
 
 mod bindings;
 mod difference;
+mod exertion;
 mod expressions;
 mod labels;
+mod layout;
 mod markers;
 mod method_fields;
 mod picture;

@@ -4,16 +4,14 @@ use mimique_avatar::Avatar;
 use mimique_clip::weights_hash;
 use mimique_geometry::{DVec3, Point};
 use mimique_mocap::WeightsTable;
-use mimique_solver::{MarkerSite, Method, MethodSpec, Needs, SparseDeltas, SurfaceResponse};
+use mimique_solver::{MarkerSite, Method, MethodSpec, Needs, SurfaceResponse};
 use mimique_stimulus::{
-    RecordedWeights, SolvedCapture, TakeOptions, lock_shapes, solve_take, surface_avatar,
+    GazeStatistics, RecordedWeights, SolvedCapture, TakeOptions, lock_shapes, solve_take,
+    surface_avatar,
 };
 use serde_json::{Value, json};
 
 use crate::workspace::{Face, Problem, Take, Workspace};
-
-/// A shape that moves no marker farther is unseen, metres.
-const UNSEEN_M: f64 = 1e-3;
 
 /// The take solved by one method.
 #[derive(Debug)]
@@ -33,13 +31,12 @@ pub(crate) struct Solved {
 
 impl Workspace {
     /// Solves the take by a method (a `MethodSpec` as JSON) and keeps it under `slot`; answers facts
-    /// and the report's summary. With `hold_unseen`, shapes that move no marker stay at 0, except
-    /// those that the method bounds. `settings` of the facts are the method as it was solved, with
-    /// every shape that was held: what `mimique solve --settings` takes.
+    /// and the report's summary. `settings` of the facts are the method as it was asked for: what
+    /// `mimique solve --settings` takes.
     ///
     /// # Errors
     /// [`Problem`]: avatar, take or map are missing or do not fit, or the method does not solve.
-    pub fn solve(&mut self, slot: &str, method: &str, hold_unseen: bool) -> Result<Value, Problem> {
+    pub fn solve(&mut self, slot: &str, method: &str) -> Result<Value, Problem> {
         let given: Value = serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
         let mut spec = match MethodSpec::checked(&given) {
             Ok(spec) => spec,
@@ -61,34 +58,33 @@ impl Workspace {
                     "recorded needs weights; open a Live Link Face file, or a CSV of weights";
                 return Err(Problem::of("method", what));
             }
-            _ => {
-                let mut unseen = if hold_unseen { self.unseen(face)? } else { Vec::new() };
-                unseen.retain(|shape| !spec.bounds.contains_key(shape));
-                lock_shapes(&mut spec, &unseen);
-                let (solved, mut facts) = self.fitted(face, &spec)?;
-                facts["held"] = json!(unseen);
-                (solved, facts)
-            }
+            _ => self.fitted(face, &spec)?,
         };
         facts["settings"] = json!(spec);
         self.solved.insert(slot.to_owned(), solved);
         Ok(facts)
     }
 
-    /// Shapes that move no marker of map and capture by a millimetre.
-    fn unseen(&self, face: &Face) -> Result<Vec<String>, Problem> {
-        let capture = self.capture()?;
-        let sites = self.map.resolve(&face.skin).map_err(|e| Problem::of("marker map", e))?;
-        let mut marked = vec![false; face.skin.mesh.positions.len()];
-        for site in sites.iter().filter(|s| capture.marker_index(&s.label).is_some()) {
-            site.parts().for_each(|(vertex, _)| marked[vertex] = true);
-        }
-        let moves_marker = |shape: &SparseDeltas| {
-            (shape.vertices.iter().zip(&shape.deltas))
-                .any(|(&v, d)| marked[v as usize] && d.length() >= UNSEEN_M)
-        };
-        let shapes = face.skin.shape_names.iter().zip(&face.skin.mesh.shapes);
-        Ok(shapes.filter(|(_, s)| !moves_marker(s)).map(|(name, _)| name.clone()).collect())
+    /// The method of a file with its patterns (`"eyeLook*"`) replaced by the names that they match here.
+    ///
+    /// # Errors
+    /// [`Problem`]: no avatar yet, or text that is no method.
+    pub fn named_method(&self, method: &str) -> Result<Value, Problem> {
+        let spec: MethodSpec =
+            serde_json::from_str(method).map_err(|e| Problem::of("method", e))?;
+        let markers: Vec<String> = self.map.face.iter().map(|m| m.label.clone()).collect();
+        Ok(json!(spec.with_names_of(&self.face()?.skin.shape_names, &markers)))
+    }
+
+    /// Lays weights of something else under the avatar's names into a slot; answers facts.
+    pub(crate) fn put_recorded(
+        &mut self,
+        slot: &str,
+        table: &WeightsTable,
+    ) -> Result<Value, Problem> {
+        let (solved, facts) = recorded(self.face()?, slot, table)?;
+        self.solved.insert(slot.to_owned(), solved);
+        Ok(facts)
     }
 
     fn fitted(&self, face: &Face, spec: &MethodSpec) -> Result<(Solved, Value), Problem> {
@@ -118,6 +114,8 @@ impl Workspace {
             "rate_hz": report.rate_hz,
             "head_lowpass_hz": report.head_lowpass_hz,
             "gaze_at_rest": report.gaze_at_rest,
+            "gaze": report.gaze.as_ref().map(GazeStatistics::words),
+            "shapes_told": report.shapes_told,
             "shapes": table.shape_names,
             "neutral": report.neutral,
             "markers": report.markers,
@@ -271,8 +269,12 @@ impl Workspace {
         }
         let avatar = solved.avatar.as_ref().unwrap_or(&self.face()?.read.avatar);
         let count = solved.table.shape_names.len();
-        let weights: Vec<f32> =
-            solved.table.weights[first * count..end * count].iter().map(|&w| w as f32).collect();
+        let mut weights = Vec::new();
+        for row in solved.table.weights[first * count..end * count].chunks_exact(count) {
+            weights.extend(row.iter().map(|&w| w as f32));
+            // The shapes of the body rest.
+            weights.resize(weights.len() + avatar.shape_names.len() - count, 0.0);
+        }
         mimique_avatar_files::write_glb(avatar, &weights, solved.rate_hz)
             .map_err(|e| Problem::of("animation", e))
     }
@@ -294,7 +296,7 @@ fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Va
         "markers": [],
         "head": [],
         "summary": null,
-        "warnings": names.warnings(),
+        "warnings": names.warnings(true),
         "weights_hash": weights_hash(&table.weights),
         "own_avatar": false,
     });

@@ -22,6 +22,13 @@ pub(crate) struct TrainingFiles {
     head: Option<Vec<String>>,
 }
 
+impl TrainingFiles {
+    /// The weights with their name.
+    pub fn weights(&self) -> Option<(&String, &WeightsTable)> {
+        self.weights.as_ref().map(|(name, table)| (name, table))
+    }
+}
+
 impl Workspace {
     /// Takes the capture that `regression` learns from.
     ///
@@ -49,6 +56,7 @@ impl Workspace {
         let table =
             read_weights(bytes, &WeightOptions::default()).map_err(|e| Problem::of(file, e))?;
         self.training.weights = Some((file.to_owned(), table));
+        self.layout.motion_changed();
         Ok(self.training_state())
     }
 
@@ -62,6 +70,7 @@ impl Workspace {
             neutral: learnt_from.neutral,
             head: learnt_from.head,
         };
+        self.layout.motion_changed();
         self.training_state()
     }
 

@@ -15,7 +15,9 @@ use mimique_stimulus::{
 };
 use serde_json::{Value, json};
 
+use crate::exertion::ExertionDesk;
 use crate::labels::Labelling;
+use crate::layout::LayoutDesk;
 use crate::solved::Solved;
 use crate::training::TrainingFiles;
 
@@ -47,6 +49,8 @@ pub struct Workspace {
     pub(crate) segments: Vec<TakeSegment>,
     pub(crate) labels: Labelling,
     pub(crate) training: TrainingFiles,
+    pub(crate) layout: LayoutDesk,
+    pub(crate) exertion: ExertionDesk,
 }
 
 /// An avatar and its skin.
@@ -122,6 +126,7 @@ impl Workspace {
     ) -> Result<Value, Problem> {
         let skin = AvatarSkin::of(&read.avatar).map_err(|e| Problem::of(file, e))?;
         self.solved.clear();
+        self.layout.avatar_changed();
         self.map.face.clear();
         let face = self.face.insert(Face { read, skin, sites });
         let avatar = &face.read.avatar;
@@ -196,6 +201,8 @@ impl Workspace {
         self.solved.clear();
         self.segments.clear();
         self.labels.take_changed();
+        self.layout.motion_changed();
+        self.exertion.take_changed();
         let facts = match &take {
             Take::Markers { name, recording, .. } => {
                 let facts = CaptureFacts::of(recording);

@@ -1,7 +1,7 @@
 //! Labels as the page uses them: a model's suggestions, confirmed, relabelled, moved, learnt from,
 //! carried out.
 
-use mimique_annotate::{AnnotatedTake, Lesson, Mark, Marked, Method, Take};
+use mimique_annotate::{AnnotatedTake, Decoding, Lesson, Mark, Marked, Method, Take};
 use mimique_web_studio::Workspace;
 use serde_json::{Value, json};
 
@@ -38,14 +38,17 @@ fn model() -> String {
     let annotated = AnnotatedTake {
         name: "posed".to_owned(),
         person: "p1".to_owned(),
+        kind: "posed".to_owned(),
         take: Take::new(weights(1.0), 3, RATE_HZ).unwrap(),
         marked: marked.collect(),
     };
     let lesson = Lesson {
+        channel: "affect".to_owned(),
         labels: ["neutral", "joy", "anger"].map(str::to_owned).to_vec(),
         shapes: SHAPES.map(str::to_owned).to_vec(),
         method: Method::Knn { k: 5 },
-        thinned_to_hz: 10.0,
+        thinned_to_hz: Some(10.0),
+        decoding: Decoding::default(),
     };
     lesson.learn(&[annotated]).unwrap().to_json().unwrap()
 }

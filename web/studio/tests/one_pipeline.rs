@@ -149,7 +149,7 @@ impl Laboratory {
         if spec.method == Method::Recorded {
             workspace.take_file("recorded.csv", &self.bytes("recorded.csv"), None, None).unwrap();
         }
-        let facts = workspace.solve("a", &serde_json::to_string(spec).unwrap(), false).unwrap();
+        let facts = workspace.solve("a", &serde_json::to_string(spec).unwrap()).unwrap();
         facts["weights_hash"].as_str().unwrap().to_owned()
     }
 
@@ -243,8 +243,9 @@ fn solve_studio_and_study_give_the_same_weights() {
             MethodSpec { head_lowpass_hz: Some(cutoff_hz), ..lsts.clone() },
         );
     }
+    methods.insert("smoothed".to_owned(), MethodSpec { rbf_smoothing: Some(0.1), ..lsts.clone() });
     let clips = laboratory.study(&methods);
-    assert_eq!(clips.len(), Method::ALL.len() + 2);
+    assert_eq!(clips.len(), Method::ALL.len() + 3);
     let take = laboratory.capture("take.csv");
     assert_on_steps(&laboratory.path("packs"), &clips["all.lsts"], &take);
 
@@ -259,7 +260,7 @@ fn solve_studio_and_study_give_the_same_weights() {
         assert_eq!(native, study.weights_hash, "{name}: solve and study");
         assert_eq!(native, laboratory.studio(&mut workspace, spec), "{name}: solve and studio");
         if spec.method.uses(Group::Shapes) {
-            assert_eyes_rest(&workspace.weights("a").unwrap(), &avatar.shape_names, name);
+            assert_eyes_rest(&workspace.weights("a").unwrap(), avatar.face_shapes(), name);
         }
         hashes.insert(native, name);
         let expected = match (spec.method, spec.head_lowpass_hz) {

@@ -23,7 +23,7 @@ fn the_built_in_actor_is_solved_without_any_file() {
     let state = workspace.map_state().unwrap();
     let placed = state["markers"].as_array().unwrap().iter().filter(|m| !m["vertex"].is_null());
     assert_eq!(placed.count(), 40);
-    let facts = workspace.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#, true).unwrap();
+    let facts = workspace.solve("a", r#"{"method": "lsts", "alpha": 0.3}"#).unwrap();
     let frames = facts["frames"].as_u64().unwrap() as usize;
     assert_eq!(workspace.weights("a").unwrap().len(), frames * 51);
     for series in ["residual", "kkt", "iterations"] {
@@ -33,15 +33,30 @@ fn the_built_in_actor_is_solved_without_any_file() {
     assert_eq!(facts["head_lowpass_hz"], 10.0);
     // No gaze is given: the eyes rest unless one asks for them.
     assert_eq!(facts["gaze_at_rest"].as_array().unwrap().len(), 8, "{facts}");
-    let held = facts["held"].as_array().unwrap();
-    assert!(held.contains(&"eyeLookInLeft".into()) && held.len() < 10, "{held:?}");
-    assert_eq!(facts["warnings"], serde_json::json!([]));
-    let resting = workspace.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#, false).unwrap();
+    let told = facts["shapes_told"].as_array().unwrap();
+    let state = |name: &str| &told.iter().find(|row| row["shape"] == name).unwrap()["state"];
+    assert_eq!(
+        (told.len(), state("eyeLookInLeft"), state("jawOpen")),
+        (51, &"atRest".into(), &"solved".into())
+    );
+    assert_eq!(state("mouthLeft"), "shared", "mouthRight does the same the other way");
+    // Another person acts than the avatar shows: smoothing is advised with what it gains, until it is chosen.
+    let warnings = facts["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].as_str().unwrap().contains("rbfSmoothing 0.1 lowers"), "{warnings:?}");
+    for smoothing in ["0", "0.1"] {
+        let chosen = format!(r#"{{"method": "lsts", "alpha": 0.3, "rbfSmoothing": {smoothing}}}"#);
+        let chosen = workspace.solve("b", &chosen).unwrap();
+        assert_eq!(chosen["warnings"], serde_json::json!([]), "{smoothing}");
+        assert_eq!(chosen["weights_hash"] == facts["weights_hash"], smoothing == "0");
+    }
+    let resting = workspace.solve("b", r#"{"method": "lsts", "alpha": 0.3}"#).unwrap();
     assert_eq!(resting["weights_hash"], facts["weights_hash"]);
     let asked = r#"{"method": "lsts", "alpha": 0.3, "gaze": "markers"}"#;
-    let free = workspace.solve("b", asked, false).unwrap();
+    let free = workspace.solve("b", asked).unwrap();
     assert_eq!(free["gaze_at_rest"], serde_json::json!([]));
-    assert!(free["warnings"][0].as_str().unwrap().contains("eyeLookInLeft"), "{free}");
+    let names = |warning: &Value| warning.as_str().unwrap().contains("eyeLookInLeft");
+    assert!(free["warnings"].as_array().unwrap().iter().any(names), "{free}");
 
     // Where the skin is and where it is asked to be agree with the residual.
     let frame = frames / 2;
@@ -59,8 +74,8 @@ fn the_built_in_actor_is_solved_without_any_file() {
 #[test]
 fn two_methods_differ_where_the_heat_map_says_so() {
     let mut workspace = built_in();
-    workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
-    workspace.solve("b", r#"{"method": "box"}"#, true).unwrap();
+    workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    workspace.solve("b", r#"{"method": "box"}"#).unwrap();
     let frame = 500;
     let same = workspace.difference("a", "a", frame).unwrap();
     assert_eq!((same.rms_mm, same.worst_mm), (0.0, 0.0));
@@ -98,18 +113,16 @@ fn the_map_goes_out_and_comes_back() {
         (workspace.set_neutral(9, 9).unwrap_err(), "9:9 of"),
         (workspace.map_file("broken.json", "{").unwrap_err(), "broken.json: JSON"),
         (
-            workspace.solve("a", r#"{"method": "regression"}"#, true).unwrap_err(),
+            workspace.solve("a", r#"{"method": "regression"}"#).unwrap_err(),
             "training: open a range of motion and its weights",
         ),
-        (workspace.solve("a", r#"{"method": "lasso"}"#, true).unwrap_err(), "method: "),
+        (workspace.solve("a", r#"{"method": "lasso"}"#).unwrap_err(), "method: "),
         (workspace.weights("c").unwrap_err(), "c: nothing is solved"),
     ] {
         assert!(problem.0.contains(part), "{problem}");
     }
     let mut empty = Workspace::new();
-    assert!(
-        empty.solve("a", r#"{"method": "lsts"}"#, true).unwrap_err().0.contains("no avatar yet")
-    );
+    assert!(empty.solve("a", r#"{"method": "lsts"}"#).unwrap_err().0.contains("no avatar yet"));
     let problem = empty.avatar_file("head.glb", b"glTF".to_vec(), None).unwrap_err();
     assert!(problem.0.starts_with("head.glb: "), "{problem}");
     let problem = empty.take_file("take.c3d", b"", None, None).unwrap_err();
@@ -119,7 +132,7 @@ fn the_map_goes_out_and_comes_back() {
 #[test]
 fn expressions_are_suggested_mended_and_carried() {
     let mut workspace = built_in();
-    workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
     let found = workspace.suggest_expressions("a", "one, two").unwrap();
     let segments = found["segments"].as_array().unwrap();
     // Eighteen are played; what is suggested beyond them is a blink's length.
@@ -149,24 +162,27 @@ fn expressions_are_suggested_mended_and_carried() {
 #[test]
 fn what_is_exported_is_what_was_solved() {
     let mut workspace = built_in();
-    workspace.solve("a", r#"{"method": "box"}"#, true).unwrap();
+    workspace.solve("a", r#"{"method": "box"}"#).unwrap();
     let csv = workspace.weights_csv("a").unwrap();
     let glb = workspace.animated_glb("a", 60, 160).unwrap();
     let mut again = Workspace::new();
     let facts = again.avatar_file("animated.glb", glb, None).unwrap();
-    assert_eq!(facts["shapes"].as_array().unwrap().len(), 51);
+    assert_eq!(facts["shapes"].as_array().unwrap().len(), 54);
     again.take_file("weights.csv", csv.as_bytes(), None, None).unwrap();
-    let facts = again.solve("a", r#"{"method": "recorded"}"#, true).unwrap();
+    let facts = again.solve("a", r#"{"method": "recorded"}"#).unwrap();
     assert_eq!(facts["warnings"], serde_json::json!([]));
     let (a, b) = (workspace.weights("a").unwrap(), again.weights("a").unwrap());
-    assert_eq!(a.len(), b.len());
-    assert!(a.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-6));
+    // Recorded weights have the shapes of the body, too, which rest.
+    assert_eq!(a.len() / 51, b.len() / 54);
+    for (a, b) in a.chunks_exact(51).zip(b.chunks_exact(54)) {
+        assert!(a.iter().chain(&[0.0; 3]).zip(b).all(|(x, y)| (x - y).abs() < 1e-6));
+    }
 }
 
 #[test]
 fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
     let mut workspace = built_in();
-    let plain = workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let plain = workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
     let shapes: Vec<&str> =
         plain["shapes"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect();
     let column = |weights: &[f32], name: &str| -> Vec<f32> {
@@ -179,19 +195,24 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
     // No gaze is given, but the bounds of one of its shapes are: it is not held.
     let method = r#"{"method": "lsts", "locked": ["mouthPucker"], "importance": {"chin": 0.0},
         "bounds": {"jawOpen": [0.1, 0.2], "eyeLookInLeft": [0.25, 0.25]}}"#;
-    let facts = workspace.solve("b", method, true).unwrap();
+    let facts = workspace.solve("b", method).unwrap();
     let weights = workspace.weights("b").unwrap();
     assert!(column(&weights, "jawOpen").iter().all(|w| (0.1..=0.2).contains(w)));
     assert!(column(&weights, "mouthPucker").iter().all(|&w| w == 0.0));
     assert!(column(&weights, "eyeLookInLeft").iter().all(|&w| w == 0.25));
     let settings = &facts["settings"];
-    let locked = settings["locked"].as_array().unwrap();
-    assert!(locked.contains(&"mouthPucker".into()) && locked.contains(&"eyeLookInRight".into()));
-    assert!(!locked.contains(&"eyeLookInLeft".into()), "{settings}");
-    // Without the studio's own holding they are the whole method.
-    let again = workspace.solve("c", &settings.to_string(), false).unwrap();
+    assert_eq!(settings["locked"], serde_json::json!(["mouthPucker"]));
+    // They are the whole method: what is held follows from it.
+    let again = workspace.solve("c", &settings.to_string()).unwrap();
     assert_eq!(again["weights_hash"], facts["weights_hash"]);
     assert_ne!(again["weights_hash"], plain["weights_hash"]);
+
+    // A pattern is the names that it matches here.
+    let named = workspace
+        .named_method(r#"{"method": "lsts", "locked": ["brow*Left"], "importance": {"nose_*": 2}}"#)
+        .unwrap();
+    assert_eq!(named["locked"], serde_json::json!(["browDownLeft", "browOuterUpLeft"]));
+    assert!(named["importance"]["nose_tip"] == 2.0, "{named}");
 
     for (method, part) in [
         (
@@ -201,7 +222,7 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
         (r#"{"method": "lsts", "importance": {"chin": -1}}"#, "method: importance.chin: is -1"),
         (r#"{"method": "lsts", "bounds": {"jaw": [0, 1]}}"#, "jaw"),
     ] {
-        let problem = workspace.solve("a", method, true).unwrap_err();
+        let problem = workspace.solve("a", method).unwrap_err();
         assert!(problem.0.contains(part), "{problem}");
     }
 }
@@ -213,7 +234,7 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     assert_eq!(workspace.training_state()["missing"], "open a range of motion and its weights");
     let state = workspace.built_in_training(1);
     assert_eq!(state["missing"], Value::Null);
-    let facts = workspace.solve("a", method, true).unwrap();
+    let facts = workspace.solve("a", method).unwrap();
     let built_in_weights = workspace.weights("a").unwrap();
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 5.0, "{}", facts["summary"]);
 
@@ -235,11 +256,11 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     let state = workspace.training_take("rom.csv", text.as_bytes(), None, None).unwrap();
     let missing = format!("rom.csv has {frames} frames, rom-weights.csv 99; give a row");
     assert!(state["missing"].as_str().unwrap().starts_with(&missing), "{state}");
-    assert!(workspace.solve("a", method, true).unwrap_err().0.contains("rom-weights.csv 99"));
+    assert!(workspace.solve("a", method).unwrap_err().0.contains("rom-weights.csv 99"));
     let state = workspace.training_weights("rom-weights.csv", table.to_csv().as_bytes()).unwrap();
     assert_eq!((&state["missing"], &state["neutral"]), (&Value::Null, &serde_json::json!([0, 60])));
     workspace.set_training_neutral(take.neutral[0], take.neutral[1]).unwrap();
-    workspace.solve("a", method, true).unwrap();
+    workspace.solve("a", method).unwrap();
     let weights = workspace.weights("a").unwrap();
     assert_eq!(weights, built_in_weights);
     assert!(weights.iter().any(|&w| w > 0.3));
@@ -262,6 +283,6 @@ fn a_real_capture_is_matched_and_solved_without_help() {
     workspace.take_file("JawMoCap.c3d", &read("animface/JawMoCap.c3d"), None, None).unwrap();
     let state = workspace.suggest_map().unwrap();
     assert!(state["suggestion"]["notes"].is_array());
-    let facts = workspace.solve("a", r#"{"method": "lsts"}"#, true).unwrap();
+    let facts = workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
 }

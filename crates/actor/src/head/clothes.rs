@@ -1,6 +1,7 @@
 //! A plain shirt that ends the neck.
 
-use super::muscles::SHAPE_NAMES;
+use super::muscles::{HEAD_SHAPES, risen};
+use super::sparse;
 use super::vec3::{mix, v3};
 use mimique_avatar::{Avatar, Mesh, Part, SparseShape};
 use std::f64::consts::TAU;
@@ -21,9 +22,9 @@ const RINGS: [[f64; 4]; 10] = [
 ];
 const SEGMENTS: usize = 64;
 
-/// Add the shirt; nothing of a face moves it.
+/// Add the shirt; nothing of a face moves it, only the breath.
 pub(crate) fn add(avatar: &mut Avatar, chin_y: f64, neck: f64) {
-    let mut positions = Vec::new();
+    let mut at = Vec::new();
     for (r, &[y, breadth, depth, z]) in RINGS.iter().enumerate() {
         // The collar fits this person's neck; the shoulders are everyone's.
         let fit = mix(neck, 1.0, (r as f64 - 4.0).max(0.0) / 5.0);
@@ -32,8 +33,7 @@ pub(crate) fn add(avatar: &mut Avatar, chin_y: f64, neck: f64) {
             let (x, front) = (libm::sin(turn), libm::cos(turn));
             // The collar dips in front.
             let dip = if r < 6 { -13.0 * (0.5 + 0.5 * front) } else { -6.0 * front.max(0.0) };
-            positions
-                .push(v3(x * breadth * fit, chin_y + y + dip, z + front * depth * fit).metres());
+            at.push(v3(x * breadth * fit, chin_y + y + dip, z + front * depth * fit));
         }
     }
     let mut triangles = Vec::new();
@@ -44,14 +44,18 @@ pub(crate) fn add(avatar: &mut Avatar, chin_y: f64, neck: f64) {
             triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
         }
     }
+    let shape = |name: &&str| match *name {
+        "breath" => sparse(at.iter().map(|&p| risen(p, chin_y))),
+        _ => SparseShape::default(),
+    };
     avatar.meshes.push(Mesh {
         name: "shirt".to_string(),
         part: Part::Other,
-        positions,
+        positions: at.iter().map(|p| p.metres()).collect(),
         triangles,
         vertex_colours: Vec::new(),
         base_colour: [0.055, 0.075, 0.105],
-        shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        shapes: HEAD_SHAPES.iter().map(shape).collect(),
         ..Mesh::default()
     });
 }

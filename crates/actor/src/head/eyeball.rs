@@ -2,7 +2,7 @@
 
 use super::eyelids::Eye;
 use super::identity::Identity;
-use super::muscles::SHAPE_NAMES;
+use super::muscles::HEAD_SHAPES;
 use super::vec3::{Vec3, mix, v3};
 use mimique_avatar::{Avatar, Eyeball, Look, Mesh, Part, SparseShape};
 use std::f64::consts::TAU;
@@ -70,7 +70,7 @@ fn looks(side: f64) -> Vec<Look> {
     .into_iter()
     .filter_map(|(stem, axis, radians)| {
         let name = format!("{stem}{suffix}");
-        let shape = SHAPE_NAMES.iter().position(|s| *s == name)?;
+        let shape = HEAD_SHAPES.iter().position(|s| *s == name)?;
         Some(Look { shape, axis, radians: radians as f32 })
     })
     .collect()
@@ -112,7 +112,7 @@ fn ball(name: &str, part: Part, centre: Vec3, radius: f64, who: &Identity) -> Me
         triangles,
         vertex_colours,
         base_colour: [0.8, 0.78, 0.75],
-        shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        shapes: vec![SparseShape::default(); HEAD_SHAPES.len()],
         ..Mesh::default()
     }
 }

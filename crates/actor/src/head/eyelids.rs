@@ -16,7 +16,8 @@ pub(crate) struct Eye {
     pub radius: f64,
     /// Slant, degrees.
     tilt: f64,
-    /// Heights of the opening above and below the line through the corners, degrees.
+    /// Heights of the opening above and below the line through the corners, degrees: at rest the upper
+    /// lid covers the iris by a millimetre or two, the lower one touches it.
     upper: f64,
     lower: f64,
     brow_y: f64,
@@ -62,8 +63,8 @@ impl Eye {
             centre: at.eye,
             radius: at.eye_radius,
             tilt: 3.5 + 1.2 * who.eye_tilt - 2.0 * who.age,
-            upper: 23.5 - 2.0 * who.masculinity - 2.5 * who.age,
-            lower: 19.5 - 1.5 * who.masculinity,
+            upper: 18.5 - 1.5 * who.masculinity - 1.5 * who.age,
+            lower: 18.2 - 1.0 * who.masculinity,
             brow_y: at.brow_y,
             hood: 0.5 * who.masculinity + 1.2 * who.age,
         }

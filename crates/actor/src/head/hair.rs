@@ -1,7 +1,7 @@
 //! Hair on the skull and the brows: layers over the skin, which carry the skin's own displacements.
 
 use super::identity::Identity;
-use super::muscles::SHAPE_NAMES;
+use super::muscles::HEAD_SHAPES;
 use super::sculpt::Landmarks;
 use super::topology::{Feature, Site, Topology};
 use super::vec3::{Vec3, bump, mix, smoothstep, v3};
@@ -75,21 +75,29 @@ pub(crate) fn add_cap(
 ) {
     let inside = depths_inside_hair(skin, fine, topology, who);
     let (from, triangles) = haired_skin(skin, &inside);
+    let roots = roots(skin, &inside, &from);
+    let place = |values: &[Vec3]| -> Vec<Vec3> {
+        let mixed = |&(a, b, f): &(usize, usize, f64)| values[a].lerp(values[b], f);
+        roots.iter().map(mixed).collect()
+    };
+    let depth = |&(a, b, f): &(usize, usize, f64)| mix(inside[a], inside[b], f);
+    let (at, normals) = (place(skin.positions), place(&skin.normals));
+    let lift = |((&p, n), root)| lifted(p, Vec3::unit(n), depth(root), who).metres();
     let colour = who.hair_colour;
     avatar.meshes.push(Mesh {
         name: "hair".to_string(),
         part: Part::Hair,
-        positions: from.iter().map(|&v| lifted(skin, v, inside[v], who).metres()).collect(),
+        positions: at.iter().zip(normals).zip(&roots).map(lift).collect(),
         triangles,
-        vertex_colours: from
+        vertex_colours: at
             .iter()
-            .map(|&v| {
-                let shine = 1.0 + 0.28 * lock(skin.positions[v]) as f32;
+            .map(|&p| {
+                let shine = 1.0 + 0.28 * lock(p) as f32;
                 colour.map(|c| c * shine)
             })
             .collect(),
         base_colour: colour,
-        shapes: skin.shapes.iter().map(|d| sparse(from.iter().map(|&v| d[v]))).collect(),
+        shapes: skin.shapes.iter().map(|d| sparse(place(d).into_iter())).collect(),
         ..Mesh::default()
     });
 }
@@ -125,13 +133,43 @@ fn depths_inside_hair(
         .collect()
 }
 
+/// How far before the hair line the first hairs stand, mm: the mesh ends there, and the stage thins it
+/// out towards its border.
+const FRINGE: f64 = 4.0;
+
+/// Where on the skin each vertex of the hair stands: between two vertices of the skin, and how far from
+/// the first to the second. Those before the fringe are drawn in along an edge, so that the border
+/// is a smooth line on any mesh.
+fn roots(skin: &SkinLayer, inside: &[f64], from: &[usize]) -> Vec<(usize, usize, f64)> {
+    let mut deepest: Vec<Option<usize>> = vec![None; skin.positions.len()];
+    for quad in skin.quads {
+        for k in 0..4 {
+            for (v, next) in [(quad[k], quad[(k + 1) % 4]), (quad[(k + 1) % 4], quad[k])] {
+                let (v, next) = (v as usize, next as usize);
+                if inside[next] > inside[deepest[v].unwrap_or(v)] {
+                    deepest[v] = Some(next);
+                }
+            }
+        }
+    }
+    let root = |&v: &usize| match deepest[v] {
+        Some(next) if inside[v] < -FRINGE && inside[next] > -FRINGE => {
+            // Not wholly to the next one: its triangles would be empty.
+            let f = (-FRINGE - inside[v]) / (inside[next] - inside[v]);
+            (v, next, f.min(0.85))
+        }
+        _ => (v, v, 0.0),
+    };
+    from.iter().map(root).collect()
+}
+
 /// The part of the skin that the hair covers: the skin's vertices, and triangles of them.
 fn haired_skin(skin: &SkinLayer, inside: &[f64]) -> (Vec<usize>, Vec<[u32; 3]>) {
     let mut own = vec![u32::MAX; skin.positions.len()];
     let mut from = Vec::new();
     let mut triangles = Vec::new();
     for quad in skin.quads {
-        if quad.iter().all(|&v| inside[v as usize] < 0.0)
+        if quad.iter().all(|&v| inside[v as usize] < -FRINGE)
             || quad.iter().any(|&v| inside[v as usize] < -60.0)
         {
             continue;
@@ -158,17 +196,18 @@ fn lock(p: Vec3) -> f64 {
         + libm::sin(across * 1.13 + 0.6 + 1.1 * libm::sin(p.z * 0.08)) * 0.4
 }
 
-/// A vertex of the skin lifted to the surface of the hair.
-fn lifted(skin: &SkinLayer, v: usize, depth: f64, who: &Identity) -> Vec3 {
-    let (p, n) = (skin.positions[v], skin.normals[v]);
+/// A place on the skin with its normal lifted to the surface of the hair.
+fn lifted(p: Vec3, n: Vec3, depth: f64, who: &Identity) -> Vec3 {
     let top = smoothstep(30.0, 100.0, p.y);
     let full = mix(mix(6.5, 5.0, who.masculinity), mix(11.5, 13.0, who.masculinity), top);
     let full = full - 3.0 * who.age * who.masculinity;
     // A lick over the forehead on one side of the parting.
     let lick =
         5.0 * bump((p.x - 4.0) / 24.0) * bump((p.y - 88.0) / 16.0) * smoothstep(0.0, 50.0, p.z);
-    // Straight through zero, so that the visible edge is the hair line itself on any mesh.
-    let rise = 0.26 * depth.clamp(-10.0, 5.0) + (full - 1.3 + lick) * smoothstep(3.0, 26.0, depth);
+    // Flat on the skin at its border.
+    let rise = 0.35
+        + 0.18 * (depth + FRINGE).clamp(0.0, 9.0)
+        + (full - 2.0 + lick) * smoothstep(1.0, 26.0, depth);
     let relief = 0.75 * lock(p) * smoothstep(3.0, 16.0, depth);
     p + n * (rise + relief)
 }
@@ -185,9 +224,10 @@ fn brow_line(s: f64, who: &Identity, at: &Landmarks) -> (f64, f64, f64) {
     // Rises to two thirds, then falls to the tail.
     let y = at.brow_y - 0.2
         + arch * (smoothstep(0.0, 0.66, s) - 1.25 * libm::pow(((s - 0.62) / 0.38).max(0.0), 1.7));
-    let half = (3.1 + 0.9 * m + 0.45 * who.brow_weight)
-        * mix(0.42, 1.0, smoothstep(0.0, 0.16, s))
-        * mix(1.0, 0.2, libm::pow(s, 2.2));
+    // The stage thins the hairs out towards the border.
+    let half = (4.8 + 0.9 * m + 0.45 * who.brow_weight)
+        * mix(0.55, 1.0, smoothstep(0.0, 0.16, s))
+        * mix(1.0, 0.34, libm::pow(s, 2.2));
     (x, y, half)
 }
 
@@ -213,7 +253,7 @@ pub(crate) fn add_brows(avatar: &mut Avatar, skin: &SkinLayer, who: &Identity, a
                 let round = (1.0 - t * t) * smoothstep(0.0, 0.06, s) * smoothstep(1.0, 0.9, s);
                 let tuft = 0.5 + 0.5 * libm::sin(s * 88.0 + t * 2.2);
                 let lift =
-                    -0.35 + (1.5 + 0.5 * tuft + 0.25 * who.masculinity) * libm::pow(round, 0.6);
+                    0.25 + (0.7 + 0.25 * tuft + 0.25 * who.masculinity) * libm::pow(round, 0.6);
                 positions.push(hit.mix(skin.positions) + hit.mix(&skin.normals).unit() * lift);
                 let tone = 0.8 + 0.4 * tuft;
                 colours.push(v3(r, g, b) * tone);
@@ -351,7 +391,7 @@ pub(crate) fn add_knot(avatar: &mut Avatar, who: &Identity) {
         triangles,
         vertex_colours,
         base_colour: who.hair_colour,
-        shapes: vec![SparseShape::default(); SHAPE_NAMES.len()],
+        shapes: vec![SparseShape::default(); HEAD_SHAPES.len()],
         ..Mesh::default()
     });
 }

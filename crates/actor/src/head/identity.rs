@@ -66,7 +66,7 @@ const IRIS: [[f32; 3]; 5] = [
     [0.17, 0.10, 0.035],
     [0.10, 0.15, 0.07],
     [0.16, 0.20, 0.22],
-    [0.08, 0.17, 0.29],
+    [0.10, 0.17, 0.24],
 ];
 
 /// Hair colours, linear RGB: black, dark brown, brown, auburn, blond.

@@ -29,7 +29,7 @@ pub(crate) fn add(avatar: &mut Avatar, cage: &Cage, shapes: &[Vec<Vec3>], who: &
                 * libm::pow(libm::sin(PI * mix(0.1, 0.95, u)), 0.35)
                 * mix(1.0, 0.7, who.masculinity);
             let root = rest.at(eye, u);
-            let beside = (rest.at(eye, u + 0.012) - root).unit() * 0.32;
+            let beside = (rest.at(eye, u + 0.012) - root).unit() * 0.44;
             let radial = (root - centre).unit();
             // Forward, then curled up; splayed towards the temple at the outer end.
             let splay = v3(side * mix(-0.45, 0.85, u), 0.0, 0.0);

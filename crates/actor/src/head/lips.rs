@@ -97,7 +97,7 @@ pub(crate) fn place_lips(t: &Topology, sculpt: &Sculpt, at: &Landmarks, p: &mut 
 
 /// Height of the line where the lips meet, relative to the mouth's height.
 fn meeting_line(t: f64) -> f64 {
-    -0.7 * bump(t / 0.22) + 0.5 * bump((t.abs() - 0.45) / 0.25) + 1.7 * t * t * t * t
+    -0.7 * bump(t / 0.22) + 0.4 * bump((t.abs() - 0.45) / 0.25) - 0.9 * t * t * t * t
 }
 
 /// Height of the red of a lip.

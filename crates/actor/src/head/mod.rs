@@ -25,6 +25,7 @@ mod topology;
 pub(crate) mod vec3;
 
 pub use identity::Identity;
+use muscles::HEAD_SHAPES;
 pub use muscles::SHAPE_NAMES;
 pub use sites::{MarkerSites, marker_sites};
 
@@ -280,7 +281,7 @@ pub fn build_head(spec: &HeadSpec) -> Avatar {
     lining.base_colour = [0.16, 0.035, 0.03];
     let mut avatar = Avatar {
         name: "Built-in head".to_string(),
-        shape_names: SHAPE_NAMES.iter().map(|s| s.to_string()).collect(),
+        shape_names: HEAD_SHAPES.iter().map(|s| s.to_string()).collect(),
         meshes: vec![skin, lining],
         eyeballs: Vec::new(),
         ..Avatar::default()

@@ -1,6 +1,6 @@
 //! Teeth and tongue: two arches of crowns and a tongue; the lower ones ride on the jaw.
 
-use super::muscles::{JawMotion, SHAPE_NAMES};
+use super::muscles::{HEAD_SHAPES, JawMotion};
 use super::vec3::{Vec3, mix, v3};
 use super::{Cage, sparse};
 use mimique_avatar::{Avatar, Mesh, Part, SparseShape};
@@ -43,12 +43,12 @@ fn mesh(
 }
 
 fn still() -> Vec<SparseShape> {
-    vec![SparseShape::default(); SHAPE_NAMES.len()]
+    vec![SparseShape::default(); HEAD_SHAPES.len()]
 }
 
 /// The shapes of something that is fixed to the jaw's bone.
 fn riding(bone: &JawMotion, positions: &[Vec3]) -> Vec<SparseShape> {
-    SHAPE_NAMES
+    HEAD_SHAPES
         .iter()
         .map(|&name| {
             let moved = |p: Vec3| match name {

@@ -149,7 +149,15 @@ impl Sculpt {
         );
         // Neck.
         let neck = at.neck;
-        s.cone(v3(0.0, -40.0, -19.0), v3(0.0, -220.0, -27.0), 44.0 * neck, 52.0 * neck, 20.0);
+        s.cone(v3(0.0, -40.0, -19.0), v3(0.0, -220.0, -27.0), 42.0 * neck, 50.0 * neck, 20.0);
+        // The sternomastoids, from behind the ears to the notch of the breastbone.
+        s.pair_cone(
+            v3(43.0 * neck, -62.0, -10.0),
+            v3(10.0, -182.0, 21.0 + 50.0 * (neck - 1.0)),
+            8.5,
+            7.0,
+            9.0,
+        );
         s
     }
 

@@ -10,4 +10,4 @@ mod weights;
 pub use range_of_motion::range_of_motion;
 pub use recipe::Emotion;
 pub use take::{NOISE_MM, Segment, SyntheticTake, range_of_motion_take, synthetic_take};
-pub use weights::{Clip, HeadPose, Performance, performance_weights};
+pub use weights::{Clip, HeadPose, Performance, Phases, performance_weights};

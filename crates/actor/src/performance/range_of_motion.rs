@@ -13,12 +13,13 @@ const GRIMACE_S: f64 = 0.9;
 const GRIMACES: usize = 80;
 
 /// Weights of a range of motion on an avatar's blendshapes: each alone to its full weight, the two
-/// sides of a pair in turn, then grimaces of three to seven shapes, both sides of a pair alike. The
+/// sides of a pair in turn, then grimaces of three to nine shapes, both sides of a pair alike. The
 /// head does not move.
 pub fn range_of_motion(shape_names: &[String], seed: u64, rate_hz: f64) -> Performance {
     let mut rng = Rng::new(seed ^ 0x726f_6d5f_6661_6365);
     let n = shape_names.len();
-    let mut out = Performance { rate_hz, shapes: n, weights: Vec::new(), head: Vec::new() };
+    let (weights, head) = (Vec::new(), Vec::new());
+    let mut out = Performance { rate_hz, shapes: n, weights, head, phases: None };
     let mut play = |peak: &[(usize, f64)], seconds: f64| {
         let frames = (seconds * rate_hz).round().max(2.0) as usize;
         for f in 0..frames {
@@ -36,7 +37,7 @@ pub fn range_of_motion(shape_names: &[String], seed: u64, rate_hz: f64) -> Perfo
         play(&[(shape, 1.0)], SHAPE_S);
     }
     for _ in 0..GRIMACES {
-        let count = 3 + (5.0 * rng.unit()) as usize;
+        let count = 3 + (7.0 * rng.unit()) as usize;
         let mut peak: Vec<(usize, f64)> = Vec::new();
         for _ in 0..count.min(n) {
             let shape = ((n as f64 * rng.unit()) as usize).min(n - 1);

@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Emotion {
-    /// AU 4 + 5 + 7 + 23.
+    /// AU 4 + 5 + 7 + 23 + 24.
     Anger,
-    /// AU 9 + 15 + 16.
+    /// AU 9 + 10 + 15 + 16 + 17.
     Disgust,
-    /// AU 1 + 2 + 4 + 5 + 20 + 26.
+    /// AU 1 + 2 + 4 + 5 + 20 + 25.
     Fear,
     /// AU 6 + 12.
     Joy,
@@ -53,39 +53,41 @@ impl Emotion {
     /// Weights at the apex of intensity 3.
     pub(super) fn recipe(self) -> &'static [Part] {
         match self {
-            // AU 4, 5, 7, 23, with a thrust jaw.
+            // AU 4, 5, 7, 23 and 24, with 10 and 17 and a thrust jaw.
             Emotion::Anger => &[
                 ("browDown", 1.0),
-                ("eyeWide", 0.40),
-                ("eyeSquint", 0.55),
-                ("mouthPress", 0.80),
-                ("mouthRollUpper", 0.25),
-                ("mouthFrown", 0.28),
-                ("noseSneer", 0.22),
+                ("eyeWide", 0.55),
+                ("eyeSquint", 0.65),
+                ("mouthPress", 1.0),
+                ("mouthRollUpper", 0.35),
+                ("mouthRollLower", 0.25),
+                ("mouthFrown", 0.25),
+                ("mouthShrugLower", 0.30),
+                ("noseSneer", 0.35),
                 ("jawForward", 0.40),
             ],
-            // AU 9, 15, 16, with 10 and 17, and narrow eyes under a brow that hardly frowns: as strong
-            // a frown as anger's makes a snarl of it.
+            // AU 9, 10, 15, 16 and 17, and cheeks that the wrinkled nose lifts; the brows come down no
+            // further than the nose draws them: any frown makes a snarl of it.
             Emotion::Disgust => &[
                 ("noseSneer", 1.0),
-                ("mouthUpperUp", 0.45),
-                ("mouthFrown", 0.80),
-                ("mouthLowerDown", 0.18),
-                ("mouthShrugLower", 0.75),
-                ("browDown", 0.15),
-                ("eyeSquint", 1.0),
+                ("mouthUpperUp", 0.30),
+                ("mouthFrown", 0.40),
+                ("mouthLowerDown", 0.12),
+                ("mouthShrugLower", 1.0),
+                ("eyeSquint", 0.65),
                 ("cheekSquint", 0.90),
-                ("eyeBlink", 0.12),
             ],
-            // AU 1, 2, 4, 5, 20, 26.
+            // AU 1, 2, 4, 5, 20 and 25: brows raised and drawn together, upper lids up over tense lower
+            // ones, lips stretched flat and parted. The jaw hardly drops: that is surprise.
             Emotion::Fear => &[
                 ("browInnerUp", 1.0),
-                ("browOuterUp", 0.45),
-                ("browDown", 0.40),
-                ("eyeWide", 0.95),
-                ("mouthStretch", 0.85),
+                ("browOuterUp", 0.55),
+                ("browDown", 0.60),
+                ("eyeWide", 1.0),
+                ("eyeSquint", 0.30),
+                ("mouthStretch", 1.0),
                 ("mouthLowerDown", 0.35),
-                ("jawOpen", 0.28),
+                ("jawOpen", 0.14),
             ],
             // AU 6, 12, and 25 when strong.
             Emotion::Joy => &[

@@ -1,7 +1,7 @@
 //! Synthetic motion capture: a built-in head performs clips with markers stuck to it.
 
 use super::range_of_motion::range_of_motion;
-use super::weights::{Clip, HeadPose, performance_weights};
+use super::weights::{Clip, HeadPose, Phases, performance_weights};
 use crate::MarkerSites;
 use crate::head::rng::Rng;
 use crate::head::vec3::{Vec3, v3};
@@ -41,6 +41,8 @@ pub struct Segment {
     pub emotion: String,
     /// 1 to 3.
     pub intensity: u8,
+    /// When the expression comes and goes, frames of the take; none of a range of motion.
+    pub phases: Option<Phases>,
 }
 
 impl SyntheticTake {
@@ -78,7 +80,7 @@ pub fn synthetic_take(
     seed: u64,
     noise_mm: f64,
 ) -> SyntheticTake {
-    let n = actor.shape_names.len();
+    let n = actor.face_shapes().len();
     let mut session = Session::new(actor, sites, seed, noise_mm, RATE_HZ);
     let rest = vec![0.0; n];
     for _ in 0..NEUTRAL_FRAMES {
@@ -86,7 +88,7 @@ pub fn synthetic_take(
     }
     let mut first = NEUTRAL_FRAMES;
     for clip in clips {
-        let played = performance_weights(&actor.shape_names, clip, RATE_HZ, CLIP_S);
+        let played = performance_weights(actor.face_shapes(), clip, RATE_HZ, CLIP_S);
         for f in 0..played.frames() {
             session.record(played.frame(f), &played.head[f]);
         }
@@ -97,6 +99,7 @@ pub fn synthetic_take(
             end: first + played.frames(),
             emotion: emotion.to_string(),
             intensity: clip.intensity,
+            phases: played.phases.map(|phases| phases.later(first)),
         });
         first += played.frames();
     }
@@ -112,11 +115,11 @@ pub fn range_of_motion_take(
     noise_mm: f64,
 ) -> SyntheticTake {
     let mut session = Session::new(actor, sites, seed, noise_mm, TRAINING_RATE_HZ);
-    let rest = vec![0.0; actor.shape_names.len()];
+    let rest = vec![0.0; actor.face_shapes().len()];
     for _ in 0..NEUTRAL_FRAMES {
         session.record(&rest, &HeadPose::default());
     }
-    let played = range_of_motion(&actor.shape_names, seed, TRAINING_RATE_HZ);
+    let played = range_of_motion(actor.face_shapes(), seed, TRAINING_RATE_HZ);
     for f in 0..played.frames() {
         session.record(played.frame(f), &played.head[f]);
     }
@@ -126,6 +129,7 @@ pub fn range_of_motion_take(
         end: NEUTRAL_FRAMES + played.frames(),
         emotion: "none".to_owned(),
         intensity: 0,
+        phases: None,
     });
     session.take
 }
@@ -150,7 +154,7 @@ impl Session {
             neutral: [0, NEUTRAL_FRAMES],
             segments: Vec::new(),
             truth: Vec::new(),
-            shape_names: actor.shape_names.clone(),
+            shape_names: actor.face_shapes().to_vec(),
         };
         Session { rng: Rng::new(seed ^ 0x7461_6b65_5f6e_6f69), noise_mm, markers, take }
     }

@@ -38,6 +38,41 @@ pub struct Performance {
     pub weights: Vec<f64>,
     /// One pose per frame.
     pub head: Vec<HeadPose>,
+    /// When the expression comes and goes; none of a range of motion.
+    pub phases: Option<Phases>,
+}
+
+/// When an expression comes and goes, frames. Single shapes begin up to a few hundredths of a second
+/// earlier or later.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Phases {
+    /// The first frame of the way from rest to the apex.
+    pub attack: usize,
+    /// The first frame of the apex.
+    pub apex: usize,
+    /// The first frame of the way back.
+    pub release: usize,
+    /// The first frame at rest again.
+    pub rest: usize,
+}
+
+impl Phases {
+    fn of(whole: &Envelope, rate_hz: f64, frames: usize) -> Self {
+        let frame = |t: f64| ((t * rate_hz).round().max(0.0) as usize).min(frames);
+        let Envelope { start, attack, release_at, release } = *whole;
+        Self {
+            attack: frame(start),
+            apex: frame(start + attack),
+            release: frame(release_at),
+            rest: frame(release_at + release),
+        }
+    }
+
+    /// The same, that many frames later.
+    pub fn later(self, by: usize) -> Self {
+        let Self { attack, apex, release, rest } = self;
+        Self { attack: attack + by, apex: apex + by, release: release + by, rest: rest + by }
+    }
 }
 
 impl Performance {
@@ -101,6 +136,7 @@ pub fn performance_weights(
         shapes: n,
         weights: vec![0.0; frames * n],
         head: Vec::with_capacity(frames),
+        phases: Some(Phases::of(&whole, rate_hz, frames)),
     };
     for f in 0..frames {
         let t = f as f64 / rate_hz;
@@ -160,7 +196,7 @@ fn courses(
     let squeeze = squeeze(duration);
     let lead = rng.range(0.008, 0.030) * squeeze;
     let left_leads = rng.unit() < 0.6;
-    let uneven = rng.range(0.02, 0.07);
+    let uneven = rng.range(0.01, 0.04);
     let mut courses = Vec::new();
     for &(stem, weight) in clip.emotion.recipe() {
         let late = rng.range(-0.02, 0.05) * squeeze;

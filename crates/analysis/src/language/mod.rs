@@ -50,19 +50,19 @@ impl Language {
     }
 
     /// A number with this language's decimal mark.
-    pub(crate) fn number(self, value: f64) -> String {
+    pub fn number(self, value: f64) -> String {
         self.mark(mimique_stats::format_number(value))
     }
 
     /// A number with a fixed count of decimals.
-    pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
+    pub fn fixed(self, value: f64, decimals: usize) -> String {
         let text = format!("{value:.decimals$}");
         let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
         self.mark(if zero { text.trim_start_matches('-').to_owned() } else { text })
     }
 
     /// A share in percent.
-    pub(crate) fn percent(self, share: f64) -> String {
+    pub fn percent(self, share: f64) -> String {
         format!("{:.0} %", share * 100.0)
     }
 

@@ -2,15 +2,18 @@
 
 /// A report.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Document {
+pub struct Document {
+    /// Its title.
     pub title: String,
+    /// What it is about, in a line.
     pub subtitle: String,
+    /// Its parts, in order.
     pub blocks: Vec<Block>,
 }
 
 /// One part of a report.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Block {
+pub enum Block {
     /// Level 2 or 3.
     Heading(u8, String),
     /// Running text.
@@ -19,16 +22,22 @@ pub(crate) enum Block {
     Reading(String),
     /// What to mind.
     Caution(String),
+    /// A table.
     Table(DataTable),
+    /// A drawing.
     Figure(Figure),
 }
 
 /// A table of text cells; `id` names its file.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct DataTable {
+pub struct DataTable {
+    /// Name of its file, a letter, digit or hyphen each.
     pub id: String,
+    /// What it shows.
     pub caption: String,
+    /// Headings of the columns.
     pub columns: Vec<String>,
+    /// Cells, a row each.
     pub rows: Vec<Vec<String>>,
     /// A first line of headings over groups of columns: text and number of columns.
     pub groups: Vec<(String, usize)>,
@@ -36,16 +45,31 @@ pub(crate) struct DataTable {
 
 /// A drawing with its caption, its description for those who do not see it, and its data.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Figure {
+pub struct Figure {
+    /// Name of its file, a letter, digit or hyphen each.
     pub id: String,
+    /// What it shows.
     pub caption: String,
+    /// The same for those who do not see it.
     pub alt: String,
+    /// The drawing.
     pub svg: String,
+    /// What it is drawn of.
     pub data: DataTable,
 }
 
+impl Block {
+    /// A figure whose own label is its description.
+    pub fn figure(mut figure: Figure) -> Self {
+        let label = |text: &str| format!("aria-label=\"{}\"", escape(text));
+        figure.svg = figure.svg.replacen(&label(&figure.caption), &label(&figure.alt), 1);
+        Self::Figure(figure)
+    }
+}
+
 impl DataTable {
-    pub(crate) fn new(
+    /// A table without rows.
+    pub fn new(
         id: impl Into<String>,
         caption: impl Into<String>,
         columns: impl IntoIterator<Item = impl Into<String>>,
@@ -58,7 +82,8 @@ impl DataTable {
         }
     }
 
-    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
@@ -83,7 +108,7 @@ impl DataTable {
     }
 
     /// As CSV with commas.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         csv_text(std::iter::once(&self.full_columns()).chain(&self.rows))
     }
 }
@@ -109,7 +134,7 @@ where
 }
 
 /// Letters, digits and hyphens: part of a file name.
-pub(crate) fn slug(text: &str) -> String {
+pub fn slug(text: &str) -> String {
     let mut slug = String::new();
     for c in text.chars() {
         if c.is_ascii_alphanumeric() {

@@ -20,7 +20,7 @@ use mimique_study::Study;
 use crate::language::Language;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
-use document::Block;
+use document::{Block, Document};
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,24 +53,31 @@ pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Repor
     }
     let section::Sections { document, results, readings, replay } =
         section::write(&export, study, language);
-    let mut files = vec![
-        ReportFile { path: "report.html".to_owned(), text: html::html(&document, language) },
-        ReportFile { path: "report.md".to_owned(), text: markdown::markdown(&document) },
-        ReportFile { path: "results.json".to_owned(), text: results },
-    ];
-    files.extend(document.blocks.iter().flat_map(block_files));
+    let mut files = document_files(&document, language);
+    files.push(ReportFile { path: "results.json".to_owned(), text: results });
     files.extend(replay);
-    let tables: Vec<&str> = document.blocks.iter().filter_map(table_id).collect();
-    files.push(ReportFile {
-        path: "tables/all.tex".to_owned(),
-        text: latex::document(&document.title, &tables),
-    });
     Ok(Report {
         files,
         people: (export.flow.people_used, export.flow.people),
         trials: export.flow.trials_used,
         readings,
     })
+}
+
+/// The files of a document: as HTML and Markdown, each table as CSV and LaTeX, each figure as SVG and as a
+/// table.
+pub fn document_files(document: &Document, language: Language) -> Vec<ReportFile> {
+    let mut files = vec![
+        ReportFile { path: "report.html".to_owned(), text: html::html(document, language) },
+        ReportFile { path: "report.md".to_owned(), text: markdown::markdown(document) },
+    ];
+    files.extend(document.blocks.iter().flat_map(block_files));
+    let tables: Vec<&str> = document.blocks.iter().filter_map(table_id).collect();
+    files.push(ReportFile {
+        path: "tables/all.tex".to_owned(),
+        text: latex::document(&document.title, &tables),
+    });
+    files
 }
 
 /// The files of a block: a table as CSV and LaTeX, a figure as SVG and as a table.

@@ -5,7 +5,6 @@ use mimique_study::{Chance, Stream};
 /// Draws of one purpose.
 pub(crate) struct Draws {
     stream: Stream,
-    spare: Option<f64>,
 }
 
 impl Draws {
@@ -13,7 +12,7 @@ impl Draws {
     pub(crate) fn new(seed: u64, participant: Option<u64>, purpose: &str) -> Self {
         // What is simulated depends on seed, number and purpose alone: the order of trials has
         // streams of its own, so a change of the study's texts leaves the people as they are.
-        Self { stream: Stream::new(seed, "simulate", participant, purpose), spare: None }
+        Self { stream: Stream::new(seed, "simulate", participant, purpose) }
     }
 
     /// A number in [0, 1).
@@ -38,14 +37,7 @@ impl Draws {
 
     /// A standard normal number (Box and Muller 1958).
     pub(crate) fn normal(&mut self) -> f64 {
-        if let Some(spare) = self.spare.take() {
-            return spare;
-        }
-        // 1 - u is never 0.
-        let radius = (-2.0 * libm::log(1.0 - self.unit())).sqrt();
-        let (sine, cosine) = libm::sincos(std::f64::consts::TAU * self.unit());
-        self.spare = Some(radius * sine);
-        radius * cosine
+        self.stream.normal()
     }
 
     /// A log-normal number.

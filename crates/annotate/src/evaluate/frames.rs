@@ -26,6 +26,19 @@ pub struct FrameScores {
     pub kappa_se: Option<f64>,
 }
 
+/// How well the frames of one label are labelled.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LabelScores {
+    /// Frames that truly have it.
+    pub n: u64,
+    /// Share of them that is found; none where there are none.
+    pub recall: Option<f64>,
+    /// Share of the frames answered so that truly have it; none where none is answered so.
+    pub precision: Option<f64>,
+    /// 2 right / (truth + answer); none where both are 0.
+    pub f1: Option<f64>,
+}
+
 /// What always answering the commonest true label would score.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Majority {
@@ -66,26 +79,42 @@ impl Confusion {
         (0..self.labels).map(|label| self.rows().map(|row| row[label]).sum()).collect()
     }
 
+    fn right(&self, label: usize) -> u64 {
+        self.counts[label * self.labels + label]
+    }
+
+    /// The scores of each label, by index.
+    pub fn label_scores(&self) -> Vec<LabelScores> {
+        let (truths, answers) = (self.truths(), self.answers());
+        let of = |label: usize| {
+            let (n, answered, right) = (truths[label], answers[label], self.right(label) as f64);
+            let share = |of: u64, times: f64| (of > 0).then(|| times * right / of as f64);
+            LabelScores {
+                n,
+                recall: share(n, 1.0),
+                precision: share(answered, 1.0),
+                f1: share(n + answered, 2.0),
+            }
+        };
+        (0..self.labels).map(of).collect()
+    }
+
     /// The scores.
     pub fn scores(&self) -> FrameScores {
         let (truths, answers) = (self.truths(), self.answers());
         let n: u64 = truths.iter().sum();
-        let right = |label: usize| self.counts[label * self.labels + label];
+        let right = |label: usize| self.right(label);
         let mean = |values: Vec<f64>| {
             (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
         };
-        let recall = |l: usize| (truths[l] > 0).then(|| right(l) as f64 / truths[l] as f64);
-        let f1 = |l: usize| {
-            let both = truths[l] + answers[l];
-            (both > 0).then(|| 2.0 * right(l) as f64 / both as f64)
-        };
+        let labels = self.label_scores();
         let accuracy = (n > 0).then(|| (0..self.labels).map(right).sum::<u64>() as f64 / n as f64);
         let kappa = self.kappa(&truths, &answers, n);
         FrameScores {
             n,
             accuracy,
-            balanced_accuracy: mean((0..self.labels).filter_map(recall).collect()),
-            macro_f1: mean((0..self.labels).filter_map(f1).collect()),
+            balanced_accuracy: mean(labels.iter().filter_map(|label| label.recall).collect()),
+            macro_f1: mean(labels.iter().filter_map(|label| label.f1).collect()),
             kappa: kappa.map(|(kappa, _)| kappa),
             kappa_se: kappa.map(|(_, se)| se),
         }
@@ -149,6 +178,8 @@ mod tests {
         assert!((scores.accuracy.unwrap() - 0.7).abs() < 1e-15);
         assert!((scores.kappa.unwrap() - 0.4).abs() < 1e-12);
         assert!((scores.macro_f1.unwrap() - (40.0 / 55.0 + 30.0 / 45.0) / 2.0).abs() < 1e-12);
+        let second = of(&[20, 5, 10, 15], 2).label_scores()[1];
+        assert_eq!((second.n, second.recall, second.precision), (25, Some(0.6), Some(0.75)));
         let whole = of(&[9, 0, 0, 0], 2).scores();
         assert_eq!(
             (whole.kappa, whole.balanced_accuracy, whole.macro_f1),

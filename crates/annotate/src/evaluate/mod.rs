@@ -3,20 +3,28 @@
 
 mod borders;
 mod frames;
+mod held_out;
+mod labelled;
 mod resample;
+mod score;
 mod segments;
 mod split;
+mod summary;
 
 use serde::Serialize;
 
 pub use borders::{BorderCounts, BorderScores, answered_borders, true_borders};
-pub use frames::{Confusion, FrameScores, Majority};
-pub use resample::{FEWEST, draws, interval};
+pub use frames::{Confusion, FrameScores, LabelScores, Majority};
+pub use held_out::{Candidate, Cut, Judged, held_out, judged};
+pub use labelled::{LabelledCounts, LabelledScores};
+pub use resample::{FEWEST, draws, intervals};
+pub use score::Score;
 pub use segments::{
     OVERLAPS, Pairing, Segment, SegmentCounts, SegmentScores, answered_segments, edit, pairs,
     true_segments,
 };
-pub use split::{Fold, folds, leave_out};
+pub use split::{Fold, check_folds, folds, leave_out};
+pub use summary::{Interval, Summary, summary};
 
 use crate::labels::{by_frame, check};
 use crate::{AnnotateError, Mark, Marked};
@@ -28,8 +36,10 @@ pub struct Counts {
     pub confusion: Confusion,
     /// Frames with a true label to which the answer gives none.
     pub frames_without_answer: usize,
-    /// Segments.
+    /// Segments that the answer has found of the truth.
     pub segments: SegmentCounts,
+    /// Segments of the answer, each right or wrong.
+    pub labelled: LabelledCounts,
     /// Borders.
     pub borders: BorderCounts,
 }
@@ -41,8 +51,10 @@ pub struct Scores {
     pub frames: FrameScores,
     /// What always answering the commonest true label would score.
     pub majority: Option<Majority>,
-    /// Segment by segment.
+    /// True segments found.
     pub segments: SegmentScores,
+    /// Answered segments right.
+    pub labelled: LabelledScores,
     /// Border by border.
     pub borders: BorderScores,
 }
@@ -78,12 +90,15 @@ impl Comparison {
                 (None, _) => {}
             }
         }
-        let (truth, answer) = (true_segments(truth), answered_segments(answer));
+        let answer = answered_segments(answer);
+        let labelled = LabelledCounts::of(truth, &answer, self.labels);
+        let truth = true_segments(truth);
         let borders = answered_borders(&answer, self.frames);
         Ok(Counts {
             confusion,
             frames_without_answer,
             segments: SegmentCounts::of(&truth, &answer),
+            labelled,
             borders: BorderCounts::of(&true_borders(&truth), &borders, self.tolerance),
         })
     }
@@ -111,6 +126,7 @@ impl Counts {
             all.confusion.add(&other.confusion);
             all.frames_without_answer += other.frames_without_answer;
             all.segments.add(&other.segments);
+            all.labelled.add(&other.labelled);
             all.borders.add(&other.borders);
         }
         Some(all)
@@ -122,6 +138,7 @@ impl Counts {
             frames: self.confusion.scores(),
             majority: self.confusion.majority(),
             segments: self.segments.scores(),
+            labelled: self.labelled.scores(),
             borders: self.borders.scores(),
         }
     }

@@ -2,7 +2,7 @@
 
 use mimique_stats::{Stream, quantile_sorted};
 
-use super::{Counts, Scores};
+use super::{Counts, Score};
 use crate::AnnotateError;
 use crate::error::above_zero;
 
@@ -26,32 +26,39 @@ pub fn draws(takes: usize, resamples: usize, seed: u64) -> Result<Vec<Vec<usize>
     Ok((0..resamples).map(draw).collect())
 }
 
-/// The percentile interval of a score at a level (0.95), of resamples in which it is defined; none
-/// where it is in none. `takes` are the counts of each take, or of each person.
+/// The percentile intervals of scores at a level (0.95), all of them over the same resamples, each of
+/// those in which it is defined; none where it is in none. `takes` are the counts of each take, or of
+/// each person.
 ///
 /// # Errors
 /// [`AnnotateError::Setting`] for a level outside 0 to 1, [`AnnotateError::Label`] for a draw that
 /// names no take.
-pub fn interval(
+pub fn intervals(
     takes: &[Counts],
     draws: &[Vec<usize>],
     level: f64,
-    score: impl Fn(&Scores) -> Option<f64>,
-) -> Result<Option<[f64; 2]>, AnnotateError> {
+    scores: &[Score],
+) -> Result<Vec<Option<[f64; 2]>>, AnnotateError> {
     above_zero("level", level)?;
     above_zero("1 - level", 1.0 - level)?;
-    let mut values = Vec::with_capacity(draws.len());
+    let mut values = vec![Vec::with_capacity(draws.len()); scores.len()];
     for (row, draw) in draws.iter().enumerate() {
         if let Some(&label) = draw.iter().find(|&&take| take >= takes.len()) {
             return Err(AnnotateError::Label { row, label, labels: takes.len() });
         }
-        let pooled = Counts::pooled(draw.iter().map(|&take| &takes[take]));
-        values.extend(pooled.and_then(|counts| score(&counts.scores())));
+        let Some(pooled) = Counts::pooled(draw.iter().map(|&take| &takes[take])) else { continue };
+        let pooled = pooled.scores();
+        for (values, score) in values.iter_mut().zip(scores) {
+            values.extend(score.of(&pooled));
+        }
     }
-    values.sort_unstable_by(f64::total_cmp);
     let tail = (1.0 - level) / 2.0;
-    let ends = [tail, 1.0 - tail].map(|share| quantile_sorted(&values, share));
-    Ok((!values.is_empty()).then_some(ends))
+    let of = |mut values: Vec<f64>| {
+        values.sort_unstable_by(f64::total_cmp);
+        let ends = [tail, 1.0 - tail].map(|share| quantile_sorted(&values, share));
+        (!values.is_empty()).then_some(ends)
+    };
+    Ok(values.into_iter().map(of).collect())
 }
 
 #[cfg(test)]

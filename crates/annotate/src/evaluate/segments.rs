@@ -123,6 +123,10 @@ pub struct SegmentCounts {
     weighted: f64,
     /// Frames of the true segments.
     frames: usize,
+    /// Sum of the takes' edit scores.
+    edit: f64,
+    /// Takes that have one.
+    takes: usize,
 }
 
 /// How well segments are found.
@@ -134,14 +138,17 @@ pub struct SegmentScores {
     pub mean_iou: Option<f64>,
     /// The same, weighted by the true segments' frames.
     pub weighted_iou: Option<f64>,
-    /// Answered segments a true one.
+    /// Answered segments per true one.
     pub ratio: Option<f64>,
+    /// Mean over the takes of [`edit`].
+    pub edit: Option<f64>,
 }
 
 impl SegmentCounts {
     /// Count one take.
     pub fn of(truth: &[Segment], answer: &[Segment]) -> Self {
         let pairs = pairs(truth, answer);
+        let edit = edit(truth, answer);
         Self {
             truth: truth.len(),
             answer: answer.len(),
@@ -149,6 +156,8 @@ impl SegmentCounts {
             iou: pairs.iter().map(|p| p.iou).sum(),
             weighted: pairs.iter().map(|p| p.iou * truth[p.truth].0.len() as f64).sum(),
             frames: truth.iter().map(|(frames, _)| frames.len()).sum(),
+            edit: edit.unwrap_or(0.0),
+            takes: usize::from(edit.is_some()),
         }
     }
 
@@ -159,6 +168,8 @@ impl SegmentCounts {
         self.iou += other.iou;
         self.weighted += other.weighted;
         self.frames += other.frames;
+        self.edit += other.edit;
+        self.takes += other.takes;
     }
 
     /// The scores.
@@ -169,6 +180,7 @@ impl SegmentCounts {
             mean_iou: over(self.iou, self.truth),
             weighted_iou: over(self.weighted, self.frames),
             ratio: over(self.answer as f64, self.truth),
+            edit: over(self.edit, self.takes),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mimique_stats::Stream;
 
-use crate::AnnotateError;
+use crate::{AnnotateError, AnnotatedTake};
 
 /// Takes that train, and takes that test.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +41,27 @@ pub fn folds(takes: usize, folds: usize, seed: u64) -> Result<Vec<Fold>, Annotat
     order.into_iter().enumerate().for_each(|(place, take)| members[place % folds].push(take));
     members.iter_mut().for_each(|own| own.sort_unstable());
     folds_of(members, takes)
+}
+
+/// Refuses folds whose test takes have a label that no take left to learn from has.
+///
+/// # Errors
+/// [`AnnotateError::HeldOut`] with the first such label and take.
+pub fn check_folds(
+    labels: usize,
+    takes: &[AnnotatedTake],
+    folds: &[Fold],
+) -> Result<(), AnnotateError> {
+    for Fold { train, test } in folds {
+        for label in 0..labels {
+            let left = train.iter().any(|&take| takes[take].shows(label));
+            let tested = test.iter().copied().find(|&take| takes[take].shows(label));
+            if let (false, Some(take)) = (left, tested) {
+                return Err(AnnotateError::HeldOut { label, take });
+            }
+        }
+    }
+    Ok(())
 }
 
 fn folds_of(members: Vec<Vec<usize>>, takes: usize) -> Result<Vec<Fold>, AnnotateError> {

@@ -1,12 +1,14 @@
 //! Learning a hidden Markov model by expectation and maximisation: Baum-Welch on several sequences
 //! (Rabiner 1989, eq. 40 and 52-54, 109-111), variances about the new means.
 
+use mimique_solver::{exp_all, widest};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::forward::Lattice;
 use super::{Emissions, Hmm, logs};
 use crate::mixture::Mixture;
+use crate::numbers::{highest_value, softmax};
 use crate::{AnnotateError, Rows};
 
 /// How a model is learnt.
@@ -221,8 +223,7 @@ impl Counts {
             to.iter_mut().zip(after).for_each(|(to, (beta, b))| {
                 *to = beta + b - lattice.scale[f + 1];
             });
-            let highest = |v: &[f64]| v.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let (high_from, high_to) = (highest(&from), highest(&to));
+            let (high_from, high_to) = (highest_value(&from), highest_value(&to));
             let rows = self.transition.chunks_exact_mut(states);
             if high_from + high_to > LARGE {
                 for ((row, logs), from) in rows.zip(log_transition.chunks_exact(states)).zip(&from)
@@ -234,8 +235,11 @@ impl Counts {
                 continue;
             }
             let both = libm::exp(high_from + high_to);
-            from.iter_mut().for_each(|v| *v = libm::exp(*v - high_from) * both);
-            to.iter_mut().for_each(|v| *v = libm::exp(*v - high_to));
+            from.iter_mut().for_each(|v| *v -= high_from);
+            exp_all(&mut from);
+            from.iter_mut().for_each(|v| *v *= both);
+            to.iter_mut().for_each(|v| *v -= high_to);
+            exp_all(&mut to);
             for ((row, own), from) in rows.zip(hmm.transition.iter()).zip(&from) {
                 for ((count, a), to) in row.iter_mut().zip(own).zip(&to) {
                     *count += from * a * to;
@@ -263,21 +267,37 @@ impl ComponentCounts {
             if gamma == 0.0 {
                 continue;
             }
-            let all = density.of(row, &mut components);
-            for (m, component) in components.iter().enumerate() {
-                let frames = gamma * libm::exp(component - all);
+            density.components(row, &mut components);
+            softmax(&mut components);
+            for (m, share) in components.iter().enumerate() {
+                let frames = gamma * share;
                 if frames == 0.0 {
                     continue;
                 }
                 self.frames[m] += frames;
                 let own = m * width..(m + 1) * width;
-                let sums = self.first[own.clone()].iter_mut().zip(&mut self.second[own]);
-                for ((first, second), (x, mean)) in sums.zip(row.iter().zip(mixture.mean.row(m))) {
-                    let away = x - mean;
-                    *first += frames * away;
-                    *second += frames * away * away;
-                }
+                let (first, second) = (&mut self.first[own.clone()], &mut self.second[own]);
+                add_distances(frames, row, mixture.mean.row(m), first, second);
             }
+        }
+    }
+}
+
+widest! {
+    /// Add a row's distances from a mean and their squares, that many times.
+    fn add_distances(
+        frames: f64,
+        row: &[f64],
+        mean: &[f64],
+        first: &mut [f64],
+        second: &mut [f64]
+    ) {
+        let n = row.len();
+        let (mean, first, second) = (&mean[..n], &mut first[..n], &mut second[..n]);
+        for k in 0..n {
+            let away = row[k] - mean[k];
+            first[k] += frames * away;
+            second[k] += frames * away * away;
         }
     }
 }

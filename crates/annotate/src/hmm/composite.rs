@@ -11,16 +11,19 @@ use serde::{Deserialize, Serialize};
 use super::Hmm;
 use crate::{AnnotateError, Rows};
 
-/// Models joined; the states of the first come first.
+/// Models joined, a class each; the states of the first come first. Several classes may have one label.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Composite {
     hmm: Hmm,
     class_of_state: Vec<usize>,
-    classes: usize,
+    label_of_class: Vec<usize>,
+    labels: usize,
+    temper: f64,
 }
 
 impl Composite {
-    /// Join a model a label, in the order of the labels.
+    /// Join a model a class; each class is its own label.
     ///
     /// # Errors
     /// [`AnnotateError::Count`] without models or with other widths, [`AnnotateError::Setting`] for
@@ -57,7 +60,31 @@ impl Composite {
         let classes = models.iter().enumerate();
         let class_of_state = classes.flat_map(|(k, m)| m.states.iter().map(move |_| k)).collect();
         let hmm = Hmm::new(start, Rows::new(transition, states)?, mixtures)?;
-        Ok(Self { hmm, class_of_state, classes: models.len() })
+        let labels = models.len();
+        let label_of_class = (0..labels).collect();
+        Ok(Self { hmm, class_of_state, label_of_class, labels, temper: 1.0 })
+    }
+
+    /// The same with a label for each class, an index below `labels`; a label may have several classes
+    /// or none.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Count`], [`AnnotateError::Label`].
+    pub fn labelled(self, of_class: Vec<usize>, labels: usize) -> Result<Self, AnnotateError> {
+        crate::error::as_many("labels of classes", of_class.len(), self.label_of_class.len())?;
+        if let Some(row) = of_class.iter().position(|&label| label >= labels) {
+            return Err(AnnotateError::Label { row, label: of_class[row], labels });
+        }
+        Ok(Self { label_of_class: of_class, labels, ..self })
+    }
+
+    /// The same with the logarithms of its emissions times a factor.
+    ///
+    /// # Errors
+    /// [`AnnotateError::Setting`] for a factor that is not above 0.
+    pub fn tempered(self, temper: f64) -> Result<Self, AnnotateError> {
+        crate::error::above_zero("temper", temper)?;
+        Ok(Self { temper, ..self })
     }
 
     /// The probability of leaving a model at a frame, of a mean stay in seconds:
@@ -71,23 +98,27 @@ impl Composite {
         &self.hmm
     }
 
-    /// Label of each state.
+    /// Class of each state.
     pub fn class_of_state(&self) -> &[usize] {
         &self.class_of_state
     }
 
-    /// How many labels it tells apart.
-    pub fn classes(&self) -> usize {
-        self.classes
+    /// How many labels there are.
+    pub fn labels(&self) -> usize {
+        self.labels
+    }
+
+    fn label_of_state(&self, state: usize) -> usize {
+        self.label_of_class[self.class_of_state[state]]
     }
 
     /// The label of every frame on the most probable path.
     ///
     /// # Errors
     /// As [`Hmm::best_path`].
-    pub fn labels(&self, sequence: &Rows) -> Result<Vec<usize>, AnnotateError> {
-        let path = self.hmm.best_path(sequence)?;
-        Ok(path.states.into_iter().map(|state| self.class_of_state[state]).collect())
+    pub fn path(&self, sequence: &Rows) -> Result<Vec<usize>, AnnotateError> {
+        let path = self.hmm.path_through(self.hmm.tempered(sequence, self.temper)?)?;
+        Ok(path.states.into_iter().map(|state| self.label_of_state(state)).collect())
     }
 
     /// Probability of each label at every frame: a frame a row.
@@ -95,18 +126,21 @@ impl Composite {
     /// # Errors
     /// As [`Hmm::posterior`].
     pub fn posterior(&self, sequence: &Rows) -> Result<Rows, AnnotateError> {
-        let states = self.hmm.posterior(sequence)?.states;
-        let mut sums = vec![0.0; sequence.len() * self.classes];
-        for (sum, row) in sums.chunks_exact_mut(self.classes).zip(states.iter()) {
-            row.iter().zip(&self.class_of_state).for_each(|(p, &class)| sum[class] += p);
+        let states = self.hmm.posterior_of(&self.hmm.tempered(sequence, self.temper)?)?.states;
+        let mut sums = vec![0.0; sequence.len() * self.labels];
+        for (sum, row) in sums.chunks_exact_mut(self.labels).zip(states.iter()) {
+            row.iter().enumerate().for_each(|(state, p)| sum[self.label_of_state(state)] += p);
         }
-        Rows::new(sums, self.classes)
+        Rows::new(sums, self.labels)
     }
 
     /// Whether what was read is a model of that many labels.
     pub(crate) fn fits(&self, labels: usize) -> bool {
         let states = self.class_of_state.len() == self.hmm.states.len();
-        self.classes == labels && states && self.class_of_state.iter().all(|&k| k < labels)
+        let classes = self.class_of_state.iter().all(|&class| class < self.label_of_class.len());
+        let named = self.label_of_class.iter().all(|&label| label < labels);
+        let temper = self.temper > 0.0 && self.temper.is_finite();
+        self.labels == labels && states && classes && named && temper
     }
 }
 
@@ -129,5 +163,26 @@ mod tests {
             joined.hmm().transition().iter().all(|r| (r.iter().sum::<f64>() - 1.0).abs() < 1e-12)
         );
         assert!((Composite::p_out(0.5, 200.0) - 0.00995016625).abs() < 1e-10);
+    }
+
+    #[test]
+    fn classes_of_one_label_are_one_and_temper_softens() {
+        let row = |v: f64| Rows::new(vec![v], 1).unwrap();
+        let model = |mean: f64| {
+            let state = Mixture::new(vec![1.0], row(mean), row(1.0)).unwrap();
+            Hmm::new(vec![1.0], row(1.0), vec![state]).unwrap()
+        };
+        let joined = Composite::join(&[model(0.0), model(4.0), model(0.5)], 0.1).unwrap();
+        let two = joined.clone().labelled(vec![1, 0, 1], 2).unwrap();
+        let sequence = Rows::new(vec![0.2, 0.3, 4.1, 3.9, 0.4], 1).unwrap();
+        assert_eq!(two.path(&sequence).unwrap(), [1, 1, 0, 0, 1]);
+        let (whole, parts) =
+            (two.posterior(&sequence).unwrap(), joined.posterior(&sequence).unwrap());
+        for (sum, own) in whole.iter().zip(parts.iter()) {
+            assert!((sum[1] - own[0] - own[2]).abs() < 1e-15 && (sum[0] - own[1]).abs() < 1e-15);
+        }
+        let soft = two.clone().tempered(0.1).unwrap().posterior(&sequence).unwrap();
+        assert!(soft.row(2)[0] < whole.row(2)[0]);
+        assert!(two.clone().labelled(vec![0, 2, 0], 2).is_err() && two.tempered(0.0).is_err());
     }
 }

@@ -5,8 +5,10 @@
 //! a state; where that sum is so small that terms may have been lost, it is computed again in the
 //! log domain, which needs one a pair of states.
 
+use mimique_solver::{exp_all, widest};
+
 use super::{Emissions, Hmm, logs};
-use crate::numbers::{log_sum, softmax};
+use crate::numbers::{dots, log_sum, softmax};
 use crate::{AnnotateError, Rows};
 
 /// What a model says of a sequence.
@@ -57,18 +59,16 @@ impl<'a> Sums<'a> {
             return None;
         }
         for (scaled, value) in self.scaled.iter_mut().zip(values) {
-            *scaled = libm::exp(value - highest);
+            *scaled = value - highest;
         }
+        exp_all(&mut self.scaled);
         Some(highest)
     }
 
     /// ln sum_i e^(from_i) a_ij for every j.
     fn leading(&mut self, from: &[f64], out: &mut [f64]) {
         let Some(highest) = self.scale(from) else { return out.fill(f64::NEG_INFINITY) };
-        self.sums.fill(0.0);
-        for (scaled, row) in self.scaled.iter().zip(self.hmm.transition.iter()) {
-            self.sums.iter_mut().zip(row).for_each(|(sum, a)| *sum += scaled * a);
-        }
+        weighted_rows(self.hmm.transition.values(), &self.scaled, &mut self.sums);
         let states = out.len();
         for (j, out) in out.iter_mut().enumerate() {
             *out = if self.sums[j] > SURE {
@@ -77,7 +77,7 @@ impl<'a> Sums<'a> {
                 for (i, term) in self.terms.iter_mut().enumerate() {
                     *term = from[i] + self.log_transition[i * states + j];
                 }
-                log_sum(&self.terms)
+                log_sum(&mut self.terms)
             };
         }
     }
@@ -86,15 +86,32 @@ impl<'a> Sums<'a> {
     fn following(&mut self, to: &[f64], out: &mut [f64]) {
         let Some(highest) = self.scale(to) else { return out.fill(f64::NEG_INFINITY) };
         let states = out.len();
-        for ((i, out), row) in out.iter_mut().enumerate().zip(self.hmm.transition.iter()) {
-            let sum = crate::numbers::dot(row, &self.scaled);
+        dots(self.hmm.transition.values(), &self.scaled, &mut self.sums);
+        for (i, out) in out.iter_mut().enumerate() {
+            let sum = self.sums[i];
             *out = if sum > SURE {
                 highest + libm::log(sum)
             } else {
                 let own = &self.log_transition[i * states..(i + 1) * states];
                 self.terms.iter_mut().zip(to).zip(own).for_each(|((t, to), a)| *t = to + a);
-                log_sum(&self.terms)
+                log_sum(&mut self.terms)
             };
+        }
+    }
+}
+
+widest! {
+    /// The sum of the rows of a square table, each times its weight.
+    fn weighted_rows(rows: &[f64], weights: &[f64], sums: &mut [f64]) {
+        let n = sums.len();
+        for sum in sums.iter_mut() {
+            *sum = 0.0;
+        }
+        for i in 0..n {
+            let (weight, row) = (weights[i], &rows[i * n..(i + 1) * n]);
+            for j in 0..n {
+                sums[j] += weight * row[j];
+            }
         }
     }
 }
@@ -117,7 +134,8 @@ impl Lattice {
             }
             let emitted = &emissions.taken[f * states..(f + 1) * states];
             own.iter_mut().zip(emitted).for_each(|(o, b)| *o += b);
-            let sum = log_sum(own);
+            sums.terms.copy_from_slice(own);
+            let sum = log_sum(&mut sums.terms);
             if sum.is_finite() {
                 own.iter_mut().for_each(|o| *o -= sum);
             }
@@ -170,7 +188,11 @@ impl Hmm {
     /// [`AnnotateError::Count`] when the sequence has another width, [`AnnotateError::Impossible`]
     /// when no path gives it.
     pub fn posterior(&self, sequence: &Rows) -> Result<Posterior, AnnotateError> {
-        let lattice = Lattice::whole(self, &self.emissions_taken(sequence)?);
+        self.posterior_of(&self.emissions_taken(sequence)?)
+    }
+
+    pub(super) fn posterior_of(&self, emissions: &Emissions) -> Result<Posterior, AnnotateError> {
+        let lattice = Lattice::whole(self, emissions);
         if lattice.log_likelihood == f64::NEG_INFINITY {
             return Err(AnnotateError::Impossible { sequence: 0 });
         }

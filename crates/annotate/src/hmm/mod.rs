@@ -10,6 +10,7 @@
 mod baum_welch;
 mod composite;
 mod forward;
+mod isolation;
 mod topology;
 pub(crate) mod viterbi;
 
@@ -19,11 +20,13 @@ use serde::{Deserialize, Serialize};
 pub use baum_welch::{BaumWelch, Learnt};
 pub use composite::Composite;
 pub use forward::Posterior;
+pub(crate) use isolation::{Isolated, isolated};
 pub use topology::{Beginning, Topology};
 pub use viterbi::BestPath;
 
 use crate::error::as_many;
 use crate::mixture::{Mixture, probabilities};
+use crate::numbers::{BLOCK, log_sum};
 use crate::{AnnotateError, Rows};
 
 /// A hidden Markov model.
@@ -112,15 +115,20 @@ impl Hmm {
     pub fn emissions(&self, sequence: &Rows) -> Result<Vec<f64>, AnnotateError> {
         as_many("columns of a sequence", sequence.width(), self.width())?;
         let densities: Vec<_> = self.states.iter().map(Mixture::density).collect();
-        let most = densities.iter().map(|d| d.components()).max().unwrap_or(0);
-        let states = densities.len();
+        let most = densities.iter().map(|d| d.len()).max().unwrap_or(0);
+        let (states, width) = (densities.len(), sequence.width());
         let mut emissions = vec![0.0; sequence.len() * states];
-        emissions.par_chunks_exact_mut(states).enumerate().for_each_init(
-            || vec![0.0; most],
-            |components, (frame, out)| {
-                for (out, density) in out.iter_mut().zip(&densities) {
-                    let own = &mut components[..density.components()];
-                    *out = density.of(sequence.row(frame), own);
+        let blocks = emissions.par_chunks_mut(BLOCK * states);
+        let frames = sequence.values().par_chunks(BLOCK * width);
+        blocks.zip(frames).for_each_init(
+            || vec![0.0; BLOCK * most],
+            |components, (out, frames)| {
+                for (state, density) in densities.iter().enumerate() {
+                    let own = &mut components[..density.len() * (frames.len() / width)];
+                    density.components(frames, own);
+                    for (f, own) in own.chunks_exact_mut(density.len()).enumerate() {
+                        out[f * states + state] = log_sum(own);
+                    }
                 }
             },
         );
@@ -129,6 +137,15 @@ impl Hmm {
 
     pub(crate) fn emissions_taken(&self, sequence: &Rows) -> Result<Emissions, AnnotateError> {
         Ok(Emissions::of(self.emissions(sequence)?, self.states.len()))
+    }
+
+    /// The same, their logarithms times a factor.
+    pub(crate) fn tempered(&self, sequence: &Rows, by: f64) -> Result<Emissions, AnnotateError> {
+        let mut emissions = self.emissions(sequence)?;
+        if by != 1.0 {
+            emissions.iter_mut().for_each(|b| *b *= by);
+        }
+        Ok(Emissions::of(emissions, self.states.len()))
     }
 }
 

@@ -1,5 +1,7 @@
 //! The most probable path (Viterbi; Rabiner 1989, eq. 32-35), in the log domain.
 
+use mimique_solver::widest;
+
 use super::{Emissions, Hmm, logs};
 use crate::{AnnotateError, Rows};
 
@@ -19,52 +21,69 @@ impl Hmm {
     /// [`AnnotateError::Count`] when the sequence has another width, [`AnnotateError::Impossible`]
     /// when no path gives it.
     pub fn best_path(&self, sequence: &Rows) -> Result<BestPath, AnnotateError> {
-        let emissions = self.emissions_taken(sequence)?;
-        best_path(&logs(&self.start), &logs(self.transition.values()), &emissions)
+        self.path_through(self.emissions_taken(sequence)?)
+    }
+
+    pub(super) fn path_through(&self, emissions: Emissions) -> Result<BestPath, AnnotateError> {
+        best_path(&logs(&self.start), &logs(self.transition.values()), emissions)
             .ok_or(AnnotateError::Impossible { sequence: 0 })
     }
 }
 
-/// The best path, of logarithms: S starts, S x S transitions, T x S emissions.
+/// The best path, of logarithms: S starts, S x S transitions, T x S emissions. The score of the best path
+/// to each state takes the place of its emission; predecessors are found on the way back, a state a
+/// frame.
 pub(crate) fn best_path(
     start: &[f64],
     transition: &[f64],
-    emissions: &Emissions,
+    emissions: Emissions,
 ) -> Option<BestPath> {
     let states = start.len();
-    let frames = emissions.taken.len() / states.max(1);
+    let Emissions { taken: mut scores, off } = emissions;
+    let frames = scores.len() / states.max(1);
     if frames == 0 {
         return Some(BestPath { states: Vec::new(), log_probability: 0.0 });
     }
-    let mut from = vec![0u16; frames * states];
-    let mut best: Vec<f64> = start.iter().zip(&emissions.taken).map(|(s, b)| s + b).collect();
+    scores.iter_mut().zip(start).for_each(|(score, start)| *score += start);
     let mut next = vec![0.0; states];
     for f in 1..frames {
-        let from = &mut from[f * states..(f + 1) * states];
-        next.fill(f64::NEG_INFINITY);
-        for ((i, &own), row) in (0u16..).zip(&best).zip(transition.chunks_exact(states)) {
-            for ((next, from), a) in next.iter_mut().zip(from.iter_mut()).zip(row) {
-                let score = own + a;
-                if score > *next {
-                    (*next, *from) = (score, i);
-                }
-            }
-        }
-        let emitted = &emissions.taken[f * states..];
-        next.iter_mut().zip(emitted).for_each(|(next, b)| *next += b);
-        std::mem::swap(&mut best, &mut next);
+        let (before, rest) = scores.split_at_mut(f * states);
+        best_of_each(&before[(f - 1) * states..], transition, &mut next);
+        rest.iter_mut().zip(&next).for_each(|(score, best)| *score += best);
     }
-    let mut state = crate::numbers::highest(&best);
-    let score = best[state];
+    let mut state = crate::numbers::highest(&scores[(frames - 1) * states..]);
+    let score = scores[(frames - 1) * states + state];
     if score == f64::NEG_INFINITY {
         return None;
     }
     let mut path = vec![state; frames];
+    let mut leading = vec![0.0; states];
     for f in (1..frames).rev() {
-        state = usize::from(from[f * states + state]);
+        let before = &scores[(f - 1) * states..f * states];
+        for (i, leading) in leading.iter_mut().enumerate() {
+            *leading = before[i] + transition[i * states + state];
+        }
+        state = crate::numbers::highest(&leading);
         path[f - 1] = state;
     }
-    Some(BestPath { states: path, log_probability: score + emissions.off })
+    Some(BestPath { states: path, log_probability: score + off })
+}
+
+widest! {
+    /// The highest of from_i + a_ij over i, for every j.
+    fn best_of_each(from: &[f64], transition: &[f64], best: &mut [f64]) {
+        let states = best.len();
+        for b in best.iter_mut() {
+            *b = f64::NEG_INFINITY;
+        }
+        for i in 0..states {
+            let (own, row) = (from[i], &transition[i * states..(i + 1) * states]);
+            for j in 0..states {
+                let score = own + row[j];
+                best[j] = if score > best[j] { score } else { best[j] };
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -73,13 +92,13 @@ mod tests {
 
     #[test]
     fn of_equal_predecessors_the_lowest_and_of_no_path_none() {
-        let emissions = Emissions::of(vec![0.0; 6], 2);
+        let emissions = || Emissions::of(vec![0.0; 6], 2);
         let even = (0.5f64).ln();
-        let path = best_path(&[even; 2], &[even; 4], &emissions).unwrap();
+        let path = best_path(&[even; 2], &[even; 4], emissions()).unwrap();
         assert_eq!(path.states, [0, 0, 0]);
         let never = f64::NEG_INFINITY;
-        assert_eq!(best_path(&[0.0, never], &[never; 4], &emissions), None);
-        let nothing = best_path(&[0.0, never], &[never; 4], &Emissions::of(Vec::new(), 2));
+        assert_eq!(best_path(&[0.0, never], &[never; 4], emissions()), None);
+        let nothing = best_path(&[0.0, never], &[never; 4], Emissions::of(Vec::new(), 2));
         assert_eq!(nothing.unwrap().log_probability, 0.0);
     }
 }

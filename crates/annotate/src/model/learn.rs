@@ -1,8 +1,10 @@
 //! Learning a model from annotated takes.
 
-use super::classifier::{Classifier, LearntLabel, Material};
-use super::{LearntFrom, LearntTake, Method, Model, VERSION};
-use crate::evaluate::leave_out;
+use mimique_clip::weights_hash;
+
+use super::classifier::{Classifier, Material};
+use super::{Decoding, LearntFrom, LearntLabel, LearntTake, Method, Model};
+use crate::evaluate::{folds, leave_out};
 use crate::features::thinned;
 use crate::labels::check;
 use crate::{AnnotateError, Examples, Mark, Marked, Rows, Take, Temperature};
@@ -14,63 +16,124 @@ pub struct AnnotatedTake {
     pub name: String,
     /// Whose face it is.
     pub person: String,
+    /// What was performed: posed expressions, sentences.
+    pub kind: String,
     /// Its weights, the model's shapes in the model's order.
     pub take: Take,
     /// What the annotator has marked, in order of time. Frames without a mark are unlabelled.
     pub marked: Vec<Marked>,
 }
 
+impl AnnotatedTake {
+    /// Whether some frames have this label.
+    pub fn shows(&self, label: usize) -> bool {
+        self.marked.iter().any(|marked| marked.mark == Mark::Stable(label))
+    }
+
+    /// What a model says of a take that it learnt from.
+    pub fn learnt(&self) -> LearntTake {
+        LearntTake {
+            name: self.name.clone(),
+            person: self.person.clone(),
+            kind: self.kind.clone(),
+            weights: weights_hash(self.take.weights.values()),
+        }
+    }
+}
+
 /// What is learnt, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lesson {
+    /// What the labels are of: the name of the annotators' tier.
+    pub channel: String,
     /// Names of the labels, by index.
     pub labels: Vec<String>,
     /// Names of the shapes, by column.
     pub shapes: Vec<String>,
     /// The method.
     pub method: Method,
-    /// Training frames a second: more say the same again. Sequences are not thinned.
-    pub thinned_to_hz: f64,
+    /// Training frames a second: more say the same again; all where none is given. Sequences are
+    /// never thinned.
+    pub thinned_to_hz: Option<f64>,
+    /// How a model's labels of frames become segments where nothing else is asked for.
+    pub decoding: Decoding,
 }
 
+/// Groups of takes that are held out in turn for the temperature.
+const HELD_OUT: usize = 5;
+/// Seed of those groups, where there are more takes.
+const SEED: u64 = 1;
+
 impl Lesson {
-    /// Learn a model. Its temperature is 1 until [`Lesson::temperature`] is asked.
+    /// Learn a model. Its temperature is 1.
     ///
     /// # Errors
     /// [`AnnotateError`]: takes of other rates or widths, intervals beyond a take, labels beyond the
     /// list, one label alone, and what the method refuses.
     pub fn learn(&self, takes: &[AnnotatedTake]) -> Result<Model, AnnotateError> {
         let all: Vec<&AnnotatedTake> = takes.iter().collect();
-        let material = self.material(&all)?;
-        let (classifier, hmm) = Classifier::learn(&self.method, &material)?;
+        self.learn_of(&all)
+    }
+
+    /// Learn a model, and its temperature from takes held out: each take in turn, or, where there are
+    /// more than five, each of five groups. What is learnt without a group scores it, and the
+    /// temperature fits all these scores together. It is 1 where nothing can be held out.
+    ///
+    /// # Errors
+    /// As [`Lesson::learn`].
+    pub fn learn_calibrated(&self, takes: &[AnnotatedTake]) -> Result<Model, AnnotateError> {
+        let all: Vec<&AnnotatedTake> = takes.iter().collect();
+        self.learn_calibrated_of(&all)
+    }
+
+    pub(crate) fn learn_calibrated_of(
+        &self,
+        takes: &[&AnnotatedTake],
+    ) -> Result<Model, AnnotateError> {
+        let mut model = self.learn_of(takes)?;
+        (model.temperature, model.learnt_from.held_out) = self.temperature(takes)?;
+        Ok(model)
+    }
+
+    pub(crate) fn learn_of(&self, takes: &[&AnnotatedTake]) -> Result<Model, AnnotateError> {
+        let (classifier, hmm) = self.classifier(takes)?;
         Ok(Model {
-            version: VERSION,
+            channel: self.channel.clone(),
             labels: self.labels.clone(),
             shapes: self.shapes.clone(),
-            rate_hz: material.rate_hz,
+            rate_hz: takes[0].take.rate_hz,
             settings: self.method,
+            thinned_to_hz: self.thinned_to_hz,
+            decoding: self.decoding.clone(),
             temperature: Temperature::default(),
+            holds_frames: classifier.holds_frames(),
             learnt_from: self.learnt_from(takes, hmm),
             classifier,
         })
     }
 
-    /// The temperature from held-out takes: each group of takes (their own names, persons) is scored
-    /// by a model that has not seen it, and the temperature fits all these scores together.
-    ///
-    /// # Errors
-    /// As [`Lesson::learn`]; [`AnnotateError::Count`] for fewer than two groups.
-    pub fn temperature<G: Ord>(
-        &self,
-        takes: &[AnnotatedTake],
-        groups: &[G],
-    ) -> Result<Temperature, AnnotateError> {
-        crate::error::as_many("groups of takes", groups.len(), takes.len())?;
+    /// The temperature, and how many takes were held out for it. Groups without which a label has
+    /// nothing left to be learnt from stay in.
+    fn temperature(&self, takes: &[&AnnotatedTake]) -> Result<(Temperature, usize), AnnotateError> {
+        let numbers: Vec<usize> = (0..takes.len()).collect();
+        let groups = match takes.len() {
+            0 | 1 => return Ok((Temperature::default(), 0)),
+            2..=HELD_OUT => leave_out(&numbers)?,
+            _ => folds(takes.len(), HELD_OUT, SEED)?,
+        };
         let (mut scores, mut truth) = (Vec::new(), Vec::new());
-        for fold in leave_out(groups)? {
-            let train: Vec<&AnnotatedTake> = fold.train.iter().map(|&take| &takes[take]).collect();
-            let (classifier, _) = Classifier::learn(&self.method, &self.material(&train)?)?;
-            for take in fold.test.iter().map(|&take| &takes[take]) {
+        let mut held_out = 0;
+        for fold in groups {
+            let train: Vec<&AnnotatedTake> = fold.train.iter().map(|&take| takes[take]).collect();
+            let (classifier, _) = match self.classifier(&train) {
+                Err(
+                    AnnotateError::OneLabel { .. }
+                    | AnnotateError::NoExamples { .. }
+                    | AnnotateError::NoneIsolated,
+                ) => continue,
+                learnt => learnt?,
+            };
+            for take in fold.test.iter().map(|&take| takes[take]) {
                 let (frames, labels) = self.stable_frames(take)?;
                 if frames.is_empty() {
                     continue;
@@ -79,9 +142,13 @@ impl Lesson {
                 let found = classifier.scores(&take.take.weights)?;
                 scores.extend_from_slice(found.select(frames).values());
                 truth.extend(labels);
+                held_out += 1;
             }
         }
-        Temperature::fit(&Rows::new(scores, self.labels.len())?, &truth)
+        if truth.is_empty() {
+            return Ok((Temperature::default(), 0));
+        }
+        Ok((Temperature::fit(&Rows::new(scores, self.labels.len())?, &truth)?, held_out))
     }
 
     /// Refuses a label that stands in fewer than two takes: what is learnt of it cannot be held
@@ -91,8 +158,7 @@ impl Lesson {
     /// [`AnnotateError::FewTakes`] with the first such label.
     pub fn check_takes(&self, takes: &[AnnotatedTake]) -> Result<(), AnnotateError> {
         for label in 0..self.labels.len() {
-            let own = |marked: &Marked| marked.mark == Mark::Stable(label);
-            let found = takes.iter().filter(|take| take.marked.iter().any(own)).count();
+            let found = takes.iter().filter(|take| take.shows(label)).count();
             if found < 2 {
                 return Err(AnnotateError::FewTakes { label, takes: found });
             }
@@ -114,42 +180,43 @@ impl Lesson {
                 return Err(AnnotateError::Label { row, label, labels: self.labels.len() });
             }
             let own: Vec<usize> = own.clone().collect();
-            let own = thinned(&own, take.rate_hz, self.thinned_to_hz);
+            let own = match self.thinned_to_hz {
+                Some(rate_hz) => thinned(&own, take.rate_hz, rate_hz),
+                None => own,
+            };
             labels.extend(std::iter::repeat_n(label, own.len()));
             frames.extend(own);
         }
         Ok((frames, labels))
     }
 
-    fn material(&self, takes: &[&AnnotatedTake]) -> Result<Material, AnnotateError> {
+    /// What the method learns of some takes.
+    fn classifier(
+        &self,
+        takes: &[&AnnotatedTake],
+    ) -> Result<(Classifier, Vec<LearntLabel>), AnnotateError> {
         crate::error::at_most("labels", self.labels.len(), 64)?;
-        crate::error::above_zero("thinned to Hz", self.thinned_to_hz)?;
+        if let Some(rate_hz) = self.thinned_to_hz {
+            crate::error::above_zero("training frames per second", rate_hz)?;
+        }
         let Some(first) = takes.first() else {
             return Err(AnnotateError::Count { what: "takes", found: 0, expected: 1 });
         };
         let (width, rate_hz) = (self.shapes.len(), first.take.rate_hz);
         let (mut values, mut labels) = (Vec::new(), Vec::new());
-        let mut sequences = vec![Vec::new(); self.labels.len()];
         for annotated in takes {
             let take = &annotated.take;
             crate::error::as_many("shapes of a take", take.weights.width(), width)?;
-            if take.rate_hz != rate_hz {
-                return Err(AnnotateError::Rate { found: take.rate_hz, expected: rate_hz });
-            }
+            crate::error::same_rate(take.rate_hz, rate_hz)?;
             let (frames, own) = self.stable_frames(annotated)?;
             values.extend_from_slice(take.weights.select(frames).values());
             labels.extend(own);
-            for Marked { frames, mark } in &annotated.marked {
-                if let Mark::Stable(label) = *mark {
-                    sequences[label].push(take.weights.select(frames.clone()));
-                }
-            }
         }
         let examples = Examples::new(Rows::new(values, width)?, labels, self.labels.len())?;
-        Ok(Material { examples, sequences, rate_hz })
+        Classifier::learn(&self.method, &Material { examples, takes })
     }
 
-    fn learnt_from(&self, takes: &[AnnotatedTake], hmm: Vec<LearntLabel>) -> LearntFrom {
+    fn learnt_from(&self, takes: &[&AnnotatedTake], hmm: Vec<LearntLabel>) -> LearntFrom {
         let mut seconds = vec![0.0; self.labels.len()];
         for annotated in takes {
             for Marked { frames, mark } in &annotated.marked {
@@ -158,8 +225,7 @@ impl Lesson {
                 }
             }
         }
-        let take =
-            |a: &AnnotatedTake| LearntTake { name: a.name.clone(), person: a.person.clone() };
-        LearntFrom { takes: takes.iter().map(take).collect(), seconds, hmm }
+        let takes = takes.iter().map(|annotated| annotated.learnt()).collect();
+        LearntFrom { takes, seconds, held_out: 0, hmm }
     }
 }

@@ -2,26 +2,29 @@
 
 mod apply;
 mod classifier;
+mod joined;
+mod json;
 mod learn;
+mod method;
 
 use serde::{Deserialize, Serialize};
 
-pub use apply::{Answer, Decode, Suggested};
-pub use classifier::{Classifier, HmmOptions, LearntLabel, Method};
+pub use apply::{Answer, Decode, Decoding, Suggested};
+pub use classifier::Classifier;
+pub use joined::LearntLabel;
+pub use json::{LARGEST, VERSION};
 pub use learn::{AnnotatedTake, Lesson};
+pub use method::{HmmOptions, Isolation, Method};
 
 use crate::{AnnotateError, Temperature};
-
-/// Version of the models that are written.
-pub const VERSION: u32 = 1;
-/// Largest model that is read, bytes.
-pub const LARGEST: usize = 64 << 20;
+use mimique_avatar::map_shapes;
 
 /// A model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Model {
-    version: u32,
+    /// What the labels are of: the name of the annotators' tier.
+    pub channel: String,
     /// Names of the labels, by index.
     pub labels: Vec<String>,
     /// Names of the shapes, by column.
@@ -30,8 +33,14 @@ pub struct Model {
     pub rate_hz: f64,
     /// The method and its settings.
     pub settings: Method,
+    /// Training frames a second, of methods that learn frames; all where none is given.
+    pub thinned_to_hz: Option<f64>,
+    /// How its labels of frames become segments where nothing else is asked for.
+    pub decoding: Decoding,
     /// What scores are divided by.
     pub temperature: Temperature,
+    /// Whether it holds frames of people as they were: its file is then their data.
+    holds_frames: bool,
     /// What it learnt from.
     pub learnt_from: LearntFrom,
     /// What it has learnt.
@@ -46,7 +55,9 @@ pub struct LearntFrom {
     pub takes: Vec<LearntTake>,
     /// Seconds of each label, by index.
     pub seconds: Vec<f64>,
-    /// How the hidden Markov model of each label was learnt; empty for other methods.
+    /// How many of the takes were held out in turn for the temperature; 0 where none could be.
+    pub held_out: usize,
+    /// How each hidden Markov model was learnt; empty for other methods.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hmm: Vec<LearntLabel>,
 }
@@ -59,12 +70,10 @@ pub struct LearntTake {
     pub name: String,
     /// Whose face it is.
     pub person: String,
-}
-
-/// The one field that is read whatever the version.
-#[derive(Deserialize)]
-struct OfVersion {
-    version: u32,
+    /// What was performed.
+    pub kind: String,
+    /// SHA-256 of its weights, by which it is known again under another name.
+    pub weights: String,
 }
 
 impl Model {
@@ -78,50 +87,28 @@ impl Model {
     /// # Errors
     /// [`AnnotateError::Shapes`] with the first that the take lacks.
     pub fn columns(&self, shapes: &[impl AsRef<str>]) -> Result<Vec<usize>, AnnotateError> {
-        let place = |own: &String| shapes.iter().position(|shape| shape.as_ref() == own);
-        let of =
-            |own: &String| place(own).ok_or_else(|| AnnotateError::Shapes { shape: own.clone() });
-        self.shapes.iter().map(of).collect()
+        columns(&self.shapes, shapes)
     }
+}
 
-    /// The model as JSON; reading it gives the same model.
-    ///
-    /// # Errors
-    /// [`AnnotateError::Unfit`] when a number is infinite, which JSON does not have.
-    pub fn to_json(&self) -> Result<String, AnnotateError> {
-        serde_json::to_string(self).map_err(|_| AnnotateError::Unfit { part: "numbers" })
-    }
-
-    /// Read a model.
-    ///
-    /// # Errors
-    /// [`AnnotateError::Limit`] above 64 MiB, [`AnnotateError::Version`], [`AnnotateError::Json`]
-    /// with the place, [`AnnotateError::Unfit`] when its parts contradict each other.
-    pub fn from_json(text: &str) -> Result<Self, AnnotateError> {
-        crate::error::at_most("bytes of a model", text.len(), LARGEST)?;
-        let place = |error: serde_json::Error| AnnotateError::Json {
-            line: error.line(),
-            column: error.column(),
-        };
-        let OfVersion { version } = serde_json::from_str(text).map_err(place)?;
-        if version == 0 || version > VERSION {
-            return Err(AnnotateError::Version { version, known: VERSION });
-        }
-        let model: Self = serde_json::from_str(text).map_err(place)?;
-        let unfit = |part: &'static str| Err(AnnotateError::Unfit { part });
-        if !model.classifier.fits(model.labels.len()) {
-            return unfit("parameters");
-        }
-        if model.classifier.width() != model.shapes.len() {
-            return unfit("columns");
-        }
-        if model.learnt_from.seconds.len() != model.labels.len() {
-            return unfit("seconds of each label");
-        }
-        crate::error::above_zero("rate in Hz", model.rate_hz)?;
-        Temperature::new(model.temperature.value())?;
-        Ok(model)
-    }
+/// The columns of a take that are these shapes, in this order, matched by name: the very same, else one
+/// that means the same in another rig's spelling (`EyeBlinkLeft`, `eyeBlink_L`).
+///
+/// # Errors
+/// [`AnnotateError::Shapes`] with the first that the take lacks.
+pub fn columns(wanted: &[String], shapes: &[impl AsRef<str>]) -> Result<Vec<usize>, AnnotateError> {
+    let place = |own: &String| shapes.iter().position(|shape| shape.as_ref() == own);
+    let exact: Vec<Option<usize>> = wanted.iter().map(place).collect();
+    let meant = match exact.contains(&None) {
+        true => map_shapes(wanted, shapes).terms,
+        false => Vec::new(),
+    };
+    let of = |(k, column): (usize, Option<usize>)| match (column, meant.get(k).map(Vec::as_slice)) {
+        (Some(column), _) => Ok(column),
+        (None, Some(&[(column, 1.0)])) => Ok(column),
+        _ => Err(AnnotateError::Shapes { shape: wanted[k].clone() }),
+    };
+    exact.into_iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]
@@ -152,6 +139,7 @@ mod tests {
         AnnotatedTake {
             name: format!("take {seed}"),
             person: "a".to_owned(),
+            kind: String::new(),
             take,
             marked: marked.collect(),
         }
@@ -172,10 +160,12 @@ mod tests {
 
     fn lesson(method: Method) -> Lesson {
         Lesson {
+            channel: "affect".to_owned(),
             labels: ["neutral", "joy", "sadness"].map(str::to_owned).to_vec(),
             shapes: ["smile", "open", "frown"].map(str::to_owned).to_vec(),
             method,
-            thinned_to_hz: 10.0,
+            thinned_to_hz: Some(10.0),
+            decoding: Decoding::default(),
         }
     }
 
@@ -184,8 +174,8 @@ mod tests {
         let takes = [annotated(1), annotated(2), annotated(3)];
         for method in methods() {
             let lesson = lesson(method);
-            let mut model = lesson.learn(&takes[..2]).unwrap();
-            model.temperature = lesson.temperature(&takes[..2], &["1", "2"]).unwrap();
+            let model = lesson.learn_calibrated(&takes[..2]).unwrap();
+            assert_eq!(model.learnt_from.held_out, 2);
             let text = model.to_json().unwrap();
             let read = Model::from_json(&text).unwrap();
             assert_eq!(read, model, "{method:?}");
@@ -264,6 +254,11 @@ mod tests {
         let error = model.label(&slower, &Decode::default()).unwrap_err();
         assert_eq!(error, AnnotateError::Rate { found: 25.0, expected: 30.0 });
         assert_eq!(model.columns(&["frown", "x", "open", "smile"]).unwrap(), [3, 2, 0]);
+        let arkit = ["jawOpen", "eyeBlinkLeft", "smile"].map(str::to_owned);
+        let other = ["smile", "HeadYaw", "EyeBlink_L", "JawOpen"];
+        assert_eq!(columns(&arkit, &other).unwrap(), [3, 2, 0]);
+        // Half of it is not it.
+        assert!(columns(&["browInnerUp".to_owned()], &["browInnerUp_L", "browInnerUp_R"]).is_err());
         let missing = AnnotateError::Shapes { shape: "open".to_owned() };
         assert_eq!(model.columns(&["frown", "smile"]).unwrap_err(), missing);
         assert_eq!(lesson.check_takes(&takes), Ok(()));

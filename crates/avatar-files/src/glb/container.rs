@@ -15,6 +15,9 @@ pub(super) struct Container {
     pub root: Root,
     /// Bytes of buffer 0, 1...; each at least as long as it declares.
     pub buffers: Vec<Vec<u8>>,
+    /// Channels of animations that KHR_animation_pointer aims at weights: where they stand, and at what. They
+    /// are not in `root`.
+    pub weight_pointers: Vec<(String, String)>,
     /// Buffer views that were compressed, by their index.
     pub unpacked: HashMap<usize, Unpacked>,
 }
@@ -61,7 +64,7 @@ pub(super) fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Container, Rea
             "give a .glb or .gltf file",
         ));
     };
-    let root = parse(json)?;
+    let (root, weight_pointers) = parse(json)?;
     let buffers = root
         .buffers
         .iter()
@@ -87,7 +90,7 @@ pub(super) fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Container, Rea
             Ok(data)
         })
         .collect::<Result<_, _>>()?;
-    let mut container = Container { root, buffers, unpacked: HashMap::new() };
+    let mut container = Container { root, buffers, weight_pointers, unpacked: HashMap::new() };
     container.unpacked = meshopt::unpack(&container)?;
     Ok(container)
 }
@@ -140,10 +143,18 @@ fn split_chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
     Ok((json, binary))
 }
 
-/// JSON to a document that asks for no extension. References are checked where they are followed.
-fn parse(json: &[u8]) -> Result<Root, ReadError> {
-    let root: Root = serde_json::from_slice(json)
-        .map_err(|e| ReadError::damaged("JSON chunk", e.to_string()))?;
+/// JSON to a document that asks for no extension, and the channels of weights behind pointers. References
+/// are checked where they are followed.
+fn parse(json: &[u8]) -> Result<(Root, Vec<(String, String)>), ReadError> {
+    let damaged = |e: serde_json::Error| ReadError::damaged("JSON chunk", e.to_string());
+    let has_pointers = json.windows(POINTER.len()).any(|window| window == POINTER.as_bytes());
+    let (root, pointers): (Root, _) = if has_pointers {
+        let mut value: serde_json::Value = serde_json::from_slice(json).map_err(damaged)?;
+        let pointers = take_pointers_off(&mut value);
+        (serde_json::from_value(value).map_err(damaged)?, pointers)
+    } else {
+        (serde_json::from_slice(json).map_err(damaged)?, Vec::new())
+    };
     let known = |e: &str| KNOWN_EXTENSIONS.contains(&e) || e.starts_with("KHR_materials_");
     if let Some(extension) = root.extensions_required.iter().find(|e| !known(e)) {
         return Err(ReadError::broken(
@@ -152,7 +163,36 @@ fn parse(json: &[u8]) -> Result<Root, ReadError> {
             "export without that compression or extension",
         ));
     }
-    Ok(root)
+    Ok((root, pointers))
+}
+
+/// Animations of anything that a JSON pointer reaches.
+const POINTER: &str = "KHR_animation_pointer";
+
+/// Takes the channels off whose target is a pointer: they have no node, without which no channel can be
+/// read. Answers those that aim at weights.
+fn take_pointers_off(root: &mut serde_json::Value) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let animations = root.get_mut("animations").and_then(|list| list.as_array_mut());
+    for (a, animation) in animations.into_iter().flatten().enumerate() {
+        let channels = animation.get_mut("channels").and_then(|list| list.as_array_mut());
+        let Some(channels) = channels else { continue };
+        let mut c = 0;
+        channels.retain(|channel| {
+            let place = format!("animations[{a}].channels[{c}]");
+            c += 1;
+            let target = &channel["target"];
+            if target["path"] != "pointer" {
+                return true;
+            }
+            let pointer = target["extensions"][POINTER]["pointer"].as_str().unwrap_or_default();
+            if pointer.split('/').any(|word| word == "weights") {
+                found.push((place, pointer.to_owned()));
+            }
+            false
+        });
+    }
+    found
 }
 
 pub(super) fn load_uri(

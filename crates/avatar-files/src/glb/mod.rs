@@ -3,10 +3,11 @@
 //! Read: every mesh of the scene with its morph targets (sparse accessors, normalised integers),
 //! node transforms, skeletons at the pose that the file has them in, base colours and their
 //! textures, `extras.targetNames`; KHR_mesh_quantization, KHR_texture_transform and, in native
-//! builds, EXT_meshopt_compression. Not read: animations, other textures; other compressions are
+//! builds, EXT_meshopt_compression; by itself, the animation of the morph targets. Not read: other textures; other compressions are
 //! refused by name.
 
 mod accessor;
+mod animation;
 mod container;
 mod material;
 mod meshopt;
@@ -15,6 +16,7 @@ mod skeleton;
 mod transform;
 mod write;
 
+pub use animation::{WeightAnimation, read_weight_animation};
 pub use write::{GlbWriteError, write_glb};
 
 use std::collections::HashMap;
@@ -51,6 +53,17 @@ pub(crate) fn read_with(
     folder: Option<&Path>,
     settings: &AvatarSettings,
 ) -> Result<ReadAvatar, ReadError> {
+    let (avatar, notes) = as_in_the_file(bytes, name, folder, settings)?;
+    ReadAvatar::finish(avatar, notes, settings)
+}
+
+/// The avatar as it stands in the file, in the file's unit and unchecked, and what is to be said of it.
+pub(crate) fn as_in_the_file(
+    bytes: &[u8],
+    name: &str,
+    folder: Option<&Path>,
+    settings: &AvatarSettings,
+) -> Result<(Avatar, Vec<String>), ReadError> {
     let container = container::open(bytes, folder)?;
     let mut notes = Vec::new();
     let mut surfaces = Vec::new();
@@ -78,8 +91,7 @@ pub(crate) fn read_with(
     let (shape_names, meshes) = joined(surfaces, &mut pictures, settings)?;
     notes.append(&mut pictures.notes);
     let (name, textures) = (name.to_owned(), pictures.textures);
-    let avatar = Avatar { name, shape_names, meshes, eyeballs: vec![], textures };
-    ReadAvatar::finish(avatar, notes, settings)
+    Ok((Avatar { name, shape_names, meshes, eyeballs: vec![], textures }, notes))
 }
 
 /// Every node of the scene with its world-from-node transform, parents first.

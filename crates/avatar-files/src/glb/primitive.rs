@@ -202,7 +202,7 @@ fn colours(
 }
 
 /// The names of a mesh's morph targets: `extras.targetNames`, or `shape_0`, `shape_1`...
-fn target_names(
+pub(super) fn target_names(
     mesh: &gltf_json::Mesh,
     count: usize,
     place: &str,

@@ -16,6 +16,7 @@ use self::parse::{Corner, Group, Obj, parse, parse_positions};
 use crate::files::Files;
 use crate::parts::{PartName, assign_parts};
 use crate::settings::{AvatarSettings, fits};
+use crate::template::Surface;
 use crate::{ReadAvatar, ReadError};
 use mimique_avatar::{Avatar, Image, Mesh, Part, SparseShape, Textured};
 
@@ -46,6 +47,14 @@ pub(crate) fn read_obj_poses(
     let (name, textures) = (name.to_owned(), poses.pictures.textures);
     let avatar = Avatar { name, shape_names, meshes, textures, ..Avatar::default() };
     ReadAvatar::finish(avatar, notes, &settings)
+}
+
+/// The vertices of one file in its order, in its unit, and its triangles.
+pub(crate) fn mesh_of(file: &str, bytes: &[u8]) -> Result<Surface, ReadError> {
+    let read = parse(file, bytes)?;
+    let triangles = read.groups.iter().flat_map(|group| &group.triangles);
+    let triangles = triangles.map(|t| t.map(|(vertex, _)| vertex)).collect();
+    Ok((read.positions.iter().map(|&p| single(p)).collect(), triangles))
 }
 
 /// Names of the OBJ files without their ending, and the settings among them.

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use mimique_avatar::Avatar;
 use mimique_clip::{TakeContent, decode_operators, decode_take, sha256_hex};
-use mimique_mocap::WeightsTable;
+use mimique_mocap::{Activity, ActivityColumn, Sport, WeightsTable};
 use mimique_solver::VertexAssociation;
-use mimique_stimulus::{AvatarSkin, MarkerMap};
+
+use mimique_stimulus::{AvatarSkin, GazeStatistics, MarkerMap};
 use mimique_study::Multilingual as _;
 use serde_json::{Value, json};
 
@@ -16,6 +17,22 @@ pub(super) fn avatar_file(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
     let mut facts = avatar_facts("avatar", &read.avatar, bytes);
     facts["unit m"] = json!(read.unit_metres);
     facts["notes"] = json!(read.notes);
+    // Of a folder or an archive there are no animations.
+    if bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") {
+        match mimique_avatar_files::read_weight_animation(bytes, file.parent()) {
+            Ok(None) => {}
+            Ok(Some(animation)) => {
+                let shapes = animation.shape_names.len();
+                facts["animation"] = json!({
+                    "frames": animation.weights.len() / shapes.max(1),
+                    "rate_hz": (animation.rate_hz * 1e3).round() / 1e3,
+                    "shapes": animation.shape_names.join(", "),
+                    "notes": animation.notes,
+                });
+            }
+            Err(error) => facts["animation"] = json!({ "warnings": [error.to_string()] }),
+        }
+    }
     if !read.locked.is_empty() {
         facts["locked"] = json!(read.locked);
     }
@@ -52,7 +69,7 @@ pub(super) fn avatar_facts(kind: &str, avatar: &Avatar, bytes: &[u8]) -> Value {
             Value::Null
         }
     };
-    let still: Vec<&str> = (avatar.shape_names.iter().zip(&reach))
+    let still: Vec<&str> = (avatar.face_shapes().iter().zip(&reach))
         .filter(|(_, reach)| **reach < 1e-4)
         .map(|(name, _)| name.as_str())
         .collect();
@@ -111,7 +128,11 @@ pub(super) fn weights_facts(format: &str, table: &WeightsTable) -> Value {
         .map(|((low, high), name)| format!("{name} ({low:.3} to {high:.3})"))
         .collect();
     let interpolated: usize = table.filled.iter().map(|(first, end)| end - first).sum();
+    let gaze = GazeStatistics::of(names, weights);
+    let first = table.frames.first().copied().unwrap_or_default();
     json!({
+        "gaze": gaze.as_ref().map(GazeStatistics::words),
+        "gaze_warning": gaze.and_then(|gaze| gaze.warning(first)),
         "kind": "weights",
         "format": format,
         "frames": weights.len() / n,
@@ -121,6 +142,39 @@ pub(super) fn weights_facts(format: &str, table: &WeightsTable) -> Value {
         "outside_0_1": format!("{:.2} %", 100.0 * outside as f64 / weights.len().max(1) as f64),
         "first_frame": table.frames.first(),
         "interpolated": interpolated,
+        "notes": table.notes,
+    })
+}
+
+/// Facts of a recorded activity.
+pub(super) fn activity_facts(activity: &Activity) -> Value {
+    let columns: Vec<String> = ActivityColumn::ALL
+        .into_iter()
+        .filter_map(|column| Some((column, activity.column(column)?)))
+        .map(|(column, values)| {
+            let seen = || values.iter().copied().filter(|value| !value.is_nan());
+            let (low, high) =
+                (seen().fold(f64::INFINITY, f64::min), seen().fold(f64::NEG_INFINITY, f64::max));
+            format!(
+                "{} ({low:.3} to {high:.3}, {} missing)",
+                column.name(),
+                values.len() - seen().count()
+            )
+        })
+        .collect();
+    let gaps = activity.time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    json!({
+        "kind": "activity",
+        "format": activity.format.name,
+        "samples": activity.time_s.len(),
+        "seconds": activity.time_s.last(),
+        "longest_gap_s": gaps.fold(0.0, f64::max),
+        "sport": activity.sport.map(|sport| match sport {
+            Sport::Cycling => "cycling",
+            Sport::OnFoot => "on foot",
+        }),
+        "columns": columns.join(", "),
+        "notes": activity.notes,
     })
 }
 

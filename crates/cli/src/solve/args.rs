@@ -6,7 +6,7 @@ use mimique_solver::Method;
 use mimique_stimulus::Depth;
 
 use super::parameter_options::ParameterOptions;
-use super::values::{Factors, Named, Span};
+use super::values::{Angles, Factors, Named, Span};
 
 /// The heading of what regression learns from.
 const TRAINING: &str = "Training of regression";
@@ -19,14 +19,16 @@ pub struct Args {
     /// Avatar with blendshapes: .glb or .gltf
     #[arg(long, value_name = "FILE")]
     pub(super) avatar: PathBuf,
-    /// Capture: C3D, TRC, CSV...; for recorded the weights: Live Link Face, or CSV
+    /// Capture: C3D, TRC, CSV...; for recorded the weights: Live Link Face, CSV, MediaPipe, OpenFace..., or a GLB
+    /// with an animation
     #[arg(long, value_name = "FILE")]
     pub(super) mocap: PathBuf,
     /// Marker map: JSON, or CSV with marker,role,vertex (not for recorded)
     #[arg(long, value_name = "FILE")]
     pub(super) markers: Option<PathBuf>,
-    /// Where the weights go: .csv with frame,time and a column per shape, or .npy with names and rate in
-    /// NAME.shapes.json beside it; for thin-shell-surface the
+    /// Where the weights go: .csv with frame,time and a column per shape, .npy with names and rate in
+    /// NAME.shapes.json beside it, .livelink.csv as Live Link Face writes it, or .json under ARKit's names;
+    /// for thin-shell-surface the
     /// columns are LABEL.x, LABEL.y, LABEL.z, the way of each marker's vertex in centimetres
     #[arg(long, value_name = "FILE")]
     pub(super) out: PathBuf,
@@ -71,6 +73,19 @@ pub struct Args {
     /// Third coordinate: measured, or surface for a two-dimensional capture (by default the map's)
     #[arg(long, help_heading = CAPTURE, value_name = "WORD")]
     pub(super) depth: Option<Depth>,
+    /// Where the eyes look: a table of time, azimuth, elevation and vergence in degrees, to the person's left,
+    /// upwards and converging above 0, or recorded weights with eyeLook shapes (by default the eyes rest)
+    #[arg(long, help_heading = CAPTURE, value_name = "FILE")]
+    pub(super) gaze_track: Option<PathBuf>,
+    /// How many seconds after the clock of --gaze-track the capture begins
+    #[arg(long, help_heading = CAPTURE, value_name = "SECONDS", requires = "gaze_track", allow_negative_numbers = true)]
+    pub(super) gaze_later: Option<f64>,
+    /// Where the eyes look throughout, degrees: azimuth to the person's left, elevation, vergence
+    #[arg(long, help_heading = CAPTURE, value_name = "AZIMUTH,ELEVATION[,VERGENCE]", conflicts_with = "gaze_track", allow_hyphen_values = true)]
+    pub(super) gaze_held: Option<Angles>,
+    /// Marker of the capture at what the eyes look at
+    #[arg(long, help_heading = CAPTURE, value_name = "MARKER", conflicts_with_all = ["gaze_track", "gaze_held"])]
+    pub(super) gaze_target: Option<String>,
     /// Symmetric shapes to cut into NAME_L and NAME_R along the face's middle (Kouadio 4.5)
     #[arg(long, help_heading = CAPTURE, value_name = "SHAPE,SHAPE", value_delimiter = ',')]
     pub(super) split: Vec<String>,

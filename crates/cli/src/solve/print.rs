@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use mimique_stimulus::{SolveReport, SolvedCapture};
+use mimique_stimulus::{ShapeRow, ShapeState, SolveReport, SolvedCapture};
 use serde_json::{Value, json};
 
 use super::args::Args;
@@ -79,6 +79,10 @@ fn print_text(
             "gaze at rest: no gaze is given, so {count} shapes that turn the eyes stay at 0"
         )?;
     }
+    print_shapes(out, &report.shapes_told)?;
+    if let Some(gaze) = report.gaze.as_ref().filter(|gaze| !gaze.is_still()) {
+        writeln!(out, "gaze {}", gaze.words())?;
+    }
     print_regression(out, report)?;
     writeln!(
         out,
@@ -93,6 +97,39 @@ fn print_text(
     writeln!(out, "weights {}\nprovenance {}", report.weights_hash, report.provenance)?;
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
     report.warnings.iter().try_for_each(|warning| writeln!(out, "warning: {warning}"))
+}
+
+/// How many shapes get their weights in which way; which they are where the markers do not tell them by
+/// themselves.
+fn print_shapes(out: &mut impl Write, rows: &[ShapeRow]) -> std::io::Result<()> {
+    let of = |state: ShapeState| rows.iter().filter(move |row| row.state == state);
+    let count = |state| of(state).count();
+    if rows.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "shapes: {} told by the markers, {} together with others, {} held at 0, {} locked, {} driven",
+        count(ShapeState::Solved),
+        count(ShapeState::Shared),
+        count(ShapeState::Held) + count(ShapeState::AtRest),
+        count(ShapeState::Locked),
+        count(ShapeState::Driven),
+    )?;
+    let shared: Vec<String> = of(ShapeState::Shared)
+        .map(|row| match &row.confused_with {
+            Some((other, _)) => format!("{} with {other}", row.shape),
+            None => row.shape.clone(),
+        })
+        .collect();
+    if !shared.is_empty() {
+        writeln!(out, "told together: {}", shared.join(", "))?;
+    }
+    let held: Vec<&str> = of(ShapeState::Held).map(|row| row.shape.as_str()).collect();
+    if !held.is_empty() {
+        writeln!(out, "held at 0, since no marker tells them: {}", held.join(", "))?;
+    }
+    Ok(())
 }
 
 /// What a regression has learnt from; nothing of another method.

@@ -4,8 +4,11 @@ use std::io::Write as _;
 
 use anyhow::bail;
 use mimique_clip::weights_hash;
-use mimique_mocap::{CaptureFile, Format, WeightOptions};
-use mimique_stimulus::{Provenance, RecordedWeights, avatar_key, sha256_of_file};
+use mimique_mocap::WeightOptions;
+use mimique_stimulus::{
+    GazeStatistics, Performance, Provenance, RecordedWeights, avatar_key, read_performance,
+    sha256_of_file,
+};
 use serde_json::json;
 
 use super::{Args, blame, write_weights};
@@ -17,11 +20,12 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     }
     let avatar =
         mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let mut file = CaptureFile::open(&args.mocap).map_err(|e| blame(&args.mocap, e))?;
     let options =
         WeightOptions { rate_hz: args.mocap_rate, shape_names: &avatar.avatar.shape_names };
-    let recorded = file.weights(&options).map_err(|e| blame(&args.mocap, e))?;
-    let notes: Vec<String> = file.format().map(Format::taken_for).into_iter().collect();
+    let Performance { table: recorded, format } =
+        read_performance(&args.mocap, &options).map_err(|e| blame(&args.mocap, e))?;
+    let mut notes = vec![format!("read as {format}")];
+    notes.extend(recorded.notes.iter().cloned());
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &avatar.avatar.shape_names)
             .map_err(|e| blame(&args.mocap, e))?;
@@ -36,7 +40,11 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         )
         .json("weights", hash.as_str())
         .hash();
-    let warnings = names.warnings();
+    let gaze = GazeStatistics::of(&table.shape_names, &table.weights);
+    let first_frame = table.frames.first().copied().unwrap_or_default();
+    let mut warnings = names.warnings(true);
+    warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(first_frame)));
+    warnings.extend(write_weights(&table, &args.out)?);
     let report = json!({
         "method": {"method": "recorded"},
         "avatar": avatar.avatar.name,
@@ -44,13 +52,13 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "rate_hz": table.rate_hz(),
         "shapes": table.shape_names.len(),
         "names": names,
+        "gaze": gaze,
         "warnings": warnings,
         "notes": notes,
         "weights_hash": hash,
         "provenance": provenance,
         "files": {"avatar": args.avatar, "mocap": args.mocap, "out": args.out},
     });
-    write_weights(&table, &args.out)?;
     if let Some(path) = &args.report {
         let text = serde_json::to_string_pretty(&report)? + "\n";
         output::write(path, text.as_bytes())?;
@@ -70,6 +78,9 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         table.shape_names.len(),
         recorded.shape_names.len() - names.unused.len(),
     )?;
+    if let Some(gaze) = gaze.as_ref().filter(|gaze| !gaze.is_still()) {
+        writeln!(out, "gaze {}", gaze.words())?;
+    }
     writeln!(out, "weights {hash}\nprovenance {provenance}")?;
     let mocap = args.mocap.display();
     notes.iter().try_for_each(|note| writeln!(out, "note: {mocap}: {note}"))?;

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use anyhow::bail;
+use mimique_avatar::GazeAngles;
 
 /// `FIRST:END`.
 #[derive(Debug, Clone)]
@@ -13,15 +14,19 @@ pub(crate) struct Span(pub(crate) Range<usize>);
 
 /// Metres, from `12mm`, `1.2cm` or `0.012m`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Length(pub(super) f64);
+pub(crate) struct Length(pub(crate) f64);
 
 /// A factor, or one for each of x, y, z.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Factors(pub(super) [f64; 3]);
 
+/// Azimuth, elevation and vergence of a gaze, degrees.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Angles(pub(super) GazeAngles);
+
 /// `NAME=VALUE`.
 #[derive(Debug, Clone)]
-pub(super) struct Named<T>(pub(super) String, pub(super) T);
+pub(crate) struct Named<T>(pub(crate) String, pub(crate) T);
 
 /// What is given by name, each name once.
 pub(super) fn unique<T: Clone>(
@@ -49,6 +54,29 @@ impl FromStr for Factors {
             Some(&[x]) => Ok(Self([x; 3])),
             Some(&[x, y, z]) => Ok(Self([x, y, z])),
             _ => Err("give a number of 0 or more, or three for x, y and z".to_owned()),
+        }
+    }
+}
+
+impl FromStr for Angles {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f64>> = text
+            .split(',')
+            .map(|x| x.trim().parse().ok().filter(|x: &f64| x.abs() <= 90.0))
+            .collect();
+        match numbers.as_deref() {
+            Some(&[azimuth, elevation]) => {
+                Ok(Self(GazeAngles { azimuth, elevation, vergence: 0.0 }))
+            }
+            Some(&[azimuth, elevation, vergence]) => {
+                Ok(Self(GazeAngles { azimuth, elevation, vergence }))
+            }
+            _ => Err(
+                "give azimuth and elevation in degrees, and vergence if it is known, as 10,-5,3"
+                    .to_owned(),
+            ),
         }
     }
 }

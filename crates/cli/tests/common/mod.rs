@@ -32,3 +32,23 @@ pub fn refused<S: AsRef<std::ffi::OsStr>>(args: &[S]) -> String {
 pub fn text(path: &Path) -> String {
     path.to_str().expect("a path in UTF-8").to_owned()
 }
+
+/// A folder with the sample's files.
+pub fn sample() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    ok(&["sample", "--out", &text(folder.path())]);
+    folder
+}
+
+/// Arguments of `mimique exertion` from words and paths.
+pub fn exertion_args(words: &[&str], paths: &[(&str, &Path)]) -> Vec<String> {
+    let mut all: Vec<String> =
+        std::iter::once("exertion").chain(words.iter().copied()).map(str::to_owned).collect();
+    for (option, path) in paths {
+        if !option.is_empty() {
+            all.push((*option).to_owned());
+        }
+        all.push(text(path));
+    }
+    all
+}

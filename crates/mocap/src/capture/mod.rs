@@ -7,6 +7,7 @@ pub(crate) mod unit;
 mod weights;
 
 pub use recording::{Event, Recording};
+pub(crate) use weights::ROTATIONS;
 pub use weights::{WeightOptions, WeightsTable};
 
 /// A length unit a capture's coordinates are in.
@@ -81,14 +82,19 @@ impl Capture {
     /// Index of the marker of that label. Where none has it letter for letter, that of the only marker
     /// that has it but for a subject's name before a colon, on either side: `Actor:brow` is `brow`.
     pub fn marker_index(&self, label: &str) -> Option<usize> {
-        let exact = self.labels.iter().position(|l| l == label);
-        exact.or_else(|| {
-            let alike = |l: &str| without_subject(l) == label || l == without_subject(label);
-            let mut found = self.labels.iter().enumerate().filter(|(_, l)| alike(l));
-            let (index, _) = found.next()?;
-            found.next().is_none().then_some(index)
-        })
+        marker_index(&self.labels, label)
     }
+}
+
+/// [`Capture::marker_index`] among some labels.
+pub(crate) fn marker_index(labels: &[String], label: &str) -> Option<usize> {
+    let exact = labels.iter().position(|l| l == label);
+    exact.or_else(|| {
+        let alike = |l: &str| without_subject(l) == label || l == without_subject(label);
+        let mut found = labels.iter().enumerate().filter(|(_, l)| alike(l));
+        let (index, _) = found.next()?;
+        found.next().is_none().then_some(index)
+    })
 }
 
 /// A label without the name of the subject that recording systems put before it.

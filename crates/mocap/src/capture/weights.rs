@@ -15,7 +15,22 @@ pub struct WeightsTable {
     /// Rows that the recording had dropped and that are interpolated: from the first, up to but
     /// without the second.
     pub filled: Vec<(usize, usize)>,
+    /// What is worth saying of the file: shapes that its tracker hardly sees, uneven times.
+    pub notes: Vec<String>,
 }
+
+/// What applications write beside the weights: rotations of head and eyes, in radians (Live Link Face).
+pub(crate) const ROTATIONS: [&str; 9] = [
+    "HeadYaw",
+    "HeadPitch",
+    "HeadRoll",
+    "LeftEyeYaw",
+    "LeftEyePitch",
+    "LeftEyeRoll",
+    "RightEyeYaw",
+    "RightEyePitch",
+    "RightEyeRoll",
+];
 
 /// What the caller of a reader of weights knows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -41,6 +56,7 @@ impl WeightsTable {
             times: (0..count).map(|f| f as f64 / rate_hz).collect(),
             weights,
             filled: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -61,6 +77,22 @@ impl WeightsTable {
         Self::at_rate(self.shape_names.clone(), weights.collect(), first, rate_hz)
     }
 
+    /// Takes the rotations of head and eyes off, which are no weights of shapes. Answers their names.
+    pub fn take_rotations_off(&mut self) -> Vec<String> {
+        let is_rotation = |name: &String| ROTATIONS.contains(&name.as_str());
+        let n = self.shape_names.len();
+        let kept: Vec<usize> = (0..n).filter(|&k| !is_rotation(&self.shape_names[k])).collect();
+        if kept.len() == n {
+            return Vec::new();
+        }
+        let rows = self.weights.chunks_exact(n);
+        self.weights = rows.flat_map(|row| kept.iter().map(|&k| row[k])).collect();
+        let (rotations, shapes) =
+            std::mem::take(&mut self.shape_names).into_iter().partition(is_rotation);
+        self.shape_names = shapes;
+        rotations
+    }
+
     /// The N weights of row `row`.
     ///
     /// # Panics
@@ -75,5 +107,24 @@ impl WeightsTable {
         let (first, last) = (self.times.first()?, self.times.last()?);
         let rate = (self.times.len() - 1) as f64 / (last - first);
         (rate.is_finite() && rate > 0.0).then_some(rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_go_and_weights_stay() {
+        let names = ["HeadYaw", "jawOpen", "LeftEyeRoll", "smile"].map(str::to_owned).to_vec();
+        let weights = vec![9.0, 0.1, 9.0, 0.2, 9.0, 0.3, 9.0, 0.4];
+        let mut table = WeightsTable::at_rate(names, weights, 0, 60.0);
+        assert_eq!(table.take_rotations_off(), ["HeadYaw", "LeftEyeRoll"]);
+        assert_eq!(table.shape_names, ["jawOpen", "smile"]);
+        assert_eq!(table.weights, [0.1, 0.2, 0.3, 0.4]);
+        assert!(table.take_rotations_off().is_empty());
+        let mut only = WeightsTable::at_rate(vec!["HeadYaw".to_owned()], vec![1.0, 2.0], 0, 60.0);
+        assert_eq!(only.take_rotations_off(), ["HeadYaw"]);
+        assert!(only.weights.is_empty());
     }
 }

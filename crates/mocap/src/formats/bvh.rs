@@ -245,13 +245,17 @@ fn pose(joints: &[Joint], values: &[f64], poses: &mut Vec<RigidMotion>) {
     }
 }
 
-/// Rotation about an axis, right-handed.
+/// Rotation about an axis, right-handed. Sine and cosine are `libm`'s: the browser places the joints
+/// where the native program does, bit for bit.
 fn about(axis: usize, angle: f64) -> DMat3 {
-    match axis {
-        0 => DMat3::from_rotation_x(angle),
-        1 => DMat3::from_rotation_y(angle),
-        _ => DMat3::from_rotation_z(angle),
-    }
+    let (sine, cosine) = libm::sincos(angle);
+    let mut turn = DMat3::IDENTITY;
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    turn.col_mut(j)[j] = cosine;
+    turn.col_mut(j)[k] = sine;
+    turn.col_mut(k)[j] = -sine;
+    turn.col_mut(k)[k] = cosine;
+    turn
 }
 
 #[cfg(test)]

@@ -54,8 +54,14 @@ pub(crate) type WeightsReader =
 pub(crate) enum Write {
     /// Of a capture; the name of the file, which some formats hold.
     Capture(fn(&Capture, &str) -> Result<Vec<u8>, WriteError>),
-    /// Of weights: the files, each with its path; that of the path given is the last one.
-    Weights(WeightsWriter),
+    /// Of weights.
+    Weights {
+        /// The columns that the format's files have, where it is not free: what is written has these
+        /// names.
+        columns: Option<&'static [&'static str]>,
+        /// Gives the files, each with its path; that of the path given is the last one.
+        write: WeightsWriter,
+    },
 }
 
 /// A writer of weights: the files, each with its path and bytes.
@@ -72,10 +78,12 @@ impl Format {
         !matches!(self.read, Read::Binary(_) | Read::Text(_))
     }
 
-    /// Whether a file's name ends as those of this format do.
-    pub(crate) fn has_extension_of(&self, path: &Path) -> bool {
-        let extension = path.extension().unwrap_or_default();
-        self.extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+    /// How long the ending of a file's name is that asks for this format; `None` where it asks for another.
+    pub(crate) fn asked_for_by(&self, path: &Path) -> Option<usize> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let ends =
+            |known: &&&str| name.strip_suffix(**known).is_some_and(|rest| rest.ends_with('.'));
+        self.extensions.iter().filter(ends).map(|known| known.len()).max()
     }
 }
 

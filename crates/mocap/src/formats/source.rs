@@ -42,6 +42,16 @@ pub(crate) fn beginning(source: &mut dyn Source, most: u64) -> Result<Vec<u8>, R
     Ok(bytes)
 }
 
+/// The first bytes of a source, fit to print.
+pub(crate) fn shown_beginning(source: &mut dyn Source) -> Result<String, ReadError> {
+    let bytes = beginning(source, 24)?;
+    if bytes.is_empty() {
+        return Ok("the file is empty".to_owned());
+    }
+    let head: String = bytes.iter().flat_map(|b| b.escape_ascii()).map(char::from).collect();
+    Ok(format!("it starts with \"{head}\""))
+}
+
 /// The first bytes of a source, read as far as they were asked for.
 pub(crate) struct Prefix<'s> {
     source: &'s mut dyn Source,

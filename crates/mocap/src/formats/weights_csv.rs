@@ -15,9 +15,12 @@ pub(super) static FORMAT: Format = Format {
     reads: "what `solve` writes; `time` in seconds, or the rate that is asked for",
     recognise: Recognise::FirstLine(is_header),
     read: Read::TextWeights(read),
-    write: Some(Write::Weights(|table: &WeightsTable, path: &Path| {
-        vec![(path.to_owned(), table.to_csv().into_bytes())]
-    })),
+    write: Some(Write::Weights {
+        columns: None,
+        write: |table: &WeightsTable, path: &Path| {
+            vec![(path.to_owned(), table.to_csv().into_bytes())]
+        },
+    }),
 };
 
 /// Whether a line is the header of weights: `frame,` and columns most of which are no coordinates, as

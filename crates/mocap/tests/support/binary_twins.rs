@@ -1,4 +1,5 @@
-//! Twins of the binary formats, C3D and NumPy's arrays: bytes changed where a number or a name stands.
+//! Twins of the formats that are no lines of text: C3D, NumPy's arrays and JSON, changed where a number or
+//! a name stands.
 
 use super::twins::Twin;
 
@@ -6,7 +7,9 @@ use super::twins::Twin;
 pub fn twins(id: &str, bytes: &[u8]) -> Vec<Twin> {
     match id {
         "c3d" => c3d(bytes),
-        "npy" => npy(bytes),
+        "npy" | "npy-vertices" => npy(bytes),
+        "npz" => npz(bytes),
+        "arkit-json" | "audio2face-json" | "mediapipe-json" => json(bytes),
         other => panic!("no twins of {other}"),
     }
 }
@@ -129,6 +132,9 @@ fn npy(bytes: &[u8]) -> Vec<Twin> {
         }),
     ];
     for (name, what, by) in [
+        ("frames too many", "(3, 4, 3)", "(4, 4, 3)"),
+        ("vertices too few", "(3, 4, 3)", "(3, 3, 3)"),
+        ("axes too few", "(3, 4, 3)", "(3, 6, 2)"),
         ("rows too many", "(2, 4)", "(3, 4)"),
         ("columns too few", "(2, 4)", "(2, 3)"),
         ("of rank 1", "(2, 4)", "(8,)  "),
@@ -150,4 +156,69 @@ fn npy(bytes: &[u8]) -> Vec<Twin> {
         }));
     }
     twins
+}
+
+fn json(bytes: &[u8]) -> Vec<Twin> {
+    let text = std::str::from_utf8(bytes).unwrap();
+    let mut twins = vec![
+        twin(true, "byte order mark", [b"\xef\xbb\xbf", bytes].concat()),
+        twin(true, "blanks before and after", format!("\n  {text}\n\n").into_bytes()),
+        twin(true, "lines end in CRLF", text.replace('\n', "\r\n").into_bytes()),
+        twin(false, "cut", bytes[..bytes.len() * 2 / 3].to_vec()),
+        twin(false, "cut before the last number", {
+            let last = bytes.iter().rposition(u8::is_ascii_digit).unwrap();
+            bytes[..last].to_vec()
+        }),
+        twin(false, "two files in one", bytes.repeat(2)),
+    ];
+    for (benign, name, what, by) in [
+        (true, "spaces left out", ": ", ":"),
+        (true, "a key more", "{\"weights\"", "{\"x\": {\"y\": []}, \"weights\""),
+        (true, "landmarks renamed", "\"displayName\": \"\"", "\"displayName\": \"a\""),
+        (false, "shape repeated", "cheekPuff", "jawOpen"),
+        (false, "shape repeated", "mouthClose", "jawOpen"),
+        (
+            false,
+            "another shape in a frame",
+            "\"categoryName\": \"jawOpen\"",
+            "\"categoryName\": \"jawLeft\"",
+        ),
+        (false, "words for a number", "0.375", "\"much\""),
+        (false, "no number", "0.375", "NaN"),
+        (false, "null", "0.375", "null"),
+        (false, "a number too large", "0.375", "1e999"),
+        (false, "a number more", "[0.375, ", "[0.375, 0.25, "),
+        (false, "a number less", "[0.375, ", "["),
+        (false, "rate 0", "\"exportFps\": 60", "\"exportFps\": 0"),
+        (false, "rate below 0", "\"exportFps\": 60", "\"exportFps\": -60"),
+        (false, "rate missing", "\"exportFps\": 60", "\"fps\": 60"),
+        (false, "frames too many", "\"numFrames\": 5", "\"numFrames\": 6"),
+        (false, "shapes too many", "\"numPoses\": 3", "\"numPoses\": 4"),
+        (false, "a time far off", "\"time\": 0.04", "\"time\": 4000"),
+        (false, "times stand still", "\"time\": 0.04", "\"time\": 0.02"),
+        (false, "times stand still", "12.54", "12.52"),
+        (false, "times stand still", "\"timestampMs\": 80", "\"timestampMs\": 40"),
+        (false, "a time of words", "\"timestampMs\": 80", "\"timestampMs\": \"noon\""),
+        (false, "no face", "\"faceBlendshapes\": [{", "\"faces\": [{"),
+    ] {
+        if text.contains(what) {
+            let times = if benign { usize::MAX } else { 1 };
+            twins.push(twin(benign, name, text.replacen(what, by, times).into_bytes()));
+        }
+    }
+    twins
+}
+
+/// An archive has a sum of every member.
+fn npz(bytes: &[u8]) -> Vec<Twin> {
+    let at = after(bytes, "NUMPY") + 20;
+    let last = bytes.windows(5).rposition(|window| window == b"NUMPY").unwrap() - 1;
+    vec![
+        twin(false, "cut", bytes[..bytes.len() - 30].to_vec()),
+        twin(false, "cut in the first array", bytes[..at].to_vec()),
+        twin(false, "two files in one", bytes.repeat(2)),
+        twin(false, "a letter of a header", patched(bytes, at, b"#")),
+        twin(false, "a number", patched(bytes, last + 130, &[7])),
+        twin(false, "no central directory", bytes[..bytes.len() - 22].to_vec()),
+    ]
 }

@@ -3,7 +3,7 @@
 use super::twins::Form;
 
 /// The text formats, each with what is its own.
-pub const FORMS: [Form; 9] = [
+pub const FORMS: [Form; 12] = [
     Form {
         id: "trc",
         delimiter: '\t',
@@ -266,6 +266,70 @@ pub const FORMS: [Form; 9] = [
             ("times stand still", "712,0.035", "712,0"),
             ("frame below 0", "708,", "-708,"),
             ("weight not finite", "0.5,", "inf,"),
+        ],
+    },
+    Form {
+        id: "mediapipe-csv",
+        delimiter: ',',
+        last_of_header: |line| line.contains("browDownLeft"),
+        quotes: true,
+        comments: false,
+        others: &[('\t', false), (';', false)],
+        any_order: false,
+        benign: &[
+            ("another name of the time", "timestamp_ms", "timestampMs"),
+            ("a comment before", "timestamp_ms", "# a webcam\ntimestamp_ms"),
+            ("no score of the neutral face", "_neutral,", "landmarks,"),
+        ],
+        hostile: &[
+            ("shape repeated", "noseSneerLeft", "jawOpen"),
+            ("a time far off", "\n133,", "\n1330,"),
+            ("times stand still", "\n133,", "\n100,"),
+            ("time of words", "\n133,", "\nnoon,"),
+            ("shapes missing", ",browDownLeft,jawOpen,noseSneerLeft", ""),
+        ],
+    },
+    Form {
+        id: "openface-csv",
+        delimiter: ',',
+        last_of_header: |line| line.starts_with("frame"),
+        quotes: true,
+        comments: false,
+        others: &[('\t', false), (';', false)],
+        any_order: false,
+        benign: &[
+            (
+                "no blanks in the header",
+                ", face_id, timestamp, confidence",
+                ",face_id,timestamp,confidence",
+            ),
+            ("no presences", ", AU01_c, AU28_c", ", a, b"),
+        ],
+        hostile: &[
+            ("unit repeated", "AU12_r", "AU01_r"),
+            ("another face", "\n3, 0,", "\n3, 1,"),
+            ("frame far off", "\n9, 0,", "\n90000, 0,"),
+            ("a time far off", "0.320", "32.0"),
+            ("times in disorder", "0.360", "0.000"),
+            ("no unit", "AU01_r, AU12_r, AU45_r", "a, b, c"),
+            ("frame below 0", "\n1, 0,", "\n-1, 0,"),
+        ],
+    },
+    Form {
+        id: "py-feat-csv",
+        delimiter: ',',
+        last_of_header: |line| line.contains("FaceRectX"),
+        quotes: true,
+        comments: false,
+        others: &[('\t', false), (';', false)],
+        any_order: false,
+        benign: &[("no index", ",FaceRectX", "row,FaceRectX")],
+        hostile: &[
+            ("unit repeated", "AU12", "AU01"),
+            ("frame far off", "a.mp4,16", "a.mp4,160000"),
+            ("frame below 0", "a.mp4,0", "a.mp4,-2"),
+            ("frame of words", "a.mp4,4", "a.mp4,four"),
+            ("no unit", "AU01,AU12", "a,b"),
         ],
     },
 ];

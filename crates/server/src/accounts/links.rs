@@ -20,22 +20,29 @@ pub(crate) async fn new_link(
     purpose: LinkPurpose,
     email: &str,
     role: Role,
+    study_id: Option<String>,
 ) -> Result<String, AppError> {
     let secret = secret::random::<16>()?;
     let now = now_ms();
     let expires_ms = now + LINK_LIFETIME_MS;
-    let link = AccountLink { purpose, email: email.to_owned(), role, expires_ms };
+    let email = email.to_owned();
+    let link = AccountLink { purpose, email, role, study_id, expires_ms };
     storage.add_link(&secret::hash(&secret), &link, now).await?;
     Ok(format!("/researcher/link/{secret}"))
 }
 
-/// A link for a person to be invited.
-pub(crate) async fn invite(app: &App, email: &str, role: Role) -> Result<String, Error> {
+/// A link for a person to be invited, to all studies or to one.
+pub(crate) async fn invite(
+    app: &App,
+    email: &str,
+    role: Role,
+    study_id: Option<String>,
+) -> Result<String, Error> {
     let email = normal_email(email).ok_or(Error::NotAnEmail)?;
     if app.storage.account_by_email(&email).await?.is_some() {
         return Err(Error::AccountExists);
     }
-    Ok(new_link(&app.storage, LinkPurpose::Invitation, &email, role).await?)
+    Ok(new_link(&app.storage, LinkPurpose::Invitation, &email, role, study_id).await?)
 }
 
 /// Uses a link: makes the account that it is for, or sets its password.
@@ -71,7 +78,8 @@ pub async fn reset_link(storage: &Storage, email: &str) -> Result<String, AppErr
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
         return Err(AppError::NoAccount { email: email.to_owned(), known });
     };
-    let link = new_link(storage, LinkPurpose::Recovery, &account.email, account.role).await?;
+    let (purpose, role) = (LinkPurpose::Recovery, account.role);
+    let link = new_link(storage, purpose, &account.email, role, None).await?;
     super::audit::command(storage, "reset link", &account.email).await?;
     Ok(link)
 }
@@ -82,6 +90,7 @@ impl App {
         if self.storage.has_accounts().await? {
             return Ok(None);
         }
-        new_link(&self.storage, LinkPurpose::FirstOwner, "", Role::Owner).await.map(Some)
+        let purpose = LinkPurpose::FirstOwner;
+        new_link(&self.storage, purpose, "", Role::Owner, None).await.map(Some)
     }
 }

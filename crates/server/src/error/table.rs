@@ -107,6 +107,12 @@ refusals! {
     UnknownPack = NOT_FOUND "unknown-pack",
         en "no pack has this hash"; "reload the page",
         fr "aucun paquet n’a cette empreinte"; "rechargez la page";
+    NoExertion { problem: String } = CONFLICT "no-exertion",
+        en "the exertion cannot be computed: {problem}"; "see that the study's files are where it names them",
+        fr "l’effort ne peut pas être calculé : {problem}"; "vérifiez que les fichiers de l’étude sont où elle les nomme";
+    NoComparison { problem: String } = CONFLICT "no-comparison",
+        en "the clips cannot be compared: {problem}"; "start the server again, so that it prepares the study anew",
+        fr "les clips ne peuvent pas être comparés : {problem}"; "redémarrez le serveur, afin qu’il prépare de nouveau l’étude";
     UnknownSession = NOT_FOUND "unknown-session",
         en "no session has this token"; "start the study again from its address",
         fr "aucune session n’a ce jeton"; "reprenez l’étude depuis son adresse";
@@ -128,6 +134,9 @@ refusals! {
     UnknownWithdrawalCode = NOT_FOUND "unknown-withdrawal-code",
         en "no participant of this study has this withdrawal code"; "copy it as the last page showed it",
         fr "aucune personne de cette étude n’a ce code de retrait"; "recopiez-le tel que la dernière page l’a affiché";
+    TooManyStarts = TOO_MANY_REQUESTS "too-often",
+        en "too many sessions begin from one address"; "wait a moment and send it again",
+        fr "trop de sessions commencent depuis la même adresse"; "attendez un instant et renvoyez-la";
     AlreadyTookPart = FORBIDDEN "already-took-part",
         en "this person has already taken part"; "everybody can take part once",
         fr "cette personne a déjà participé"; "on ne participe qu’une fois";

@@ -1,25 +1,27 @@
 //! Tables as CSV: comma, quotes where needed, one line break (LF) a row, empty where there is no value.
 
+use std::borrow::Cow;
+
 use mimique_session::rows::Column;
 use mimique_study::columns::ColumnKind;
 use serde_json::Value;
 
 use super::error::ExportError;
-use super::merged::Merged;
-
-/// A table with its header.
-pub(super) fn table(table: &Merged, cells: Cells) -> Result<Vec<u8>, ExportError> {
-    let mut bytes = header(&table.columns)?;
-    bytes.extend(lines(&table.rows, cells)?);
-    Ok(bytes)
-}
 
 /// The lines below the header, with such cells.
-pub(super) fn lines(lines: &[Vec<Value>], cells: Cells) -> Result<Vec<u8>, ExportError> {
-    match cells {
-        Cells::AsTheyAre => rows(lines),
-        Cells::Neutralised => records(lines.iter().map(|row| row.iter().map(neutral))),
+pub(super) fn lines(rows: &[Vec<Value>], cells: Cells) -> Result<Vec<u8>, ExportError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        for value in row {
+            let cell = match cells {
+                Cells::AsTheyAre => cell(value),
+                Cells::Neutralised => neutral(value),
+            };
+            writer.write_field(&*cell).map_err(form)?;
+        }
+        writer.write_record(None::<&[u8]>).map_err(form)?;
     }
+    writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
 }
 
 /// Columns as rows: name, kind, unit, levels, description.
@@ -52,20 +54,18 @@ pub(super) fn header(columns: &[Column]) -> Result<Vec<u8>, ExportError> {
     records(std::iter::once(columns.iter().map(|column| column.name.clone())))
 }
 
-/// The lines below it.
-pub(super) fn rows(rows: &[Vec<Value>]) -> Result<Vec<u8>, ExportError> {
-    records(rows.iter().map(|row| row.iter().map(cell)))
-}
-
 fn records(
     rows: impl Iterator<Item = impl Iterator<Item = String>>,
 ) -> Result<Vec<u8>, ExportError> {
-    let form = |error: csv::Error| ExportError::Form(error.to_string());
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.write_record(row).map_err(form)?;
     }
     writer.into_inner().map_err(|error| ExportError::Form(error.to_string()))
+}
+
+fn form(error: csv::Error) -> ExportError {
+    ExportError::Form(error.to_string())
 }
 
 /// How cells of a CSV file are written.
@@ -79,20 +79,20 @@ pub enum Cells {
     Neutralised,
 }
 
-fn neutral(value: &Value) -> String {
+fn neutral(value: &Value) -> Cow<'_, str> {
     let text = cell(value);
     let is_text = value.is_string() && text.parse::<f64>().is_err();
     if is_text && text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
-        return format!("'{text}");
+        return format!("'{text}").into();
     }
     text
 }
 
-fn cell(value: &Value) -> String {
+fn cell(value: &Value) -> Cow<'_, str> {
     match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
+        Value::Null => "".into(),
+        Value::String(text) => text.as_str().into(),
+        other => other.to_string().into(),
     }
 }
 

@@ -44,3 +44,10 @@ pub enum ExportError {
     #[error("the export cannot be put together: {0}; this is a mistake of Mimique's")]
     Form(String),
 }
+
+impl ExportError {
+    /// A session is of a version that is not stored.
+    pub(super) fn missing(study_id: &str, config_hash: &str) -> Self {
+        Self::MissingVersion { id: study_id.to_owned(), config_hash: config_hash.to_owned() }
+    }
+}

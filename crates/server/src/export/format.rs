@@ -30,6 +30,11 @@ impl Format {
         }
     }
 
+    /// Whether it is a folder of several files.
+    pub fn is_folder(self) -> bool {
+        self == Self::PsychDs
+    }
+
     /// The format of this name.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|format| format.word() == word)

@@ -1,73 +1,63 @@
 //! JSON lines: tidy rows, or stored events.
 
-use mimique_session::rows::Column;
-use mimique_session::wire::{Event, SessionStarted};
-use mimique_storage::{SessionRecord, Storage};
+use mimique_session::wire::SessionStarted;
 use mimique_study::iso_time;
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 use super::error::ExportError;
-use super::merged::Merged;
-use super::sources::as_started;
 
-/// One object a row, its keys in alphabetical order.
-pub(super) fn rows(table: &Merged) -> Result<Vec<u8>, ExportError> {
+/// One object a row, its keys in alphabetical order: places in the row, and how their names stand in JSON.
+pub(super) fn rows(keys: &[(usize, String)], rows: &[Vec<Value>]) -> Result<Vec<u8>, ExportError> {
     let mut bytes = Vec::new();
-    for row in &table.rows {
-        add_row(&mut bytes, &table.columns, row)?;
+    for row in rows {
+        for (index, (place, key)) in keys.iter().enumerate() {
+            bytes.push(if index == 0 { b'{' } else { b',' });
+            bytes.extend_from_slice(key.as_bytes());
+            bytes.push(b':');
+            add(&mut bytes, &row[*place])?;
+        }
+        bytes.extend_from_slice(b"}\n");
     }
     Ok(bytes)
 }
 
-/// Adds one row.
-pub(super) fn add_row(
-    bytes: &mut Vec<u8>,
-    columns: &[Column],
-    row: &[Value],
-) -> Result<(), ExportError> {
-    let names = columns.iter().map(|column| column.name.clone());
-    let object: Map<String, Value> = names.zip(row.iter().cloned()).collect();
-    add_line(bytes, &Value::Object(object))
+/// An event of a session as it is stored.
+pub(super) struct EventLine<'e> {
+    pub started: &'e SessionStarted,
+    pub sequence: u64,
+    pub at_ms: f64,
+    /// JSON.
+    pub body: &'e str,
+    /// Why it cannot be one of the session's, if it cannot.
+    pub misfit: Option<&'e str>,
 }
 
-/// One object an event of a session; also how many events there are.
-pub(super) async fn events(
-    storage: &Storage,
-    session: &SessionRecord,
-) -> Result<(Vec<u8>, usize), ExportError> {
-    let mut bytes = Vec::new();
-    let events = storage.stored_events(session.key).await?;
-    let started = as_started(session);
-    for stored in &events {
-        add_event(&mut bytes, &started, &stored.event, stored.misfit.as_deref())?;
-    }
-    Ok((bytes, events.len()))
-}
-
-/// Adds one event, and why it cannot be one of the session's, if it cannot.
-pub(super) fn add_event(
-    bytes: &mut Vec<u8>,
-    started: &SessionStarted,
-    event: &Event,
-    misfit: Option<&str>,
-) -> Result<(), ExportError> {
-    let mut line = json!({
-        "participant_id": started.participant_id,
-        "stage": started.stage,
-        "config_hash": started.config_hash,
-        "sequence": event.sequence,
-        "at_ms": event.at_ms,
-        "at": iso_time(event.at_ms),
-        "body": event.body,
-    });
+/// Adds one event, its keys in alphabetical order.
+pub(super) fn add_event(bytes: &mut Vec<u8>, event: &EventLine<'_>) -> Result<(), ExportError> {
+    let EventLine { started, sequence, at_ms, body, misfit } = event;
+    bytes.extend_from_slice(b"{\"at\":");
+    add(bytes, &iso_time(*at_ms))?;
+    bytes.extend_from_slice(b",\"at_ms\":");
+    add(bytes, at_ms)?;
+    bytes.extend_from_slice(b",\"body\":");
+    bytes.extend_from_slice(body.as_bytes());
+    bytes.extend_from_slice(b",\"config_hash\":");
+    add(bytes, &started.config_hash)?;
     if let Some(word) = misfit {
-        line["misfit"] = word.into();
+        bytes.extend_from_slice(b",\"misfit\":");
+        add(bytes, word)?;
     }
-    add_line(bytes, &line)
+    bytes.extend_from_slice(b",\"participant_id\":");
+    add(bytes, &started.participant_id)?;
+    bytes.extend_from_slice(b",\"sequence\":");
+    add(bytes, sequence)?;
+    bytes.extend_from_slice(b",\"stage\":");
+    add(bytes, &started.stage)?;
+    bytes.extend_from_slice(b"}\n");
+    Ok(())
 }
 
-fn add_line(bytes: &mut Vec<u8>, value: &Value) -> Result<(), ExportError> {
-    serde_json::to_writer(&mut *bytes, value).map_err(|e| ExportError::Form(e.to_string()))?;
-    bytes.push(b'\n');
-    Ok(())
+fn add<T: Serialize + ?Sized>(bytes: &mut Vec<u8>, value: &T) -> Result<(), ExportError> {
+    serde_json::to_writer(bytes, value).map_err(|error| ExportError::Form(error.to_string()))
 }

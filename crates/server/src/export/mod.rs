@@ -1,5 +1,5 @@
-//! Export: what was answered, as files. Made from the database alone, the same bytes each time; those
-//! that can be are sent session by session, whatever the size of the study.
+//! Export: what was answered, as files. Made from the database alone, the same bytes each time, and sent or
+//! written while it is made: whatever the size of the study, little of it is in memory.
 //!
 //! | format | what |
 //! |---|---|
@@ -12,25 +12,32 @@
 //! A study that was changed while it ran has several versions; each session is read by its own, and
 //! the table has the columns of all.
 
+mod body;
 mod csv;
 pub(crate) mod error;
 pub(crate) mod exported;
 pub(crate) mod format;
+mod layout;
 mod lines;
-mod merged;
+mod parts;
 mod pieces;
 mod psych_ds;
 pub(crate) mod sources;
 mod unstored;
+mod zipped;
 
 pub use csv::Cells;
 pub use error::ExportError;
-pub use exported::Exported;
+pub use exported::{Exported, WrittenFiles};
 pub use format::Format;
 use mimique_storage::Storage;
-pub(crate) use pieces::Pieces;
+pub use parts::{Export, Part};
+pub(crate) use pieces::exclusions;
 use sources::Sources;
 pub use unstored::{Unstored, Written};
+pub(crate) use zipped::zip;
+
+use layout::{Form, Layout};
 
 /// What may be asked of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -41,49 +48,33 @@ pub struct Options {
     pub cells: Cells,
 }
 
-/// Exports a study; the only one of the database if `study_id` is not given.
+/// Exports a study into memory; the only one of the database if `study_id` is not given.
+///
+/// # Errors
+/// Those of [`Export::open`] and [`Export::next`].
 pub async fn export(
     storage: &Storage,
     study_id: Option<&str>,
     format: Format,
     options: Options,
 ) -> Result<Exported, ExportError> {
-    if let Some(mut pieces) = Pieces::open(storage, study_id, format, options).await? {
-        let files = vec![(pieces.name(), pieces.whole().await?)];
-        let (participants, rows) = (pieces.participants, pieces.rows);
-        return Ok(Exported { study_id: pieces.study_id().to_owned(), files, participants, rows });
-    }
-    let study_id = choose(storage, study_id).await?;
-    let sources = Sources::load(storage, &study_id, options.with_identifiers).await?;
-    let is_wide = format == Format::Wide;
-    let table = if is_wide { sources.wide(storage).await? } else { sources.tidy(storage).await? };
-    let (participants, rows) = (table.participants, table.rows.len());
-    let csv = csv::table(&table, options.cells)?;
-    let files = match is_wide {
-        true => vec![(format!("{study_id}_wide.csv"), csv)],
-        false => psych_ds::files(&sources, &table.columns, csv, (participants, rows))?,
-    };
-    Ok(Exported { study_id, files, participants, rows })
+    Export::open(storage, study_id, format, options).await?.collect().await
 }
 
 /// The data dictionary as CSV: every column of the tidy form with its kind, unit, levels, description.
 pub(crate) async fn dictionary(storage: &Storage, study_id: &str) -> Result<Vec<u8>, ExportError> {
     let study_id = choose(storage, Some(study_id)).await?;
-    let sources = Sources::load(storage, &study_id, false).await?;
-    csv::dictionary(&sources.columns())
+    let sources = Sources::load(storage, &study_id).await?;
+    let layout = Layout::tidy(Form::JsonLines, &sources, &[]);
+    csv::dictionary(layout.columns())
 }
 
 /// The study file as it is served now.
 pub(crate) async fn study_file(storage: &Storage, study_id: &str) -> Result<Vec<u8>, ExportError> {
     let study_id = choose(storage, Some(study_id)).await?;
-    let sources = Sources::load(storage, &study_id, false).await?;
+    let sources = Sources::load(storage, &study_id).await?;
     serde_json::to_vec_pretty(&sources.latest()?.file)
         .map_err(|error| ExportError::Form(error.to_string()))
-}
-
-/// Files in one ZIP archive below one folder.
-pub(crate) fn zip(folder: &str, files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ExportError> {
-    psych_ds::zip(folder, files)
 }
 
 async fn choose(storage: &Storage, wanted: Option<&str>) -> Result<String, ExportError> {

@@ -3,18 +3,20 @@
 
 use std::collections::BTreeMap;
 
-use mimique_session::rows::{self, Column, SessionRecord};
+use mimique_session::Record;
+use mimique_session::rows::WideForm;
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_study::ClipSource;
 use mimique_study::{StudyFileError, config_hash};
 use serde_json::Value;
 
-use super::csv::{self, Cells};
+use super::csv::Cells;
 use super::error::ExportError;
 use super::exported::Exported;
 use super::format::Format;
-use super::lines::{add_event, add_row};
-use super::merged::Merged;
+use super::layout::{About, Form, Layout, Lines, Rows};
+use super::lines::{EventLine, add_event};
+use super::parts::main_file;
 use super::psych_ds;
 use super::sources::{Sources, Version};
 
@@ -22,31 +24,37 @@ use super::sources::{Sources, Version};
 pub struct Unstored {
     sources: Sources,
     format: Format,
-    columns: Vec<Column>,
+    tidy: Layout,
 }
 
 /// One session, written.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Written {
-    bytes: Vec<u8>,
-    rows: usize,
+    lines: Lines,
     /// The wide form needs all sessions at once.
-    session: Option<(SessionStarted, Vec<Event>)>,
+    session: Option<(SessionStarted, Record)>,
 }
+
+const CSV: Form = Form::Csv(Cells::AsTheyAre);
 
 impl Unstored {
     /// `file` is the study file, `clips` are its clips as prepared: what is not prepared has no
     /// provenance in the export.
+    ///
+    /// # Errors
+    /// The file is no study.
     pub fn new(
         file: Value,
         clips: BTreeMap<String, ClipSource>,
         format: Format,
     ) -> Result<Self, StudyFileError> {
         let study = mimique_study::Study::from_value(&file)?;
-        let columns = Merged::of_everybody(rows::tidy(&study, &clips, []), 0).columns;
         let study_id = study.id.clone();
         let version = Version { config_hash: config_hash(&file), file, study, clips };
-        Ok(Self { sources: Sources::without_storage(study_id, version), format, columns })
+        let sources = Sources { study_id, versions: vec![version] };
+        let form = if format == Format::Json { Form::JsonLines } else { CSV };
+        let tidy = Layout::tidy(form, &sources, &[]);
+        Ok(Self { sources, format, tidy })
     }
 
     /// The configuration hash that sessions must have.
@@ -55,90 +63,84 @@ impl Unstored {
     }
 
     /// Writes a session. One without events (it was taken back) leaves nothing.
+    ///
+    /// # Errors
+    /// It is of another version.
     pub fn write(
         &self,
         started: &SessionStarted,
         events: &[Event],
     ) -> Result<Written, ExportError> {
-        if events.is_empty() {
-            return Ok(Written::default());
-        }
-        let version = self.sources.latest()?;
         let mut written = Written::default();
         match self.format {
+            _ if events.is_empty() => {}
             Format::Events => {
                 for event in events {
-                    add_event(&mut written.bytes, started, event, None)?;
+                    let (sequence, at_ms) = (event.sequence, event.at_ms);
+                    let body = &event.body.to_string();
+                    let line = EventLine { started, sequence, at_ms, body, misfit: None };
+                    add_event(&mut written.lines.bytes, &line)?;
                 }
-                written.rows = events.len();
+                written.lines.rows = events.len();
             }
             Format::Wide => {
-                written.session = Some((started.clone(), without_frames(events)));
+                written.session = Some((started.clone(), Record::of(None, events)));
             }
             Format::Csv | Format::Json | Format::PsychDs => {
-                let record = SessionRecord { started, events };
-                let table = rows::tidy(&version.study, &version.clips, [record]);
-                let rows = Merged::of_everybody(table, 1).rows;
-                written.rows = rows.len();
-                match self.format {
-                    Format::Json => {
-                        for row in &rows {
-                            add_row(&mut written.bytes, &self.columns, row)?;
-                        }
-                    }
-                    _ => written.bytes = csv::rows(&rows)?,
-                }
+                let record = Record::of(None, events);
+                written.lines = self.tidy.lines(started, &record, &About::default())?;
             }
         }
         Ok(written)
     }
 
     /// Joins sessions in the order of their participants.
+    ///
+    /// # Errors
+    /// A file of the export cannot be put together.
     pub fn join(
         self,
         sessions: impl IntoIterator<Item = Written>,
     ) -> Result<Exported, ExportError> {
         let study_id = self.sources.study_id.clone();
-        let (mut bytes, mut rows, mut participants) = (Vec::new(), 0, 0);
-        if matches!(self.format, Format::Csv | Format::PsychDs) {
-            bytes = csv::header(&self.columns)?;
-        }
-        let mut whole = Vec::new();
-        for session in sessions {
-            participants += usize::from(session.rows > 0);
-            rows += session.rows;
-            bytes.extend(session.bytes);
-            whole.extend(session.session);
-        }
-        let stem = format!("{study_id}_responses");
-        let files = match self.format {
-            Format::Csv => vec![(format!("{stem}.csv"), bytes)],
-            Format::Json => vec![(format!("{stem}.jsonl"), bytes)],
-            Format::Events => vec![(format!("{study_id}_events.jsonl"), bytes)],
-            Format::PsychDs => {
-                psych_ds::files(&self.sources, &self.columns, bytes, (participants, rows))?
-            }
-            Format::Wide => {
-                let version = self.sources.latest()?;
-                let records =
-                    whole.iter().map(|(started, events)| SessionRecord { started, events });
-                let table = rows::wide(&version.study, &version.clips, records);
-                (participants, rows) = (table.rows.len(), table.rows.len());
-                let merged = Merged::of_everybody(table, participants);
-                vec![(format!("{study_id}_wide.csv"), csv::table(&merged, Cells::AsTheyAre)?)]
-            }
+        let (mut participants, mut rows) = (0, 0);
+        let mut bytes = match self.format {
+            Format::Events | Format::Wide => Vec::new(),
+            Format::Csv | Format::Json | Format::PsychDs => self.tidy.header()?,
         };
+        let mut whole = Vec::new();
+        for Written { lines, session } in sessions {
+            participants += usize::from(lines.rows > 0);
+            rows += lines.rows;
+            bytes.extend(lines.bytes);
+            whole.extend(session);
+        }
+        if self.format == Format::Wide {
+            Lines { bytes, rows } = self.wide(&whole)?;
+            participants = rows;
+        }
+        let mut files = vec![(main_file(self.format, &study_id), bytes)];
+        if self.format == Format::PsychDs {
+            let counts = (participants, rows);
+            files.extend(psych_ds::explaining(&self.sources, self.tidy.columns(), counts)?);
+            files.sort();
+        }
         Ok(Exported { study_id, files, participants, rows })
     }
-}
 
-/// The wide form has no frames; without them a session is a hundredth of its size.
-fn without_frames(events: &[Event]) -> Vec<Event> {
-    let mut events = events.to_vec();
-    for event in &mut events {
-        if let Some(frames) = event.body.pointer_mut("/log/frames") {
-            *frames = Value::Array(Vec::new());
+    /// The wide form of all sessions.
+    fn wide(&self, sessions: &[(SessionStarted, Record)]) -> Result<Lines, ExportError> {
+        let version = self.sources.latest()?;
+        let mut form = WideForm::new(&version.study, &version.clips);
+        sessions.iter().for_each(|(_, record)| form.look_at(record));
+        let forms = [(version.config_hash.clone(), Rows::Wide(form))];
+        let layout = Layout::new(CSV, &self.sources.study_id, forms, &[]);
+        let mut all = Lines { bytes: layout.header()?, rows: 0 };
+        for (started, record) in sessions {
+            let Lines { bytes, rows } = layout.lines(started, record, &About::default())?;
+            all.bytes.extend(bytes);
+            all.rows += rows;
         }
+        Ok(all)
     }
-    events
 }

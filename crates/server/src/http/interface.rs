@@ -79,7 +79,8 @@ fn interface() -> Interface {
         )
         .send::<StartSession, SessionStarted>(
             "/api/studies/{study}/sessions",
-            "Start a session; the same nonce finds the same session",
+            "Start a session; the same nonce finds the same session. Its place is held for a minute until \
+             its first events come",
             post(sessions::start),
         )
         .read::<Resume>(

@@ -24,8 +24,8 @@ use headers::{Headers, settled_headers};
 use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
-use crate::participant::{pages, withdrawal};
-use crate::researcher::handlers::{accounts, studies};
+use crate::participant::{pages, previews, withdrawal};
+use crate::researcher::handlers::{accounts, people, studies};
 use crate::state::App;
 use crate::uploads::handlers as uploads;
 
@@ -73,6 +73,8 @@ fn researchers(app: &App) -> Router<App> {
     let upload = post(uploads::upload).layer(DefaultBodyLimit::disable());
     interface::downloads()
         .route("/preview/{study}", get(pages::preview))
+        .route("/preview/{study}/comparison", get(previews::comparison))
+        .route("/preview/{study}/exertion", get(previews::exertion))
         .route("/studio", get(pages::studio))
         .route("/researcher", get(studies::home))
         .route(STUDY, get(studies::study))
@@ -92,9 +94,9 @@ fn researchers(app: &App) -> Router<App> {
         .route("/researcher/account/password", post(accounts::password))
         .route("/researcher/tokens", post(accounts::new_token))
         .route("/researcher/tokens/{key}/revoke", post(accounts::revoke_token))
-        .route("/researcher/people", get(accounts::people))
-        .route("/researcher/people/invite", post(accounts::invite))
-        .route("/researcher/people/{key}", post(accounts::person))
+        .route("/researcher/people", get(people::people))
+        .route("/researcher/people/invite", post(people::invite))
+        .route("/researcher/people/{key}", post(people::person))
         .route("/researcher/log", get(accounts::log))
         .route(&format!("{STUDY}/stage"), post(uploads::stage))
         .route(&format!("{STUDY}/remove"), post(uploads::remove))

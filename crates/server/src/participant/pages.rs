@@ -7,7 +7,7 @@ use axum::extract::{Path, Query, RawQuery, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, html};
-use mimique_storage::StorageError;
+use mimique_storage::{Role, StorageError};
 use serde::Deserialize;
 
 use crate::accounts::identity::Researcher;
@@ -22,8 +22,13 @@ use mimique_study::Multilingual as _;
 pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
     let assets = app.assets.prefix();
     // Which studies there are is for those who were told.
-    let is_open = may_look(&app, &headers).await.is_ok();
-    let studies = if is_open { app.catalogue.studies() } else { Vec::new() };
+    let who = may_look(&app, &headers).await;
+    let is_open = who.is_ok();
+    let mut studies = Vec::new();
+    if let Ok(who) = who {
+        let may_see = |id: &str| who.as_ref().is_none_or(|who| who.role_in(id) > Role::Nothing);
+        studies.extend(app.catalogue.studies().into_iter().filter(|study| may_see(study.id())));
+    }
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -95,8 +100,16 @@ pub(crate) async fn preview(
     Path(study): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    may_look(&app, &headers).await?;
+    may_preview(&app, &study, &headers).await?;
     from_template(&app, "researcher/preview.html", &study, None, &headers)
+}
+
+/// Lets those in who may see a study's stimuli.
+pub(super) async fn may_preview(app: &App, study: &str, headers: &HeaderMap) -> Result<(), Error> {
+    match may_look(app, headers).await? {
+        Some(who) => who.needs_in(study, Role::Viewer),
+        None => Ok(()),
+    }
 }
 
 /// The studio: everything in it happens in the browser.
@@ -105,12 +118,12 @@ pub(crate) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result
     studio_page(&app.assets, &StudioFiles::new())
 }
 
-/// Lets researchers see what participants should not, or everybody where the server is told so.
-pub(crate) async fn may_look(app: &App, headers: &HeaderMap) -> Result<(), Error> {
+/// Lets researchers see what participants should not, or everybody (none) where the server is told so.
+pub(crate) async fn may_look(app: &App, headers: &HeaderMap) -> Result<Option<Researcher>, Error> {
     if app.access.open_preview {
-        return Ok(());
+        return Ok(None);
     }
-    Researcher::of(app, headers).await.map(|_| ())
+    Researcher::of(app, headers).await.map(Some)
 }
 
 /// The database is written to this often at most, however often somebody asks.

@@ -1,16 +1,20 @@
 //! A session as it is given back after a reload: `wire::Resume`, sent while it is read, piece by piece.
 //! However much is stored, and however slowly it is taken, no more than a piece of it is in memory, and no
-//! connection of the database is held.
+//! connection of the database is held while a piece is taken.
 
 use axum::body::{Body, Bytes};
 use axum::http::header;
 use axum::response::{IntoResponse as _, Response};
 use mimique_session::wire::SessionStarted;
-use mimique_storage::{Storage, StorageError, WrittenEvent};
+use mimique_storage::{Storage, StorageError, StoredEvent};
 use tokio::sync::mpsc;
+use tokio_stream::StreamExt as _;
 use tokio_stream::wrappers::ReceiverStream;
 
 use crate::error::Error;
+
+/// Bytes that are sent at once, and the event that exceeds them.
+const PIECE: usize = 256 * 1024;
 
 /// The session and its events as JSON.
 pub(super) fn resumed(
@@ -24,16 +28,24 @@ pub(super) fn resumed(
         let mut piece = format!("{{\"started\":{started},\"events\":[");
         let (mut next, mut is_first) = (0, true);
         loop {
-            let events = match storage.events_from(session_key, next).await {
-                Ok(events) => events,
-                // The answer breaks off, and the page asks again.
-                Err(error) => return drop(sender.send(Err(error)).await),
-            };
-            let Some(last) = events.last() else { break };
-            next = last.sequence + 1;
-            for event in &events {
-                add(&mut piece, event, is_first);
+            let before = next;
+            let mut events = storage.stored_events(session_key, next..u64::MAX);
+            while let Some(event) = events.next().await {
+                let event = match event {
+                    Ok(event) => event,
+                    // The answer breaks off, and the page asks again.
+                    Err(error) => return drop(sender.send(Err(error)).await),
+                };
+                next = event.sequence + 1;
+                add(&mut piece, &event, is_first);
                 is_first = false;
+                if piece.len() >= PIECE {
+                    break;
+                }
+            }
+            drop(events);
+            if next == before {
+                break;
             }
             if sender.send(Ok(std::mem::take(&mut piece).into())).await.is_err() {
                 return;
@@ -48,8 +60,8 @@ pub(super) fn resumed(
 }
 
 /// Adds an event; its body is JSON as it is stored.
-fn add(text: &mut String, event: &WrittenEvent, is_first: bool) {
-    let WrittenEvent { sequence, at_ms, body, .. } = event;
+fn add(text: &mut String, event: &StoredEvent, is_first: bool) {
+    let StoredEvent { sequence, at_ms, body, .. } = event;
     let at_ms = serde_json::Value::from(*at_ms);
     let comma = if is_first { "" } else { "," };
     text.push_str(&format!("{comma}{{\"sequence\":{sequence},\"at_ms\":{at_ms},\"body\":{body}}}"));

@@ -4,27 +4,32 @@
 //! the server, so that a repeated start finds the same session although only the token's hash is
 //! kept. The withdrawal code is derived from the token in the same way.
 
+use std::time::Instant;
+
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::{Extension, Path, State};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use mimique_session::wire::{
     Acknowledged, AppendEvents, Complete, Event, Receipt, SessionStarted, StartSession, Withdraw,
     Withdrawn,
 };
-use mimique_session::{Admission, Record, Standing};
+use mimique_session::{Admission, Standing};
 use mimique_storage::{NewSession, SessionRecord, StorageError, WrittenEvent};
-use mimique_study::{Multilingual as _, RepeatPrevention, Study};
+use mimique_study::{Multilingual as _, Study};
 
+use super::marks::{browser_mark, cookie_name, marks};
 use super::resumed::resumed;
 use crate::clock::now_ms;
 use crate::error::Error;
 use crate::http::cookies;
 use crate::http::extract::Body;
+use crate::http::rate_limit::caller_of;
 use crate::participant::withdrawal::withdrawal_hash;
 use crate::secret;
 use crate::state::App;
-use crate::state::hosted_study::{HostedStudy, Stage};
+use crate::state::hosted_study::HostedStudy;
+use crate::state::rate_limit::Peer;
 
 /// Events in one session at most; a long study has some thousands.
 const MOST_EVENTS: u64 = 100_000;
@@ -33,7 +38,7 @@ const LARGEST_EVENT: usize = 1024 * 1024;
 /// What is kept of a browser: its name, its major version, the kind of system it runs on.
 const CLIENT_KEYS: [&str; 3] = ["browser", "version", "platform"];
 /// Hexadecimal digits of 128 bits.
-const TOKEN_DIGITS: usize = 32;
+pub(super) const TOKEN_DIGITS: usize = 32;
 
 /// Somebody who asks to begin.
 struct Arrival {
@@ -59,15 +64,30 @@ pub(crate) async fn arrive(
 pub(crate) async fn start(
     State(app): State<App>,
     Path(study): Path<String>,
+    peer: Option<Extension<Peer>>,
     headers: HeaderMap,
     Body(request): Body<StartSession>,
 ) -> Result<Response, Error> {
     let study = app.study(&study)?;
     let study = study.as_ref();
+    let takes_part = !request.turned_away;
     let Arrival { session, token, browser_mark } = arrival(&app, study, &headers, request).await?;
-    let language = session.language.clone();
+    let (language, token_hash) = (session.language.clone(), session.token_hash.clone());
+    let address = caller_of(&app, &headers, peer.map(|Extension(peer)| peer));
+    let address = address.filter(|address| takes_part && !app.settings.is_own(*address));
+    if let Some(address) = address
+        && !has_begun(&app, &token).await?
+    {
+        if !app.starts.allow(address, app.settings.starts_per_minute, Instant::now()) {
+            return Err(Error::TooManyStarts);
+        }
+        app.starts.begun(&token_hash, address, Instant::now());
+    }
     let record = app.storage.start(session).await;
-    let record = record.map_err(|error| refused(study, error, &language))?;
+    let record = record.map_err(|error| {
+        app.starts.heard(&token_hash);
+        refused(study, error, &language)
+    })?;
     if record.is_deleted() {
         return Err(StorageError::Withdrawn.into());
     }
@@ -195,46 +215,6 @@ fn cannot_begin(study: &Study, code: &'static str, language: &str) -> Error {
     Error::CannotBegin { code, message: message.to_owned(), remedy: remedy.to_owned() }
 }
 
-/// What the browser keeps where the study takes each browser once. A pilot may be repeated.
-fn browser_mark(app: &App, study: &HostedStudy, token: &str) -> Option<String> {
-    let wanted = study.study().recruitment.repeat_prevention == RepeatPrevention::Browser
-        && study.stage() == Stage::Live;
-    wanted.then(|| hex::encode(&secret::derive(&app.token_key, &["browser", token])[..16]))
-}
-
-fn cookie_name(study: &HostedStudy) -> String {
-    format!("mimique-{}", study.id())
-}
-
-/// The keyed hashes that must not be there yet; `None` when the identifier is missing by which the
-/// study recognises people.
-fn marks(
-    app: &App,
-    study: &HostedStudy,
-    recruitment: &std::collections::BTreeMap<String, String>,
-    browser_mark: Option<&str>,
-    headers: &HeaderMap,
-) -> Option<Vec<String>> {
-    let keyed = |kind: &str, value: &str| {
-        hex::encode(secret::derive(&app.token_key, &["mark", kind, study.id(), value]))
-    };
-    let rules = &study.study().recruitment;
-    if rules.repeat_prevention == RepeatPrevention::RecruitmentIdentifier
-        && study.stage() == Stage::Live
-    {
-        let name = rules.url_parameters.first()?;
-        let value = recruitment.get(name).map(|value| value.trim()).filter(|v| !v.is_empty())?;
-        return Some(vec![keyed("identifier", value)]);
-    }
-    let Some(own) = browser_mark else { return Some(Vec::new()) };
-    let mut marks = vec![keyed("browser", own)];
-    let held = cookies::find(headers, &cookie_name(study));
-    if let Some(value) = held.filter(|value| secret::is_hex(value, TOKEN_DIGITS) && *value != own) {
-        marks.push(keyed("browser", value));
-    }
-    Some(marks)
-}
-
 pub(crate) async fn resume(
     State(app): State<App>,
     Path(token): Path<String>,
@@ -265,8 +245,12 @@ pub(crate) async fn append(
         .map(|event| written(event, admission.as_deref()))
         .collect::<Result<_, _>>()?;
     let sent = events.len() as u64;
+    let is_heard = events.iter().any(|event| event.misfit.is_none());
     let limits = admission.map(|admission| admission.limits());
     let appended = app.storage.append_written(&token_hash, events, limits, now_ms()).await?;
+    if is_heard {
+        app.starts.heard(&token_hash);
+    }
     let kept = sent - appended.conflicts.len() as u64;
     app.metrics.events.inc_by(kept);
     if appended.conflicts.is_empty() {
@@ -295,8 +279,7 @@ pub(crate) async fn complete(
     };
     // A session may outlive its study's place on this server; its receipt stays good.
     if let Ok(study) = app.study(&completed.study_id) {
-        let events = app.storage.counted_events(completed.key).await?;
-        let record = Record::of(None, &events);
+        let record = app.storage.record_without_plays(completed.key, completed.stored).await?;
         let standing = record.standing;
         let admission = app.admissions.of(&app.storage, &token_hash).await?;
         // Who says to have finished has to have held a place, and to have been through what lies before.

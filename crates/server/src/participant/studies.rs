@@ -5,6 +5,7 @@ use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use mimique_session::wire::StudySummary;
+use mimique_storage::Role;
 use serde::Deserialize;
 
 use super::pages::may_look;
@@ -15,8 +16,11 @@ pub(crate) async fn list(
     State(app): State<App>,
     headers: HeaderMap,
 ) -> Result<Json<Vec<StudySummary>>, Error> {
-    may_look(&app, &headers).await?;
-    Ok(Json(app.catalogue.studies().iter().map(|study| study.summary()).collect()))
+    let who = may_look(&app, &headers).await?;
+    let may_see = |id: &str| who.as_ref().is_none_or(|who| who.role_in(id) > Role::Nothing);
+    let studies = app.catalogue.studies();
+    let seen = studies.iter().filter(|study| may_see(study.id()));
+    Ok(Json(seen.map(|study| study.summary()).collect()))
 }
 
 #[derive(Deserialize)]

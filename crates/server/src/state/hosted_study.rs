@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use mimique_session::wire::{Bundle, StudySummary};
+use mimique_stimulus::Places;
 use mimique_storage::{StorageError, StudyVersion};
 use mimique_study::ClipSource;
 use mimique_study::{Study, StudyFileError, config_hash};
@@ -38,6 +39,8 @@ pub struct HostedStudy {
     stage: Stage,
     file: Value,
     bundle: Bundle,
+    /// Where the files are that its study file names, where that is known.
+    places: Option<Places>,
 }
 
 impl HostedStudy {
@@ -69,7 +72,18 @@ impl HostedStudy {
             study: study.projection(),
             clips,
         };
-        Self { study, stage, file, bundle }
+        Self { study, stage, file, bundle, places: None }
+    }
+
+    /// The same, its files lying there: what previews compute anew is computed of them.
+    #[must_use]
+    pub fn with_places(self, places: Places) -> Self {
+        Self { places: Some(places), ..self }
+    }
+
+    /// Where its files are, where that is known.
+    pub(crate) fn places(&self) -> Option<&Places> {
+        self.places.as_ref()
     }
 
     /// Identifier used in addresses.
@@ -80,6 +94,11 @@ impl HostedStudy {
     /// The study, read.
     pub fn study(&self) -> &Study {
         &self.study
+    }
+
+    /// Its clips and media, where their packs are.
+    pub(crate) fn clips(&self) -> &BTreeMap<String, ClipSource> {
+        &self.bundle.clips
     }
 
     /// Whether answers count.

@@ -10,6 +10,7 @@ pub(crate) mod preparations;
 pub(crate) mod rate_limit;
 pub(crate) mod settings;
 pub(crate) mod start_error;
+pub(crate) mod starts;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,11 +27,12 @@ use mimique_storage::{Registered, Storage, StorageError, StudyVersion};
 use rate_limit::Limits;
 use settings::Settings;
 use start_error::AppError;
+use starts::Starts;
 
 use crate::error::Error;
 use crate::files::assets::Assets;
 use crate::files::packs::PackStore;
-use crate::researcher::dashboard::overview::SessionViews;
+use crate::researcher::dashboard::kept::Sums;
 use crate::researcher::dashboard::pulse::Pulse;
 use crate::researcher::reports::Reports;
 use crate::{clock, secret};
@@ -44,6 +46,8 @@ pub struct App {
     pub(crate) limits: Arc<Limits>,
     /// Attempts to log in.
     pub(crate) login_limits: Arc<Limits>,
+    /// Sessions begun.
+    pub(crate) starts: Arc<Starts>,
     /// Withdrawal codes tried.
     pub(crate) code_limits: Arc<Limits>,
     /// What the sessions' plans admit.
@@ -55,7 +59,8 @@ pub struct App {
     pub(crate) stopping: Arc<AtomicBool>,
     pub(crate) assets: Arc<Assets>,
     pub(crate) storage: Storage,
-    pub(crate) session_views: Arc<SessionViews>,
+    /// What the dashboard counts of each session.
+    pub(crate) sums: Arc<Sums>,
     pub(crate) access: Arc<Access>,
     pub(crate) pulse: Pulse,
     pub(crate) reports: Arc<Reports>,
@@ -93,13 +98,14 @@ impl App {
             settings: Arc::default(),
             limits: Arc::default(),
             login_limits: Arc::default(),
+            starts: Arc::default(),
             code_limits: Arc::default(),
             admissions: Arc::default(),
             metrics: Arc::default(),
             last_ready: Arc::default(),
             stopping: Arc::default(),
             assets: Arc::new(assets),
-            session_views: Arc::default(),
+            sums: Arc::default(),
             access: Arc::default(),
             pulse: Pulse::new(storage.clone()),
             reports: Arc::default(),

@@ -87,6 +87,20 @@ mod tests {
     }
 
     #[test]
+    fn what_a_flood_of_addresses_took_is_given_back() {
+        let limits = Limits::default();
+        let now = Instant::now();
+        for number in 0..MOST_ADDRESSES as u32 {
+            limits.allow(std::net::Ipv4Addr::from(0x0a00_0000 + number).into(), 5, now);
+        }
+        assert_eq!(limits.paid_until.lock().unwrap().len(), MOST_ADDRESSES);
+        limits.allow("192.0.2.1".parse().unwrap(), 5, now + Duration::from_secs(60));
+        let left = limits.paid_until.lock().unwrap();
+        assert_eq!(left.len(), 1);
+        assert!(left.capacity() < MOST_ADDRESSES / 2, "{}", left.capacity());
+    }
+
+    #[test]
     fn one_network_of_version_6_is_one_caller() {
         let limits = Limits::default();
         let now = Instant::now();

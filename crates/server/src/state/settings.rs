@@ -31,6 +31,8 @@ pub struct Settings {
     pub reader_patience: Duration,
     /// Requests a second from one address, in the long run; up to ten times as many at once.
     pub requests_per_second: u32,
+    /// Sessions that begin from one address in a minute.
+    pub starts_per_minute: u32,
     /// Attempts to log in from one address at once; one more every twenty seconds.
     pub logins_per_address: u32,
     /// A request's head must have arrived within this time.
@@ -49,6 +51,7 @@ impl Default for Settings {
             connections_per_address: 1000,
             reader_patience: Duration::from_secs(30),
             requests_per_second: 200,
+            starts_per_minute: 60,
             logins_per_address: 30,
             header_timeout: Duration::from_secs(20),
         }

@@ -21,14 +21,19 @@ use crate::state::preparations::{Noted, Preparation};
 use crate::uploads::{self, Incoming, Taken};
 
 pub(crate) async fn page(State(app): State<App>, who: Researcher) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
+    may_upload(&who)?;
     Ok(upload_page(&Frame::new(&app, &who), None, &[]))
+}
+
+/// Owners of the server upload any study, owners of a study new versions of it.
+fn may_upload(who: &Researcher) -> Result<(), Error> {
+    if who.most() >= Role::Owner { Ok(()) } else { Err(Error::NotAllowed) }
 }
 
 /// The form's token comes first, so that nothing is taken in for a forged form.
 pub(crate) async fn upload(State(app): State<App>, request: Request) -> Result<Response, Error> {
     let who = Researcher::of(&app, request.headers()).await?;
-    who.needs(Role::Owner)?;
+    may_upload(&who)?;
     let is_person = who.session().is_some();
     if is_person {
         check_origin(&app, request.headers())?;
@@ -90,9 +95,9 @@ pub(crate) async fn preparing(
     Path(id): Path<String>,
     who: Researcher,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
+    who.needs_in(&id, Role::Owner)?;
     let known = Preparation::of(&app.storage, &id).await?.ok_or(Error::NotFound)?;
-    Ok(preparing_page(&Frame::new(&app, &who), &id, &known))
+    Ok(preparing_page(&Frame::in_study(&app, &who, &id), &id, &known))
 }
 
 #[derive(Deserialize)]
@@ -105,7 +110,7 @@ pub(crate) async fn stage(
     Path(id): Path<String>,
     Guarded { who, form }: Guarded<StageForm>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
+    who.needs_in(&id, Role::Owner)?;
     let stage = match form.stage.as_str() {
         "pilot" => Stage::Pilot,
         "live" => Stage::Live,
@@ -124,7 +129,7 @@ pub(crate) async fn remove(
     Path(id): Path<String>,
     Guarded { who, .. }: Guarded<Nothing>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
+    who.needs_in(&id, Role::Owner)?;
     uploads::remove(&app, app.study(&id)?.id()).await?;
     audit(&app, &who, "host no more", &id, "").await?;
     Ok(see("/researcher"))

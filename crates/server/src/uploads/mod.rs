@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use mimique_stimulus::{Places, Progress};
-use mimique_storage::{UploadedStudy, durable_file};
+use mimique_storage::{Role, UploadedStudy, durable_file};
 use mimique_study::{CheckedStudy, Issue};
 use sha2::{Digest, Sha256};
 use tokio::io::AsyncWriteExt;
@@ -110,31 +110,39 @@ pub(crate) enum Taken {
 
 /// Unpacks and checks what has arrived; if it has no errors, preparing it begins.
 pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Result<Taken, Error> {
-    let folder = uploads_folder(app)?;
-    let place = folder.join(&arrived.hash);
+    let place = uploads_folder(app)?.join(&arrived.hash);
     let hash = arrived.hash.clone();
-    let work = move || -> Result<(Checked, PathBuf), Error> {
-        let fresh = durable_file::folder_beside(&place)?;
+    let beside = place.clone();
+    // What was unpacked is gone again unless it is taken.
+    let work = move || -> Result<(Checked, _, PathBuf), Error> {
+        let fresh = durable_file::folder_beside(&beside)?;
         let study_file = unpack(&arrived.path, fresh.path())?;
         let checked = check_upload(&study_file);
         let inside = study_file.strip_prefix(fresh.path()).unwrap_or(&study_file).to_owned();
-        if checked.study.is_some() && !place.exists() {
-            std::fs::rename(fresh.path(), &place)?;
-        }
-        Ok((checked, place.join(inside)))
+        Ok((checked, fresh, inside))
     };
     let done = tokio::task::spawn_blocking(work).await;
-    let (checked, study_file) = done.map_err(Error::internal)??;
+    let (checked, fresh, inside) = done.map_err(Error::internal)??;
     let Some(study) = checked.study.clone() else { return Ok(Taken::Refused(checked.issues)) };
     let study_id = study.study().id.clone();
+    if who.role_in(&study_id) < Role::Owner {
+        return Err(Error::NotAllowed);
+    }
     if app.study(&study_id).is_ok() && !is_uploaded(app, &study_id).await? {
         return Err(Error::OwnStudy { study: study_id });
     }
     let issues = checked.issues.iter().map(Noted::from).collect();
-    let preparation = Preparation { state: Preparing::Under { done: 0, of: 0 }, issues };
+    let mut preparation = Preparation { state: Preparing::Under { done: 0, of: 0 }, issues };
     if !preparation.begin(&app.storage, &study_id).await? {
         return Err(Error::BeingPrepared { study: study_id });
     }
+    let moved = if place.exists() { Ok(()) } else { std::fs::rename(fresh.path(), &place) };
+    if let Err(error) = moved {
+        preparation.state = Preparing::Failed { problem: error.to_string() };
+        preparation.note(&app.storage, &study_id).await?;
+        return Err(error.into());
+    }
+    let study_file = place.join(inside);
     audit(app, who, "upload a study", &study_id, &study.config_hash()[..12]).await?;
     tokio::spawn(host(app.clone(), study_file, study, hash, preparation));
     Ok(Taken::Accepted { study_id })
@@ -211,7 +219,8 @@ async fn prepare_and_host(
             packs.load(&packs_folder, hash).map_err(|error| error.to_string())?;
         }
         let hosted = HostedStudy::new(study.value().clone(), prepared.clips, Stage::Pilot)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.to_string())?
+            .with_places(places);
         Ok::<_, String>((hosted, packs, warnings))
     };
     let (hosted, packs, warnings): (_, _, Vec<String>) =

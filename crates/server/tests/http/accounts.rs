@@ -423,6 +423,8 @@ pub async fn the_log_says_who_did_what(server: &TestServer) {
 pub async fn what_is_hosted_is_for_researchers(server: &TestServer) {
     server.get("/api/studies").await.refused(StatusCode::UNAUTHORIZED, "log-in-first");
     server.get("/preview/faces").await.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+    let exertion = "/preview/faces/exertion?clip=run";
+    server.get(exertion).await.refused(StatusCode::UNAUTHORIZED, "log-in-first");
     assert!(!server.get("/").await.text().contains("/s/faces/"));
     // The page of a participant needs what it needs.
     assert_eq!(server.get("/s/faces/").await.status, StatusCode::OK);
@@ -431,6 +433,7 @@ pub async fn what_is_hosted_is_for_researchers(server: &TestServer) {
     let open = server.with_router(router(server.app.clone().with_access(access)));
     assert_eq!(open.get("/api/studies").await.status, StatusCode::OK);
     assert_eq!(open.get("/preview/faces").await.status, StatusCode::OK);
+    open.get(exertion).await.refused(StatusCode::NOT_FOUND, "not-found");
     assert!(open.get("/").await.text().contains("/s/faces/"));
 }
 
@@ -465,6 +468,7 @@ pub async fn a_disabled_account_has_no_way_in(server: &TestServer) {
         purpose: mimique_storage::LinkPurpose::Reset,
         email: "analyst@example.org".into(),
         role: Role::Analyst,
+        study_id: None,
         expires_ms: i64::MAX,
     };
     server.storage.add_link(&crate::study::sha256(secret), &link, 0).await.unwrap();

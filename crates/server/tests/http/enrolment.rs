@@ -13,7 +13,7 @@ use crate::study;
 const HOUR: i64 = 3_600_000;
 
 /// The small study with other recruitment keys.
-fn with(recruitment: Value) -> HostedStudy {
+pub fn with(recruitment: Value) -> HostedStudy {
     staged(recruitment, Stage::Live)
 }
 
@@ -25,7 +25,13 @@ fn staged(recruitment: Value, stage: Stage) -> HostedStudy {
     HostedStudy::new(file, Default::default(), stage).unwrap()
 }
 
-async fn begin(server: &TestServer, nonce: u64, language: &str, who: &str, cookie: &str) -> Answer {
+pub async fn begin(
+    server: &TestServer,
+    nonce: u64,
+    language: &str,
+    who: &str,
+    cookie: &str,
+) -> Answer {
     let body = json!({
         "nonce": format!("{nonce:032x}"), "language": language,
         "recruitment": {"PROLIFIC_PID": who},
@@ -93,18 +99,28 @@ pub async fn a_sign_of_life_keeps_the_slot(server: &TestServer) {
     let hash = study::sha256(&started.session);
     let before = server.storage.session(&hash).await.unwrap();
     let began = before.started_ms;
-    assert_eq!(before.slot_expires_ms, Some(began + HOUR));
+    // Until something is heard of the page the slot is its own for a minute.
+    assert_eq!(before.slot_expires_ms, Some(began + HOUR / 60));
     // Early in the reservation nothing is written; late in it, it begins anew.
-    for (sequence, minutes, expected) in [(0, 10, 60), (1, 40, 100), (2, 60, 100), (3, 99, 159)] {
+    for (sequence, minutes, expected) in
+        [(0, 0, 60), (1, 10, 60), (2, 40, 100), (3, 60, 100), (4, 99, 159)]
+    {
         let now = began + minutes * HOUR / 60;
         server.storage.append(&hash, vec![event(sequence)], now).await.unwrap();
         let record = server.storage.session(&hash).await.unwrap();
         assert_eq!(record.slot_expires_ms, Some(began + expected * HOUR / 60), "{minutes} min");
     }
     // After its end it is not revived: somebody else may have it.
-    server.storage.append(&hash, vec![event(4)], began + 3 * HOUR).await.unwrap();
+    server.storage.append(&hash, vec![event(5)], began + 3 * HOUR).await.unwrap();
     let record = server.storage.session(&hash).await.unwrap();
     assert_eq!(record.slot_expires_ms, Some(began + 159 * HOUR / 60));
+    // A page that is heard of for the first time after its minute has the slot, if nobody else has.
+    let late = server.start(2).await;
+    let hash = study::sha256(&late.session);
+    let began = server.storage.session(&hash).await.unwrap().started_ms;
+    server.storage.append(&hash, vec![event(0)], began + HOUR).await.unwrap();
+    let record = server.storage.session(&hash).await.unwrap();
+    assert_eq!(record.slot_expires_ms, Some(began + 2 * HOUR));
 }
 
 pub async fn slots_are_given_one_after_the_other(server: &TestServer) {

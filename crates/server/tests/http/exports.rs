@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 
-use mimique_server::export::{ExportError, Exported, Format, Options, export};
+use mimique_server::export::{Export, ExportError, Exported, Format, Options, Part, export};
 use serde_json::{Value, json};
 
 use crate::client::TestServer;
@@ -35,6 +35,29 @@ async fn take_part(server: &TestServer) -> Planted {
 
 async fn exported(server: &TestServer, format: Format) -> Exported {
     export(&server.storage, Some("demo"), format, Options::default()).await.unwrap()
+}
+
+/// The ZIP archive that an export is written to.
+fn archive(exported: Exported) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("export.zip");
+    assert_eq!(exported.write(&path).unwrap(), std::slice::from_ref(&path));
+    std::fs::read(path).unwrap()
+}
+
+/// The files in an archive, by their paths below its folder.
+fn unpacked(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(archive)).unwrap();
+    let mut files = Vec::new();
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).unwrap();
+        let path = file.name().unwrap().strip_prefix("demo_psych-ds/").unwrap().to_owned();
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).unwrap();
+        files.push((path, bytes));
+    }
+    files.sort();
+    files
 }
 
 /// The only file, read as CSV: rows as name -> cell.
@@ -86,13 +109,13 @@ pub async fn every_form_is_the_same_each_time(server: &TestServer) {
         assert_eq!(bytes, exported(server, format).await, "{}", format.word());
         first.push(bytes);
     }
-    let zipped = first[4].clone().into_zip().unwrap();
+    let zipped = archive(first[4].clone());
     // The database alone is enough: nothing of the first server is left.
     let server = server.restart().await;
     for (format, before) in Format::ALL.into_iter().zip(first) {
         assert_eq!(exported(&server, format).await, before, "{}", format.word());
     }
-    assert_eq!(exported(&server, Format::PsychDs).await.into_zip().unwrap(), zipped);
+    assert_eq!(archive(exported(&server, Format::PsychDs).await), zipped);
     server.storage.close().await;
 }
 
@@ -158,13 +181,7 @@ pub async fn a_psych_ds_folder_explains_every_column(server: &TestServer) {
     assert_eq!(mimique_study::config_hash(&material), study::demo().config_hash());
 
     // The archive holds the same files.
-    let archive = exported.clone().into_zip().unwrap();
-    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(archive)).unwrap();
-    assert_eq!(archive.len(), exported.files.len());
-    let mut bytes = Vec::new();
-    let name = "demo_psych-ds/data/study-demo_data.csv";
-    archive.by_name(name).unwrap().read_to_end(&mut bytes).unwrap();
-    assert_eq!(&bytes, table);
+    assert_eq!(unpacked(&archive(exported.clone())), exported.files);
 
     // Written to a folder, and to an archive where the name says so.
     let folder = tempfile::tempdir().unwrap();
@@ -248,8 +265,8 @@ pub async fn a_study_must_be_named_where_there_are_several(server: &TestServer) 
 pub async fn a_download_comes_in_pieces(server: &TestServer) {
     take_part(server).await;
     let mut owner = crate::people::owner(server).await;
-    for (word, format) in [("csv", Format::Csv), ("json", Format::Json), ("events", Format::Events)]
-    {
+    for format in [Format::Csv, Format::Json, Format::Events, Format::Wide] {
+        let word = format.word();
         let path = format!("/researcher/studies/demo/export/{word}");
         let whole = exported(server, format).await.files.remove(0);
         let downloaded = owner.open(server, &path).await;
@@ -269,4 +286,52 @@ pub async fn a_download_comes_in_pieces(server: &TestServer) {
         assert!(sizes.iter().filter(|size| **size > 0).count() >= 2, "{word}: {sizes:?}");
         assert!(sizes.iter().all(|size| *size < whole.1.len()), "{word}: {sizes:?}");
     }
+}
+
+/// The archive of a data set is made while it is sent, and holds what the data set has.
+pub async fn a_data_set_is_zipped_while_it_is_sent(server: &TestServer) {
+    take_part(server).await;
+    let mut owner = crate::people::owner(server).await;
+    let downloaded = owner.open(server, "/researcher/studies/demo/export/psych-ds").await;
+    assert!(downloaded.header("content-disposition").contains("demo_psych-ds.zip"));
+    let whole = exported(server, Format::PsychDs).await;
+    assert_eq!(unpacked(&downloaded.body), whole.files);
+    // Written to disk as it is sent, too.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("set.zip");
+    let options = Options::default();
+    let export =
+        Export::open(&server.storage, Some("demo"), Format::PsychDs, options).await.unwrap();
+    let written = export.write(&path).await.unwrap();
+    assert_eq!((written.participants, written.rows), (whole.participants, whole.rows));
+    assert_eq!(std::fs::read(&path).unwrap(), downloaded.body);
+}
+
+/// Columns of the wide form are found before its rows are written: what comes in between is in neither.
+pub async fn a_wide_export_is_as_of_its_beginning(server: &TestServer) {
+    take_part(server).await;
+    let before = exported(server, Format::Wide).await;
+    let options = Options::default();
+    let mut export =
+        Export::open(&server.storage, Some("demo"), Format::Wide, options).await.unwrap();
+    assert_eq!(export.next().await.unwrap(), Some(Part::File("demo_wide.csv".into())));
+    let Some(Part::Bytes(mut bytes)) = export.next().await.unwrap() else { panic!("no header") };
+    assert_eq!(bytes.iter().filter(|byte| **byte == b'\n').count(), 1);
+    // One goes on, and somebody new takes part.
+    let second = server.start_in("demo", 2).await;
+    let (events, _) = takes_part(study::demo().study(), &second, usize::MAX);
+    server.stored(&second.session, &events).await;
+    let fourth = server.start_in("demo", 4).await;
+    let (events, _) = takes_part(study::demo().study(), &fourth, usize::MAX);
+    server.stored(&fourth.session, &events).await;
+    while let Some(part) = export.next().await.unwrap() {
+        if let Part::Bytes(more) = part {
+            bytes.extend(more);
+        }
+    }
+    assert_eq!(
+        String::from_utf8(bytes).unwrap(),
+        String::from_utf8(before.files[0].1.clone()).unwrap()
+    );
+    assert_eq!(exported(server, Format::Wide).await.participants, 3);
 }

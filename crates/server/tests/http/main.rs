@@ -6,13 +6,16 @@
 mod accounts;
 mod backups;
 mod client;
+mod dashboard;
 mod defences;
 mod enrolment;
 mod exports;
+mod limits;
 mod misfits;
 mod pages;
 mod participant;
 mod people;
+mod places;
 mod postgres;
 mod researcher;
 mod retention;
@@ -22,6 +25,7 @@ mod simulated;
 mod standings;
 mod storage;
 mod study;
+mod study_roles;
 mod traces;
 mod uploads;
 mod withdrawal;
@@ -76,7 +80,7 @@ topics! {
     sessions::a_restart_keeps_everything,
     sessions::completing_needs_every_event,
     sessions::a_receipt_stays_the_same,
-    sessions::a_session_has_so_much_and_no_more,
+    limits::a_session_has_so_much_and_no_more,
     sessions::the_code_is_given_only_at_the_end,
     sessions::withdrawal_deletes_answers_and_identifiers,
     sessions::withdrawal_needs_the_code,
@@ -100,6 +104,8 @@ topics! {
     enrolment::the_address_puts_a_participant_into_a_condition,
     enrolment::conditions_are_balanced_over_those_who_finish,
     enrolment::the_study_closes_when_it_is_full,
+    places::one_address_cannot_fill_a_study,
+    places::a_place_is_held_by_a_page_that_is_heard_of,
     enrolment::the_study_has_hours,
     enrolment::an_identifier_takes_part_once,
     enrolment::a_browser_takes_part_once,
@@ -123,6 +129,8 @@ topics! {
     exports::every_form_is_the_same_each_time,
     exports::the_other_forms_hold_the_same_answers,
     exports::a_download_comes_in_pieces,
+    exports::a_data_set_is_zipped_while_it_is_sent,
+    exports::a_wide_export_is_as_of_its_beginning,
     exports::a_psych_ds_folder_explains_every_column,
     exports::identifiers_are_exported_only_when_asked_for,
     exports::each_session_is_read_by_its_own_version,
@@ -135,6 +143,7 @@ topics! {
     accounts::wrong_passwords_wait_and_say_nothing,
     accounts::forged_forms_change_nothing,
     accounts::each_role_may_do_what_it_may,
+    study_roles::a_role_in_one_study_is_none_in_another,
     accounts::tokens_do_what_their_role_may_until_revoked,
     accounts::a_lost_password_is_replaced,
     accounts::a_disabled_account_has_no_way_in,
@@ -146,6 +155,9 @@ topics! {
     accounts::what_is_hosted_is_for_researchers,
     researcher::the_page_shows_what_was_stored,
     researcher::a_change_is_told_at_once,
+    dashboard::the_list_of_participants_has_pages,
+    dashboard::sums_are_kept_and_are_what_is_counted_anew,
+    dashboard::a_deleted_session_leaves_no_sums,
     researcher::exports_are_files,
     researcher::an_exclusion_is_in_export_and_report,
     researcher::an_owner_deletes_a_participant_who_asks_for_it,
@@ -158,6 +170,7 @@ topics! {
     uploads::a_study_with_errors_is_refused_with_all_of_them,
     uploads::pictures_and_signed_videos_are_hosted,
     uploads::what_fails_is_taken_away,
+    uploads::an_owner_of_a_study_uploads_it_and_no_other,
     uploads::hostile_uploads_leave_nothing,
     withdrawal::a_participant_redeems_the_code_alone,
     withdrawal::codes_cannot_be_tried_without_end,

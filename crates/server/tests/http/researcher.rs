@@ -15,7 +15,7 @@ use crate::people::{HOST, ORIGIN, encoded, invited, owner, script, token};
 use crate::study;
 
 /// A participant of the demo who completes it, or stops after some steps.
-async fn demo_participant(server: &TestServer, nonce: u64, steps: usize) {
+pub async fn demo_participant(server: &TestServer, nonce: u64, steps: usize) {
     let demo = study::demo();
     let started = server.start_in("demo", nonce).await;
     let (events, _) = takes_part(demo.study(), &started, steps);

@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use mimique_session::{Record, Standing};
-use mimique_storage::Storage;
+use mimique_storage::{Role, Storage};
 use sqlx::{AssertSqlSafe, Connection, Executor};
 
 use crate::client::block_on;
@@ -14,7 +14,7 @@ use crate::postgres::Cluster;
 use crate::study::sha256;
 
 /// Version that this binary writes.
-const LATEST: usize = 6;
+const LATEST: usize = 7;
 
 fn dump(kind: &str, version: usize) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -88,6 +88,12 @@ async fn is_all_there(url: &str, version: usize) {
     assert_eq!(storage.conflict_counts("faces").await.unwrap(), [(sessions[0].key, 1)]);
     let identifiers = storage.recruitment("faces").await.unwrap();
     assert_eq!((identifiers[1].participant, identifiers[1].value.as_str()), (2, "def"));
+    // From version 7 on there are roles in single studies, and sums beside the events.
+    let roles = storage.study_roles().await.unwrap();
+    let roles: Vec<_> = roles.iter().map(|it| (it.study_id.as_str(), it.role)).collect();
+    assert_eq!(roles, if version < 7 { vec![] } else { vec![("faces", Role::Analyst)] });
+    let kept = storage.kept_sums_of(&[sessions[0].key], 1).await.unwrap();
+    assert_eq!(kept.len(), usize::from(version >= 7));
     assert_eq!(storage.server_key("tokens", || "new".into()).await.unwrap(), "k1");
     // Life goes on: nobody gets a number or a slot that is taken.
     storage.append(&sha256("token12"), vec![crate::client::event(2)], 0).await.unwrap();
@@ -98,7 +104,7 @@ async fn is_all_there(url: &str, version: usize) {
         next.conditions = vec!["plain".into()];
     }
     let next = storage.start(next).await.unwrap();
-    let slot = [6, 6, 5, 4, 4, 4][version - 1];
+    let slot = [6, 6, 5, 4, 4, 4, 4][version - 1];
     assert_eq!((next.participant, next.slot), (6, slot));
     assert_eq!(next.condition, (version >= 4).then(|| "plain".into()));
     storage.close().await;

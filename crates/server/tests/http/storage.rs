@@ -81,6 +81,6 @@ pub async fn a_later_schema_is_refused(server: &TestServer) {
     server.run_sql("INSERT INTO schema_migrations (version) VALUES (1000)").await;
     let error = Storage::open(server.url()).await.err().unwrap();
     let text =
-        "the database has schema version 1000, this binary knows up to 6; use the newer binary";
+        "the database has schema version 1000, this binary knows up to 7; use the newer binary";
     assert_eq!(error.to_string(), text);
 }

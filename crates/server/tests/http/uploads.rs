@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
 use crate::client::{Answer, TestServer};
-use crate::people::{Browser, HOST, ORIGIN, owner};
+use crate::people::{Browser, HOST, ORIGIN, PASSWORD, link_in, owner};
 use crate::study;
 
 const BOUNDARY: &str = "----a-boundary";
@@ -257,6 +257,11 @@ pub async fn what_fails_is_taken_away(server: &TestServer) {
     assert!(page.contains("role=\"alert\""), "{page}");
     let uploads = folder.path().join("uploads");
     assert_eq!(std::fs::read_dir(&uploads).unwrap().count(), 0);
+    // Nor does what the server hosts by itself.
+    owner.open(&server, "/researcher/upload").await;
+    let own = upload(&server, &owner, whole_study("demo").to_string().as_bytes()).await;
+    assert!(own.status.is_client_error(), "{}", own.text());
+    assert_eq!(std::fs::read_dir(&uploads).unwrap().count(), 0);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -270,4 +275,37 @@ pub async fn what_fails_is_taken_away(server: &TestServer) {
             }
         }
     }
+}
+
+/// Whoever owns a study uploads new versions of it; other studies are the server's owners' to bring.
+pub async fn an_owner_of_a_study_uploads_it_and_no_other(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    let first = whole_study("theirs");
+    upload(&server, &owner, first.to_string().as_bytes()).await;
+    assert!(prepared(&server, &mut owner, "theirs").await.contains("hosted as a pilot"));
+    owner.open(&server, "/researcher/people").await;
+    let fields = [("email", "one@lab.org"), ("role", "owner"), ("study", "theirs")];
+    let link = link_in(&owner.send(&server, "/researcher/people/invite", &fields).await);
+    let mut lab = Browser::default();
+    lab.open(&server, &link).await;
+    lab.send(&server, &link, &[("email", "one@lab.org"), ("password", PASSWORD)]).await;
+    assert!(lab.open(&server, "/researcher").await.text().contains("/researcher/upload"));
+    lab.open(&server, "/researcher/upload").await;
+    let uploads = folder.path().join("uploads");
+    let kept = std::fs::read_dir(&uploads).unwrap().count();
+    let other = upload(&server, &lab, whole_study("another").to_string().as_bytes()).await;
+    assert_eq!(other.status, StatusCode::FORBIDDEN, "{}", other.text());
+    assert_eq!(std::fs::read_dir(&uploads).unwrap().count(), kept, "nothing is left of it");
+    let mut second = first.clone();
+    second["studyMetadata"]["version"] = json!("2.0.0");
+    let taken = upload(&server, &lab, second.to_string().as_bytes()).await;
+    assert_eq!(taken.status, StatusCode::SEE_OTHER, "{}", taken.text());
+    assert!(prepared(&server, &mut lab, "theirs").await.contains("hosted as a pilot"));
+    let bundle: mimique_session::wire::Bundle = server.get("/api/studies/theirs").await.ok();
+    assert_eq!(bundle.config_hash, mimique_study::config_hash(&second));
+    let live = lab.send(&server, "/researcher/studies/theirs/stage", &[("stage", "live")]).await;
+    assert_eq!(live.status, StatusCode::SEE_OTHER, "{}", live.text());
+    assert_eq!(server.start_in("theirs", 1).await.stage, "live");
 }

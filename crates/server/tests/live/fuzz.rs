@@ -2,30 +2,22 @@
 
 use std::process::Command;
 
-use mimique_storage::{AccountLink, LinkPurpose, Role, Storage};
+use mimique_storage::Storage;
 use mimique_test_support::{python, skip};
 use serde_json::Value;
 
+use crate::block_on;
 use crate::child::Server;
+use crate::owner::add_owner;
 use crate::people::exchange;
-use crate::{block_on, study};
 
 /// What a script of an owner sends.
 const TOKEN: &str = "mimique_fuzz";
 
 /// An owner with a token: then the researchers' addresses are reached too.
-async fn add_owner(url: &str) {
+async fn with_owner(url: &str) {
     let storage = Storage::open(url).await.unwrap();
-    let link = AccountLink {
-        purpose: LinkPurpose::FirstOwner,
-        email: String::new(),
-        role: Role::Owner,
-        expires_ms: i64::MAX,
-    };
-    storage.add_link("link", &link, 0).await.unwrap();
-    let owner = storage.use_link("link", "owner@example.org", "no password", 1).await.unwrap();
-    let hash = study::sha256(TOKEN);
-    storage.add_token(&hash, owner.unwrap().key, "fuzz", Role::Owner, 1).await.unwrap();
+    add_owner(&storage, TOKEN).await;
     storage.close().await;
 }
 
@@ -51,7 +43,7 @@ fn nothing_that_is_sent_makes_the_server_fail() {
     }
     let folder = tempfile::tempdir().unwrap();
     let url = format!("sqlite:{}", folder.path().join("answers.sqlite").display());
-    block_on(add_owner(&url));
+    block_on(with_owner(&url));
     let server = Server::start(&url);
     // The token is one, or everything behind it would be refused at the door.
     let export = "/researcher/studies/faces/export/csv";

@@ -6,6 +6,8 @@ mod disk;
 mod faults;
 mod fuzz;
 mod kill;
+mod memory;
+mod owner;
 mod people;
 #[path = "../http/postgres.rs"]
 mod postgres;

@@ -57,11 +57,15 @@ impl Person {
     pub fn keep_answering(&mut self, ports: &[u16], end: &AtomicBool) {
         let mut at = self.number as usize;
         while !end.load(Ordering::Relaxed) {
-            if self.answer(ports[at % ports.len()]).is_none() {
+            // A session has so much and no more: nobody answers a thousand times a second.
+            let pause = if self.answer(ports[at % ports.len()]).is_none() {
                 self.unanswered += 1;
                 at += 1;
-                std::thread::sleep(Duration::from_millis(5));
-            }
+                5
+            } else {
+                2
+            };
+            std::thread::sleep(Duration::from_millis(pause));
         }
     }
 }

@@ -17,6 +17,7 @@ mod agreement;
 mod allowed;
 mod clock;
 mod effect;
+mod ending;
 mod gate;
 mod input;
 mod needs;

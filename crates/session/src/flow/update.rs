@@ -11,7 +11,6 @@ use super::needs::needs_ahead;
 use super::state::{Play, State};
 use crate::event::{Client, EventKind, PlayLog, ShownBeside, StageFailure};
 use crate::plan::{Plan, Step, StepKind, TrialStep};
-use crate::standing::Standing;
 use crate::wire;
 
 /// Unexpected inputs that are recorded; further ones are only ignored, so that a page gone wrong
@@ -32,7 +31,7 @@ pub(super) struct Transition<'a> {
     pub(super) plan: &'a Plan,
     pub(super) state: State,
     pub(super) effects: Vec<Effect>,
-    now_ms: f64,
+    pub(super) now_ms: f64,
 }
 
 impl<'a> Transition<'a> {
@@ -146,19 +145,6 @@ impl<'a> Transition<'a> {
         self.state.live = super::Live { now_ms: self.now_ms, ..Default::default() };
         self.record(EventKind::Resumed { client: client.clone() });
         self.arrive();
-        true
-    }
-
-    /// The session was over when the page was opened again: ask for the receipt anew.
-    fn resumed_at_end(&mut self) -> bool {
-        self.effects.push(Effect::Flush);
-        if self.state.record.standing == Standing::Withdrawn {
-            self.state.live.withdrawing = true;
-            self.effects.push(Effect::Withdraw);
-        } else if self.state.record.standing.has_receipt() {
-            self.state.live.completing = true;
-            self.effects.push(Effect::Complete { events: self.state.record.events });
-        }
         true
     }
 
@@ -372,51 +358,6 @@ impl<'a> Transition<'a> {
     fn focus(&mut self, focused: bool) -> bool {
         if self.state.record.focused != focused {
             self.record(if focused { EventKind::FocusGained } else { EventKind::FocusLost });
-        }
-        true
-    }
-
-    fn withdraw(&mut self) -> bool {
-        if self.state.live.withdrawing {
-            return true;
-        }
-        // At the end, too, so that a reload goes on with it.
-        if self.state.record.standing != Standing::Withdrawn {
-            self.record(EventKind::Withdrawn);
-        }
-        self.state.live.withdrawing = true;
-        self.state.live.play = Play::Still;
-        self.effects.extend([Effect::StopClip, Effect::Flush, Effect::Withdraw]);
-        self.effects.push(Effect::FocusHeading);
-        true
-    }
-
-    fn receipt_arrived(&mut self, receipt: &wire::Receipt) -> bool {
-        let after = self.plan.study.return_after_seconds.filter(|_| receipt.redirect.is_some());
-        self.state.live.return_ms = after.map(|seconds| self.now_ms + f64::from(seconds) * 1000.0);
-        self.state.live.receipt = Some(receipt.clone());
-        true
-    }
-
-    /// Goes back by itself when its time has come, once.
-    fn go_back(&mut self) {
-        let live = &mut self.state.live;
-        let address = live.receipt.as_ref().and_then(|receipt| receipt.redirect.clone());
-        if live.return_ms.is_some_and(|at_ms| at_ms <= self.now_ms)
-            && let Some(address) = address
-        {
-            live.return_ms = None;
-            self.effects.push(Effect::GoBack(address));
-        }
-    }
-
-    fn acknowledged(&mut self, stored: u64) -> bool {
-        self.state.live.stored = self.state.live.stored.max(stored);
-        let finished = self.state.record.standing.has_receipt();
-        let everything = self.state.live.stored >= self.state.record.events;
-        if finished && everything && !self.state.live.completing {
-            self.state.live.completing = true;
-            self.effects.push(Effect::Complete { events: self.state.record.events });
         }
         true
     }

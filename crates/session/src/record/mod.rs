@@ -111,14 +111,21 @@ impl Record {
     pub fn of(plan: Option<&Plan>, events: &[Event]) -> Self {
         let mut record = Self::default();
         for event in events {
-            match EventKind::from_body(&event.body) {
-                Some(kind) => record.apply(plan, kind, event.at_ms),
-                None => record.unexpected += 1,
-            }
-            // The sequence is the event's own, so that a gap is never filled by another event.
-            record.events = record.events.max(event.sequence + 1);
+            let kind = EventKind::from_body(&event.body);
+            record.add(plan, event.sequence, event.at_ms, kind);
         }
         record
+    }
+
+    /// Adds the next stored event: the record of many events is made of one after the other. `kind` is none
+    /// where this version cannot read it.
+    pub fn add(&mut self, plan: Option<&Plan>, sequence: u64, at_ms: f64, kind: Option<EventKind>) {
+        match kind {
+            Some(kind) => self.apply(plan, kind, at_ms),
+            None => self.unexpected += 1,
+        }
+        // The sequence is the event's own, so that a gap is never filled by another event.
+        self.events = self.events.max(sequence + 1);
     }
 
     /// Whether the session ended since the device showed too few frames of a clip.

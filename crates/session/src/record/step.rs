@@ -19,8 +19,10 @@ pub struct Attempt {
     pub plays: u32,
     /// Whole plays before the page was opened again, by which the trial began anew.
     pub earlier_plays: u32,
-    /// The first whole play.
+    /// The first whole play, without its frames: these are counted.
     pub play: Option<PlayLog>,
+    /// Frames that the first whole play showed.
+    pub frames: usize,
     /// Plays that showed too few frames.
     pub slow_plays: u32,
     /// Whether the page filled the screen in that play.
@@ -56,7 +58,7 @@ impl Attempt {
     }
 
     /// The clip was played, wholly or not.
-    pub(super) fn played(&mut self, log: PlayLog, fullscreen: bool, at_ms: f64) {
+    pub(super) fn played(&mut self, mut log: PlayLog, fullscreen: bool, at_ms: f64) {
         self.cut_short = CutShort::of(&log);
         if let Some(why) = self.cut_short {
             self.interruptions += 1;
@@ -66,6 +68,7 @@ impl Attempt {
         self.plays += 1;
         self.answering_ms.get_or_insert(at_ms);
         if self.play.is_none() {
+            self.frames = std::mem::take(&mut log.frames).len();
             self.play = Some(log);
             self.play_fullscreen = fullscreen;
         }

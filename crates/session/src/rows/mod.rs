@@ -4,20 +4,24 @@
 //!   answer about the participant, because analyses group by them.
 //! * [`wide`]: one row a participant; one column a trial x response.
 //!
+//! Both have a form that is made once for a version of a study ([`TidyForm`], [`WideForm`]) and gives the rows
+//! of one session at a time.
+//!
 //! A table is columns with their descriptions and rows of plain JSON values; who writes CSV, JSON or
 //! Psych-DS does so from there ([`psych_ds_description`] is the data dictionary).
 
 mod cells;
 mod column;
 mod psych_ds;
+mod step_cells;
 mod study_columns;
 mod tidy;
 mod wide;
 
 pub use column::{Column, Table};
 pub use psych_ds::psych_ds_description;
-pub use tidy::tidy;
-pub use wide::wide;
+pub use tidy::{TidyForm, tidy};
+pub use wide::{WideForm, wide};
 
 use crate::wire::{Event, SessionStarted};
 

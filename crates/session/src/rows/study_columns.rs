@@ -1,7 +1,9 @@
 //! The columns that a study brings: its factors, the answers about the participant, the condition.
 
+use std::collections::BTreeMap;
+
 use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
-use mimique_study::{Choice, KindOfQuestion as _, Question, Study};
+use mimique_study::{Choice, KindOfQuestion as _, Question, Sequence, SequenceItem, Study};
 use serde_json::Value;
 
 use super::column::Column;
@@ -51,4 +53,27 @@ pub(super) fn assigned_column(study: &Study) -> Option<Column> {
     let mut column = Column::new(ASSIGNED_CONDITION, ColumnKind::Text, description);
     column.levels = conditions.iter().map(|name| ((*name).into(), String::new())).collect();
     (!conditions.is_empty()).then_some(column)
+}
+
+/// Participant's condition and component -> identifier of the nearest sequence that has one.
+/// `enclosing` is the condition and the identifier of the sequences around.
+pub(super) fn conditions_of(
+    sequence: &Sequence,
+    enclosing: (Option<&str>, Option<&str>),
+    conditions: &mut BTreeMap<(Option<String>, String), String>,
+) {
+    let own = sequence.id.as_deref();
+    let assigned = if sequence.conditional { own } else { enclosing.0 };
+    let condition = own.or(enclosing.1);
+    for item in &sequence.components {
+        match item {
+            SequenceItem::Component(name) => {
+                let key = (assigned.map(str::to_owned), name.clone());
+                conditions.entry(key).or_insert(condition.unwrap_or(name).to_owned());
+            }
+            SequenceItem::Sequence(nested) => {
+                conditions_of(nested, (assigned, condition), conditions);
+            }
+        }
+    }
 }

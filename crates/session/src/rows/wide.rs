@@ -6,7 +6,9 @@ use serde_json::Value;
 
 use super::SessionRecord;
 use super::column::{Column, Table};
-use super::tidy::tidy;
+use super::tidy::TidyForm;
+use crate::record::Record;
+use crate::wire::SessionStarted;
 use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
 use mimique_study::{ClipSource, Study};
 
@@ -31,47 +33,83 @@ pub fn wide<'a>(
     clips: &BTreeMap<String, ClipSource>,
     sessions: impl IntoIterator<Item = SessionRecord<'a>>,
 ) -> Table {
-    let long = tidy(study, clips, sessions);
-    let mut columns: Vec<Column> = PERSONAL
-        .iter()
-        .filter_map(|name| long.column(name).map(|index| long.columns[index].clone()))
-        .collect();
-    let mut answers: BTreeMap<(String, String), Column> = BTreeMap::new();
-    let mut people: Vec<(Value, BTreeMap<String, Value>)> = Vec::new();
-    for row in 0..long.rows.len() {
-        let text = |name: &str| long.cell(row, name).as_str().unwrap_or_default().to_owned();
-        let who = long.cell(row, "participant_id");
-        if people.last().is_none_or(|(last, _)| last != who) {
-            let cells =
-                PERSONAL.iter().map(|name| ((*name).to_owned(), long.cell(row, name).clone()));
-            people.push((who.clone(), cells.collect()));
-        }
-        let (trial, response) = (text("trial_id"), text("response_id"));
-        let name = if text("trial_type") == "demographics" {
-            response.clone()
-        } else {
-            format!("{trial}.{response}")
-        };
-        if let Some((_, cells)) = people.last_mut() {
-            cells.insert(name.clone(), long.cell(row, "answer").clone());
-            cells.insert(format!("{name}.rt"), long.cell(row, "rt").clone());
-        }
-        answers.entry((trial.clone(), response.clone())).or_insert_with(|| {
-            Column::new(&name, ColumnKind::Any, &format!("Answer to {response} in {trial}"))
-        });
+    let mut form = WideForm::new(study, clips);
+    let record = |session: SessionRecord<'a>| (session.started, Record::of(None, session.events));
+    let sessions: Vec<_> = sessions.into_iter().map(record).collect();
+    sessions.iter().for_each(|(_, record)| form.look_at(record));
+    let rows = sessions.iter().filter_map(|(started, record)| form.row(started, record)).collect();
+    Table { columns: form.columns(), rows }
+}
+
+/// The wide form of a version of a study. Which columns it has, all sessions say: they are looked at first.
+#[derive(Debug, Clone)]
+pub struct WideForm {
+    tidy: TidyForm,
+    /// Name of the column of each trial and response.
+    answers: BTreeMap<(String, String), String>,
+}
+
+impl WideForm {
+    /// The form of a version of a study and its clips as they were prepared, without a session.
+    pub fn new(study: &Study, clips: &BTreeMap<String, ClipSource>) -> Self {
+        Self { tidy: TidyForm::new(study, clips), answers: BTreeMap::new() }
     }
-    for answer in answers.into_values() {
-        let rt_name = format!("{}.rt", answer.name);
-        let mut rt =
-            Column::new(&rt_name, ColumnKind::Number, "Response time of the column before");
-        rt.unit = Some("ms".to_owned());
-        columns.extend([answer, rt]);
+
+    /// Makes columns for the answers of a record. What was measured of plays is not asked for.
+    pub fn look_at(&mut self, record: &Record) {
+        for (trial, response, is_demographics) in self.tidy.responses(record) {
+            self.answers
+                .entry((trial, response))
+                .or_insert_with_key(|(trial, response)| name(trial, response, is_demographics));
+        }
     }
-    let rows = people
-        .into_iter()
-        .map(|(_, mut cells)| {
-            columns.iter().map(|column| cells.remove(&column.name).unwrap_or(Value::Null)).collect()
-        })
-        .collect();
-    Table { columns, rows }
+
+    /// The columns that two forms have, of the same version.
+    pub fn join(&mut self, other: Self) {
+        self.answers.extend(other.answers);
+    }
+
+    /// The columns of the rows.
+    pub fn columns(&self) -> Vec<Column> {
+        let known = self.tidy.columns();
+        let personal = PERSONAL.iter().filter_map(|name| known.iter().find(|c| c.name == *name));
+        let mut columns: Vec<Column> = personal.cloned().collect();
+        for ((trial, response), name) in &self.answers {
+            let about = format!("Answer to {response} in {trial}");
+            let mut rt = Column::new(
+                &format!("{name}.rt"),
+                ColumnKind::Number,
+                "Response time of the column before",
+            );
+            rt.unit = Some("ms".to_owned());
+            columns.extend([Column::new(name, ColumnKind::Any, &about), rt]);
+        }
+        columns
+    }
+
+    /// The row of a session, in the order of [`Self::columns`]; none of who answered nothing. What has no
+    /// column, since the record was another one when it was looked at, is left out.
+    pub fn row(&self, started: &SessionStarted, record: &Record) -> Option<Vec<Value>> {
+        let rows = self.tidy.rows(started, record);
+        let first = rows.first()?;
+        let personal = PERSONAL.iter().filter_map(|name| self.tidy.place(name));
+        let mut cells: Vec<Value> = personal.map(|place| first[place].clone()).collect();
+        let places = ["trial_id", "response_id", "answer", "rt"].map(|name| self.tidy.place(name));
+        let [Some(trial), Some(response), Some(answer), Some(rt)] = places else { return None };
+        let text = |cell: &'_ Value| cell.as_str().unwrap_or_default().to_owned();
+        let given: BTreeMap<(String, String), [&Value; 2]> = rows
+            .iter()
+            .map(|row| ((text(&row[trial]), text(&row[response])), [&row[answer], &row[rt]]))
+            .collect();
+        for key in self.answers.keys() {
+            let pair = given.get(key).copied().unwrap_or([&Value::Null, &Value::Null]);
+            cells.extend(pair.map(Value::clone));
+        }
+        Some(cells)
+    }
+}
+
+/// The name of the column of an answer.
+fn name(trial: &str, response: &str, is_demographics: bool) -> String {
+    if is_demographics { response.to_owned() } else { format!("{trial}.{response}") }
 }

@@ -7,6 +7,7 @@ use crate::fit::setup::{Engine, FREE};
 use crate::fit::visible_markers::VisibleMarkers;
 use crate::gaussian_process::regression::{Regression, RegressionScratch};
 use crate::linear_algebra::dense::{axpy, dot, mul, mul_transposed};
+use crate::method::greedy::one_after_the_other;
 use crate::newton::minimise::NewtonState;
 use crate::newton::objective::{Matrices, Objective, Target, Term};
 use crate::quadratic::box_qp::{BoxState, Outcome, worse};
@@ -14,24 +15,26 @@ use crate::quadratic::box_qp::{BoxState, Outcome, worse};
 /// Solves frames one after the other, each started from the one before.
 #[derive(Debug, Clone)]
 pub struct FrameSolver<'a> {
-    fit: &'a Fit,
+    pub(super) fit: &'a Fit,
     /// What depends on the markers seen, kept while the same ones are missing.
-    some_visible: Option<VisibleMarkers>,
+    pub(super) some_visible: Option<VisibleMarkers>,
     /// The free weights as they were solved: the next frame starts from them.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     /// The same times the gain.
-    amplified: Vec<f64>,
-    displacements: Vec<f64>,
-    right: Vec<f64>,
-    scratch: Vec<f64>,
-    qp: BoxState,
-    newton: NewtonState,
-    learnt: RegressionScratch,
+    pub(super) amplified: Vec<f64>,
+    pub(super) displacements: Vec<f64>,
+    /// Bounds of a programme that holds weights at 0.
+    pub(super) held: Vec<[f64; 2]>,
+    pub(super) right: Vec<f64>,
+    pub(super) scratch: Vec<f64>,
+    pub(super) qp: BoxState,
+    pub(super) newton: NewtonState,
+    pub(super) learnt: RegressionScratch,
 }
 
 /// How a frame was solved.
-struct Answer {
-    outcome: Outcome,
+pub(super) struct Answer {
+    pub(super) outcome: Outcome,
     /// The thin shell's energy of a surface.
     energy: Option<f64>,
     /// Predictive standard deviation of a regression.
@@ -56,6 +59,7 @@ impl<'a> FrameSolver<'a> {
             weights: Vec::new(),
             amplified: Vec::new(),
             displacements: Vec::new(),
+            held: Vec::new(),
             right: Vec::new(),
             scratch: Vec::new(),
             qp: BoxState::default(),
@@ -87,8 +91,19 @@ impl<'a> FrameSolver<'a> {
 
     pub(crate) fn solve_checked(&mut self, d: &[f64], weights: &mut [f64]) -> FrameReport {
         assert_eq!(weights.len(), self.fit.shape_count(), "a frame has N weights");
-        let missing_markers = self.take_in(d);
+        let (missing_markers, _) = self.take_in(d);
         let answer = self.answer();
+        self.report(answer, missing_markers, weights)
+    }
+
+    /// What is said of the frame that was taken in, whose free weights are in `self.weights`; all N in
+    /// `weights`.
+    pub(super) fn report(
+        &mut self,
+        answer: Answer,
+        missing_markers: u32,
+        weights: &mut [f64],
+    ) -> FrameReport {
         let visible = self.some_visible.as_ref().unwrap_or(&self.fit.all_visible);
         let importance = visible.importance;
         weights.fill(0.0);
@@ -130,7 +145,7 @@ impl<'a> FrameSolver<'a> {
 
     /// Solve for the displacements that were taken in: the weights of the free shapes are then in
     /// `self.weights`.
-    fn answer(&mut self) -> Answer {
+    pub(super) fn answer(&mut self) -> Answer {
         let fit = self.fit;
         let problem = &fit.problem;
         let visible = self.some_visible.as_ref().unwrap_or(&fit.all_visible);
@@ -143,12 +158,10 @@ impl<'a> FrameSolver<'a> {
         self.right.resize(n, 0.0);
         let d = &self.displacements;
         match &problem.engine {
-            Engine::Quadratic { data_weight, bounds, .. } => {
-                mul_transposed(&visible.deltas, d, &mut self.right);
-                for x in &mut self.right {
-                    *x *= data_weight;
-                }
-                self.qp.solve(&visible.system, &self.right, bounds, &mut self.weights).into()
+            Engine::Quadratic(quadratic) => self.solve_quadratic(quadratic).into(),
+            Engine::Greedy { order, bounds } => {
+                let (left, weights) = (&mut self.scratch, &mut self.weights);
+                one_after_the_other(order, bounds, visible, d, left, weights).into()
             }
             Engine::Linked { bounds } => {
                 // The displacements carry the root of the importance, the sums need all of it.
@@ -278,8 +291,8 @@ impl<'a> FrameSolver<'a> {
     }
 
     /// Weigh the rows, drop those of missing markers, and prepare what depends on them. Returns how
-    /// many markers are missing.
-    fn take_in(&mut self, d: &[f64]) -> u32 {
+    /// many markers are missing, and whether they are other ones than before.
+    pub(super) fn take_in(&mut self, d: &[f64]) -> (u32, bool) {
         let problem = &self.fit.problem;
         self.displacements.resize(d.len(), 0.0);
         let is_missing = |m: &[f64]| !m.iter().all(|x| x.is_finite());
@@ -306,7 +319,7 @@ impl<'a> FrameSolver<'a> {
             self.some_visible = (missing > 0)
                 .then(|| VisibleMarkers::new(problem, d.chunks_exact(3).map(is_missing).collect()));
         }
-        missing
+        (missing, !same)
     }
 }
 

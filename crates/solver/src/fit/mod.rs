@@ -2,15 +2,19 @@
 
 pub(crate) mod frame;
 pub(crate) mod problem;
+mod quadratic_frame;
 pub(crate) mod report;
 pub(crate) mod setup;
 pub(crate) mod visible_markers;
+pub(crate) mod window;
 
 use crate::energy::operators::Operators;
 use crate::fit::frame::FrameSolver;
 use crate::fit::problem::{FitError, Problem};
 use crate::fit::report::{FrameReport, FrameSolution, TakeSolution};
+use crate::fit::setup::Engine;
 use crate::fit::visible_markers::VisibleMarkers;
+use crate::fit::window::solve_windows;
 use crate::linear_algebra::dense::dot;
 use crate::parameters::table::MethodSpec;
 
@@ -54,7 +58,8 @@ impl Fit {
         self.all_visible.least_norm
     }
 
-    /// A solver of consecutive frames.
+    /// A solver of consecutive frames. A method that solves windows sees one frame at a time here, without
+    /// second differences.
     pub fn frames(&self) -> FrameSolver<'_> {
         FrameSolver::new(self)
     }
@@ -74,7 +79,8 @@ impl Fit {
     ///
     /// The frames of each chunk of [`CHUNK_FRAMES`] start from one another, the first one cold: the
     /// answer has the same bits however the chunks are shared out. With the feature `parallel` they
-    /// are solved on all cores.
+    /// are solved on all cores. Methods that hold to the last frame solve the whole take in order, and
+    /// those with second differences window by window ([`crate::WINDOW_FRAMES`], [`crate::LOOK_AHEAD`]).
     ///
     /// # Errors
     /// [`FitError::Displacements`] unless `d` is whole frames.
@@ -95,6 +101,16 @@ impl Fit {
                 *report = solver.solve_checked(d, weights);
             }
         };
+        if let Engine::Quadratic(quadratic) = &self.problem.engine
+            && quadratic.roughness > 0.0
+        {
+            solve_windows(self, quadratic, d, &mut weights, &mut reports);
+            return Ok(TakeSolution { weights, reports });
+        }
+        if self.follows_last_frame() {
+            one(((d, &mut weights), &mut reports));
+            return Ok(TakeSolution { weights, reports });
+        }
         #[cfg(feature = "parallel")]
         {
             use rayon::prelude::*;
@@ -134,6 +150,11 @@ impl Fit {
             }
         }
         if total > 0.0 { (squares / total).sqrt() } else { 0.0 }
+    }
+
+    /// Whether the answer of a frame depends on that of the one before.
+    fn follows_last_frame(&self) -> bool {
+        matches!(&self.problem.engine, Engine::Quadratic(quadratic) if quadratic.last_frame > 0.0)
     }
 
     pub(crate) fn wrong_size(&self, found: usize) -> FitError {

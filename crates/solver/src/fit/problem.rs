@@ -79,12 +79,13 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn new(operators: &Operators, spec: &MethodSpec) -> Result<Problem, FitError> {
+        let parts = operators.parts();
+        let spec = &spec.with_names_of(&parts.shape_names, &parts.marker_labels);
         spec.validate()?;
         let definition = spec.method.definition();
         if definition.needs == Needs::Weights {
             return Err(FitError::Recorded);
         }
-        let parts = operators.parts();
         check_options(&parts.options, spec)?;
         let n_all = operators.shape_count();
         let free = free_shapes(&parts.shape_names, spec)?;
@@ -110,6 +111,7 @@ impl Problem {
             spec,
             parts,
             shell: &shell,
+            free: &free,
             free_names: free.iter().map(|&k| parts.shape_names[k].as_str()).collect(),
             data_scale: squares / n_all as f64,
             shell_scale: operators.shell_scale(),

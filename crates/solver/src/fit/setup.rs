@@ -22,7 +22,9 @@ pub(crate) struct Setup<'a> {
     pub(crate) parts: &'a OperatorParts,
     /// H of the shapes that are not locked, n x n, m^2.
     pub(crate) shell: &'a [f64],
-    /// Names of the n shapes that are not locked.
+    /// The n shapes that are not locked.
+    pub(crate) free: &'a [usize],
+    /// Their names.
     pub(crate) free_names: Vec<&'a str>,
     /// l^2 of the weighted rows, m^2: a common factor of all importances changes nothing.
     pub(crate) data_scale: f64,
@@ -30,13 +32,48 @@ pub(crate) struct Setup<'a> {
     pub(crate) shell_scale: f64,
 }
 
+/// Minimise data_weight |Dc - d|^2 / 2 + c^T M c / 2 + linear 1^T c in a box, n weights; the rest is 0 or
+/// empty for methods that look at one frame and solve it once.
+#[derive(Debug, Clone)]
+pub(crate) struct Quadratic {
+    pub(crate) data_weight: f64,
+    /// M, n x n.
+    pub(crate) prior: Vec<f64>,
+    pub(crate) linear: f64,
+    pub(crate) bounds: Vec<[f64; 2]>,
+    /// w of - w c^T c(t-1), c(t-1) the weights of the frame before.
+    pub(crate) last_frame: f64,
+    /// mu of mu |c(t-1) - 2 c(t) + c(t+1)|^2.
+    pub(crate) roughness: f64,
+    /// Pairs of which the weaker one is then held at 0, and the rest solved again.
+    pub(crate) cancelling: Vec<[usize; 2]>,
+}
+
+impl Quadratic {
+    /// |Dc - d|^2 and c^T M c alone.
+    pub(crate) fn new(data_weight: f64, prior: Vec<f64>, bounds: Vec<[f64; 2]>) -> Quadratic {
+        let (linear, last_frame, roughness) = (0.0, 0.0, 0.0);
+        Quadratic {
+            data_weight,
+            prior,
+            linear,
+            bounds,
+            last_frame,
+            roughness,
+            cancelling: Vec::new(),
+        }
+    }
+}
+
 /// How a method is solved, over its n free shapes.
 #[derive(Debug, Clone)]
 pub(crate) enum Engine {
-    /// Minimise data_weight |Dc - d|^2 + c^T M c in a box; `prior` is M, n x n.
-    Quadratic { data_weight: f64, prior: Vec<f64>, bounds: Vec<[f64; 2]> },
+    /// A quadratic programme in a box.
+    Quadratic(Quadratic),
     /// The same in a box over associated rows, D^T D and D^T d replaced by theirs.
     Linked { bounds: Vec<[f64; 2]> },
+    /// Each shape of `order` at its best after those before it.
+    Greedy { order: Vec<usize>, bounds: Vec<[f64; 2]> },
     /// Newton; `fallback_eps` smooths the data norm where it vanishes.
     Smooth { objective: Objective, fallback_eps: f64 },
     /// c = D^+ d.
@@ -51,8 +88,9 @@ impl Engine {
     /// The bounds of the n free weights, where they have some.
     pub(crate) fn bounds(&self) -> Option<&[[f64; 2]]> {
         match self {
-            Engine::Quadratic { bounds, .. }
+            Engine::Quadratic(Quadratic { bounds, .. })
             | Engine::Linked { bounds }
+            | Engine::Greedy { bounds, .. }
             | Engine::Learnt { bounds, .. } => Some(bounds),
             Engine::Smooth { objective, .. } => Some(&objective.soft_bounds),
             Engine::PseudoInverse | Engine::Surface(_) => None,
@@ -79,6 +117,12 @@ impl Setup<'_> {
     /// 1 / l^2.
     pub(crate) fn data_weight(&self) -> f64 {
         1.0 / self.data_scale
+    }
+
+    /// (D^T D)_ij of two free shapes, every marker alike, m^2.
+    pub(crate) fn product(&self, i: usize, j: usize) -> f64 {
+        let rows = self.parts.marker_deltas.chunks_exact(self.parts.shape_names.len());
+        rows.fold(0.0, |sum, row| sum + row[self.free[i]] * row[self.free[j]])
     }
 
     /// The bounds of the free shapes: those that the parameters give, `default` for the others.

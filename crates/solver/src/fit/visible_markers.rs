@@ -3,7 +3,7 @@
 use mimique_geometry::{orthogonal_triangular, pseudo_inverse};
 
 use crate::fit::problem::Problem;
-use crate::fit::setup::Engine;
+use crate::fit::setup::{Engine, Quadratic};
 use crate::linear_algebra::dense::{axpy, gram, packed_len};
 use crate::quadratic::least_norm::choose_least_norm;
 
@@ -19,7 +19,7 @@ pub(crate) struct VisibleMarkers {
     /// Q^T and R of D = Q R (empty but for the smooth methods).
     pub(crate) orthogonal: Vec<f64>,
     pub(crate) triangle: Vec<f64>,
-    /// Q of the quadratic programme (empty for the smooth methods), or D^+, or what takes a surface's
+    /// Q of the quadratic programme (empty for the smooth methods and the greedy one), or D^+, or what takes a surface's
     /// markers from where they are seen, or fills lost ones in for the regression.
     pub(crate) system: Vec<f64>,
     /// Whether the shapes depend on each other, so that the least weights are chosen.
@@ -39,16 +39,16 @@ impl VisibleMarkers {
         }
         let gram = gram(&deltas, n);
         let mut system = match &problem.engine {
-            Engine::Quadratic { data_weight, prior, .. } => {
+            Engine::Quadratic(Quadratic { data_weight, prior, .. }) => {
                 gram.iter().zip(prior).map(|(g, m)| data_weight * g + m).collect()
             }
             Engine::Linked { .. } => linked_system(problem, &missing),
             Engine::PseudoInverse => pseudo_inverse(&deltas, 3 * problem.marker_count, n),
             Engine::Surface(surface) => surface.matrix(&missing, &problem.importance),
             Engine::Learnt { model, .. } => model.fill(&missing),
-            Engine::Smooth { .. } => Vec::new(),
+            Engine::Smooth { .. } | Engine::Greedy { .. } => Vec::new(),
         };
-        let least_norm = matches!(problem.engine, Engine::Quadratic { .. } | Engine::Linked { .. })
+        let least_norm = matches!(problem.engine, Engine::Quadratic(_) | Engine::Linked { .. })
             && choose_least_norm(&mut system, n);
         let (orthogonal, triangle) = match &problem.engine {
             Engine::Smooth { .. } => orthogonal_triangular(&deltas, 3 * problem.marker_count, n),

@@ -18,7 +18,7 @@ impl MethodSpec {
     /// It is the method's own `headLowpassHz`, 0 for none; [`HEAD_LOWPASS_HZ`] where the method names
     /// none and the rate has room for it; no filter where a method does not look at markers.
     pub fn head_lowpass_hz(&self, rate_hz: f64) -> Option<f64> {
-        if !self.method.uses(Group::Head) {
+        if !self.method.uses(Group::FrontEnd) {
             return None;
         }
         match self.head_lowpass_hz {
@@ -40,7 +40,7 @@ impl MethodSpec {
     /// The same method with the cut-off that it uses at a rate written out, 0 for none.
     pub fn at_rate(&self, rate_hz: f64) -> MethodSpec {
         let mut spec = self.clone();
-        if spec.method.uses(Group::Head) {
+        if spec.method.uses(Group::FrontEnd) {
             spec.head_lowpass_hz = Some(self.head_lowpass_hz(rate_hz).unwrap_or(0.0));
         }
         spec

@@ -1,6 +1,6 @@
 //! The low-pass of the head's pose: a zero-phase Butterworth whose memory fades before the ends.
 
-use mimique_geometry::Butterworth;
+use mimique_geometry::{Butterworth, Point, rows_mut};
 
 /// A second-order Butterworth low-pass, run both ways by [`Lowpass::filter`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,5 +42,11 @@ impl Lowpass {
     /// or a straight line passes unchanged.
     pub fn filter(&self, signal: &mut [f64]) {
         self.butterworth.filter(signal, self.settling.min(signal.len().saturating_sub(1)));
+    }
+
+    /// The same of every coordinate of a way through space.
+    pub fn filter_points(&self, track: &mut [Point]) {
+        let settling = self.settling.min(track.len().saturating_sub(1));
+        self.butterworth.filter_lanes(rows_mut(track), settling);
     }
 }

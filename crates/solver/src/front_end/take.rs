@@ -22,8 +22,21 @@ pub struct FrontEnd {
     avatar_markers: Vec<Point>,
     avatar_from_actor: RigidMotion,
     rbf: Rbf,
+    /// Where the neutral face is when it is adapted: displacements begin here.
+    rest: Vec<Point>,
     depth: Option<SurfaceDepth>,
+    smoothing: f64,
     scales: Option<MarkerScales>,
+}
+
+/// How an actor's markers are carried over to the avatar's shape.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Adaptation {
+    /// What gives a two-dimensional capture its depth: x and y are measured, z is not looked at, and comes
+    /// back with the displacements.
+    pub depth: Option<SurfaceDepth>,
+    /// Smoothing of the radial basis functions ([`Rbf::smooth`]); 0 meets every marker.
+    pub smoothing: f64,
 }
 
 /// Memory that a frame needs, kept between frames.
@@ -49,11 +62,11 @@ impl FrontEnd {
         neutral: Range<usize>,
         avatar_markers: &[Point],
     ) -> Result<FrontEnd, FrontEndError> {
-        FrontEnd::fit_with(take, columns, poses, neutral, avatar_markers, None)
+        let adaptation = Adaptation::default();
+        FrontEnd::fit_with(take, columns, poses, neutral, avatar_markers, adaptation)
     }
 
-    /// The same for a two-dimensional capture: x and y are measured, z is not looked at; `depth`
-    /// gives it back to the displacements.
+    /// The same with an adaptation of its own.
     ///
     /// # Errors
     /// As [`FrontEnd::fit`].
@@ -63,7 +76,7 @@ impl FrontEnd {
         poses: &[RigidMotion],
         neutral: Range<usize>,
         avatar_markers: &[Point],
-        depth: Option<SurfaceDepth>,
+        adaptation: Adaptation,
     ) -> Result<FrontEnd, FrontEndError> {
         check_columns(take, columns)?;
         let frames = take.len();
@@ -82,7 +95,8 @@ impl FrontEnd {
             })
             .collect::<Result<Vec<Point>, FrontEndError>>()?;
         let reference = head_reference(take, columns);
-        FrontEnd::from_parts(columns.clone(), reference, neutral, avatar_markers.to_vec(), depth)
+        let avatar_markers = avatar_markers.to_vec();
+        FrontEnd::from_parts(columns.clone(), reference, neutral, avatar_markers, adaptation)
     }
 
     /// Take up a stored head reference and neutral: what a segment of a take needs to be solved
@@ -99,12 +113,13 @@ impl FrontEnd {
         neutral: Vec<Point>,
         avatar_markers: Vec<Point>,
     ) -> Result<FrontEnd, FrontEndError> {
-        FrontEnd::from_parts(columns, head_reference, neutral, avatar_markers, None)
+        let adaptation = Adaptation::default();
+        FrontEnd::from_parts(columns, head_reference, neutral, avatar_markers, adaptation)
     }
 
-    /// The same for a two-dimensional capture where there is a `depth`.
+    /// The same with an adaptation of its own.
     ///
-    /// In the image M0 is turned and shifted onto the avatar's markers; each marker then has the
+    /// Where there is a depth, in the image M0 is turned and shifted onto the avatar's markers; each marker then has the
     /// depth of its place on the avatar while the adaptation of shape is computed, as the mask of
     /// 4.3.1 is laid onto the face, and dz follows from the surface.
     ///
@@ -115,7 +130,7 @@ impl FrontEnd {
         head_reference: Vec<Point>,
         neutral: Vec<Point>,
         avatar_markers: Vec<Point>,
-        depth: Option<SurfaceDepth>,
+        Adaptation { depth, smoothing }: Adaptation,
     ) -> Result<FrontEnd, FrontEndError> {
         let p = columns.face.len();
         equal("neutral markers", neutral.len(), p)?;
@@ -141,7 +156,12 @@ impl FrontEnd {
                 (motion, neutral.iter().zip(&avatar_markers).map(lifted).collect())
             }
         };
-        let rbf = Rbf::interpolate(&aligned, &avatar_markers)?;
+        let rbf = Rbf::smooth(&aligned, &avatar_markers, smoothing)?;
+        // A smooth function misses its values: the neutral face is at rest where it goes, not where it should.
+        let rest = match smoothing == 0.0 {
+            true => avatar_markers.clone(),
+            false => aligned.iter().map(|&p| rbf.apply(p)).collect(),
+        };
         Ok(FrontEnd {
             columns,
             head_reference,
@@ -149,7 +169,9 @@ impl FrontEnd {
             avatar_markers,
             avatar_from_actor,
             rbf,
+            rest,
             depth,
+            smoothing,
             scales: None,
         })
     }
@@ -176,6 +198,11 @@ impl FrontEnd {
     /// What gives a two-dimensional capture its depth.
     pub fn depth(&self) -> Option<&SurfaceDepth> {
         self.depth.as_ref()
+    }
+
+    /// How the markers are carried over, to fit another front end in the same way.
+    pub fn adaptation(&self) -> Adaptation {
+        Adaptation { depth: self.depth.clone(), smoothing: self.smoothing }
     }
 
     /// The columns that it was fitted with.
@@ -233,9 +260,9 @@ impl FrontEnd {
         head_poses(take, &self.columns, &self.head_reference, lowpass)
     }
 
-    /// d = RBF(M) - avatar markers of one frame, eq. 5.21, with depth and scale factors where there
-    /// are some: 3P numbers, metres; NaN for a marker that is not seen. Allocates nothing after the
-    /// first call with a scratch.
+    /// d = RBF(M) - avatar markers of one frame, eq. 5.21 (with smoothing RBF(M) - RBF(M0): the neutral face
+    /// is at rest), with depth and scale factors where there are some: 3P numbers, metres; NaN for a marker
+    /// that is not seen. Allocates nothing after the first call with a scratch.
     ///
     /// # Panics
     /// If `frame` or `out` is too short.
@@ -263,7 +290,7 @@ impl FrontEnd {
         let [px, py, pz] = &mut scratch.points;
         let [ox, oy, oz] = &mut scratch.adapted;
         self.rbf.apply_all([px, py, pz], [ox, oy, oz]);
-        for (marker, rest) in self.avatar_markers.iter().enumerate() {
+        for (marker, rest) in self.rest.iter().enumerate() {
             for a in 0..3 {
                 out[3 * marker + a] = scratch.adapted[a][marker] - rest[a];
             }

@@ -15,7 +15,7 @@ use mimique_geometry::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::linear_algebra::cholesky::Cholesky;
-use crate::linear_algebra::dense::{axpy, dot, widest};
+use crate::linear_algebra::dense::{axpy, dot, squared_distance, widest};
 use crate::linear_algebra::exp::exp_all;
 
 /// Hyper-parameters of the kernel, shared by all outputs.
@@ -64,21 +64,7 @@ widest! {
     fn squared_distances(x: &[f64], basis: &[f64], out: &mut [f64]) {
         let width = x.len();
         for (row, out) in basis.chunks_exact(width.max(1)).zip(out.iter_mut()) {
-            let row = &row[..width];
-            let mut lanes = [0.0; 4];
-            let (xs, x_rest) = x.as_chunks::<4>();
-            let (rows, row_rest) = row.as_chunks::<4>();
-            for (a, b) in xs.iter().zip(rows) {
-                for k in 0..4 {
-                    let d = a[k] - b[k];
-                    lanes[k] += d * d;
-                }
-            }
-            let mut sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-            for (a, b) in x_rest.iter().zip(row_rest) {
-                sum += (a - b) * (a - b);
-            }
-            *out = sum;
+            *out = squared_distance(x, row);
         }
     }
 }
@@ -108,6 +94,19 @@ impl ExactProcess {
         let factored = Factored::new(&distances, n, kernel)?;
         let covariance = factored.inverse().iter().map(|x| -x).collect();
         Some(ExactProcess { coefficients: factored.solve_all(outputs, outputs_width), covariance })
+    }
+
+    /// Mean of the outputs and variance of the process (without noise) at `x`; `inputs` and `kernel` are
+    /// those of [`ExactProcess::fit`].
+    ///
+    /// # Panics
+    /// If sizes are not those of the fit.
+    pub fn predict(&self, kernel: &Kernel, inputs: &[f64], x: &[f64], mean: &mut [f64]) -> f64 {
+        let n = self.covariance.len().isqrt();
+        assert_eq!((inputs.len(), self.coefficients.len()), (n * x.len(), n * mean.len()));
+        let mut k = vec![0.0; n];
+        kernel.covariances(x, inputs, &mut k);
+        posterior(kernel, &k, &self.coefficients, &self.covariance, mean)
     }
 }
 

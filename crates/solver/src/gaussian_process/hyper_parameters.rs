@@ -36,6 +36,11 @@ pub fn maximise_likelihood(
         high: logarithms([1e3 * length, 1e3 * signal, 1e2 * signal]),
         fixed: given.map(|value| value.is_some()),
     };
+    if let [Some(length), Some(signal), Some(noise)] = given {
+        let kernel = Kernel { length, signal, noise };
+        let value = evidence.at(&kernel).0;
+        return value.is_finite().then_some((kernel, value));
+    }
     let mut best: Option<(Kernel, f64)> = None;
     for (stretch, noise) in
         [0.2, 0.5, 1.0, 2.0, 5.0].into_iter().flat_map(|l| [(l, 0.2), (l, 0.01)])

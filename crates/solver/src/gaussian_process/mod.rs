@@ -2,5 +2,6 @@
 
 pub(crate) mod exact;
 pub(crate) mod hyper_parameters;
+pub(crate) mod input_scale;
 pub(crate) mod regression;
 pub(crate) mod sparse;

@@ -3,11 +3,11 @@
 //!
 //! Inputs are the displacements d of the marker vertices (as every method gets them, so that actors
 //! and units do not matter), centred and scaled by mean and standard deviation of the training take
-//! (thesis 3.4.3). A coordinate that hardly moves would be scaled up to noise: no scale is below a
-//! tenth of the largest.
+//! (thesis 3.4.3, [`InputScale`]).
 
 use crate::gaussian_process::exact::{ExactProcess, Kernel, posterior};
 use crate::gaussian_process::hyper_parameters::maximise_likelihood;
+use crate::gaussian_process::input_scale::{InputScale, standardise};
 use crate::gaussian_process::sparse::SparseProcess;
 use crate::linear_algebra::cholesky::Cholesky;
 use crate::linear_algebra::dense::{axpy, mul};
@@ -18,8 +18,6 @@ const EVIDENCE_FRAMES: usize = 160;
 pub const LEAST_TRAINING_FRAMES: usize = 30;
 /// Most frames of the exact process: its set-up is cubic.
 pub const MOST_EXACT_FRAMES: usize = 2500;
-/// Least scale of a coordinate against the largest one.
-const LEAST_SCALE: f64 = 0.1;
 /// A frame is far from the training data where more than this part of the variance is left.
 const FAR: f64 = 0.5;
 /// Ridge on the covariance of the inputs (which have variances near 1) that fills lost markers in.
@@ -179,10 +177,9 @@ impl Regression {
         if options.capacity.is_none() && n > MOST_EXACT_FRAMES {
             return Err(TrainingError::TooLong(n));
         }
-        let (centre, scale) = standards(&x, width).ok_or(TrainingError::Still("the markers"))?;
-        for row in x.chunks_exact_mut(width) {
-            standardise(row, &centre, &scale);
-        }
+        let inputs = InputScale::of(&x, width).ok_or(TrainingError::Still("the markers"))?;
+        x.chunks_exact_mut(width).for_each(|row| inputs.apply(row));
+        let InputScale { centre, scale } = inputs;
         let chosen = evenly(n, EVIDENCE_FRAMES);
         let some = |all: &[f64], width: usize| -> Vec<f64> {
             chosen.iter().flat_map(|&f| all[f * width..(f + 1) * width].iter().copied()).collect()
@@ -335,33 +332,6 @@ pub(crate) struct RegressionScratch {
     input: Vec<f64>,
     filled: Vec<f64>,
     covariances: Vec<f64>,
-}
-
-/// Mean and scale of each column; none where nothing moves.
-fn standards(x: &[f64], width: usize) -> Option<(Vec<f64>, Vec<f64>)> {
-    let n = (x.len() / width) as f64;
-    let mut centre = vec![0.0; width];
-    x.chunks_exact(width).for_each(|row| axpy(1.0, row, &mut centre));
-    centre.iter_mut().for_each(|c| *c /= n);
-    let mut scale = vec![0.0; width];
-    for row in x.chunks_exact(width) {
-        for ((s, x), c) in scale.iter_mut().zip(row).zip(&centre) {
-            *s += (x - c) * (x - c);
-        }
-    }
-    scale.iter_mut().for_each(|s| *s = (*s / n).sqrt());
-    let largest = scale.iter().fold(0.0_f64, |m, &s| m.max(s));
-    if !(largest > 0.0) {
-        return None;
-    }
-    scale.iter_mut().for_each(|s| *s = s.max(LEAST_SCALE * largest));
-    Some((centre, scale))
-}
-
-fn standardise(row: &mut [f64], centre: &[f64], scale: &[f64]) {
-    for ((x, c), s) in row.iter_mut().zip(centre).zip(scale) {
-        *x = (*x - c) / s;
-    }
 }
 
 /// At most `most` of 0..n, evenly spaced.

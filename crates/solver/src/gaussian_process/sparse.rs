@@ -23,6 +23,17 @@ use crate::linear_algebra::dense::{axpy, dot};
 /// a smaller one would make Q's condition number that of rounding.
 const NOVELTY: f64 = 1e-6;
 
+/// What became of an example.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Learning {
+    /// The basis tells it: it changed the posterior alone.
+    Projected,
+    /// It is the last basis vector now.
+    Grown,
+    /// It is the last basis vector now, and the one at this place, counted with it, has gone.
+    Exchanged(usize),
+}
+
 /// A posterior that grows example by example, up to a number of basis vectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseProcess {
@@ -89,6 +100,11 @@ impl SparseProcess {
         &self.covariance
     }
 
+    /// Q, m x m.
+    pub fn inverse_gram(&self) -> &[f64] {
+        &self.inverse_gram
+    }
+
     /// Mean of the outputs and variance of the process (without noise) at `x`.
     ///
     /// # Panics
@@ -104,7 +120,7 @@ impl SparseProcess {
     ///
     /// # Panics
     /// If sizes are not those of [`SparseProcess::new`].
-    pub fn learn(&mut self, x: &[f64], y: &[f64]) {
+    pub fn learn(&mut self, x: &[f64], y: &[f64]) -> Learning {
         assert_eq!((x.len(), y.len()), (self.width, self.outputs_width), "sizes as of new");
         let m = self.len();
         let own = self.kernel.signal * self.kernel.signal;
@@ -125,7 +141,7 @@ impl SparseProcess {
             projected[i] = dot(&self.inverse_gram[i * m..(i + 1) * m], &k);
         }
         let novelty = own - dot(&k, &projected);
-        if novelty < NOVELTY * own {
+        let learning = if novelty < NOVELTY * own {
             // The example is projected onto the basis; eta corrects for what that leaves out.
             let eta = 1.0 / (1.0 + novelty.max(0.0) * r);
             for (s, e) in s.iter_mut().zip(&projected) {
@@ -133,6 +149,7 @@ impl SparseProcess {
             }
             q.iter_mut().for_each(|q| *q *= eta);
             self.update(&s, &q, eta * r);
+            Learning::Projected
         } else {
             self.grow(x, novelty, &projected);
             s.push(1.0);
@@ -140,9 +157,13 @@ impl SparseProcess {
             if self.len() > self.capacity {
                 let least = self.least();
                 self.remove(least);
+                Learning::Exchanged(least)
+            } else {
+                Learning::Grown
             }
-        }
+        };
         self.scratch = [k, s, projected, q];
+        learning
     }
 
     /// alpha += s q, C += r s s^T.

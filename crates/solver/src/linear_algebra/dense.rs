@@ -6,25 +6,27 @@
 
 /// Compile a function twice on x86-64, for the vectors that every processor has and for AVX's of
 /// twice the width, and choose at run time. Without the feature `fma` the bits are the same.
-/// `widest! { [FEATURES] fn ... }` names the features itself, the widest first.
+/// `widest! { [FEATURES] fn ... }` names the features itself, the widest first. Inside, loops are to be
+/// written out: a closure would be a call from code that is compiled for wider vectors.
+#[macro_export]
 macro_rules! widest {
     ([$($feature:tt),*] $(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*)
         $(-> $out:ty)? $body:block) => {
         $(#[$doc])*
         #[inline]
         #[allow(unsafe_code)]
-        pub(crate) fn $name($($arg: $type),*) $(-> $out)? {
+        pub fn $name($($arg: $type),*) $(-> $out)? {
             #[inline(always)]
             fn any($($arg: $type),*) $(-> $out)? $body
-            widest!(@choose any [$($feature),*] ($($arg: $type),*) ($($arg),*) ($($out)?));
+            $crate::widest!(@choose any [$($feature),*] ($($arg: $type),*) ($($arg),*) ($($out)?));
             any($($arg),*)
         }
     };
     ($(#[$doc:meta])* fn $name:ident($($arg:ident: $type:ty),*) $(-> $out:ty)? $body:block) => {
-        widest! { ["avx"] $(#[$doc])* fn $name($($arg: $type),*) $(-> $out)? $body }
+        $crate::widest! { ["avx"] $(#[$doc])* fn $name($($arg: $type),*) $(-> $out)? $body }
     };
     (@choose $any:ident [$($feature:tt),*] $taken:tt $given:tt $out:tt) => {
-        $(widest!(@one $any $feature $taken $given $out);)*
+        $($crate::widest!(@one $any $feature $taken $given $out);)*
     };
     (@one $any:ident $feature:tt ($($arg:ident: $type:ty),*) $given:tt ($($out:ty)?)) => {
         #[cfg(target_arch = "x86_64")]
@@ -101,6 +103,27 @@ pub(crate) fn dot4(rows: [&[f64]; 4], x: &[f64]) -> [f64; 4] {
         }
     }
     sums
+}
+
+/// Sum of (x_i - y_i)^2 in the order of [`dot`].
+#[inline(always)]
+pub(crate) fn squared_distance(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len();
+    let y = &y[..n];
+    let mut lanes = [0.0; 4];
+    let (xs, x_rest) = x.as_chunks::<4>();
+    let (ys, y_rest) = y.as_chunks::<4>();
+    for (a, b) in xs.iter().zip(ys) {
+        for k in 0..4 {
+            let d = a[k] - b[k];
+            lanes[k] += d * d;
+        }
+    }
+    let mut sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    for (a, b) in x_rest.iter().zip(y_rest) {
+        sum += (a - b) * (a - b);
+    }
+    sum
 }
 
 /// y += a x.

@@ -3,3 +3,4 @@
 pub(crate) mod cholesky;
 pub(crate) mod dense;
 pub(crate) mod exp;
+pub(crate) mod small;

@@ -79,9 +79,21 @@ impl SkinMesh {
     /// The point of the surface nearest to `point` (metres), with its barycentric coordinates; none
     /// for a mesh without triangles. Looks at every triangle.
     pub fn nearest_on_surface(&self, point: Point) -> Option<SurfacePoint> {
+        self.nearest_on_triangles(point, 0..self.triangles.len())
+    }
+
+    /// The same among some triangles, by their numbers.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn nearest_on_triangles(
+        &self,
+        point: Point,
+        triangles: impl IntoIterator<Item = usize>,
+    ) -> Option<SurfacePoint> {
         let mut best: Option<SurfacePoint> = None;
-        for t in &self.triangles {
-            let corners = t.map(|v| v as usize);
+        for triangle in triangles {
+            let corners = self.triangles[triangle].map(|v| v as usize);
             let triangle = corners.map(|v| self.positions[v]);
             let weights = nearest_in_triangle(point, triangle);
             let position = barycentric(triangle, weights);

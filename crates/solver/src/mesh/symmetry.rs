@@ -129,6 +129,16 @@ impl MirrorPlane {
         p - self.normal * (2.0 * self.distance(p))
     }
 
+    /// For each place the number of the one nearest to its mirror image, and how far that is from it,
+    /// metres. Empty for no places.
+    pub fn partners(&self, positions: &[Point]) -> Vec<(usize, f64)> {
+        if positions.is_empty() {
+            return Vec::new();
+        }
+        let grid = Grid::new(positions);
+        positions.iter().map(|&p| grid.nearest_number(self.mirror(p))).collect()
+    }
+
     /// How much of a shape at `p` belongs to the left half: 0 on the right, 1/2 on the plane, 1 on
     /// the left, 3t^2 - 2t^3 over the strip of half-width `fall_off` (metres) between.
     pub fn left_share(&self, p: Point, fall_off: f64) -> f64 {
@@ -200,11 +210,16 @@ impl<'a> Grid<'a> {
         Grid { points, size, cubes }
     }
 
-    /// The nearest point: rings of cubes until no nearer one can come; after some empty rings all
-    /// points are looked at.
+    /// The nearest point.
     fn nearest(&self, p: Point) -> Point {
+        self.points[self.nearest_number(p).0]
+    }
+
+    /// The number of the nearest point and its distance: rings of cubes until no nearer one can come;
+    /// after some empty rings all points are looked at.
+    fn nearest_number(&self, p: Point) -> (usize, f64) {
         let home = cube_of(p, self.size);
-        let mut best = (f64::INFINITY, self.points[0]);
+        let mut best = (0, f64::INFINITY);
         for ring in 0..6_i64 {
             for dx in -ring..=ring {
                 for dy in -ring..=ring {
@@ -215,24 +230,24 @@ impl<'a> Grid<'a> {
                         let cube = [home[0] + dx, home[1] + dy, home[2] + dz];
                         for &i in self.cubes.get(&cube).into_iter().flatten() {
                             let distance = (self.points[i] - p).length();
-                            if distance < best.0 {
-                                best = (distance, self.points[i]);
+                            if distance < best.1 {
+                                best = (i, distance);
                             }
                         }
                     }
                 }
             }
-            if best.0 <= ring as f64 * self.size {
-                return best.1;
+            if best.1 <= ring as f64 * self.size {
+                return best;
             }
         }
-        for q in self.points {
+        for (i, q) in self.points.iter().enumerate() {
             let distance = (*q - p).length();
-            if distance < best.0 {
-                best = (distance, *q);
+            if distance < best.1 {
+                best = (i, distance);
             }
         }
-        best.1
+        best
     }
 }
 

@@ -14,7 +14,7 @@ pub(crate) const KOUADIO: Definition = Definition {
         Group::Bounds,
         Group::Shapes,
         Group::Markers,
-        Group::Head,
+        Group::FrontEnd,
         Group::Frames,
     ],
     defaults: Defaults::USUAL,

@@ -3,14 +3,14 @@
 
 use super::definition::{Defaults, Definition, Needs};
 use crate::fit::problem::FitError;
-use crate::fit::setup::{Engine, NOT_NEGATIVE, Setup, UNIT_INTERVAL};
+use crate::fit::setup::{Engine, NOT_NEGATIVE, Quadratic, Setup, UNIT_INTERVAL};
 use crate::parameters::group::Group;
 
 /// Weights within 0 and 1: the plain baseline.
 pub(crate) const BOX: Definition = Definition {
     summary: "squared marker error, weights within 0 and 1",
     needs: Needs::Shapes,
-    uses: &[Group::Bounds, Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Bounds, Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| within(setup, setup.bounds(UNIT_INTERVAL)),
 };
@@ -19,7 +19,7 @@ pub(crate) const BOX: Definition = Definition {
 pub(crate) const NNLS: Definition = Definition {
     summary: "squared marker error, weights of 0 or more",
     needs: Needs::Shapes,
-    uses: &[Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| within(setup, setup.bounds(NOT_NEGATIVE)),
 };
@@ -28,7 +28,7 @@ pub(crate) const NNLS: Definition = Definition {
 pub(crate) const PSEUDO_INVERSE: Definition = Definition {
     summary: "squared marker error, weights without bounds",
     needs: Needs::Shapes,
-    uses: &[Group::Shapes, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::Shapes, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |_| Ok(Engine::PseudoInverse),
 };
@@ -36,5 +36,5 @@ pub(crate) const PSEUDO_INVERSE: Definition = Definition {
 /// The scale of the data changes no minimiser; with it the matrix is near 1 in any unit.
 fn within(setup: &Setup<'_>, bounds: Vec<[f64; 2]>) -> Result<Engine, FitError> {
     let prior = vec![0.0; bounds.len() * bounds.len()];
-    Ok(Engine::Quadratic { data_weight: setup.data_weight(), prior, bounds })
+    Ok(Engine::Quadratic(Quadratic::new(setup.data_weight(), prior, bounds)))
 }

@@ -14,6 +14,11 @@ macro_rules! every_method {
             BoundsOnly "bounds-only" lsts_soft::BOUNDS_ONLY
             ThinShellOnly "thin-shell-only" lsts::THIN_SHELL_ONLY
             Ridge "ridge" ridge::RIDGE
+            A2f "a2f" a2f::A2F
+            A2fBalanced "a2f-balanced" a2f::A2F_BALANCED
+            Sparse "sparse" sparse::SPARSE
+            SmoothSparse "smooth-sparse" smooth_sparse::SMOOTH_SPARSE
+            Greedy "greedy" greedy::GREEDY
             Box "box" least_squares::BOX
             Nnls "nnls" least_squares::NNLS
             PseudoInverse "pseudo-inverse" least_squares::PSEUDO_INVERSE

@@ -14,7 +14,7 @@ const USES: &[Group] = &[
     Group::Bounds,
     Group::Shapes,
     Group::Markers,
-    Group::Head,
+    Group::FrontEnd,
     Group::Frames,
 ];
 

@@ -3,7 +3,7 @@
 
 use super::definition::{Defaults, Definition, Needs};
 use crate::fit::problem::FitError;
-use crate::fit::setup::{Engine, FREE, Setup, UNIT_INTERVAL};
+use crate::fit::setup::{Engine, FREE, Quadratic, Setup, UNIT_INTERVAL};
 use crate::parameters::group::Group;
 
 /// Weights within 0 and 1.
@@ -17,7 +17,7 @@ pub(crate) const LSTS: Definition = Definition {
         Group::Bounds,
         Group::Shapes,
         Group::Markers,
-        Group::Head,
+        Group::FrontEnd,
         Group::Frames,
     ],
     defaults: Defaults { alpha: 0.3, ..Defaults::USUAL },
@@ -34,7 +34,7 @@ pub(crate) const THIN_SHELL_ONLY: Definition = Definition {
         Group::ThinShell,
         Group::Shapes,
         Group::Markers,
-        Group::Head,
+        Group::FrontEnd,
         Group::Frames,
     ],
     defaults: Defaults::USUAL,
@@ -44,5 +44,5 @@ pub(crate) const THIN_SHELL_ONLY: Definition = Definition {
 fn within(setup: &Setup<'_>, bounds: Vec<[f64; 2]>) -> Result<Engine, FitError> {
     let shell_weight = setup.spec.kappa() * setup.spec.alpha() / setup.shell_scale;
     let prior = setup.shell.iter().map(|h| shell_weight * h).collect();
-    Ok(Engine::Quadratic { data_weight: setup.data_weight(), prior, bounds })
+    Ok(Engine::Quadratic(Quadratic::new(setup.data_weight(), prior, bounds)))
 }

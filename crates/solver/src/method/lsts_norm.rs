@@ -13,7 +13,7 @@ const USES: &[Group] = &[
     Group::Bounds,
     Group::Shapes,
     Group::Markers,
-    Group::Head,
+    Group::FrontEnd,
     Group::Frames,
 ];
 

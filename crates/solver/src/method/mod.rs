@@ -6,6 +6,8 @@ mod list;
 pub(crate) mod names;
 mod registry;
 
+mod a2f;
+pub(crate) mod greedy;
 mod kouadio;
 mod least_squares;
 mod literal;
@@ -15,4 +17,7 @@ mod lsts_soft;
 mod recorded;
 mod regression;
 mod ridge;
+mod shape_pairs;
+mod smooth_sparse;
+mod sparse;
 mod thin_shell_surface;

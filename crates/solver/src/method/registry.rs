@@ -36,6 +36,12 @@ impl Method {
         self.definition().uses.contains(&group)
     }
 
+    /// Whether the weights of a frame depend on other frames of the take: on the one before, or on those
+    /// of a window.
+    pub fn uses_other_frames(self) -> bool {
+        self.uses(Group::Audio2Face) || self.uses(Group::Smoothness)
+    }
+
     /// The keys of the parameters that it uses, in the order of the table.
     pub fn parameters(self) -> Vec<&'static str> {
         let rows = PARAMETERS.iter().filter(|row| self.uses(row.about.group));

@@ -10,7 +10,7 @@ use crate::parameters::group::Group;
 pub(crate) const REGRESSION: Definition = Definition {
     summary: "nothing: a Gaussian process learnt from a range-of-motion take with known weights",
     needs: Needs::Training,
-    uses: &[Group::GaussianProcess, Group::Bounds, Group::Shapes, Group::Head, Group::Frames],
+    uses: &[Group::GaussianProcess, Group::Bounds, Group::Shapes, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| {
         let model = setup.parts.regression.clone().ok_or(FitError::NotTrained)?;

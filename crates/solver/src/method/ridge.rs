@@ -7,7 +7,7 @@
 
 use super::definition::{Defaults, Definition, Needs};
 use crate::fit::problem::FitError;
-use crate::fit::setup::{Engine, Setup, UNIT_INTERVAL};
+use crate::fit::setup::{Engine, Quadratic, Setup, UNIT_INTERVAL};
 use crate::parameters::group::Group;
 
 /// Weights within 0 and 1, drawn to 0.
@@ -20,7 +20,7 @@ pub(crate) const RIDGE: Definition = Definition {
         Group::Bounds,
         Group::Shapes,
         Group::Markers,
-        Group::Head,
+        Group::FrontEnd,
         Group::Frames,
     ],
     defaults: Defaults { alpha: 0.3, ..Defaults::USUAL },
@@ -35,5 +35,5 @@ fn ridge(setup: &Setup<'_>) -> Result<Engine, FitError> {
     for x in prior.iter_mut().step_by(n + 1) {
         *x = setup.spec.kappa() * setup.spec.alpha();
     }
-    Ok(Engine::Quadratic { data_weight: setup.data_weight(), prior, bounds })
+    Ok(Engine::Quadratic(Quadratic::new(setup.data_weight(), prior, bounds)))
 }

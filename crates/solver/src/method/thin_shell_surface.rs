@@ -12,7 +12,7 @@ use crate::surface::frame::{METRES_PER_WEIGHT, SurfaceProblem};
 pub(crate) const THIN_SHELL_SURFACE: Definition = Definition {
     summary: "thin shell of the mesh with its markers where they are seen; moves vertices",
     needs: Needs::Surface,
-    uses: &[Group::ThinShell, Group::Surface, Group::Markers, Group::Head, Group::Frames],
+    uses: &[Group::ThinShell, Group::Surface, Group::Markers, Group::FrontEnd, Group::Frames],
     defaults: Defaults::USUAL,
     engine: |setup| {
         if !is_surface(setup.parts) {

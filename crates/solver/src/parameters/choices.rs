@@ -66,8 +66,23 @@ choice! {
         /// those that the bounds name.
         #[default]
         Rest = "rest",
-        /// The markers, as every other shape.
+        /// The markers, as every other shape: each eye by itself, also outwards from the other.
         Markers = "markers",
+        /// The markers, both eyes brought together to one gaze: the mean of their azimuths and elevations,
+        /// their vergence not below 0.
+        Together = "together",
+    }
+}
+
+choice! {
+    /// What becomes of shapes that the markers do not tell: noise of 1 mm moves their weights from 0 to 1 and
+    /// beyond, even if all other weights are known.
+    Untold {
+        /// They stay at 0, but for those that the bounds name.
+        #[default]
+        Hold = "hold",
+        /// They are solved as all others: what they get is the method's prior.
+        Solve = "solve",
     }
 }
 

@@ -11,6 +11,12 @@ pub enum Group {
     BoundsWeight,
     /// The smoothing of norms.
     Norms,
+    /// The sum of the weights beside the data.
+    Sparsity,
+    /// The second differences of the weights in time.
+    Smoothness,
+    /// The strengths of Audio2Face-3D.
+    Audio2Face,
     /// The unit in which an equation is taken literally.
     LiteralUnit,
     /// The thin shell itself.
@@ -29,8 +35,8 @@ pub enum Group {
     Shapes,
     /// The markers.
     Markers,
-    /// The head that the face sits on.
-    Head,
+    /// What happens before the solve: the head's pose, and the adaptation of shape.
+    FrontEnd,
     /// The frames of a take.
     Frames,
 }
@@ -43,14 +49,17 @@ impl Group {
             | Group::PriorWeight
             | Group::BoundsWeight
             | Group::Norms
+            | Group::Sparsity
+            | Group::Smoothness
             | Group::LiteralUnit => "Energies",
+            Group::Audio2Face => "Strengths (a2f)",
             Group::ThinShell => "Thin shell",
             Group::SoftBounds | Group::Bounds => "Bounds",
             Group::Association => "Association of markers (kouadio)",
             Group::Surface => "Surface (thin-shell-surface)",
             Group::GaussianProcess => "Gaussian process (regression)",
             Group::Shapes | Group::Markers => "Shapes and markers",
-            Group::Head => "Head",
+            Group::FrontEnd => "Front end",
             Group::Frames => "Frames",
         }
     }

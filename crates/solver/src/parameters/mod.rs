@@ -9,6 +9,7 @@ pub(crate) mod choices;
 pub(crate) mod group;
 pub(crate) mod json;
 pub(crate) mod kind;
+mod patterns;
 pub(crate) mod problem;
 pub(crate) mod schema;
 pub(crate) mod table;

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::kouadio::associated_rows::VertexAssociation;
 use crate::method::names::Method;
 use crate::parameters::choices::{
-    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved,
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
 };
 use crate::parameters::group::Group;
 use crate::parameters::kind::{Kind, NamesOf, Quantity, Range};
@@ -211,6 +211,36 @@ parameters! {
     bounds_weight: Option<f64> as "boundsWeight" = |_| 1e-3,
     { group: Group::BoundsWeight, label: "Weight of the bounds", range: Range::above(0.0), }
 
+    /// Weight of the sum of the weights against the data: the more, the fewer shapes are used.
+    lambda: Option<f64> as "lambda" = |_| 0.002,
+    { group: Group::Sparsity, label: "λ, sum of the weights", range: Range::at_least(0.0), step: Some(0.001), }
+
+    /// Weight of the squared second differences of the weights from frame to frame.
+    mu: Option<f64> as "mu" = |_| 0.1,
+    {
+        group: Group::Smoothness, label: "μ, second differences", range: Range::at_least(0.0),
+        zero: Some("every frame by itself"), step: Some(0.05),
+    }
+
+    /// Strength of the squared sum of the weights (L1 of Audio2Face-3D, which squares it).
+    l1: Option<f64> as "l1" = |_| 1.0,
+    { group: Group::Audio2Face, label: "L1, squared sum of the weights", range: Range::at_least(0.0), step: Some(0.1), }
+
+    /// Strength of the squared weights (L2 of Audio2Face-3D).
+    l2: Option<f64> as "l2" = |_| 3.5,
+    { group: Group::Audio2Face, label: "L2, squared weights", range: Range::at_least(0.0), step: Some(0.1), }
+
+    /// Strength of the squared differences between the two sides of a movement.
+    symmetry: Option<f64> as "symmetry" = |_| 100.0,
+    { group: Group::Audio2Face, label: "Y, symmetry", range: Range::at_least(0.0), step: Some(5.0), }
+
+    /// Strength of the temporal term, towards the weights of the frame before.
+    temporal: Option<f64> as "temporal" = |_| 0.15,
+    {
+        group: Group::Audio2Face, label: "T, last frame", range: Range::at_least(0.0),
+        zero: Some("every frame by itself"), step: Some(0.05),
+    }
+
     /// Unit in which the equation of the paper is taken literally.
     unit: Option<Unit> as "unit" = |_| Unit::default(),
     { group: Group::LiteralUnit, label: "Unit", }
@@ -279,6 +309,11 @@ parameters! {
     gaze: Option<Gaze> as "gaze" = |_| Gaze::default(),
     { group: Group::Shapes, label: "Gaze", }
 
+    /// What becomes of shapes that the markers do not tell ([`crate::shape_sensitivities`]): they stay at 0, but
+    /// for those that the bounds name, or are solved as all others.
+    untold: Option<Untold> as "untold" = |_| Untold::default(),
+    { group: Group::Shapes, label: "Shapes that no marker tells", }
+
     /// Factor of the solved weights, within their bounds: above 1 exaggerates, below 1 attenuates.
     gain: Option<f64> as "gain" = |_| 1.0,
     {
@@ -296,9 +331,18 @@ parameters! {
     /// Cut-off of the zero-phase low-pass of the head's pose.
     head_lowpass_hz: Option<f64> as "headLowpassHz",
     {
-        group: Group::Head, label: "Head low-pass", range: Range::at_least(0.0),
+        group: Group::FrontEnd, label: "Head low-pass", range: Range::at_least(0.0),
         quantity: Quantity::Hertz, zero: Some("no filter"), zero_word: Some("none"),
         step: Some(0.1), option: Some("head-lowpass"), found_by: Some("10 from 25 frames per second on, else none"),
+    }
+
+    /// Smoothing of the adaptation of shape (eq. 5.18), on the diagonal of its system, for neutral markers
+    /// centred and scaled to a root mean square radius of 1. Markers that sit 1 to 2 mm beside their
+    /// places want 0.1.
+    rbf_smoothing: Option<f64> as "rbfSmoothing" = |_| 0.0,
+    {
+        group: Group::FrontEnd, label: "Smoothing of the adaptation", range: Range::between(0.0, 100.0),
+        zero: Some("every marker is met, as in the thesis"), step: Some(0.05),
     }
 
     /// What becomes of a take with frames that are not solved: it is refused, or their weights are

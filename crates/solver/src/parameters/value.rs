@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use crate::parameters::choices::{
-    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved,
+    Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
 };
 use crate::parameters::kind::{Kind, Range};
 use crate::parameters::problem::SpecFault;
@@ -151,7 +151,7 @@ macro_rules! words {
     )+};
 }
 
-words! { Association Gaze Hold Inference LaplacianKind Unit Unsolved }
+words! { Association Gaze Hold Inference LaplacianKind Unit Unsolved Untold }
 
 impl<T: Scalar> Stored for Option<T> {
     const KIND: Kind = T::KIND;

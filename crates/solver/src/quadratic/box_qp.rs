@@ -76,21 +76,14 @@ impl BoxState {
         }
         self.gradient.resize(n, 0.0);
         let steepest = (0..n).fold(0.0_f64, |s, i| s.max(q[i * n + i]));
-        let mut fewest = usize::MAX;
-        let mut patience = PATIENCE;
+        let mut exchange = Exchange::default();
         let limit = 20 + 10 * n as u32;
         let mut iterations = 0;
         loop {
             iterations += 1;
             self.minimise_free(q, b, bounds, c);
-            let mut violations = 0;
-            let mut last = 0;
-            for i in 0..n {
-                if violated(self.places[i], c[i], self.gradient[i], bounds[i], steepest) {
-                    violations += 1;
-                    last = i;
-                }
-            }
+            let places = &mut self.places;
+            let violations = exchange.violations(places, c, &self.gradient, bounds, steepest);
             if violations == 0 || iterations == limit {
                 for i in 0..n {
                     c[i] = c[i].clamp(bounds[i][0], bounds[i][1]);
@@ -100,26 +93,7 @@ impl BoxState {
                 let finite = c.iter().chain(&self.gradient).all(|x| x.is_finite());
                 return Outcome { iterations, kkt_error, converged: violations == 0 && finite };
             }
-            let block = if violations < fewest {
-                fewest = violations;
-                patience = PATIENCE;
-                true
-            } else if patience > 0 {
-                patience -= 1;
-                true
-            } else {
-                false
-            };
-            for i in 0..n {
-                let (x, g) = (c[i], self.gradient[i]);
-                if (block || i == last) && violated(self.places[i], x, g, bounds[i], steepest) {
-                    self.places[i] = match self.places[i] {
-                        Place::Free if x < bounds[i][0] => Place::Lower,
-                        Place::Free => Place::Upper,
-                        _ => Place::Free,
-                    };
-                }
-            }
+            exchange.make(places, c, &self.gradient, bounds, steepest);
         }
     }
 
@@ -157,6 +131,73 @@ impl BoxState {
         }
         for i in 0..n {
             self.gradient[i] = dot(&q[i * n..(i + 1) * n], c) - b[i];
+        }
+    }
+}
+
+/// Which guesses are exchanged: all that are wrong while that brings progress, then one at a time.
+#[derive(Debug)]
+pub(crate) struct Exchange {
+    fewest: usize,
+    patience: u32,
+    violations: usize,
+    last: usize,
+}
+
+impl Default for Exchange {
+    fn default() -> Exchange {
+        Exchange { fewest: usize::MAX, patience: PATIENCE, violations: 0, last: 0 }
+    }
+}
+
+impl Exchange {
+    /// How many guesses are wrong.
+    pub(crate) fn violations(
+        &mut self,
+        places: &[Place],
+        c: &[f64],
+        gradient: &[f64],
+        bounds: &[[f64; 2]],
+        steepest: f64,
+    ) -> usize {
+        self.violations = 0;
+        for i in 0..c.len() {
+            if violated(places[i], c[i], gradient[i], bounds[i], steepest) {
+                self.violations += 1;
+                self.last = i;
+            }
+        }
+        self.violations
+    }
+
+    /// Guess anew, from what [`Exchange::violations`] found.
+    pub(crate) fn make(
+        &mut self,
+        places: &mut [Place],
+        c: &[f64],
+        gradient: &[f64],
+        bounds: &[[f64; 2]],
+        steepest: f64,
+    ) {
+        let block = if self.violations < self.fewest {
+            self.fewest = self.violations;
+            self.patience = PATIENCE;
+            true
+        } else if self.patience > 0 {
+            self.patience -= 1;
+            true
+        } else {
+            false
+        };
+        for i in 0..c.len() {
+            let (x, g) = (c[i], gradient[i]);
+            if (block || i == self.last) && violated(places[i], x, g, bounds[i], steepest) {
+                places[i] = match places[i] {
+                    Place::Free if x < bounds[i][0] => Place::Lower,
+                    Place::Free => Place::Upper,
+                    _ => Place::Free,
+                };
+            }
         }
     }
 }

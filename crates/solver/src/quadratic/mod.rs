@@ -2,3 +2,4 @@
 
 pub(crate) mod box_qp;
 pub(crate) mod least_norm;
+pub(crate) mod pentadiagonal;

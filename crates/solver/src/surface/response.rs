@@ -67,8 +67,10 @@ pub enum SurfaceError {
     Memory(usize),
 }
 
+/// The place among the unknowns of a vertex that is marked.
 const MARKER: usize = usize::MAX - 1;
-const HELD: usize = usize::MAX;
+/// The place among the unknowns of a vertex that rests.
+pub(crate) const HELD: usize = usize::MAX;
 
 impl SurfaceResponse {
     /// The response of a welded mesh to markers at `markers` (vertices, each once), with the
@@ -205,7 +207,12 @@ pub fn surface_shape_names<'l>(labels: impl Iterator<Item = &'l str>) -> Vec<Str
 }
 
 /// K = -k_s L* + k_b L* M^-1 L* of eq. 2.16, a vertex and its two rings in each row.
-fn stiffness_rows(edges: &Laplacian, masses: &[f64], k_s: f64, k_b: f64) -> SymmetricRows {
+pub(crate) fn stiffness_rows(
+    edges: &Laplacian,
+    masses: &[f64],
+    k_s: f64,
+    k_b: f64,
+) -> SymmetricRows {
     let count = edges.len();
     let own: Vec<f64> = (0..count).map(|i| edges.row(i).fold(0.0, |sum, (_, w)| sum - w)).collect();
     let row = |i: usize| std::iter::once((i, own[i])).chain(edges.row(i));
@@ -244,8 +251,8 @@ fn stiffness_rows(edges: &Laplacian, masses: &[f64], k_s: f64, k_b: f64) -> Symm
     out
 }
 
-/// Which vertices hang together with a marker.
-fn reached(edges: &Laplacian, markers: &[usize]) -> Vec<bool> {
+/// Which vertices hang together with one of `markers`.
+pub(crate) fn reached(edges: &Laplacian, markers: &[usize]) -> Vec<bool> {
     let mut reached = vec![false; edges.len()];
     let mut next: Vec<usize> = markers.to_vec();
     markers.iter().for_each(|&v| reached[v] = true);
@@ -261,7 +268,7 @@ fn reached(edges: &Laplacian, markers: &[usize]) -> Vec<bool> {
 }
 
 /// a of eq. 2.17: the rows and columns of the free vertices.
-fn restricted(k: &SymmetricRows, place: &[usize], free: &[usize]) -> SymmetricRows {
+pub(crate) fn restricted(k: &SymmetricRows, place: &[usize], free: &[usize]) -> SymmetricRows {
     let mut out = SymmetricRows { starts: vec![0], ..SymmetricRows::default() };
     for &v in free {
         // Free vertices are numbered in ascending order, and so are the columns.

@@ -27,19 +27,41 @@ def cubed(a, b):
     return mp.sqrt(sum((mp.mpf(float(x)) - mp.mpf(float(y))) ** 2 for x, y in zip(a, b))) ** 3
 
 
-system, right = mp.matrix(n + 4, n + 4), mp.matrix(n + 4, 3)
-for i in range(n):
-    for j in range(n):
-        system[i, j] = cubed(actor[i], actor[j])
-    for k, x in enumerate([*actor[i], 1.0]):
-        system[i, n + k] = system[n + k, i] = mp.mpf(float(x))
-    for k in range(3):
-        right[i, k] = mp.mpf(float(avatar[i][k]))
-columns = [mp.lu_solve(system, right[:, k]) for k in range(3)]
-basis = [[cubed(p, c) for c in actor] + [mp.mpf(float(x)) for x in [*p, 1.0]] for p in points]
-exact = [[float(sum(u * b for u, b in zip(column, row))) for column in columns] for row in basis]
+def by_forty_digits(smoothing):
+    system, right = mp.matrix(n + 4, n + 4), mp.matrix(n + 4, 3)
+    for i in range(n):
+        for j in range(n):
+            system[i, j] = cubed(actor[i], actor[j])
+        system[i, i] += smoothing
+        for k, x in enumerate([*actor[i], 1.0]):
+            system[i, n + k] = system[n + k, i] = mp.mpf(float(x))
+        for k in range(3):
+            right[i, k] = mp.mpf(float(avatar[i][k]))
+    columns = [mp.lu_solve(system, right[:, k]) for k in range(3)]
+    basis = [[cubed(p, c) for c in actor] + [mp.mpf(float(x)) for x in [*p, 1.0]] for p in points]
+    rows = [[float(sum(u * b for u, b in zip(column, row))) for column in columns] for row in basis]
+    return np.array(rows)
 
+
+exact = by_forty_digits(0)
 print("SciPy against exact", np.abs(scipy - exact).max(), "mm")
-out = {"actor": actor, "avatar": avatar, "points": points, "scipy": scipy, "exact": np.array(exact)}
+
+# A smoothing of 0.1 for points that are centred and scaled to a root mean square radius of 1.
+middle = actor.mean(axis=0)
+radius = np.sqrt(((actor - middle) ** 2).sum(axis=1).mean())
+smooth_scipy = RBFInterpolator(
+    (actor - middle) / radius, avatar, kernel="cubic", degree=1, smoothing=0.1
+)((points - middle) / radius)
+smooth = by_forty_digits(mp.mpf(1) / 10 * mp.mpf(float(radius)) ** 3)
+print("smoothed", np.abs(smooth_scipy - smooth).max(), "mm, moves by", np.abs(smooth - exact).max())
+out = {
+    "actor": actor,
+    "avatar": avatar,
+    "points": points,
+    "scipy": scipy,
+    "exact": exact,
+    "smooth_scipy": smooth_scipy,
+    "smooth": smooth,
+}
 text = json.dumps({key: value.tolist() for key, value in out.items()})
 pathlib.Path(__file__).with_suffix(".json").write_text(text + "\n")

@@ -162,3 +162,53 @@ fn shadow_edge_spreads_over_coarse_triangles() {
     let (first, last) = (8 * (columns + 1), 8 * (columns + 1) + columns);
     assert_eq!(surfaces[first], surfaces[last], "the seam shows");
 }
+
+/// A half float, IEEE 754 binary16.
+fn half(bits: u16) -> f32 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff) / 1024.0);
+    let size = match exponent {
+        0 => fraction * 2_f32.powi(-14),
+        _ => (1.0 + fraction) * 2_f32.powi(exponent - 15),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+#[test]
+fn strains_are_those_of_the_planted_stretch() {
+    let name = "strains_are_those_of_the_planted_stretch";
+    let stage = match Offscreen::new(true) {
+        Ok(stage) => stage,
+        Err(error) => return mimique_test_support::skip(name, &error.to_string()),
+    };
+    let mut avatar = planted();
+    // In place of the lift: pressed together along y by a fifth.
+    let skin = &mut avatar.meshes[0];
+    skin.shapes[1] = SparseShape {
+        vertices: (0..skin.positions.len() as u32).collect(),
+        deltas: skin.positions.iter().map(|p| [0.0, -0.2 * p[1], 0.0]).collect(),
+    };
+    let renderer = stage.renderer([16, 16], Look::STIMULUS);
+    let head = renderer.load(&avatar).expect("the avatar loads");
+    let strains = |weights: [f32; 3]| -> Vec<Vec3> {
+        stage.picture(&renderer, &head, View::FRONT, &weights).expect("a picture");
+        let bytes = stage.read(head.strains.texture()).expect("a table");
+        let halves: &[[u16; 4]] = bytemuck::cast_slice(&bytes);
+        halves.iter().map(|t| Vec3::new(half(t[0]), half(t[1]), half(t[2]))).collect()
+    };
+    let columns = 2 * ROWS;
+    let rest = strains([0.0; 3]);
+    let (grown, pressed) = (strains([1.0, 0.0, 0.0]), strains([0.0, 1.0, 0.0]));
+    for i in 1..ROWS {
+        for v in (0..columns).map(|j| i * (columns + 1) + j) {
+            assert!(rest[v].abs().max_element() < 1e-3, "vertex {v} at rest: {}", rest[v]);
+            // Grown by a tenth in all directions: (1.1^2 - 1) / 2 along each, nothing between them.
+            let off = grown[v].distance(Vec3::new(0.105, 0.105, 0.0));
+            assert!(off < 1e-3, "vertex {v}, grown: {}", grown[v]);
+        }
+    }
+    // On the equator upwards is y: (0.8^2 - 1) / 2, and nothing across.
+    for v in (0..columns).map(|j| ROWS / 2 * (columns + 1) + j) {
+        let off = pressed[v].distance(Vec3::new(0.0, -0.18, 0.0));
+        assert!(off < 5e-3, "vertex {v}, pressed: {}", pressed[v]);
+    }
+}

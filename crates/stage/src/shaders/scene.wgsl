@@ -17,6 +17,7 @@ struct Scene {
     skin: vec4f,
     brows: vec4f,
     light: vec4f,
+    body: vec4f,
     gaze: array<Gaze, 16>,
 }
 
@@ -35,4 +36,12 @@ fn list_texel(index: u32) -> vec2u {
 fn cover(index: u32) -> vec4f {
     let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
     return vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
+}
+
+// Directions on the skin at a normal: across the face towards the person's left, and upwards.
+fn skin_frame(normal: vec3f) -> mat2x3f {
+    let across = vec3f(normal.z, 0.0, -normal.x);
+    // 1e-4: on the crown no direction is across.
+    let left = across / max(length(across), 1e-4);
+    return mat2x3f(left, cross(normal, left));
 }

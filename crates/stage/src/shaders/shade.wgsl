@@ -1,9 +1,10 @@
-// Steps 2 and 5: the head seen by the key light (depth only), and the picture.
+// Steps 2 and 6: the head seen by the key light (depth only), and the picture.
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var positions: texture_2d<f32>;
 @group(0) @binding(2) var surfaces: texture_2d<f32>;
 @group(0) @binding(3) var neutral: texture_2d<f32>;
 @group(0) @binding(4) var occlusions: texture_2d<f32>;
+@group(0) @binding(5) var strains: texture_2d<f32>;
 // The surface's picture; white where it has none.
 @group(1) @binding(0) var picture: texture_2d<f32>;
 @group(1) @binding(1) var picture_sampler: sampler;
@@ -42,13 +43,15 @@ struct Point {
     @location(0) position: vec3f,
     // Normal; visibility of the key light.
     @location(1) surface: vec4f,
-    // Neutral position; how far along a lash.
+    // Neutral position; how far along a lash, or in from the hair's border.
     @location(2) neutral: vec4f,
     // Base colour; part of the sky that the neutral head leaves open here.
     @location(3) colour: vec4f,
     @location(4) @interpolate(flat) material: u32,
     // Place in the picture.
     @location(5) uv: vec2f,
+    // As `strain.wgsl` computed it.
+    @location(6) strain: vec3f,
 }
 
 @vertex
@@ -64,6 +67,7 @@ fn project(@builtin(vertex_index) index: u32, @location(0) colour: vec4f, @locat
     out.colour = vec4f(colour.rgb * colour.rgb, sky.x / max(sky.y, 1e-3));
     out.material = u32(colour.a * 255.0 + 0.5);
     out.uv = uv;
+    out.strain = textureLoad(strains, texel, 0).xyz;
     return out;
 }
 
@@ -181,23 +185,6 @@ fn lips(at: vec3f) -> f32 {
     return above * below * width * smoothstep(-0.3, 0.0, (at.z - scene.mouth.z) / unit + 0.3);
 }
 
-// Brows: an arch over each eye, thinner outwards, of hairs that lean outwards. `p` is relative to
-// the eyes' midpoint in units of their span.
-fn brows(p: vec3f) -> f32 {
-    let side = abs(p.x);
-    let along = (side - 0.17) / 0.72;
-    let arch = 0.350 + 0.150 * sin(clamp(along, 0.0, 1.2) * 2.2) - 0.16 * along * along;
-    let thick = mix(0.088, 0.034, clamp(along, 0.0, 1.0));
-    let off = (p.y - arch) / thick;
-    // Hairs stand up near the nose and lie along the arch further out.
-    let turn = mix(1.25, 0.25, clamp(along * 1.3, 0.0, 1.0));
-    let lean = vec2f(cos(turn) * side + sin(turn) * p.y, cos(turn) * p.y - sin(turn) * side);
-    let hairs = 0.5 * noise(lean * vec2f(22.0, 150.0)) + 0.5 * noise(lean * vec2f(40.0, 330.0) + 7.0);
-    let body = 1.0 - smoothstep(0.15, 1.15, abs(off) + 0.45 * (hairs - 0.5));
-    let ends = smoothstep(-0.10, 0.20, along) * (1.0 - smoothstep(0.70, 1.04, along));
-    return clamp(body * ends * (0.62 + 0.62 * hairs), 0.0, 0.90);
-}
-
 // ---- eyes ----
 
 fn eye(p: Point, v: vec3f, index: u32) -> vec3f {
@@ -254,19 +241,50 @@ fn eye(p: Point, v: vec3f, index: u32) -> vec3f {
     return body + (box * 26.0 * KEY_LIGHT + window * 3.0 * FILL_LIGHT + 0.7 * room) * fresnel;
 }
 
-// Lashes that come as bands: hairs side by side that end at different lengths. `at` is neutral.
-fn lash(at: vec4f) -> f32 {
-    let unit = scene.eyes_middle.w;
-    let side = sign(at.x - scene.eyes_middle.x);
-    let arm = (at.xy - scene.eyes_middle.xy) / unit - vec2f(0.5 * side, -0.06);
-    let around = atan2(arm.y, arm.x);
-    let hair = noise(vec2f(around * 42.0, 3.0)) * 0.7 + noise(vec2f(around * 97.0, 8.0)) * 0.3;
-    let root = exp(-at.w * at.w * 30.0);
-    let tips = 1.0 - smoothstep(0.10 + 0.75 * hair, 0.30 + 0.80 * hair, at.w);
-    let band = clamp(0.80 * root + 0.75 * tips * smoothstep(0.25, 0.60, hair), 0.0, 0.92);
-    // Those of the lower lid are short and sparse.
-    let lower = (0.30 * root + 0.40 * smoothstep(0.45, 0.70, hair)) * (1.0 - smoothstep(0.08, 0.34, at.w));
-    return select(band, lower, arm.y < 0.0);
+// ---- skin of a body that works, placed in the neutral pose ----
+
+fn near(p: vec2f, centre: vec2f, radius: vec2f) -> f32 {
+    let d = (p - centre) / radius;
+    return exp(-dot(d, d));
+}
+
+// Where blood shows: cheeks and nose first, then ears, brow, chin and, in patches, the neck.
+fn flushed(albedo: vec3f, p: vec3f) -> vec3f {
+    let side = abs(p.x);
+    let front = smoothstep(-0.5, 0.2, p.z);
+    let cheek = near(vec2f(side, p.y), vec2f(0.62, -0.62), vec2f(0.46, 0.42));
+    let nose = near(vec2f(side, p.y), vec2f(0.0, -0.66), vec2f(0.22, 0.26));
+    let brow = near(vec2f(side, p.y), vec2f(0.0, 0.75), vec2f(0.8, 0.34));
+    let chin = near(vec2f(side, p.y), vec2f(0.0, -1.55), vec2f(0.3, 0.22));
+    let ear = smoothstep(1.05, 1.25, side) * (1.0 - smoothstep(0.25, 0.6, p.y)) * smoothstep(-1.3, -0.9, p.y);
+    let neck = (1.0 - smoothstep(-2.1, -1.75, p.y)) * smoothstep(0.40, 0.75, noise(p.xy * 3.1 + 5.0));
+    let face = 0.24 + 0.85 * cheek + 0.65 * nose + 0.22 * brow + 0.3 * chin;
+    let patches = 0.82 + 0.36 * noise(p.xy * 6.0);
+    let red = scene.body.x * patches * min(face * front + 0.8 * ear + 0.45 * neck, 1.0);
+    return albedo * mix(vec3f(1.0), vec3f(1.08, 0.52, 0.55), 0.72 * red);
+}
+
+// How wet the skin is: forehead, temples, nose and upper lip first.
+fn wetness(p: vec3f) -> f32 {
+    let side = abs(p.x);
+    let brow = near(vec2f(side, p.y), vec2f(0.0, 0.95), vec2f(0.95, 0.42));
+    let nose = near(vec2f(side, p.y), vec2f(0.0, -0.45), vec2f(0.20, 0.45));
+    let lip = near(vec2f(side, p.y), vec2f(0.0, -1.02), vec2f(0.34, 0.12));
+    let temple = near(vec2f(side, p.y), vec2f(1.02, 0.2), vec2f(0.3, 0.6));
+    let cheek = near(vec2f(side, p.y), vec2f(0.72, -0.7), vec2f(0.4, 0.5));
+    return min(0.30 + brow + nose + lip + 0.8 * temple + 0.45 * cheek, 1.0);
+}
+
+// Beads of sweat: how a bead tilts the skin across and up (xy), and how much of one is here (z).
+fn bead(p: vec3f, size: f32, often: f32) -> vec3f {
+    let q = vec2f(p.x + 0.31 * p.z, p.y) / size;
+    let cell = floor(q);
+    let centre = cell + 0.3 + 0.4 * vec2f(hash(cell), hash(cell + 17.0));
+    let radius = 0.16 + 0.16 * hash(cell + 41.0);
+    let d = (q - centre) / radius;
+    let inside = 1.0 - smoothstep(0.75, 1.0, length(d));
+    let there = inside * select(0.0, 1.0, hash(cell + 73.0) < often);
+    return vec3f(d * there, there);
 }
 
 // ---- picture ----
@@ -284,6 +302,7 @@ const CLAY: vec3f = vec3f(0.34);
 
 @fragment
 fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let pixel = length(fwidth(p.neutral.xyz)) / scene.eyes_middle.w;
     let painting = textureSample(picture, picture_sampler, p.uv);
     if painting.a < 0.5 && p.material != MATERIAL_LASHES {
         discard;
@@ -313,24 +332,63 @@ fn shade(p: Point, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         f.albedo = select(albedo, CLAY, clay) * scene.skin.rgb;
         f.roughness = scene.skin.w;
         f.specular = 0.028;
-        f.wrap = vec3f(0.42, 0.20, 0.14);
+        // Clay lets no light through.
+        f.wrap = select(vec3f(0.42, 0.20, 0.14), vec3f(0.20), clay);
         f.open = 0.25 + 0.75 * clamp(p.colour.a, 0.0, 1.0);
+        let at = (p.neutral.xyz - scene.eyes_middle.xyz) / scene.eyes_middle.w;
+        // The least principal strain: where nothing is pressed no crease is looked for (`lines`).
+        let least = 0.5 * (p.strain.x + p.strain.y) - length(vec2f(0.5 * (p.strain.x - p.strain.y), p.strain.z));
+        if at.z > -0.6 && at.y > -1.4 && least < -0.015 {
+            let crease = creases(at, p.strain);
+            n = normalize(n + 1.1 * (skin_frame(n) * crease.xy));
+            f.open *= 1.0 - 0.5 * min(crease.z, 1.0);
+            f.albedo *= mix(vec3f(1.0), vec3f(0.80, 0.70, 0.68), min(crease.z, 1.0));
+        }
+        if !clay && scene.body.x + scene.body.y > 0.0 {
+            f.albedo = flushed(f.albedo, at);
+            let wet = scene.body.y * wetness(at);
+            let beads = bead(at, 0.050, 0.55 * wet * wet) + bead(at + 3.7, 0.031, 0.7 * wet * wet);
+            f.albedo *= 1.0 - 0.10 * wet;
+            f.roughness = mix(f.roughness, 0.27, wet) - 0.10 * min(beads.z, 1.0);
+            f.specular = mix(f.specular, 0.050, wet);
+            n = normalize(n + 0.55 * smoothstep(0.0, 0.5, at.z) * vec3f(beads.xy, 0.0));
+        }
     } else {
         if !front {
             n = -n;
         }
         if p.material <= MATERIAL_SOCKET {
-            f.open = exp(-2.6 * behind);
+            f.open = exp(-1.7 * behind);
             f.wrap = vec3f(0.25, 0.12, 0.10);
             f.roughness = select(0.34, 0.28, p.material == MATERIAL_TEETH);
-            f.albedo *= select(vec3f(0.55), vec3f(0.80, 0.74, 0.64), p.material == MATERIAL_TEETH);
+            f.albedo *= select(vec3f(0.85), vec3f(0.80, 0.74, 0.64), p.material == MATERIAL_TEETH);
         }
         if p.material == MATERIAL_HAIR || p.material == MATERIAL_LASHES {
             f.roughness = 0.62;
             f.specular = 0.015;
-            f.albedo = select(f.albedo, 0.7 * CLAY * scene.skin.rgb, clay);
+        }
+        if p.material == MATERIAL_HAIR {
+            let at = (p.neutral.xyz - scene.eyes_middle.xyz) / scene.eyes_middle.w;
+            // Hairs thinner than a pixel are their mean.
+            let hair = mix(strands(at), 0.5, smoothstep(0.012, 0.036, pixel));
+            f.albedo *= 0.65 + 0.75 * hair;
+            // Hairs end one before the other towards the border; brows are narrow.
+            let in_from_border = p.neutral.w * select(1.0, 2.4, on_brow(at));
+            let end = 0.20 + 0.75 * (1.0 - hair);
+            alpha = smoothstep(end - 0.18, end + 0.18, in_from_border);
+            if alpha < 0.02 {
+                discard;
+            }
+            f.open = 0.4 + 0.6 * min(in_from_border, 1.0);
+        }
+        if clay && p.material >= MATERIAL_HAIR {
+            f.albedo = 0.7 * CLAY * scene.skin.rgb;
         }
         if p.material == MATERIAL_LASHES {
+            // Too thin to mirror anything.
+            f.roughness = 1.0;
+            f.specular = 0.0;
+            f.open = 0.4;
             alpha = lash(p.neutral);
         }
     }

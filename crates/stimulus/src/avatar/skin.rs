@@ -9,10 +9,12 @@ use mimique_solver::{Group, MeshError, MethodSpec, SkinMesh, SparseDeltas};
 pub struct AvatarSkin {
     /// The avatar's name.
     pub name: String,
-    /// The N shapes, in the avatar's order.
+    /// The N shapes of the face, in the avatar's order.
     pub shape_names: Vec<String>,
     /// The welded surface, S vertices.
     pub mesh: SkinMesh,
+    /// Centres of the left and the right eyeball, metres; none unless the avatar has both.
+    pub eyes: Option<[Point; 2]>,
     /// Welded vertex of each vertex of the skin meshes, in the file's order.
     pub welded_from_file: Vec<u32>,
 }
@@ -24,15 +26,16 @@ impl AvatarSkin {
     /// [`MeshError`] when there is no skin, or a damaged one.
     pub fn of(avatar: &Avatar) -> Result<Self, MeshError> {
         let mut open = SkinMesh {
-            shapes: vec![SparseDeltas::default(); avatar.shape_names.len()],
+            shapes: vec![SparseDeltas::default(); avatar.face_shapes().len()],
             ..SkinMesh::default()
         };
         avatar.meshes.iter().filter(|m| m.part == Part::Skin).for_each(|m| append(&mut open, m));
         let welded = open.weld()?;
         Ok(Self {
             name: avatar.name.clone(),
-            shape_names: avatar.shape_names.clone(),
+            shape_names: avatar.face_shapes().to_vec(),
             mesh: welded.mesh,
+            eyes: eyes(avatar),
             welded_from_file: welded.index_of,
         })
     }
@@ -53,6 +56,15 @@ impl AvatarSkin {
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(v, square)| (v, square.sqrt()))
     }
+}
+
+/// Centres of both eyeballs.
+fn eyes(avatar: &Avatar) -> Option<[Point; 2]> {
+    let centre = |part: Part| {
+        let eye = avatar.eyeballs.iter().find(|eye| avatar.meshes[eye.mesh].part == part)?;
+        Some(Point::from(eye.centre.map(f64::from)))
+    };
+    Some([centre(Part::EyeLeft)?, centre(Part::EyeRight)?])
 }
 
 /// Adds shapes to those that a method holds at 0, where the method solves for shapes at all.

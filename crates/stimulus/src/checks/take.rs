@@ -93,7 +93,7 @@ impl JoinedTake<'_> {
                 front_end.head_reference().to_vec(),
                 neutral,
                 operators.parts().marker_positions.clone(),
-                front_end.depth().cloned(),
+                front_end.adaptation(),
             )
             .ok()?;
             let mut rows = vec![0.0; frames.len() * 3 * p];

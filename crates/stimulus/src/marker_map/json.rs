@@ -10,7 +10,8 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use crate::Lid;
 
 use super::{
-    Depth, MapFileError, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace, ScaleRule,
+    Depth, MapFileError, MapOrigin, MappedMarker, MarkerAssociation, MarkerMap, MarkerPlace,
+    ScaleRule,
 };
 
 #[derive(Deserialize)]
@@ -27,6 +28,9 @@ struct File {
     depth: Option<String>,
     #[serde(default)]
     lids: Vec<Lid>,
+    #[serde(default)]
+    suggested: bool,
+    layout: Option<serde::de::IgnoredAny>,
 }
 
 #[derive(Deserialize, Default)]
@@ -158,8 +162,13 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
             "give its place there",
         ));
     }
+    let origin = match (file.suggested, file.layout) {
+        (true, _) => MapOrigin::Suggested,
+        (false, Some(_)) => MapOrigin::Layout,
+        (false, None) => MapOrigin::Unknown,
+    };
     let (avatar, head, lids) = (file.avatar, file.head, file.lids);
-    Ok(MarkerMap { avatar, face, head, neutral, association, scale, depth, lids })
+    Ok(MarkerMap { avatar, face, head, neutral, association, scale, depth, lids, origin })
 }
 
 /// A range of frames.

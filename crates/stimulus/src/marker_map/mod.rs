@@ -35,6 +35,20 @@ pub struct MarkerMap {
     pub depth: Depth,
     /// Lid markers and the shapes that they drive; they take no part in the solve.
     pub lids: Vec<Lid>,
+    /// Who made it.
+    pub origin: MapOrigin,
+}
+
+/// Who made a marker map: whether its places are where markers are, or where they should be.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum MapOrigin {
+    /// Somebody.
+    #[default]
+    Unknown,
+    /// The program suggested it from a capture (`"suggested": true`).
+    Suggested,
+    /// It is a layout (`"layout": {...}`), by which markers are put on by hand.
+    Layout,
 }
 
 /// How a marker's position is tied to the skin (Kouadio 4.3.1).

@@ -2,11 +2,16 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Depth, MarkerAssociation, MarkerMap, MarkerPlace};
+use super::{Depth, MapOrigin, MarkerAssociation, MarkerMap, MarkerPlace};
 
 impl MarkerMap {
     /// The map as JSON, metres, markers in their order.
     pub fn to_json(&self) -> String {
+        self.to_json_with(&[])
+    }
+
+    /// The same with more members, which readers of maps pass over.
+    pub fn to_json_with(&self, more: &[(&str, Value)]) -> String {
         let mut lines = Vec::new();
         let mut put = |key: &str, value: Value| lines.push(format!("  {key:?}: {value}"));
         if let Some(avatar) = &self.avatar {
@@ -37,6 +42,9 @@ impl MarkerMap {
         if !scale.is_empty() {
             put("scale", Value::Object(scale));
         }
+        if self.origin == MapOrigin::Suggested {
+            put("suggested", json!(true));
+        }
         if !self.lids.is_empty() {
             put("lids", json!(self.lids));
         }
@@ -53,6 +61,7 @@ impl MarkerMap {
             })
             .collect();
         lines.push(format!("  \"markers\": {{\n{}\n  }}", markers.join(",\n")));
+        lines.extend(more.iter().map(|(key, value)| format!("  {key:?}: {value}")));
         format!("{{\n{}\n}}\n", lines.join(",\n"))
     }
 }
@@ -65,6 +74,7 @@ mod tests {
     fn what_is_written_is_read_back() {
         for text in [
             r#"{"markers": {"A": {"vertex": 1}}}"#,
+            r#"{"markers": {"A": {"vertex": 1}}, "suggested": true}"#,
             r#"{"avatar": "Ada \"x\"", "unit": "mm", "head": ["Z", "H"], "neutral": [5, 65],
                 "markers": {"Z": {"position": [1, 2.5, 3], "scale": 1.5}, "A\u00e9": {"vertex": 7}},
                 "association": "triangle", "depth": "surface",

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use mimique_clip::{SOLVER_VERSION, sha256_hex};
 
 use super::PrepareError;
+use super::known::is_hash;
 use crate::provenance::Provenance;
 
 /// Changes when the same inputs give other packs: what was kept under old keys is not taken.
@@ -39,14 +40,34 @@ impl Cache {
         key: &Provenance,
         make: impl FnOnce() -> Result<Vec<u8>, PrepareError>,
     ) -> Result<StoredPack, PrepareError> {
-        let key = key.clone().json("layout", LAYOUT).json("solver", SOLVER_VERSION);
-        let key_file = self.folder.join("keys").join(key.hash());
+        let key_file = self.key_file(key);
         if let Some(pack) = self.kept(&key_file) {
             return Ok(pack);
         }
         let pack = self.store(make()?)?;
         write(&key_file, pack.hash.as_bytes())?;
         Ok(pack)
+    }
+
+    /// A text that was kept under a key.
+    pub fn note(&self, key: &Provenance) -> Option<String> {
+        fs::read_to_string(self.key_file(key)).ok()
+    }
+
+    /// Keeps a text under a key.
+    pub fn keep_note(&self, key: &Provenance, text: &str) -> Result<(), PrepareError> {
+        write(&self.key_file(key), text.as_bytes())
+    }
+
+    /// Whether a pack is there, and what it was.
+    pub fn holds(&self, hash: &str) -> bool {
+        is_hash(hash) && fs::read(self.folder.join(hash)).is_ok_and(|b| sha256_hex(&b) == hash)
+    }
+
+    /// The file of a key.
+    fn key_file(&self, key: &Provenance) -> PathBuf {
+        let key = key.clone().json("layout", LAYOUT).json("solver", SOLVER_VERSION);
+        self.folder.join("keys").join(key.hash())
     }
 
     /// Keeps a pack under its hash.
@@ -62,7 +83,7 @@ impl Cache {
     fn kept(&self, key_file: &Path) -> Option<StoredPack> {
         let hash = fs::read_to_string(key_file).ok()?;
         // A damaged key must not lead out of the folder.
-        if hash.len() != 64 || !hash.bytes().all(|b| b.is_ascii_hexdigit()) {
+        if !is_hash(&hash) {
             return None;
         }
         let bytes = fs::read(self.folder.join(&hash)).ok()?;

@@ -1,12 +1,15 @@
 //! A study file's stimuli in; packs in a folder, and where each clip's are, out.
 //!
 //! Every pack is a file named by the SHA-256 of its bytes. What was made before from the same
-//! inputs is taken from the folder; the weights are solved anew each time, by the function that the
-//! browsers run, so that their hash is that of this program.
+//! inputs is taken from the folder. The weights are solved by the function that the browsers run, once for each
+//! program: what this very program has prepared of the same stimuli and files is known by hash.
 
+mod advice;
 mod avatar_key;
 mod builtin;
 mod cache;
+mod exertion;
+mod known;
 mod solved_clip;
 mod source_files;
 mod sources;
@@ -20,13 +23,14 @@ use mimique_solver::{Group, Method, MethodSpec};
 use mimique_study::ClipSource;
 use mimique_study::{AvatarLook, Clip, Study};
 
+pub use self::advice::{AdvisedMethod, advised_methods};
 pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
-use crate::RecordedWeights;
 use crate::provenance::Provenance;
+use crate::{ExertionDrawing, GazeStatistics, RecordedWeights};
 
 /// Whether what a study names is there: a file, or a folder of an avatar's poses.
 pub fn is_source(path: &Path) -> bool {
@@ -112,6 +116,12 @@ pub fn prepare(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Prepared, PrepareError> {
     let cache = Cache::open(&places.packs)?;
+    let key = known::key(study, places);
+    if let Some(known) = key.as_ref().and_then(|key| known::find(&cache, key)) {
+        let clips = known.clips.len();
+        progress(Progress { done: clips, total: clips, what: "packs" });
+        return Ok(known);
+    }
     let sources = Sources::new(study, places);
     let clips = study.clips();
     let mut ready = BTreeMap::new();
@@ -125,7 +135,32 @@ pub fn prepare(
     let mut warnings = remarks.warnings;
     let mut said = BTreeSet::new();
     warnings.retain(|warning| said.insert(warning.clone()));
-    Ok(Prepared { clips: ready, warnings })
+    let prepared = Prepared { clips: ready, warnings };
+    if let Some(key) = &key {
+        known::keep(&cache, key, sources.asked(), &prepared)?;
+    }
+    Ok(prepared)
+}
+
+/// What the preview of a study draws of a clip whose capture is an exertion: what its weights were made of,
+/// computed anew. None for other clips. Where it is not known where the study's files are, only what names none
+/// can be computed.
+///
+/// # Errors
+/// [`PrepareError`]: a file that is absent or damaged, frames that are not there.
+pub fn exertion_drawing(
+    study: &Study,
+    clip: &Clip,
+    places: Option<&Places>,
+) -> Result<Option<ExertionDrawing>, PrepareError> {
+    let nowhere = Places { study: PathBuf::new(), data: None, packs: PathBuf::new() };
+    let sources = Sources::new(study, places.unwrap_or(&nowhere));
+    let Some((id, own)) = sources.exertion_of(clip)? else { return Ok(None) };
+    if places.is_none() && own.names_files() {
+        let message = "its files are not at hand; open the motion in the studio";
+        return Err(PrepareError::new(pointer(&["stimuli", "captures", id, "exertion"]), message));
+    }
+    sources.exertion_drawing(clip, id, own).map(Some)
 }
 
 /// What a clip is played from.
@@ -162,6 +197,9 @@ fn prepare_clip(
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(method_pointer(clip), e))?;
     remarks.warnings.extend(solved.warnings.iter().map(|w| (at.clone(), w.clone())));
+    let gaze = GazeStatistics::of(&solved.shape_names, &solved.weights);
+    let gaze = gaze.and_then(|gaze| gaze.warning(0));
+    remarks.warnings.extend(gaze.map(|w| (at.clone(), format!("{}: {w}", clip.id))));
     let mut provenance = Provenance::new()
         .json("avatar", avatar.hash.as_str())
         .json("operators", operators.hash.as_str())
@@ -218,14 +256,15 @@ fn marker_clip(
 ) -> Result<Ingredients, PrepareError> {
     let avatar = sources.avatar(&clip.avatar)?;
     let performance = sources.performance(&clip.segment, &avatar)?;
-    let spec = with_lowpass(spec, &performance);
-    let mut spec = performance.joined()?.with_shapes_held(&spec);
-    crate::lock_shapes(&mut spec, &avatar.locked);
+    let mut written = with_lowpass(spec, &performance);
+    crate::lock_shapes(&mut written, &avatar.locked);
+    let spec = performance.joined()?.with_shapes_held(&written);
     let method_pointer = method_pointer(clip);
     spec.validate().map_err(|e| PrepareError::new(&method_pointer, e))?;
     let learns = spec.method == Method::Regression;
     let training = learns.then(|| sources.training(&clip.method)).transpose()?;
     let wanted = Wanted {
+        written: &written,
         spec: &spec,
         training: training.as_deref(),
         method_pointer: &method_pointer,
@@ -283,12 +322,19 @@ fn recorded(
     warnings: &mut Vec<(String, String)>,
 ) -> Result<Vec<u8>, PrepareError> {
     let shape_names = &avatar.shape_names;
-    let RecordedWeights { table, names } = RecordedWeights::of(&recording.table, shape_names)
-        .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
-    warnings.extend(names.warnings().into_iter().map(|w| (recording.pointer.clone(), w)));
+    let RecordedWeights { mut table, names } =
+        RecordedWeights::of(&recording.table, shape_names)
+            .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
+    warnings.extend(recording.warnings.iter().cloned());
+    warnings.extend(
+        names.warnings(!recording.is_computed).into_iter().map(|w| (recording.pointer.clone(), w)),
+    );
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")
     })?;
+    if let Some(gaze) = &recording.gaze {
+        gaze.put_into(&mut table).map_err(|e| PrepareError::new(&recording.pointer, e))?;
+    }
     let frames = recording.frames.clone();
     let weights: Vec<f64> = frames.flat_map(|frame| table.row(frame).iter().copied()).collect();
     let take = TakePack {
@@ -303,7 +349,7 @@ fn recorded(
 /// The method with the head's low-pass that the capture asks for where the method names none.
 fn with_lowpass(spec: &MethodSpec, performance: &Performance) -> MethodSpec {
     let mut spec = spec.clone();
-    if spec.method.uses(Group::Head) {
+    if spec.method.uses(Group::FrontEnd) {
         spec.head_lowpass_hz = spec.head_lowpass_hz.or(performance.head_lowpass_hz);
     }
     spec

@@ -15,7 +15,7 @@ use super::source_files::{AvatarFile, Performance};
 use super::{PrepareError, Remarks};
 use crate::checks::is_fitted;
 use crate::provenance::Provenance;
-use crate::take::unseen_shapes;
+use crate::take::{held_shapes, untold_shapes};
 use crate::{JoinedTake, SetUp, SolveError, Training, surface_avatar};
 
 /// Blendshapes that the stage's shader holds.
@@ -23,6 +23,9 @@ const MOST_STAGE_SHAPES: usize = 256;
 
 /// A clip that is solved from markers.
 pub(super) struct Wanted<'a> {
+    /// The method as the study has it.
+    pub(super) written: &'a MethodSpec,
+    /// The same with the shapes that are held.
     pub(super) spec: &'a MethodSpec,
     pub(super) training: Option<&'a Training>,
     pub(super) method_pointer: &'a str,
@@ -83,8 +86,9 @@ pub(super) fn to_solve(
     } else {
         None
     };
-    let unseen = unseen_shapes(&opened, spec);
-    remarks.warnings.extend(unseen.map(|w| (performance.capture_pointer.clone(), w)));
+    let told = joined.shape_rows(wanted.written, spec, &opened);
+    let said = held_shapes(&told).into_iter().chain(untold_shapes(&opened, spec));
+    remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
     let key = take_key(wanted, &markers, joined.scales_by_bank());
     let take = cache.pack(&key.json("pack", "take"), || {
         let take = joined
@@ -183,8 +187,8 @@ fn take_key(wanted: &Wanted<'_>, markers: &str, scaled_by_bank: bool) -> Provena
         .json("locked", json!(locked))
 }
 
-/// Labels of a recorded capture that are swapped or stand at one place, looked for once for all its
-/// segments and methods. What the built-in actors do is labelled here.
+/// Labels of a recorded capture that are swapped or stand at one place, and what a smoothed adaptation of shape
+/// gains, looked for once for all its segments and methods. What the built-in actors do is labelled here.
 fn look_at_labels(
     wanted: &Wanted<'_>,
     joined: &JoinedTake<'_>,
@@ -196,7 +200,9 @@ fn look_at_labels(
         return Ok(());
     }
     if remarks.looked_over.insert([avatar.key.clone(), performance.take_key.clone()]) {
-        let said = joined.label_warnings(operators, spec).map_err(|e| wanted.error(e))?;
+        let mut said = joined.label_warnings(operators, spec).map_err(|e| wanted.error(e))?;
+        let advice = joined.smoothing_advice(operators, spec, None).map_err(|e| wanted.error(e))?;
+        said.extend(advice.map(|advice| advice.in_a_study()));
         let pointer = &performance.capture_pointer;
         remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
     }

@@ -11,7 +11,7 @@ use mimique_solver::FrontEndError;
 
 use super::PrepareError;
 use crate::provenance::Provenance;
-use crate::{AvatarSkin, JoinedTake, MarkerMap, SolveError, TakeOptions};
+use crate::{AvatarSkin, GivenGaze, JoinedTake, MarkerMap, SolveError, TakeOptions};
 
 /// An avatar, and what its bytes or its making are known by.
 pub(super) struct AvatarFile {
@@ -80,6 +80,12 @@ pub(super) struct Recording {
     pub table: WeightsTable,
     /// Frames played.
     pub frames: Range<usize>,
+    /// The gaze that is given in the place of the recorded one.
+    pub gaze: Option<GivenGaze>,
+    /// Whether they were computed, of which not every shape is expected.
+    pub is_computed: bool,
+    /// What should be said of where they come from, with the pointers.
+    pub warnings: Vec<(String, String)>,
 }
 
 impl FrameCount {
@@ -211,6 +217,7 @@ impl Performance {
             SolveError::FrontEnd(FrontEndError::NeutralRange { .. })
             | SolveError::NeutralUnseen(_) => "/neutral",
             SolveError::FrontEnd(FrontEndError::Lowpass(_)) => "/headLowpassHz",
+            SolveError::NoGazeShapes | SolveError::NoGazeTarget { .. } => "/gaze",
             SolveError::Segment { .. } => return PrepareError::new(&self.pointer, error),
             _ => "",
         };

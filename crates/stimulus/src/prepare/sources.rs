@@ -5,18 +5,25 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use mimique_avatar::GazeAngles;
 use mimique_clip::sha256_hex;
-use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, read_weights_file};
+use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
 use mimique_study::{
-    AvatarSource, CaptureSource, Clip, Segment, Span, Study, resolve_path, video_type,
+    AvatarSource, CaptureSource, Clip, ExertionCapture, GazeSource, HeldGaze, Segment, Span, Study,
+    resolve_path, video_type,
 };
 use serde_json::json;
 
 use super::avatar_key::avatar_key;
+use super::exertion::{ComputedExertion, Exertion, ExertionWeights};
+use super::known::Asked;
 use super::source_files::{AvatarFile, CaptureFile, Performance, Recording, Video};
 use super::{Places, PrepareError, builtin, pointer};
 use crate::provenance::{Provenance, sha256_of_file};
-use crate::{MarkerMap, RepairSidecar, TakeOptions, Training, split_shapes};
+use crate::{
+    ExertionDrawing, GazeTrack, GivenGaze, MarkerMap, RepairSidecar, TakeOptions, Training,
+    read_performance, split_shapes,
+};
 
 /// Everything that a study file names.
 pub(super) struct Sources<'a> {
@@ -25,12 +32,20 @@ pub(super) struct Sources<'a> {
     avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
     captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
+    asked: Asked,
+    /// Weights of exertions, by their captures.
+    exertions: RefCell<BTreeMap<String, Rc<ExertionWeights>>>,
 }
 
 impl<'a> Sources<'a> {
     pub fn new(study: &'a Study, places: &'a Places) -> Self {
-        let (avatars, captures, trainings) = Default::default();
-        Self { study, places, avatars, captures, trainings }
+        let (avatars, captures, trainings, exertions, asked) = Default::default();
+        Self { study, places, avatars, captures, trainings, exertions, asked }
+    }
+
+    /// The files that were asked for.
+    pub fn asked(&self) -> &Asked {
+        &self.asked
     }
 
     /// The avatar of that identifier.
@@ -114,6 +129,7 @@ impl<'a> Sources<'a> {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
             repair: file.repair.clone(),
+            gaze: self.gaze(segment)?,
             ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
@@ -133,6 +149,7 @@ impl<'a> Sources<'a> {
             .json("map", map_key)
             .json("neutral", json!(options.neutral.as_ref().map(|n| [n.start, n.end])))
             .json("head", json!(options.head))
+            .json("gaze", json!(options.gaze.as_ref().map(GivenGaze::key)))
             .hash();
         Ok(Performance {
             pointer: at,
@@ -174,6 +191,47 @@ impl<'a> Sources<'a> {
         }
     }
 
+    /// The gaze that is given for a segment's capture; none where the eyes rest.
+    pub fn gaze(&self, segment: &Segment) -> Result<Option<GivenGaze>, PrepareError> {
+        let id = &segment.capture;
+        let at = pointer(&["stimuli", "captures", id, "gaze"]);
+        let capture = self.study.stimuli.captures.get(id);
+        let Some(gaze) = capture.and_then(|capture| capture.gaze.as_ref()) else { return Ok(None) };
+        let track = |table: &WeightsTable, later_s: f64, at: &str| {
+            let track = GazeTrack::of(table, later_s).map_err(|e| PrepareError::new(at, e))?;
+            Ok(Some(GivenGaze::Track(track)))
+        };
+        match gaze.source() {
+            Some(GazeSource::Held(HeldGaze { azimuth, elevation, vergence })) => {
+                Ok(Some(GivenGaze::Held(GazeAngles { azimuth, elevation, vergence })))
+            }
+            Some(GazeSource::Target(label)) => Ok(Some(GivenGaze::Target(label.to_owned()))),
+            Some(GazeSource::File(file, later_s)) => {
+                let at = format!("{at}/file");
+                let path = self.path(file, &at)?;
+                let table = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
+                track(&table, later_s, &at)
+            }
+            Some(GazeSource::Performed) => {
+                let source = capture.and_then(|capture| capture.source());
+                let (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) =
+                    (source, segment.span())
+                else {
+                    let message =
+                        "only a built-in actor performs a gaze; give held, file or target";
+                    return Err(PrepareError::new(at, message));
+                };
+                track(&builtin::performed(actor, what).0, 0.0, &at)
+            }
+            None => {
+                let message = "give exactly one of held, file, target and performed";
+                Err(PrepareError::new(at, message))
+            }
+        }
+    }
+
     /// What the regression of that identifier learns from.
     pub fn training(&self, method: &str) -> Result<Rc<Training>, PrepareError> {
         if let Some(found) = self.trainings.borrow().get(method) {
@@ -194,8 +252,9 @@ impl<'a> Sources<'a> {
                 let capture = self.read_capture(path, source.unit.as_deref(), &capture_at)?.1;
                 let at = format!("{at}/weights");
                 let path = self.path(weights_file, &at)?;
-                let weights = read_weights_file(&path, &WeightOptions::default())
-                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
+                let weights = read_performance(&path, &WeightOptions::default())
+                    .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?
+                    .table;
                 Training {
                     capture,
                     weights,
@@ -216,7 +275,7 @@ impl<'a> Sources<'a> {
     /// The segment of that identifier as recorded weights, at the rate that is shown.
     pub fn recording(&self, segment: &str) -> Result<Recording, PrepareError> {
         let (segment, at) = self.segment(segment)?;
-        let recording = self.recorded(segment, at)?;
+        let recording = Recording { gaze: self.gaze(segment)?, ..self.recorded(segment, at)? };
         let id = &segment.capture;
         match self.study.stimuli.captures.get(id).and_then(|c| c.rate_hz) {
             Some(rate_hz) => {
@@ -234,7 +293,20 @@ impl<'a> Sources<'a> {
             // The performance itself, as the actor's own face made it.
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
                 let (table, frames) = builtin::performed(actor, what);
-                return Ok(Recording { pointer: at, table, frames });
+                return Ok(Recording {
+                    pointer: at,
+                    table,
+                    frames,
+                    is_computed: false,
+                    gaze: None,
+                    warnings: vec![],
+                });
+            }
+            (Some(CaptureSource::Exertion(exertion)), Some(Span::Frames { first, end })) => {
+                let own = self.exertion(&segment.capture, exertion)?;
+                let warnings = own.warnings.clone();
+                let cut = cut(at, own.table.clone(), [first, end])?;
+                return Ok(Recording { is_computed: true, warnings, ..cut });
             }
             _ => {
                 let message = "the method recorded takes weights; name a CSV of weights";
@@ -242,17 +314,64 @@ impl<'a> Sources<'a> {
             }
         };
         let path = self.path(file, &pointer)?;
-        let table = read_weights_file(&path, &WeightOptions::default())
-            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?;
+        let table = read_performance(&path, &WeightOptions::default())
+            .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?
+            .table;
         match segment.span() {
-            Some(Span::Frames { first, end }) if end <= table.frames.len() => {
-                Ok(Recording { pointer: at, table, frames: first..end })
-            }
-            _ => Err(PrepareError::new(
-                at,
-                format!("give first and end within the {} frames of the file", table.frames.len()),
-            )),
+            Some(Span::Frames { first, end }) => cut(at, table, [first, end]),
+            _ => cut(at, table, [0, usize::MAX]),
         }
+    }
+
+    /// The weights of an exertion.
+    fn exertion(
+        &self,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<Rc<ExertionWeights>, PrepareError> {
+        if let Some(found) = self.exertions.borrow().get(id) {
+            return Ok(found.clone());
+        }
+        let weights = Rc::new(self.computed(id, own)?.weights());
+        self.exertions.borrow_mut().insert(id.to_owned(), weights.clone());
+        Ok(weights)
+    }
+
+    fn computed(&self, id: &str, own: &ExertionCapture) -> Result<ComputedExertion, PrepareError> {
+        let at = pointer(&["stimuli", "captures", id, "exertion"]);
+        let path = |file: &str, at: &str| self.path(file, at);
+        Exertion { exertion: own, at: &at, path }.computed()
+    }
+
+    /// The exertion that a clip shows, and its identifier; none where the clip shows something else.
+    pub fn exertion_of(
+        &self,
+        clip: &Clip,
+    ) -> Result<Option<(&'a str, &'a ExertionCapture)>, PrepareError> {
+        let (segment, _) = self.segment(&clip.segment)?;
+        let capture = self.study.stimuli.captures.get(&segment.capture);
+        Ok(match capture.and_then(|capture| capture.source()) {
+            Some(CaptureSource::Exertion(own)) => Some((&segment.capture[..], own)),
+            _ => None,
+        })
+    }
+
+    /// The frames of an exertion that a clip shows, as pages draw them.
+    pub fn exertion_drawing(
+        &self,
+        clip: &Clip,
+        id: &str,
+        own: &ExertionCapture,
+    ) -> Result<ExertionDrawing, PrepareError> {
+        let (segment, at) = self.segment(&clip.segment)?;
+        let computed = self.computed(id, own)?;
+        let drawing = match segment.span() {
+            Some(Span::Frames { first, end }) => computed.drawing(first..end),
+            _ => None,
+        };
+        drawing.ok_or_else(|| {
+            PrepareError::new(at, "not all of its frames are there; correct first and end")
+        })
     }
 
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
@@ -291,7 +410,7 @@ impl<'a> Sources<'a> {
                 (id.clone(), CaptureFile { repair, ..CaptureFile::new(key, capture) })
             }
             (None, _) => {
-                let message = "give exactly one of builtin and file";
+                let message = "give exactly one of builtin, file and exertion";
                 return Err(PrepareError::new(pointer(&["stimuli", "captures", id]), message));
             }
             _ => {
@@ -333,8 +452,10 @@ impl<'a> Sources<'a> {
 
     /// The path of a file that the study names.
     fn path(&self, file: &str, at: &str) -> Result<PathBuf, PrepareError> {
-        resolve_path(file, &self.places.study, self.places.data.as_deref())
-            .map_err(|e| PrepareError::new(at, e))
+        let path = resolve_path(file, &self.places.study, self.places.data.as_deref())
+            .map_err(|e| PrepareError::new(at, e))?;
+        self.asked.note(&path);
+        Ok(path)
     }
 
     /// The file that a path of the study names.
@@ -345,12 +466,25 @@ impl<'a> Sources<'a> {
     }
 }
 
+/// Frames of recorded weights.
+fn cut(at: String, table: WeightsTable, frames: [usize; 2]) -> Result<Recording, PrepareError> {
+    let [first, end] = frames;
+    if end > table.frames.len() {
+        let frames = table.frames.len();
+        let message = format!("give first and end within the {frames} frames of the capture");
+        return Err(PrepareError::new(at, message));
+    }
+    let frames = first..end;
+    let warnings = table.notes.iter().map(|note| (at.clone(), note.clone())).collect();
+    Ok(Recording { pointer: at, table, frames, is_computed: false, gaze: None, warnings })
+}
+
 /// A file that cannot be read.
 fn unread(path: &Path, error: &std::io::Error, at: &str) -> PrepareError {
     PrepareError::new(at, format!("{}: {error}; check the path", path.display()))
 }
 
-fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
+pub(super) fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>, PrepareError> {
     match unit {
         None => Ok(None),
         Some("mm") => Ok(Some(LengthUnit::Millimetre)),

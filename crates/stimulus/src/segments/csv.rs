@@ -1,8 +1,8 @@
 //! Segments as a table: `label,first_frame,last_frame,expression_first,expression_last,start_s,end_s`.
 //!
-//! `last_frame` is the last one that is played. The first three columns are enough to read; a row
-//! whose label is `N` or `neutral` is left out.
+//! `last_frame` is the last one that is played. The first three columns are enough to read.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use super::TakeSegment;
@@ -21,19 +21,26 @@ pub struct SegmentFileError {
 
 /// The table of segments at a rate. Reading it gives the same segments.
 pub fn write_segments(segments: &[TakeSegment], rate_hz: f64) -> String {
-    let mut text = String::from(
-        "label,first_frame,last_frame,expression_first,expression_last,start_s,end_s\n",
-    );
-    for TakeSegment { label, clip, expression } in segments {
-        let label = if label.contains([',', '"', '\n', '\r']) || label.trim() != label {
-            format!("\"{}\"", label.replace('"', "\"\""))
-        } else {
-            label.clone()
-        };
+    write_segments_with::<0>(segments, rate_hz, &[], &vec![[]; segments.len()])
+}
+
+/// The same with columns beside those of a segment, of which `beside` has the cells of each.
+pub fn write_segments_with<const N: usize>(
+    segments: &[TakeSegment],
+    rate_hz: f64,
+    names: &[&str; N],
+    beside: &[[String; N]],
+) -> String {
+    let mut text =
+        String::from("label,first_frame,last_frame,expression_first,expression_last,start_s,end_s");
+    names.iter().for_each(|name| text.extend([",", name]));
+    text.push('\n');
+    for (TakeSegment { label, clip, expression }, beside) in segments.iter().zip(beside) {
         // Writing to a String does not fail.
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "{label},{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{}",
+            quoted(label),
             clip.start,
             clip.end.saturating_sub(1),
             expression.start,
@@ -41,25 +48,42 @@ pub fn write_segments(segments: &[TakeSegment], rate_hz: f64) -> String {
             clip.start as f64 / rate_hz,
             clip.end as f64 / rate_hz,
         );
+        beside.iter().for_each(|cell| text.extend([",", &quoted(cell)]));
+        text.push('\n');
     }
     text
 }
 
-/// Read a table of segments.
+/// A cell, in quotes where it needs them.
+fn quoted(cell: &str) -> Cow<'_, str> {
+    if cell.contains([',', '"', '\n', '\r']) || cell.trim() != cell {
+        format!("\"{}\"", cell.replace('"', "\"\"")).into()
+    } else {
+        cell.into()
+    }
+}
+
+/// Read the expressions of a table of segments: all rows but those of the neutral face.
 ///
 /// # Errors
 /// [`SegmentFileError`] with the line.
 pub fn read_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
+    let mut segments = read_labelled_segments(text)?;
+    segments.retain(|segment| !segment.is_neutral());
+    Ok(segments)
+}
+
+/// Read a table of segments with all its rows: those of the neutral face and of transitions, too.
+///
+/// # Errors
+/// [`SegmentFileError`] with the line.
+pub fn read_labelled_segments(text: &str) -> Result<Vec<TakeSegment>, SegmentFileError> {
     let mut records = records(text.trim_start_matches('\u{feff}')).into_iter();
     let (_, header) = records.next().unwrap_or_default();
     let columns = Columns::of(header)?;
     let mut segments = Vec::new();
     for (line, row) in records {
         if row.iter().all(|field| field.trim().is_empty()) {
-            continue;
-        }
-        let name = columns.label(&row);
-        if name.eq_ignore_ascii_case("n") || name.eq_ignore_ascii_case("neutral") {
             continue;
         }
         segments.push(columns.segment(line, &row)?);
@@ -201,9 +225,23 @@ mod tests {
     }
 
     #[test]
+    fn columns_beside_those_of_a_segment() {
+        let segments = [TakeSegment::new("joy", 10..20), TakeSegment::new("a, b", 20..30)];
+        let beside = [["0.5".to_owned(), "fear".to_owned()], [String::new(), "x,y".to_owned()]];
+        let text = write_segments_with(&segments, 10.0, &["probability", "second"], &beside);
+        let rows: Vec<&str> = text.lines().collect();
+        assert!(rows[0].ends_with(",start_s,end_s,probability,second"));
+        assert_eq!(rows[1], "joy,10,19,10,19,1,2,0.5,fear");
+        assert_eq!(rows[2], "\"a, b\",20,29,20,29,2,3,,\"x,y\"");
+        assert_eq!(read_segments(&text).unwrap(), segments);
+    }
+
+    #[test]
     fn three_columns_are_enough_and_neutral_is_left_out() {
         let text = "\u{feff}label,first_frame,last_frame\r\nN,0,79\r\nanger1,80,309\r\n\r\n";
         assert_eq!(read_segments(text).unwrap(), [TakeSegment::new("anger1", 80..310)]);
+        let all = [TakeSegment::new("N", 0..80), TakeSegment::new("anger1", 80..310)];
+        assert_eq!(read_labelled_segments(text).unwrap(), all);
         let text = "label,first_frame,end_frame\na,80,310\n";
         assert_eq!(read_segments(text).unwrap(), [TakeSegment::new("a", 80..310)]);
     }

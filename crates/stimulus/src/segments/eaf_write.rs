@@ -193,12 +193,27 @@ impl EafDocument {
         before..element.end
     }
 
-    /// The segments of a tier at a rate; each annotation is a clip that is all expression.
-    /// Annotations without a word, or called `N` or `neutral`, are left out and counted.
+    /// The expressions of a tier at a rate: [`EafDocument::labelled_segments`] without those of the
+    /// neutral face, which are counted among what is left out.
     ///
     /// # Errors
     /// [`EafError`]: no such tier.
     pub fn segments(&self, tier: &str, rate_hz: f64) -> Result<EafSegments, EafError> {
+        let mut found = self.labelled_segments(tier, rate_hz)?;
+        let all = found.segments.len();
+        found.segments.retain(|segment| !segment.is_neutral());
+        found.left_out.neutral = all - found.segments.len();
+        Ok(found)
+    }
+
+    /// The segments of a tier at a rate, those of the neutral face and of transitions, too; each
+    /// annotation is a clip that is all expression. Annotations without a word, without times or
+    /// shorter than a frame are left out and counted. Annotations of a tier that belong to another
+    /// tier's have its times.
+    ///
+    /// # Errors
+    /// [`EafError`]: no such tier.
+    pub fn labelled_segments(&self, tier: &str, rate_hz: f64) -> Result<EafSegments, EafError> {
         let found = self.tier(tier).ok_or_else(|| {
             let names: Vec<&str> = self.tiers().iter().map(|t| t.id.as_str()).collect();
             EafError {
@@ -207,16 +222,13 @@ impl EafDocument {
                 remedy: "name one of its tiers",
             }
         })?;
-        let frame = |ms: u64| (ms as f64 * rate_hz / 1000.0).round() as usize;
         let mut left_out = LeftOut { without_times: found.without_times, ..LeftOut::default() };
         let mut segments = Vec::new();
         for annotation in &found.annotations {
             let word = annotation.value.trim();
-            let frames = frame(annotation.start_ms)..frame(annotation.end_ms);
+            let frames = annotation.frames(rate_hz);
             if word.is_empty() {
                 left_out.without_word += 1;
-            } else if word.eq_ignore_ascii_case("n") || word.eq_ignore_ascii_case("neutral") {
-                left_out.neutral += 1;
             } else if frames.is_empty() {
                 left_out.without_frame += 1;
             } else {
@@ -267,8 +279,14 @@ impl LeftOut {
     }
 }
 
-/// The expressions of segments as annotations.
+/// Annotations and frames.
 impl EafAnnotation {
+    /// The frames of an annotation: milliseconds times rate / 1000, halves up.
+    pub fn frames(&self, rate_hz: f64) -> Range<usize> {
+        let frame = |ms: u64| (ms as f64 * rate_hz / 1000.0).round() as usize;
+        frame(self.start_ms)..frame(self.end_ms)
+    }
+
     /// The expression of a segment, without lead-in and lead-out.
     pub fn of(segment: &TakeSegment, rate_hz: f64) -> Self {
         let ms = |frame: usize| (frame as f64 * 1000.0 / rate_hz).round() as u64;

@@ -8,11 +8,13 @@
 //! ```
 
 mod activity;
+mod borders;
 mod csv;
 mod eaf;
 mod eaf_read;
 mod eaf_times;
 mod eaf_write;
+mod literal;
 mod peaks;
 mod study;
 mod suggest;
@@ -20,10 +22,13 @@ mod suggest;
 use std::ops::Range;
 
 pub use activity::{Activity, ActivityOptions, Channels, bridge};
-pub use csv::{SegmentFileError, read_segments, write_segments};
+pub use borders::{BorderRule, stretches};
+pub use csv::{
+    SegmentFileError, read_labelled_segments, read_segments, write_segments, write_segments_with,
+};
 pub use eaf::{EafAnnotation, EafDocument, EafError, EafTier};
 pub use eaf_write::{EafSegments, LeftOut};
-pub use peaks::{nearest_quantile, peaks};
+pub use literal::Literal;
 pub use study::study_segments;
 pub use suggest::{SuggestError, SuggestOptions, Suggestion, Timeline, TimelineSegment, suggest};
 
@@ -42,6 +47,11 @@ impl TakeSegment {
     /// A clip that is all expression.
     pub fn new(label: impl Into<String>, frames: Range<usize>) -> Self {
         Self { label: label.into(), clip: frames.clone(), expression: frames }
+    }
+
+    /// Whether it is called `N` or `neutral`: the face at rest, which is no expression.
+    pub fn is_neutral(&self) -> bool {
+        ["n", "neutral"].iter().any(|name| self.label.eq_ignore_ascii_case(name))
     }
 
     /// Share of frames that two expressions have in common: intersection over union.

@@ -10,7 +10,7 @@ const BORDER_S: f64 = 0.12;
 ///
 /// `root` is the root of [`Activity::energy`](super::Activity::energy), a number a frame; of fewer than
 /// three frames there are none.
-pub fn peaks(root: &[f64], rate_hz: f64) -> Vec<usize> {
+pub(super) fn peaks(root: &[f64], rate_hz: f64) -> Vec<usize> {
     let frames = root.len();
     if frames < 3 {
         return Vec::new();
@@ -44,7 +44,7 @@ pub fn peaks(root: &[f64], rate_hz: f64) -> Vec<usize> {
 }
 
 /// The order statistic of ascending numbers that is nearest to a share of their way; 0 of none.
-pub fn nearest_quantile(sorted: &[f64], share: f64) -> f64 {
+pub(super) fn nearest_quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * sorted.len().saturating_sub(1) as f64;
     sorted.get(at.round() as usize).copied().unwrap_or(0.0)
 }

@@ -10,14 +10,16 @@ use std::ops::Range;
 use mimique_mocap::FilterError;
 use serde::Serialize;
 
-use super::peaks::{nearest_quantile, peaks};
-use super::{Activity, ActivityOptions, Channels, TakeSegment};
+use super::peaks::nearest_quantile;
+use super::{Activity, ActivityOptions, BorderRule, Channels, TakeSegment};
 
 /// What the user decides.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SuggestOptions {
     /// How activity is measured.
     pub activity: ActivityOptions,
+    /// Which of its peaks are borders.
+    pub rule: BorderRule,
     /// Frames in which the face is neutral; found where not given.
     pub neutral: Option<Range<usize>>,
     /// Names of the expressions, in order of time; `expression 1`... where there are none left.
@@ -134,8 +136,8 @@ pub fn suggest(take: Channels<'_>, options: &SuggestOptions) -> Result<Suggestio
         return Err(SuggestError::Neutral { start, end, frames });
     }
     let activity = Activity::of(take, &options.activity)?;
-    let root: Vec<f64> = activity.energy.iter().map(|e| e.sqrt()).collect();
-    let borders = peaks(&root, take.rate_hz);
+    let root = activity.root();
+    let borders = options.rule.borders(&activity, take.rate_hz);
     let neutral = neutral_face(&activity.smooth, frames, &root, options.neutral.clone());
     let level: Vec<f64> = (0..frames)
         .map(|f| {

@@ -22,7 +22,7 @@ use serde::Serialize;
 use self::anchors::Anchors;
 use self::motion::{marker_motion, ranks_agree, rigid_to};
 use self::registration::register;
-use crate::{AvatarSkin, MappedMarker, MarkerMap, MarkerPlace};
+use crate::{AvatarSkin, MapOrigin, MappedMarker, MarkerMap, MarkerPlace};
 
 /// Farther than this from the skin a marker is not on it, metres.
 pub const OFF_SKIN_M: f64 = 0.02;
@@ -242,6 +242,7 @@ impl SuggestedMap {
             face: face.collect(),
             head: head.map(|m| m.label.clone()).collect(),
             neutral: Some(self.neutral.clone()),
+            origin: MapOrigin::Suggested,
             ..MarkerMap::default()
         }
     }

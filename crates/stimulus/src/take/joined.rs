@@ -5,15 +5,17 @@ use std::ops::Range;
 use mimique_geometry::RigidMotion;
 use mimique_mocap::Capture;
 use mimique_solver::{
-    FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite, Method,
-    MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth, SurfaceResponse,
+    Adaptation, FitError, FrontEnd, FrontEndError, Hold, MarkerColumns, MarkerFrames, MarkerSite,
+    Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth,
+    SurfaceResponse,
 };
 
 use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
+use super::gaze::JoinedGaze;
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
+use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
 
 /// Frames that a neutral should be the mean of.
 pub(crate) const NEUTRAL_FRAMES: usize = 60;
@@ -47,6 +49,8 @@ pub struct JoinedTake<'a> {
     pub(crate) first_frame: u64,
     pub(crate) repair: Option<String>,
     pub(crate) lids: Vec<JoinedLid>,
+    pub(crate) gaze: Option<JoinedGaze>,
+    pub(crate) map_origin: MapOrigin,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -98,7 +102,12 @@ impl<'a> JoinedTake<'a> {
         };
         let mut joined = Self::of_markers(skin, capture, from, head, neutral, warnings)?;
         joined.repair = options.repair.clone();
+        joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
+        if let Some(given) = &options.gaze {
+            joined.add_gaze(capture, given)?;
+            joined.warnings.extend(joined.gaze_beyond_eyes());
+        }
         Ok(joined)
     }
 
@@ -180,6 +189,8 @@ impl<'a> JoinedTake<'a> {
             first_frame: capture.first_frame,
             repair: None,
             lids: Vec::new(),
+            gaze: None,
+            map_origin: MapOrigin::Unknown,
             warnings,
         })
     }
@@ -187,6 +198,11 @@ impl<'a> JoinedTake<'a> {
     /// What should be said of map, capture and avatar together.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// The face markers on the welded skin, in the order of operators and displacements.
+    pub fn sites(&self) -> &[MarkerSite] {
+        &self.markers
     }
 
     /// Whether scale factors come from the bank's range of motion.
@@ -260,7 +276,7 @@ impl<'a> JoinedTake<'a> {
             &poses,
             self.neutral.clone(),
             avatar_markers,
-            depth,
+            Adaptation { depth, smoothing: spec.rbf_smoothing() },
         )
         .map_err(|e| self.by_label(e))?;
         let scales = self.scales(&front_end, &poses, operators, spec)?;

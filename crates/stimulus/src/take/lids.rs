@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use mimique_avatar::turns_eyes;
 use mimique_clip::with_gaze_at_rest;
 use mimique_geometry::{Point, RigidMotion};
 use mimique_mocap::Capture;
-use mimique_solver::{FrontEnd, Group, MarkerSite, MethodSpec};
+use mimique_solver::{FrontEnd, Gaze, Group, MarkerSite, MethodSpec, Untold};
 
 use super::joined::{JoinedTake, metres};
 use super::lid_opening::{LidEdge, LidRange, actor_range, lid_weights};
@@ -25,11 +26,19 @@ pub(crate) struct JoinedLid {
 
 impl JoinedTake<'_> {
     /// The method with the shapes held at 0 that its markers do not tell: those of the lids that lid
-    /// markers drive, and those that turn the eyes.
+    /// markers drive, those that turn the eyes, and those that noise of 1 mm would move over their whole range
+    /// ([`Untold`]).
     pub fn with_shapes_held(&self, spec: &MethodSpec) -> MethodSpec {
         let mut spec = with_gaze_at_rest(spec, &self.skin.shape_names);
         if !spec.method.uses(Group::Shapes) {
             return spec;
+        }
+        // A gaze that is given turns the eyes, and nothing else does.
+        for name in self.gaze.iter().flat_map(|gaze| &gaze.names) {
+            spec.bounds.remove(name);
+            if !spec.locked.contains(name) {
+                spec.locked.push(name.clone());
+            }
         }
         for name in self.lids.iter().flat_map(|l| [Some(&l.closed), l.wide.as_ref()]).flatten() {
             let bounded = spec.bounds.contains_key(name);
@@ -37,7 +46,24 @@ impl JoinedTake<'_> {
                 spec.locked.push(name.clone());
             }
         }
+        if spec.untold() == Untold::Hold {
+            // Eyes that markers are asked to turn are asked for by name.
+            let asked = |name: &str| spec.gaze() != Gaze::Rest && turns_eyes(name);
+            let untold: Vec<&String> = self.untold().filter(|name| !asked(name)).collect();
+            for name in untold {
+                if !spec.bounds.contains_key(name) && !spec.locked.contains(name) {
+                    spec.locked.push(name.clone());
+                }
+            }
+        }
         spec
+    }
+
+    /// Names of the shapes that lid markers and a given gaze drive.
+    pub(crate) fn driven_shapes(&self) -> impl Iterator<Item = &String> {
+        let lids =
+            self.lids.iter().flat_map(|lid| [Some(&lid.closed), lid.wide.as_ref()]).flatten();
+        lids.chain(self.gaze.iter().flat_map(|gaze| &gaze.names))
     }
 
     /// The lid markers as columns after the others.

@@ -2,6 +2,7 @@
 
 mod adjustments;
 mod found_neutral;
+mod gaze;
 mod joined;
 mod lid_opening;
 mod lids;
@@ -9,6 +10,7 @@ mod provenance;
 mod repair_sidecar;
 mod report;
 mod segment;
+mod shape_row;
 mod solve;
 mod solve_error;
 mod training;
@@ -16,8 +18,10 @@ mod training;
 pub use joined::{JoinedTake, SetUp};
 pub use lid_opening::{Lid, LidEdge};
 pub use repair_sidecar::{FileHash, RepairSidecar, SidecarError, sidecar_path};
-pub(crate) use report::unseen_shapes;
+pub(crate) use report::untold_shapes;
 pub use report::{FrameRow, RegressionSummary, SolveReport, StageSeconds};
+pub(crate) use shape_row::held_shapes;
+pub use shape_row::{ShapeRow, ShapeState};
 pub use solve::{SolvedCapture, TakeOptions, solve_take};
 pub use solve_error::SolveError;
 pub use training::Training;

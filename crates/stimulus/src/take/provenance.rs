@@ -26,7 +26,7 @@ impl JoinedTake<'_> {
             .numbers("capture.positions", &self.positions)
             .json("capture.rateHz", self.rate_hz)
             .json("capture.labels", self.labels.clone())
-            .json("map.markers", self.sites())
+            .json("map.markers", self.places())
             .json("map.head", self.head_labels())
             .json("map.neutral", json!([self.neutral.start, self.neutral.end]))
             .method(spec);
@@ -37,16 +37,19 @@ impl JoinedTake<'_> {
             let lids = self.lids.iter().map(|l| json!([l.label, l.edge, l.closed, l.wide]));
             made = made.json("map.lids", lids.collect::<Vec<_>>());
         }
+        if let Some(gaze) = &self.gaze {
+            made = made.json("gaze", gaze.given().key());
+        }
         self.adjustments(made)
     }
 
     /// A hash of the face markers and their places on the skin.
     pub(crate) fn marker_key(&self) -> String {
-        Provenance::default().json("markers", self.sites()).hash()
+        Provenance::default().json("markers", self.places()).hash()
     }
 
     /// The markers, each with its vertex, or corners and barycentric coordinates.
-    fn sites(&self) -> Value {
+    fn places(&self) -> Value {
         let place = |site: &MarkerSite| -> Value {
             match site.parts().collect::<Vec<_>>()[..] {
                 [(vertex, _)] => json!(vertex),

@@ -2,11 +2,12 @@
 
 use mimique_clip::FrameStatistics;
 use mimique_solver::{
-    Fit, FrameReport, Kernel, Method, MethodSpec, Operators, Regression, bank_columns,
+    Fit, FrameReport, Kernel, Method, MethodSpec, Operators, Regression, bank_columns, is_told,
 };
 use serde::Serialize;
 
-use crate::checks::{HeadMarker, LabelProblem};
+use super::ShapeRow;
+use crate::checks::{GazeStatistics, HeadMarker, LabelProblem, SmoothingAdvice};
 
 /// The seconds of each stage of a solve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -111,6 +112,12 @@ pub struct SolveReport {
     pub head_lowpass_hz: Option<f64>,
     /// The shapes that turn the eyes and rest, since no gaze is given.
     pub gaze_at_rest: Vec<String>,
+    /// Where the eyes look; none of a bank that turns no eye.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<GazeStatistics>,
+    /// How each shape of the bank gets its weight, and how well the markers tell it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shapes_told: Vec<ShapeRow>,
     /// The method with every parameter that it used.
     pub method: MethodSpec,
     /// l = sqrt(tr(D^T D) / N), millimetres.
@@ -130,6 +137,9 @@ pub struct SolveReport {
     pub head_markers: Vec<HeadMarker>,
     /// Labels that are swapped or stand at one place.
     pub label_problems: Vec<LabelProblem>,
+    /// What a smoothed adaptation of shape would gain, where it is advised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<SmoothingAdvice>,
     /// SHA-256 of the weights.
     pub weights_hash: String,
     /// SHA-256 of all that the weights come from, and of the weights.
@@ -138,24 +148,24 @@ pub struct SolveReport {
     pub frames: Vec<FrameRow>,
 }
 
-/// Shapes that move no marker by a millimetre at weight 1, and are not locked.
-pub(crate) fn unseen_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
+/// Shapes that the markers do not tell and that are solved for all the same.
+pub(crate) fn untold_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
     // A surface has no shapes; what a regression knows of a shape it knows from its training.
     if matches!(spec.method, Method::ThinShellSurface | Method::Regression) {
         return None;
     }
-    let names: Vec<&str> = operators
-        .parts()
-        .shape_names
-        .iter()
-        .zip(operators.marker_reach())
-        .filter(|(name, reach)| *reach < 1e-3 && !spec.locked.contains(name))
-        .map(|(name, _)| name.as_str())
+    let parts = operators.parts();
+    let n = parts.shape_names.len();
+    let square =
+        |k: usize| -> f64 { parts.marker_deltas.chunks_exact(n).map(|row| row[k] * row[k]).sum() };
+    let names: Vec<&str> = (0..n)
+        .filter(|&k| !is_told(square(k)) && !spec.locked.contains(&parts.shape_names[k]))
+        .map(|k| parts.shape_names[k].as_str())
         .collect();
     (!names.is_empty()).then(|| {
         format!(
-            "{} shapes move no marker by 1 mm, so the markers hardly tell their weights: {}; \
-             lock them to 0 or place markers where they move",
+            "the markers do not tell the weights of {} shapes, which noise of 1 mm moves over their whole range: {}; \
+             what they get is the method's prior: lock them, or place markers where they move",
             names.len(),
             names.join(", ")
         )

@@ -52,7 +52,9 @@ impl JoinedTake<'_> {
     ) -> Result<SegmentMarkers, SolveError> {
         let (front_end, poses) = self.front_end(operators, spec)?;
         let width = 3 * self.labels.len();
-        let (driven_shapes, driven_weights) = self.lid_tracks(&front_end, &poses, frames.clone());
+        let lids = self.lid_tracks(&front_end, &poses, frames.clone());
+        let gaze = self.gaze_tracks(&front_end, &poses, frames.clone());
+        let (driven_shapes, driven_weights) = beside(lids, gaze, frames.len());
         Ok(SegmentMarkers {
             driven_shapes,
             driven_weights,
@@ -76,7 +78,7 @@ impl JoinedTake<'_> {
     ///
     /// # Errors
     /// [`SolveError`] of the front end.
-    pub(crate) fn motion(
+    pub fn motion(
         &self,
         operators: &Operators,
         spec: &MethodSpec,
@@ -97,4 +99,20 @@ impl JoinedTake<'_> {
             }
         }
     }
+}
+
+/// Two tables of named columns as one, row by row.
+fn beside(
+    (mut names, left): (Vec<String>, Vec<f64>),
+    (more, right): (Vec<String>, Vec<f64>),
+    rows: usize,
+) -> (Vec<String>, Vec<f64>) {
+    let widths = [names.len(), more.len()];
+    let row =
+        |values: &[f64], width: usize, row: usize| values[row * width..(row + 1) * width].to_vec();
+    let weights = (0..rows)
+        .flat_map(|f| [row(&left, widths[0], f), row(&right, widths[1], f)].concat())
+        .collect();
+    names.extend(more);
+    (names, weights)
 }

@@ -7,11 +7,11 @@ use mimique_mocap::{Capture, WeightsTable};
 use mimique_solver::{FitError, MarkerSite, Method, MethodSpec, Operators, SurfaceResponse};
 
 use super::report::{
-    FrameRow, RegressionSummary, SolveReport, StageSeconds, dependent_shapes, unseen_shapes,
+    FrameRow, RegressionSummary, SolveReport, StageSeconds, dependent_shapes, untold_shapes,
 };
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
-use crate::{AvatarSkin, Depth, MarkerMap, ScaleRule};
+use crate::{AvatarSkin, Depth, GazeStatistics, GivenGaze, MarkerMap, ScaleRule, SmoothingAdvice};
 
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,6 +29,8 @@ pub struct TakeOptions {
     pub scale: ScaleRule,
     /// Where the third coordinate comes from; the map's where not given.
     pub depth: Option<Depth>,
+    /// Where the eyes look; they rest where it is not given, but for what the method asks of the markers.
+    pub gaze: Option<GivenGaze>,
 }
 
 /// Weights and their report.
@@ -66,6 +68,7 @@ pub fn solve_take(
     spec.validate().map_err(FitError::from)?;
     let start = clock();
     let joined = JoinedTake::new(skin, capture, map, options)?;
+    let written = spec;
     let asked = joined.with_shapes_held(spec);
     let spec = &asked.at_rate(joined.rate_hz);
     let SetUp { operators, surface } = joined.set_up(&asked, options.training.as_deref())?;
@@ -87,6 +90,7 @@ pub fn solve_take(
     };
     let mut report = report(&joined, spec, &operators, &solution, checks);
     report.seconds = seconds;
+    report.shapes_told = joined.shape_rows(written, &asked, &operators);
     report.warnings.extend(joined.unfiltered_head(&asked));
     report.warnings.extend(dependent_shapes(&operators, spec, &solution.fit));
     report.warnings.extend(surface.as_ref().and_then(adrift));
@@ -106,6 +110,7 @@ pub fn solve_take(
 struct Checks {
     head_markers: Vec<HeadMarker>,
     label_problems: Vec<LabelProblem>,
+    smoothing: Option<SmoothingAdvice>,
 }
 
 impl Checks {
@@ -117,7 +122,9 @@ impl Checks {
     ) -> Result<Self, SolveError> {
         let label_problems =
             if is_fitted(spec) { joined.label_problems(operators, solution) } else { Vec::new() };
-        Ok(Self { head_markers: joined.head_markers()?, label_problems })
+        let residual = FrameStatistics::of(&solution.reports).residual_rms_mm;
+        let smoothing = joined.smoothing_advice(operators, spec, Some(residual))?;
+        Ok(Self { head_markers: joined.head_markers()?, label_problems, smoothing })
     }
 }
 
@@ -127,14 +134,17 @@ fn report(
     spec: &MethodSpec,
     operators: &Operators,
     solution: &MarkerSolution,
-    Checks { head_markers, label_problems }: Checks,
+    Checks { head_markers, label_problems, smoothing }: Checks,
 ) -> SolveReport {
     let summary = FrameStatistics::of(&solution.reports);
     let mut warnings = joined.warnings.clone();
     warnings.extend(moving_skin(&head_markers));
     warnings.extend(label_problems.iter().map(LabelProblem::sentence));
-    warnings.extend(unseen_shapes(operators, spec));
+    warnings.extend(smoothing.as_ref().map(SmoothingAdvice::sentence));
+    warnings.extend(untold_shapes(operators, spec));
     warnings.extend(summary.warnings(joined.first_frame));
+    let gaze = GazeStatistics::of(&operators.parts().shape_names, &solution.weights);
+    warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(joined.first_frame)));
     SolveReport {
         avatar: joined.skin.name.clone(),
         vertices: joined.skin.mesh.positions.len(),
@@ -145,6 +155,8 @@ fn report(
         rate_hz: joined.rate_hz,
         head_lowpass_hz: solution.motion.head_lowpass_hz,
         gaze_at_rest: solution.gaze_at_rest.clone(),
+        gaze,
+        shapes_told: Vec::new(),
         method: spec.resolved(),
         data_scale_mm: 1e3 * operators.data_scale().sqrt(),
         shell_scale_m2: operators.shell_scale(),
@@ -154,6 +166,7 @@ fn report(
         regression: operators.parts().regression.as_ref().map(RegressionSummary::of),
         head_markers,
         label_problems,
+        smoothing,
         provenance: String::new(),
         weights_hash: weights_hash(&solution.weights),
         frames: FrameRow::of(&solution.reports, joined.first_frame),

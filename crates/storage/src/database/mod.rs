@@ -6,6 +6,7 @@
 //! told from a mistake of ours. Code generic over `sqlx::Database` would repeat eight bounds at each
 //! function and be compiled twice.
 
+mod builder;
 mod dialect;
 pub(crate) mod postgres;
 pub(crate) mod sqlite;
@@ -19,8 +20,12 @@ use sqlx::{
     ColumnIndex, Database, Decode, Encode, Postgres, Row as _, SqlSafeStr, SqlStr, Sqlite, Type,
 };
 
+pub(crate) use self::builder::Builder;
 pub(crate) use self::dialect::Dialect;
 use crate::error::StorageError;
+
+/// Connections that read: exports and the dashboard read for long, and participants do not wait for them.
+const READERS: u32 = 6;
 
 /// Connections to one database; cheap to clone.
 #[derive(Clone)]
@@ -276,6 +281,18 @@ impl<'v> Statement<'v> {
         }
     }
 
+    /// Every row, one after the other, on a connection of its own.
+    pub fn stream_from(self, pool: &Pool) -> BoxStream<'_, Result<Row, StorageError>> {
+        match pool {
+            Pool::Sqlite(pool) => {
+                self.bound().fetch(pool).map_ok(Row::Sqlite).map_err(StorageError::from).boxed()
+            }
+            Pool::Postgres(pool) => {
+                self.bound().fetch(pool).map_ok(Row::Postgres).map_err(StorageError::from).boxed()
+            }
+        }
+    }
+
     /// The statement as one of the two databases takes it. Values are copied into it.
     fn bound<D: Database + HasStatementCache>(self) -> Query<'static, D, D::Arguments>
     where
@@ -292,52 +309,6 @@ impl<'v> Statement<'v> {
             };
         }
         query
-    }
-}
-
-/// A statement that is put together piece by piece, for a number of rows known only then.
-pub(crate) struct Builder<'v> {
-    text: String,
-    values: Vec<Value<'v>>,
-}
-
-impl<'v> Builder<'v> {
-    pub fn new(text: impl Into<String>) -> Self {
-        Self { text: text.into(), values: Vec::new() }
-    }
-
-    pub fn push(&mut self, text: &str) {
-        self.text.push_str(text);
-    }
-
-    /// Adds values with commas between them; `{}` in the form stands for a value's place.
-    pub fn push_list(&mut self, form: &str, values: impl IntoIterator<Item = Value<'v>>) {
-        for (index, value) in values.into_iter().enumerate() {
-            if index > 0 {
-                self.text.push_str(", ");
-            }
-            self.values.push(value);
-            self.text.push_str(&form.replace("{}", &format!("${}", self.values.len())));
-        }
-    }
-
-    /// Adds `VALUES (…), (…)`, a bracket for each row.
-    pub fn push_rows<const WIDTH: usize>(
-        &mut self,
-        form: &str,
-        rows: impl IntoIterator<Item = [Value<'v>; WIDTH]>,
-    ) {
-        self.text.push_str("VALUES ");
-        for (index, row) in rows.into_iter().enumerate() {
-            self.text.push_str(if index > 0 { ", (" } else { "(" });
-            self.push_list(form, row);
-            self.text.push(')');
-        }
-    }
-
-    pub fn finish(self) -> Statement<'v> {
-        let text = sqlx::AssertSqlSafe(self.text).into_sql_str();
-        Statement { text, values: self.values, is_kept: true }
     }
 }
 

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 
-use super::{Opened, Pool, dialect};
+use super::{Opened, Pool, READERS, dialect};
 use crate::address::without_password;
 use crate::error::StorageError;
 
-/// Connects: a connection for each lane that writes and four that read.
+/// Connects: a connection for each lane that writes and six that read.
 pub(crate) async fn open(url: &str) -> Result<Opened, StorageError> {
     let options = options(url)?;
     let pool = |size| {
@@ -19,7 +19,7 @@ pub(crate) async fn open(url: &str) -> Result<Opened, StorageError> {
             .connect_with(options.clone())
     };
     let lanes = dialect::POSTGRES.lanes as u32;
-    let [writers, readers] = [pool(lanes).await?, pool(4).await?].map(Pool::Postgres);
+    let [writers, readers] = [pool(lanes).await?, pool(READERS).await?].map(Pool::Postgres);
     Ok(Opened { writers, readers, wiper: None })
 }
 

@@ -6,11 +6,11 @@ use std::time::Duration;
 use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 
-use super::{Opened, Pool};
+use super::{Opened, Pool, READERS};
 use crate::durable_file;
 use crate::error::StorageError;
 
-/// Connects to the file, made when absent: one connection that writes, four that read, and one that brings
+/// Connects to the file, made when absent: one connection that writes, six that read, and one that brings
 /// the log into the file, which does not wait long for others.
 pub(crate) async fn open(path: &Path) -> Result<Opened, StorageError> {
     close_to_others(path);
@@ -25,7 +25,7 @@ pub(crate) async fn open(path: &Path) -> Result<Opened, StorageError> {
             })
             .connect_with(options(path))
     };
-    let (writers, readers) = (pool(1).await?, pool(4).await?);
+    let (writers, readers) = (pool(1).await?, pool(READERS).await?);
     let wiper = SqlitePoolOptions::new()
         .max_connections(1)
         .connect_with(options(path).busy_timeout(WIPER_PATIENCE))

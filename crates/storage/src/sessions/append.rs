@@ -3,12 +3,15 @@
 
 use std::collections::{HashMap, HashSet};
 
+use futures_util::stream::StreamExt as _;
 use mimique_session::wire::Acknowledged;
-use mimique_session::{Misfit, Record, SessionLimits, Standing};
+use mimique_session::{Misfit, SessionLimits, Standing};
 use sha2::{Digest, Sha256};
 
 use super::gaps::{first_gap, missing_between};
-use super::row::{COUNTED_EVENTS, SESSION_COLUMNS, event, session_record};
+use super::row::{
+    COUNTED_WITHOUT_PLAYS, SESSION_COLUMNS, counted_event, record_of, session_record,
+};
 use crate::database::{Builder, Transaction, Value, query, signed};
 use crate::error::StorageError;
 use crate::records::{Appended, SessionRecord, WrittenEvent};
@@ -184,9 +187,11 @@ async fn count_in(
 ) -> Result<Appended, StorageError> {
     let mut conflicts = Vec::new();
     let before = session.event_count;
-    let mut filled = false;
+    let (mut filled, mut is_first_sign) = (false, false);
     for event in &append.events {
         if inserted.remove(&(session.key, event.sequence)) {
+            // Anybody can send anything: only what a page can send shows that one is there.
+            is_first_sign |= session.last_event_ms.is_none() && event.misfit.is_none();
             session.event_count += 1;
             session.stored_bytes += event.body.len() as u64;
             session.next_sequence = session.next_sequence.max(event.sequence + 1);
@@ -201,9 +206,9 @@ async fn count_in(
     if filled {
         session.first_gap = first_gap(transaction, session).await?;
     }
-    if session.event_count > before {
+    if session.event_count > before && (is_first_sign || session.last_event_ms.is_some()) {
         session.last_event_ms = Some(append.now_ms);
-        if let Some(expires_ms) = renewed(session, append.now_ms) {
+        if let Some(expires_ms) = renewed(session, append.now_ms, is_first_sign) {
             session.slot_expires_ms = Some(expires_ms);
         }
     }
@@ -219,10 +224,10 @@ async fn stand(
     transaction: &mut Transaction,
     session: &mut SessionRecord,
 ) -> Result<(), StorageError> {
-    let rows = query(COUNTED_EVENTS).bind(session.key).fetch_all(&mut *transaction).await?;
-    let events: Vec<_> =
-        rows.iter().map(|row| event(session.key, row)).collect::<Result<_, _>>()?;
-    session.standing = Record::of(None, &events).standing;
+    let (key, end) = (session.key, signed(session.next_sequence));
+    let rows = query(COUNTED_WITHOUT_PLAYS).bind(key).bind(end).stream(transaction);
+    let record = record_of(rows.map(move |row| counted_event(key, &row?))).await?;
+    session.standing = record.standing;
     if session.standing == Standing::Completed {
         session.slot_expires_ms = None;
     } else if !session.standing.is_open() {
@@ -237,10 +242,12 @@ async fn stand(
 }
 
 /// The end of the slot's reservation after a sign of life, where it is worth writing: in its second
-/// half. A reservation that has run out is not renewed: the slot may be somebody else's already.
-fn renewed(session: &SessionRecord, now_ms: i64) -> Option<i64> {
+/// half. A reservation that has run out is not renewed: the slot may be somebody else's already. The first sign
+/// of life begins it, however late it comes, unless somebody else has the slot.
+fn renewed(session: &SessionRecord, now_ms: i64, is_first_sign: bool) -> Option<i64> {
     let left = session.slot_expires_ms?.saturating_sub(now_ms);
-    (left > 0 && left < session.slot_lasts_ms / 2).then(|| now_ms + session.slot_lasts_ms)
+    let is_due = is_first_sign || (left > 0 && left < session.slot_lasts_ms / 2);
+    is_due.then(|| now_ms + session.slot_lasts_ms)
 }
 
 /// Writes what [`count_in`] has changed. The rows are locked: nobody else has changed them.

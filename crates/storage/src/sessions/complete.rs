@@ -1,11 +1,13 @@
 //! The end of a session: every event is there, and the receipt says so.
 
+use futures_util::stream::StreamExt as _;
+
 use super::find::open_session;
 use super::gaps::missing_between;
 use super::receipt::ReceiptHasher;
 use crate::database::{Transaction, query, signed};
 use crate::error::StorageError;
-use crate::records::Completed;
+use crate::records::{Completed, SessionRecord};
 
 /// Completes a session, or finds the receipt that it has already.
 pub(super) async fn complete(
@@ -24,21 +26,7 @@ pub(super) async fn complete(
         let missing = missing_between(transaction, session.key, range).await?;
         return Err(StorageError::MissingEvents { missing });
     }
-    let mut hasher = ReceiptHasher::new(receipt_key, &session.study_id, session.participant);
-    let rows = query(
-        "SELECT sequence, at_ms, body FROM events WHERE session_key = $1 AND sequence < $2 \
-         ORDER BY sequence",
-    )
-    .bind(session.key)
-    .bind(signed(events))
-    .fetch_all(&mut *transaction)
-    .await?;
-    for row in &rows {
-        let body: String = row.get("body")?;
-        let sequence = row.unsigned("events", "sequence")?;
-        hasher.add(sequence, row.get("at_ms")?, &body);
-    }
-    let receipt = hasher.finish();
+    let receipt = receipt(transaction, &session, events, receipt_key).await?;
     query(
         "UPDATE sessions SET ended_ms = $1, receipt = $2, receipt_events = $3 \
          WHERE session_key = $4",
@@ -50,4 +38,27 @@ pub(super) async fn complete(
     .execute(transaction)
     .await?;
     Ok(Completed { key: session.key, study_id: session.study_id, receipt, stored: events })
+}
+
+/// The receipt over the first events of a session, one of which is in memory at a time.
+async fn receipt(
+    transaction: &mut Transaction,
+    session: &SessionRecord,
+    events: u64,
+    receipt_key: &[u8],
+) -> Result<String, StorageError> {
+    let mut hasher = ReceiptHasher::new(receipt_key, &session.study_id, session.participant);
+    let mut rows = query(
+        "SELECT sequence, at_ms, body FROM events WHERE session_key = $1 AND sequence < $2 \
+         ORDER BY sequence",
+    )
+    .bind(session.key)
+    .bind(signed(events))
+    .stream(transaction);
+    while let Some(row) = rows.next().await {
+        let row = row?;
+        let body: String = row.get("body")?;
+        hasher.add(row.unsigned("events", "sequence")?, row.get("at_ms")?, &body);
+    }
+    Ok(hasher.finish())
 }

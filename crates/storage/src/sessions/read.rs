@@ -1,15 +1,21 @@
 //! Sessions and their events, read.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
+use futures_util::stream::{BoxStream, StreamExt as _};
+use mimique_session::Record;
 use mimique_session::wire::Event;
 use sqlx::AssertSqlSafe;
 
-use super::row::{COUNTED_EVENTS, SESSION_COLUMNS, event, session_record};
+use super::row::{
+    COUNTED_EVENTS, COUNTED_WITHOUT_PLAYS, SESSION_COLUMNS, check_json, counted_event, event,
+    record_of, session_record,
+};
 use crate::database::{Row, query, signed};
 use crate::error::StorageError;
 use crate::handle::Storage;
-use crate::records::{RecruitmentEntry, SessionRecord, StoredEvent, WrittenEvent};
+use crate::records::{CountedEvent, RecruitmentEntry, SessionRecord, StoredEvent};
 
 impl Storage {
     /// The session with this token's hash.
@@ -61,54 +67,56 @@ impl Storage {
         rows.iter().map(|row| event(session_key, row)).collect()
     }
 
-    /// Some of the stored events of a session, from a sequence on, their bodies as text: a piece of what
-    /// may be much. Empty after the last.
-    pub async fn events_from(
+    /// The stored events of a session with sequences in a range, one after the other: neither how many there
+    /// are nor how large they are matters. While they are read a connection is held.
+    pub fn stored_events(
         &self,
         session_key: i64,
-        sequence: u64,
-    ) -> Result<Vec<WrittenEvent>, StorageError> {
-        const MOST: i64 = 16;
-        let rows = query(
-            "SELECT sequence, at_ms, body FROM events WHERE session_key = $1 AND sequence >= $2 \
-             ORDER BY sequence LIMIT $3",
-        )
-        .bind(session_key)
-        .bind(signed(sequence))
-        .bind(MOST)
-        .fetch_all(&self.readers)
-        .await?;
-        let written = |row: &Row| -> Result<WrittenEvent, StorageError> {
-            Ok(WrittenEvent {
-                sequence: row.unsigned("events", "sequence")?,
-                at_ms: row.get("at_ms")?,
-                body: row.get("body")?,
-                may_end: false,
-                misfit: None,
-            })
+        sequences: Range<u64>,
+    ) -> BoxStream<'_, Result<StoredEvent, StorageError>> {
+        let stored = move |row: Row| -> Result<StoredEvent, StorageError> {
+            let body: String = row.get("body")?;
+            check_json(session_key, &body)?;
+            let (sequence, at_ms) = (row.unsigned("events", "sequence")?, row.get("at_ms")?);
+            Ok(StoredEvent { sequence, at_ms, body, misfit: row.get("misfit")? })
         };
-        rows.iter().map(written).collect()
-    }
-
-    /// The events of a session that count, by sequence: what tables, dashboard and standing are made of.
-    pub async fn counted_events(&self, session_key: i64) -> Result<Vec<Event>, StorageError> {
-        let rows = query(COUNTED_EVENTS).bind(session_key).fetch_all(&self.readers).await?;
-        rows.iter().map(|row| event(session_key, row)).collect()
-    }
-
-    /// Every stored event of a session, by sequence, with what is wrong with it.
-    pub async fn stored_events(&self, session_key: i64) -> Result<Vec<StoredEvent>, StorageError> {
         let rows = query(
             "SELECT sequence, at_ms, body, misfit FROM events WHERE session_key = $1 \
-             ORDER BY sequence",
+             AND sequence >= $2 AND sequence < $3 ORDER BY sequence",
         )
         .bind(session_key)
-        .fetch_all(&self.readers)
-        .await?;
-        let stored = |row: &Row| -> Result<StoredEvent, StorageError> {
-            Ok(StoredEvent { event: event(session_key, row)?, misfit: row.get("misfit")? })
-        };
-        rows.iter().map(stored).collect()
+        .bind(signed(sequences.start))
+        .bind(signed(sequences.end))
+        .stream_from(&self.readers);
+        rows.map(move |row| row.and_then(stored)).boxed()
+    }
+
+    /// The events of a session that count, those with sequences below `end`, one after the other: what tables,
+    /// dashboard and standing are made of.
+    pub fn counted_events(
+        &self,
+        session_key: i64,
+        end: u64,
+    ) -> BoxStream<'_, Result<CountedEvent, StorageError>> {
+        let rows = query(COUNTED_EVENTS).bind(session_key).bind(signed(end));
+        let rows = rows.stream_from(&self.readers);
+        rows.map(move |row| counted_event(session_key, &row?)).boxed()
+    }
+
+    /// What they make of the session, without a plan.
+    pub async fn record(&self, session_key: i64, end: u64) -> Result<Record, StorageError> {
+        record_of(self.counted_events(session_key, end)).await
+    }
+
+    /// The same without what was measured of plays: what was answered, in a part of the time.
+    pub async fn record_without_plays(
+        &self,
+        session_key: i64,
+        end: u64,
+    ) -> Result<Record, StorageError> {
+        let rows = query(COUNTED_WITHOUT_PLAYS).bind(session_key).bind(signed(end));
+        let rows = rows.stream_from(&self.readers);
+        record_of(rows.map(move |row| counted_event(session_key, &row?))).await
     }
 
     /// How many differing bodies were sent for stored sequences, by session key.
@@ -129,6 +137,15 @@ impl Storage {
             .collect()
     }
 
+    /// How many differing bodies were sent for stored sequences of one session.
+    pub async fn conflict_count(&self, session_key: i64) -> Result<u64, StorageError> {
+        let row = query("SELECT COUNT(*) AS conflicts FROM event_conflicts WHERE session_key = $1")
+            .bind(session_key)
+            .fetch_one(&self.readers)
+            .await?;
+        row.unsigned("event_conflicts", "conflicts")
+    }
+
     /// The recruitment identifiers of one session, by name.
     pub async fn session_recruitment(
         &self,
@@ -139,6 +156,22 @@ impl Storage {
             .fetch_all(&self.readers)
             .await?;
         rows.iter().map(|row| Ok((row.get("name")?, row.get("value")?))).collect()
+    }
+
+    /// The names of the recruitment identifiers that a study's participants have, in alphabetical order.
+    pub async fn recruitment_names(&self, study_id: &str) -> Result<Vec<String>, StorageError> {
+        let rows = query(
+            "SELECT DISTINCT r.name AS name FROM recruitment r \
+             JOIN sessions s ON s.session_key = r.session_key WHERE s.study_id = $1",
+        )
+        .bind(study_id)
+        .fetch_all(&self.readers)
+        .await?;
+        let mut names: Vec<String> =
+            rows.iter().map(|row| row.get("name")).collect::<Result<_, _>>()?;
+        // By bytes, whatever order the database sorts by.
+        names.sort();
+        Ok(names)
     }
 
     /// The recruitment identifiers of a study's participants, by participant and name.

@@ -10,9 +10,10 @@ use mimique_study::{Draw, drawn_condition};
 use sqlx::AssertSqlSafe;
 
 use super::find::find_session;
+use super::row::DUE_MS;
 use crate::database::{Transaction, query, unsigned};
 use crate::error::StorageError;
-use crate::records::{NewSession, SessionRecord};
+use crate::records::{FIRST_SIGN_OF_LIFE_MS, NewSession, SessionRecord};
 
 /// Starts a session, or finds the one with its token.
 pub(super) async fn start(
@@ -44,7 +45,7 @@ pub(super) async fn start(
         .bind(&session.study_id)
         .execute(&mut *transaction)
         .await?;
-    let expires_ms = session.now_ms + session.reservation_ms;
+    let expires_ms = session.now_ms + session.reservation_ms.min(FIRST_SIGN_OF_LIFE_MS);
     let place = Place { participant, slot, condition, expires_ms };
     let key = insert(transaction, session, &place).await?;
     insert_recruitment(transaction, session, key).await?;
@@ -171,7 +172,7 @@ fn fresh(session: &NewSession, place: &Place<'_>, key: i64) -> Result<SessionRec
 fn holds_place(now_ms: &str) -> String {
     format!(
         "(status = '{}' OR (status = '{}' AND deleted_ms IS NULL \
-         AND COALESCE(last_event_ms, started_ms) + slot_lasts_ms > {now_ms}))",
+         AND {DUE_MS} > {now_ms}))",
         Standing::Completed.stored_word(),
         Standing::InProgress.stored_word(),
     )

@@ -131,6 +131,7 @@ fn touches(place: &str, issue: &Issue) -> bool {
         | "no-companion"
         | "missing-video"
         | "bad-video"
+        | "bad-exertion"
         | "unused"
         | "unused-question"
         | "unused-factor"

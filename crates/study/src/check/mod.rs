@@ -12,6 +12,7 @@ mod between;
 mod conditions;
 mod conduct;
 mod damage;
+mod exertion;
 mod general;
 mod hypotheses;
 mod issue;

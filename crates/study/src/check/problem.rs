@@ -286,8 +286,31 @@ MethodOnVideo { method: String }: "bad-video", "method \"{method}\" cannot anima
 PartOfClipId { name: String }: "bad-id",
     "\"{name}\" cannot be part of a clip's identifier", "use letters, digits, _ and -";
 NoSource: "one-source",
-    "neither builtin nor file", "give one: \"builtin\": {{}} or \"file\": \"...\"";
-TwoSources: "one-source", "both builtin and file", "give one: \"builtin\": {{}} or \"file\": \"...\"";
+    "neither builtin, file nor exertion",
+    "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
+SeveralSources: "one-source", "several of builtin, file and exertion",
+    "give one: \"builtin\": {{}}, \"file\": \"...\" or \"exertion\": {{\"builtin\": \"run\", \"for\": 300}}";
+NoMotion: "one-source", "none of builtin, motion, activity and plan",
+    "give one: \"builtin\": \"run\", \"motion\": \"run.bvh\", \"activity\": \"ride.fit\" or \"plan\": [...]";
+TwoMotions: "one-source", "several of builtin, motion, activity and plan",
+    "give one: \"builtin\": \"run\", \"motion\": \"run.bvh\", \"activity\": \"ride.fit\" or \"plan\": [...]";
+SeveralMotions: "one-source", "several of builtin, motion, activity and work in one part",
+    "give one in each part of the plan, or none for rest";
+PartWithoutLength: "wrong-length", "a part that nothing tells the length of",
+    "add \"for\": 60, the seconds of rest or work";
+PlanHasLength: "not-needed", "a plan is as long as its parts", "write \"for\" in the parts of the plan";
+ConstantWork { work: f64 }: "out-of-range", "{work} J/kg in a second",
+    "write 0 for rest, 5 for a walk, 15 for a run; at most 120";
+PastExertion { end: usize, frames: usize }: "bad-range",
+    "the segment ends at frame {end}, the exertion has {frames}",
+    "write first and end within its frames, 60 per second, or let the body go on for longer (\"for\")";
+LengthOfExertion { seconds: f64 }: "out-of-range", "{seconds} seconds",
+    "write how long the body goes on, above 0 and at most 86400";
+ExertionMarkers: "not-needed", "the face of an exertion is computed, without markers",
+    "remove markers, head, unit, neutral and headLowpassHz";
+MethodOnExertion { method: String, capture: String }: "bad-exertion",
+    "method \"{method}\" solves markers; the exertion \"{capture}\" has weights",
+    "show it with a method {{\"method\": \"recorded\"}}: choose in /stimuli/clips";
 Unit { unit: String }: "unknown-word", "\"{unit}\" is not a unit", "write m, cm or mm";
 NeutralFrames { first: usize, end: usize }: "bad-range",
     "frames {first} to {end} are none", "write the first frame and the one after the last";
@@ -297,6 +320,15 @@ NothingPasses { hertz: f64 }: "out-of-range",
     "{hertz} Hz lets nothing pass", "take a frequency above 0, or leave it out";
 FrameRate { hertz: f64 }: "out-of-range", "{hertz} frames a second show no face as it moves",
     "take 60 (what most displays show), another rate from 15 to 1000, or leave it out";
+ClipsUnlike { what: String, remedy: &'static str }: "clips-unlike", "{what}", "{remedy}";
+NotPrepared { message: String }: "not-prepared", "{message}", "correct it, or the study cannot be served";
+GazeSources: "bad-gaze", "not exactly one of held, file, target and performed gives the gaze",
+    "give one of them, as \"gaze\": {{ \"held\": {{ \"azimuth\": 0 }} }}";
+GazeAngle { degrees: f64, least: f64, most: f64 }: "out-of-range",
+    "eyes do not turn by {degrees} degrees", "write degrees from {least} to {most}";
+GazeTarget: "bad-gaze", "only a capture of a file has a marker that the eyes look at",
+    "give the gaze by held or file";
+GazePerformed: "bad-gaze", "only a built-in actor performs a gaze", "give the gaze by held, file or target";
 NoMarkers: "no-markers", "no marker map: nothing says where the markers sit on the avatar",
     "add \"markers\": \"map.json\"";
 NoNeutral: "no-neutral", "no frames of the neutral face",
@@ -311,7 +343,7 @@ Intensity { intensity: u8 }: "out-of-range", "intensity {intensity}", "write 1, 
 CutOfActor: "bad-segment", "a cut of a built-in actor is a performance, not frames",
     "write \"performance\": {{\"expression\": \"joy\", \"intensity\": 2}} alone";
 CutOfFile: "bad-segment",
-    "a cut of a file is its frames", "write \"first\" and \"end\", and no performance";
+    "a cut of a file or of an exertion is its frames", "write \"first\" and \"end\", and no performance";
 Parameter { message: String, remedy: String }: "bad-parameter", "{message}", "{remedy}";
 NoTraining: "no-training", "no training: a regression learns from a range of motion",
     "add \"training\": {{\"capture\": \"...\", \"weights\": \"weights.csv\"}}";
@@ -320,6 +352,10 @@ LearnsNothing { method: String }: "not-needed",
 NoWeights: "no-weights",
     "no weights: nothing says what the take's frames are", "add \"weights\": \"weights.csv\"";
 BuiltinWeights: "not-needed", "a built-in actor brings the weights along", "remove weights";
+SmoothingAdvised { capture: String, why: String, residual_mm: f64, smoothed_mm: f64, smoothing: f64 }:
+    "smoothing-advised",
+    "{why}: rbfSmoothing {smoothing} lowers the residual of \"{capture}\" from {residual_mm:.3} to {smoothed_mm:.3} mm",
+    "add \"rbfSmoothing\": {smoothing} to the method, or 0 to keep the adaptation exact";
 FactorIsColumn { factor: String }: "name-taken",
     "\"{factor}\" is the name of a column of every export", "give the factor another name";
 FactorTwice { factor: String, here: &'static str, there: &'static str }: "factor-twice",

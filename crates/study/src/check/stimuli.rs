@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::{FileLookup, Subject, avatars};
+use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
-use crate::study_file::{Capture, CaptureSource, Component, Sequence, SequenceItem};
+use crate::study_file::{Capture, CaptureSource, Component, GazeSource, Sequence, SequenceItem};
 
 /// Frames a second that a clip can be shown at.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=1000.0;
@@ -23,11 +23,17 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
         identifier(name, &pointer, issues);
-        one_source(capture.builtin.is_some(), capture.file.is_some(), &pointer, issues);
+        one_source(capture, &pointer, issues);
         file(capture.file.as_deref(), &below(&pointer, "file"), lookup, issues);
         file(capture.markers.as_deref(), &below(&pointer, "markers"), lookup, issues);
         recorded(capture, &pointer, issues);
+        gaze(capture, &below(&pointer, "gaze"), lookup, issues);
+        if let Some(own) = &capture.exertion {
+            exertion::examine(capture, own, &pointer, lookup, issues);
+        }
     }
+    exertion::methods(subject, issues);
+    exertion::segments(subject, issues);
     segments(subject, issues);
     for name in stimuli.methods.keys() {
         identifier(name, &below("/stimuli/methods", name), issues);
@@ -47,14 +53,20 @@ fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
     }
 }
 
-fn one_source(builtin: bool, file: bool, pointer: &str, issues: &mut Issues) {
-    if builtin == file {
-        let problem = if file { Problem::TwoSources } else { Problem::NoSource };
-        issues.error(pointer, problem);
+fn one_source(capture: &Capture, pointer: &str, issues: &mut Issues) {
+    if capture.source().is_none() {
+        let none =
+            capture.builtin.is_none() && capture.file.is_none() && capture.exertion.is_none();
+        issues.error(pointer, if none { Problem::NoSource } else { Problem::SeveralSources });
     }
 }
 
-fn file(path: Option<&str>, pointer: &str, lookup: &FileLookup<'_>, issues: &mut Issues) {
+pub(super) fn file(
+    path: Option<&str>,
+    pointer: &str,
+    lookup: &FileLookup<'_>,
+    issues: &mut Issues,
+) {
     if let Some(Err(problem)) = path.map(lookup) {
         issues.error(pointer, problem);
     }
@@ -96,6 +108,40 @@ fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
     }
 }
 
+/// The gaze: from one source, of angles that eyes have, from a capture that can give it.
+fn gaze(capture: &Capture, pointer: &str, lookup: &FileLookup<'_>, issues: &mut Issues) {
+    let Some(gaze) = &capture.gaze else { return };
+    match gaze.source() {
+        None => issues.error(pointer, Problem::GazeSources),
+        Some(GazeSource::Held(held)) => {
+            let angles = [
+                ("azimuth", held.azimuth, -45.0..=45.0),
+                ("elevation", held.elevation, -45.0..=45.0),
+                ("vergence", held.vergence, 0.0..=45.0),
+            ];
+            for (key, degrees, range) in angles {
+                if !range.contains(&degrees) {
+                    let (least, most) = (*range.start(), *range.end());
+                    let place = below(&below(pointer, "held"), key);
+                    issues.error(place, Problem::GazeAngle { degrees, least, most });
+                }
+            }
+        }
+        Some(GazeSource::File(path, _)) => {
+            file(Some(path), &below(pointer, "file"), lookup, issues);
+        }
+        Some(GazeSource::Target(_))
+            if !matches!(capture.source(), Some(CaptureSource::File(_))) =>
+        {
+            issues.error(below(pointer, "target"), Problem::GazeTarget);
+        }
+        Some(GazeSource::Performed) if capture.builtin.is_none() => {
+            issues.error(below(pointer, "performed"), Problem::GazePerformed);
+        }
+        Some(_) => {}
+    }
+}
+
 fn segments(subject: &Subject<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
     let captures: Vec<&str> = stimuli.captures.keys().map(String::as_str).collect();
@@ -122,12 +168,17 @@ fn segments(subject: &Subject<'_>, issues: &mut Issues) {
             (Some(CaptureSource::Builtin(_)), ..) => {
                 issues.error(pointer, Problem::CutOfActor);
             }
-            (Some(CaptureSource::File(_)), None, Some(first), Some(end)) => {
+            (
+                Some(CaptureSource::File(_) | CaptureSource::Exertion(_)),
+                None,
+                Some(first),
+                Some(end),
+            ) => {
                 if first >= end {
                     issues.error(pointer, Problem::SegmentFrames { first, end });
                 }
             }
-            (Some(CaptureSource::File(_)), ..) => {
+            (Some(CaptureSource::File(_) | CaptureSource::Exertion(_)), ..) => {
                 issues.error(pointer, Problem::CutOfFile);
             }
             (None, ..) => {}
@@ -175,6 +226,10 @@ fn training(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &mut Issues)
         match (capture.source(), &training.weights) {
             (Some(CaptureSource::File(_)), None) => {
                 issues.error(place, Problem::NoWeights);
+            }
+            (Some(CaptureSource::Exertion(_)), _) => {
+                let (method, capture) = (method.word().to_owned(), training.capture.clone());
+                issues.error(place, Problem::MethodOnExertion { method, capture });
             }
             (Some(CaptureSource::Builtin(_)), Some(_)) => {
                 issues.error(below(&place, "weights"), Problem::BuiltinWeights);

@@ -5,14 +5,19 @@ use chacha20::rand_core::{Rng, SeedableRng};
 use sha2::{Digest, Sha256};
 
 /// ChaCha20 whose key is the SHA-256 of seed, configuration, participant and purpose.
-pub struct Stream(ChaCha20Rng);
+pub struct Stream {
+    numbers: ChaCha20Rng,
+    /// The second of two normal numbers that were made together.
+    spare: Option<f64>,
+}
 
 impl Stream {
     /// The stream of one purpose; `participant` is `None` for what all participants share.
     pub fn new(seed: u64, config_hash: &str, participant: Option<u64>, purpose: &str) -> Self {
         let whose = participant.map_or_else(|| "everybody".to_owned(), |number| number.to_string());
         let name = format!("mimique 1\n{seed}\n{config_hash}\n{whose}\n{purpose}");
-        Self(ChaCha20Rng::from_seed(Sha256::digest(name.as_bytes()).into()))
+        let numbers = ChaCha20Rng::from_seed(Sha256::digest(name.as_bytes()).into());
+        Self { numbers, spare: None }
     }
 
     /// A whole number below `bound` (above 0), each equally likely: draws that would favour the low
@@ -21,7 +26,7 @@ impl Stream {
         let bound = bound.max(1) as u64;
         let fair = u64::MAX - u64::MAX % bound;
         loop {
-            let draw = self.0.next_u64();
+            let draw = self.numbers.next_u64();
             if draw < fair {
                 return (draw % bound) as usize;
             }
@@ -30,7 +35,19 @@ impl Stream {
 
     /// A number in [0, 1), in steps of 2^-53, each equally likely.
     pub fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.numbers.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A standard normal number (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        if let Some(spare) = self.spare.take() {
+            return spare;
+        }
+        // 1 - u is never 0.
+        let radius = (-2.0 * libm::log(1.0 - self.unit())).sqrt();
+        let (sine, cosine) = libm::sincos(std::f64::consts::TAU * self.unit());
+        self.spare = Some(radius * sine);
+        radius * cosine
     }
 
     /// Every order equally likely (Fisher and Yates).

@@ -8,6 +8,7 @@
 mod between;
 mod clips;
 mod conduct;
+mod exertion;
 mod general;
 mod hypotheses;
 mod languages;
@@ -31,6 +32,10 @@ pub use conduct::{
     AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,
     DeviceRules, FullscreenRule, ScreeningRule, StatedAnswers, StaticHosting, TimeLimit,
 };
+pub use exertion::{
+    BuiltinMotion, ExertionCapture, ExertionExpressivity, ExertionHeart, ExertionLoads,
+    ExertionPerson, ExertionPlanPart, ExertionSex, ExertionSource, WrittenPart,
+};
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
@@ -45,9 +50,9 @@ pub use sequence::{
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
 };
 pub use stimuli::{
-    Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureSource,
-    ClipCross, ClipEntry, ClipRules, DATA_PREFIX, Look, Performance, Segment, Span, Stimuli,
-    video_type,
+    Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureGaze,
+    CaptureSource, ClipCross, ClipEntry, ClipRules, DATA_PREFIX, GazeSource, HeldGaze, Look,
+    Performance, Segment, Span, Stimuli, video_type,
 };
 pub use tables::{Layout, TableLayout};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{BuiltinExpression, Factors, LocalText, MethodEntry};
+use super::{BuiltinExpression, ExertionCapture, Factors, LocalText, MethodEntry};
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -136,7 +136,7 @@ pub fn video_type(path: &str) -> Option<&'static str> {
     }
 }
 
-/// A performance as markers: exactly one of `builtin` and `file`.
+/// A performance: exactly one of `builtin`, `file` and `exertion`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Capture {
@@ -146,6 +146,9 @@ pub struct Capture {
     /// A C3D, TRC or CSV file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The face of a body that exerts itself, computed from the body's motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exertion: Option<ExertionCapture>,
     /// Unit of the file's coordinates where the file does not say: `m`, `cm`, `mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
@@ -161,6 +164,9 @@ pub struct Capture {
     /// Cut-off of the low-pass filter on the head's motion, Hz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_lowpass_hz: Option<f64>,
+    /// Where the eyes look in every clip of this capture; they rest if it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<CaptureGaze>,
     /// Frames a second that are solved and shown, the capture's own if not given. Fewer than the
     /// capture has: low-passed below what they can hold, then brought to the rate. At 60 Hz a
     /// participant loads and solves a third of a capture of 200 Hz. Segments and `neutral` still
@@ -181,6 +187,71 @@ pub struct BuiltinCapture {
     pub noise_mm: Option<f64>,
 }
 
+/// Where the eyes look in a capture: exactly one of `held`, `file`, `target` and `performed`. Every method shows
+/// the same gaze, and so do recorded weights.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct CaptureGaze {
+    /// One gaze throughout.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<HeldGaze>,
+    /// A table of `time` in seconds, `azimuth`, `elevation` and `vergence` in degrees, or recorded weights
+    /// with eyeLook shapes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// How many seconds after the file's clock the capture begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub later_s: Option<f64>,
+    /// Label of a marker of the capture that stands where the eyes look.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<String>,
+    /// The gaze that a built-in actor performs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub performed: bool,
+}
+
+/// One gaze of both eyes, degrees.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct HeldGaze {
+    /// To the person's left above 0.
+    #[serde(default)]
+    pub azimuth: f64,
+    /// Upwards above 0.
+    #[serde(default)]
+    pub elevation: f64,
+    /// Angle between both lines of sight: 0 for what is far away.
+    #[serde(default)]
+    pub vergence: f64,
+}
+
+/// What gives the gaze of a capture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GazeSource<'a> {
+    /// One gaze throughout.
+    Held(HeldGaze),
+    /// A file, and how many seconds after its clock the capture begins.
+    File(&'a str, f64),
+    /// A marker that stands where the eyes look.
+    Target(&'a str),
+    /// What the built-in actor performs.
+    Performed,
+}
+
+impl CaptureGaze {
+    /// What gives it; `None` unless exactly one is given.
+    pub fn source(&self) -> Option<GazeSource<'_>> {
+        let later_s = self.later_s.unwrap_or_default();
+        match (self.held, &self.file, &self.target, self.performed) {
+            (Some(held), None, None, false) => Some(GazeSource::Held(held)),
+            (None, Some(file), None, false) => Some(GazeSource::File(file, later_s)),
+            (None, None, Some(target), false) => Some(GazeSource::Target(target)),
+            (None, None, None, true) => Some(GazeSource::Performed),
+            _ => None,
+        }
+    }
+}
+
 /// Where a capture comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CaptureSource<'a> {
@@ -188,20 +259,23 @@ pub enum CaptureSource<'a> {
     Builtin(&'a BuiltinCapture),
     /// A file: relative to the study file, or behind [`DATA_PREFIX`].
     File(&'a str),
+    /// The face of a body that exerts itself.
+    Exertion(&'a ExertionCapture),
 }
 
 impl Capture {
     /// Where it comes from; `None` unless exactly one source is given.
     pub fn source(&self) -> Option<CaptureSource<'_>> {
-        match (&self.builtin, &self.file) {
-            (Some(builtin), None) => Some(CaptureSource::Builtin(builtin)),
-            (None, Some(file)) => Some(CaptureSource::File(file)),
+        match (&self.builtin, &self.file, &self.exertion) {
+            (Some(builtin), None, None) => Some(CaptureSource::Builtin(builtin)),
+            (None, Some(file), None) => Some(CaptureSource::File(file)),
+            (None, None, Some(exertion)) => Some(CaptureSource::Exertion(exertion)),
             _ => None,
         }
     }
 }
 
-/// A cut of a capture: `first` and `end` of a file, or `performance` of a built-in actor.
+/// A cut of a capture: `first` and `end` of a file or of an exertion, or `performance` of a built-in actor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Segment {
@@ -236,7 +310,7 @@ pub struct Performance {
 /// What a segment takes of its capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Span {
-    /// Frames `first..end` of a file.
+    /// Frames `first..end` of a file or of an exertion.
     Frames {
         /// First frame.
         first: usize,

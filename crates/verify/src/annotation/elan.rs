@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use mimique_annotate::Vocabulary;
-use mimique_annotate::labels::frame_of_ms;
 use mimique_stimulus::{EafAnnotation, EafDocument, TakeSegment};
 use serde_json::{Value, json};
 
@@ -29,9 +28,10 @@ pub(super) fn words(source: &Source<'_>, each: &mut dyn FnMut(Case)) -> Result<(
             rate.parse().map_err(|_| expected.wrong("a list named by a rate in Hz"))?;
         let read = |annotation: &EafAnnotation| {
             let mark = words.read(&annotation.value);
+            let frames = annotation.frames(rate_hz);
             json!({
-                "first": frame_of_ms(annotation.start_ms, rate_hz),
-                "end": frame_of_ms(annotation.end_ms, rate_hz),
+                "first": frames.start,
+                "end": frames.end,
                 "value": annotation.value,
                 "label": mark.and_then(|mark| words.name(mark)),
             })

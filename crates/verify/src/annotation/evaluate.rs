@@ -1,9 +1,9 @@
 //! `evaluate/`: scores of answers, their resamples, and calibration.
 
-use mimique_annotate::calibration::{brier, expected_error};
+use mimique_annotate::calibration::reliability;
 use mimique_annotate::evaluate::{
-    Comparison, Counts, FrameScores, Scores, Segment, SegmentCounts, answered_segments, edit,
-    interval, pairs, true_segments,
+    Comparison, Counts, FrameScores, Score, Segment, SegmentCounts, answered_segments, edit,
+    intervals, pairs, true_segments,
 };
 use mimique_annotate::{Marked, Temperature, Vocabulary};
 use serde_json::{Value, json};
@@ -18,15 +18,12 @@ const NEAR: Tolerance = Tolerance::Absolute(1e-12);
 /// Temperature and its loss.
 const FITTED: Tolerance = Tolerance::Absolute(1e-8);
 
-/// One number of the scores.
-type Score = fn(&Scores) -> Option<f64>;
-
-/// The scores that are resampled.
+/// The scores that are resampled, by their names in the cases.
 const RESAMPLED: [(&str, Score); 4] = [
-    ("accuracy", |s| s.frames.accuracy),
-    ("macro_f1", |s| s.frames.macro_f1),
-    ("kappa", |s| s.frames.kappa),
-    ("f1@50", |s| s.segments.f1[2]),
+    ("accuracy", Score::Accuracy),
+    ("macro_f1", Score::MacroF1),
+    ("kappa", Score::Kappa),
+    ("f1@50", Score::F1At50),
 ];
 
 fn optional(value: Option<f64>) -> Value {
@@ -172,7 +169,7 @@ fn resampled(source: &Source<'_>, all: &[Counts]) -> Result<Case, VerifyError> {
             case.refused(key, &"no score of that name is resampled");
             continue;
         };
-        let found = interval(all, &draws, level, score);
+        let found = intervals(all, &draws, level, &[*score]).map(|found| found[0]);
         let shown = |found: Option<[f64; 2]>| found.map_or(Value::Null, |two| numbers(&two));
         case.compare_outcome(key, expected.value(), found, NEAR, shown);
     }
@@ -187,9 +184,9 @@ fn calibration(source: &Source<'_>) -> Result<Case, VerifyError> {
     let computed: Result<(), Stop> = (|| {
         let probability = case.get("probability")?.numbers()?;
         let right: Vec<bool> = case.get("right")?.numbers()?.iter().map(|&r| r == 1.0).collect();
-        let ece = expected_error(&probability, &right, case.get("bins")?.index()?);
-        checking.outcome("ece", NEAR, ece, number);
-        checking.outcome("brier", NEAR, brier(&probability, &right), number);
+        let found = reliability(&probability, &right, case.get("bins")?.index()?)?;
+        checking.member("ece", NEAR, optional(found.expected_error()));
+        checking.member("brier", NEAR, optional(found.brier()));
         let (logits, truth) = (rows(&case.get("logits")?)?, case.get("truth")?.indices()?);
         let temperature = Temperature::fit(&logits, &truth)?;
         checking.member("temperature", FITTED, number(temperature.value()));

@@ -133,7 +133,7 @@ fn join(checking: &mut Checking<'_>) -> Result<(), Stop> {
     let likelihood = joined.hmm().log_likelihood(&sequence)?;
     checking.member("log_likelihood", RELATIVE, number(likelihood));
     let names = case.get("labels")?.texts()?;
-    let labels = joined.labels(&sequence)?;
+    let labels = joined.path(&sequence)?;
     let labels: Vec<Option<&&str>> = labels.into_iter().map(|label| names.get(label)).collect();
     checking.member("path_labels", Tolerance::Exact, json!(labels));
     let posterior = joined.posterior(&sequence)?.select(frames(&case, &sequence)?);

@@ -7,74 +7,33 @@ mod evaluate;
 mod markov;
 mod motion;
 
-use std::path::Path;
-
 use mimique_annotate::{AnnotateError, Rows};
 use serde_json::Value;
 
 use crate::case::{self, Tolerance};
-use crate::document::{Document, Part};
-use crate::{Case, Family, VerifyError};
-
-/// What reads the cases of one file.
-type Read = fn(&Source<'_>, &mut dyn FnMut(Case)) -> Result<(), VerifyError>;
-
-/// The files of the family and what computes their cases.
-const FILES: [(&str, Read); 13] = [
-    ("segmentation.json", motion::segmentation),
-    ("features.json", motion::features),
-    ("classify/knn.json", classify::neighbours),
-    ("classify/svm.json", classify::support_vectors),
-    ("classify/logistic.json", classify::logistic),
-    ("classify/forest.json", classify::forest),
-    ("hmm/given.json", markov::given),
-    ("hmm/baum_welch.json", markov::learnt),
-    ("hmm/composite.json", markov::joined),
-    ("hmm/label_path.json", markov::label_path),
-    ("evaluate/expected.json", evaluate::takes),
-    ("evaluate/small.json", evaluate::small),
-    ("elan/expected.json", elan::words),
-];
-
-/// A file of cases.
-struct Source<'a> {
-    folder: &'a Path,
-    document: Document,
-    /// Its name without ending: `hmm/given`.
-    name: &'a str,
-}
-
-impl Source<'_> {
-    /// A case of the file.
-    fn case(&self, own: impl std::fmt::Display) -> Case {
-        Case::new(format!("{}/{own}", self.name))
-    }
-}
+use crate::document::Part;
+use crate::files::{FileFamily, Source};
+use crate::{Case, VerifyError};
 
 /// The family.
-pub(crate) struct Annotation;
-
-impl Family for Annotation {
-    fn name(&self) -> &'static str {
-        "annotation"
-    }
-
-    fn holds(&self, folder: &Path) -> bool {
-        FILES.iter().any(|(file, _)| folder.join(file).is_file())
-    }
-
-    fn run(&self, folder: &Path, each: &mut dyn FnMut(Case)) -> Result<(), VerifyError> {
-        for (file, read) in FILES {
-            let path = folder.join(file);
-            if path.is_file() {
-                let document = Document::read(&path)?;
-                let name = file.trim_end_matches(".json");
-                read(&Source { folder, document, name }, each)?;
-            }
-        }
-        Ok(())
-    }
-}
+pub(crate) static ANNOTATION: FileFamily = FileFamily {
+    name: "annotation",
+    files: &[
+        ("segmentation.json", motion::segmentation),
+        ("features.json", motion::features),
+        ("classify/knn.json", classify::neighbours),
+        ("classify/svm.json", classify::support_vectors),
+        ("classify/logistic.json", classify::logistic),
+        ("classify/forest.json", classify::forest),
+        ("hmm/given.json", markov::given),
+        ("hmm/baum_welch.json", markov::learnt),
+        ("hmm/composite.json", markov::joined),
+        ("hmm/label_path.json", markov::label_path),
+        ("evaluate/expected.json", evaluate::takes),
+        ("evaluate/small.json", evaluate::small),
+        ("elan/expected.json", elan::words),
+    ],
+};
 
 /// What of a case is expected, and what was computed for it.
 struct Checking<'a> {

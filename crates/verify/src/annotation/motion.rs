@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use mimique_annotate::features::{StretchFeatures, level, mean, velocity};
-use mimique_annotate::stretches::{Literal, activity, borders, root, stretches};
+use mimique_annotate::stretches::Segmentation;
 use mimique_annotate::{CUTOFF_HZ, Take};
-use mimique_stimulus::ActivityOptions;
+use mimique_stimulus::{ActivityOptions, BorderRule, Literal, stretches};
 use serde_json::{Value, json};
 
 use super::{Checking, Source, Stop, shown};
@@ -18,7 +18,10 @@ const NEAR: Tolerance = Tolerance::Absolute(1e-9);
 /// Every number of energies: relative, however small.
 const RELATIVE: Tolerance = Tolerance::Relative { share: 1e-9, floor: 1e-300 };
 /// The stretches of the features: borders without blinks and gaze at 3 Hz, in a tenth of a second.
-const OF_FEATURES: ActivityOptions = ActivityOptions { cutoff_hz: 3.0, time_unit_s: 0.1 };
+const OF_FEATURES: Segmentation = Segmentation {
+    activity: ActivityOptions { cutoff_hz: 3.0, time_unit_s: 0.1, blinks_and_gaze: false },
+    rule: BorderRule::Peaks,
+};
 
 /// The take of a case and the names of its shapes.
 fn take(source: &Source<'_>, case: &Part<'_>) -> Result<(Take, Vec<String>), VerifyError> {
@@ -68,11 +71,13 @@ fn segmented(source: &Source<'_>, checking: &mut Checking<'_>) -> Result<(), Sto
     let (take, shapes) = take(source, &case)?;
     let ignored = case.get("ignore")?.texts()?;
     let take = without(&take, &shapes, |shape| ignored.contains(&shape))?;
-    let options = ActivityOptions {
+    let activity = ActivityOptions {
         cutoff_hz: case.get("cutoff_hz")?.number()?,
         time_unit_s: case.get("time_unit_s")?.number()?,
+        blinks_and_gaze: true,
     };
-    let activity = activity(&take, &options)?;
+    let segmentation = Segmentation { activity, rule: BorderRule::Peaks };
+    let activity = segmentation.activity(&take, &[])?;
     let at = frames(&case, &take)?;
     for (key, found) in [
         ("velocity", &activity.velocity),
@@ -81,7 +86,7 @@ fn segmented(source: &Source<'_>, checking: &mut Checking<'_>) -> Result<(), Sto
     ] {
         checking.member(key, RELATIVE, numbers(at.iter().map(|&frame| &found[frame])));
     }
-    let found = borders(&activity, take.rate_hz);
+    let found = segmentation.rule.borders(&activity, take.rate_hz);
     checking.member("borders", Tolerance::Exact, json!(found));
     let parts = stretches(&found, take.frames());
     checking.member("stretches", Tolerance::Exact, ranges(&parts));
@@ -90,7 +95,7 @@ fn segmented(source: &Source<'_>, checking: &mut Checking<'_>) -> Result<(), Sto
         window_s: literal.get("window_s")?.number()?,
         share: literal.get("share")?.number()?,
     };
-    let found = json!(rule.borders(&activity.energy, take.rate_hz));
+    let found = json!(BorderRule::Literal(rule).borders(&activity, take.rate_hz));
     let expected = literal.get("borders")?;
     checking.case.compare("literal/borders", expected.value(), &found, Tolerance::Exact);
     Ok(())
@@ -149,10 +154,8 @@ fn take_in_numbers(source: &Source<'_>, checking: &mut Checking<'_>) -> Result<(
     let levels = level(&smooth, &face);
     checking.member("level", NEAR, numbers(at.iter().map(|&frame| &levels[frame])));
 
-    let moving =
-        without(&take, &shapes, |s| s.starts_with("eyeBlink") || s.starts_with("eyeLook"))?;
-    let activity = activity(&moving, &OF_FEATURES)?;
-    let found = stretches(&borders(&activity, take.rate_hz), take.frames());
+    let root = OF_FEATURES.activity(&take, &shapes)?.root();
+    let found = OF_FEATURES.stretches(&take, &shapes)?;
     let expected = case.get("segments")?.list()?;
     checking.case.compare(
         "segments/length",
@@ -161,7 +164,7 @@ fn take_in_numbers(source: &Source<'_>, checking: &mut Checking<'_>) -> Result<(
         Tolerance::Exact,
     );
     for (place, (stretch, expected)) in found.into_iter().zip(expected).enumerate() {
-        let features = StretchFeatures::of(&take, &speed, &root(&activity), stretch.clone())?;
+        let features = StretchFeatures::of(&take, &speed, &root, stretch.clone())?;
         for (key, got, by) in stretch_in_numbers(&stretch, &features, fast) {
             let (field, expected) = (format!("segments/{place}/{key}"), expected.get(key)?);
             checking.case.compare(&field, expected.value(), &got, by);

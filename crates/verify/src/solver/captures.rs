@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use mimique_clip::{FrameStatistics, MarkerSolution, MarkerTake, TakeContent, solve_markers};
 use mimique_mocap::Capture;
-use mimique_solver::{Gaze, Method, MethodSpec, OperatorOptions};
+use mimique_solver::{Gaze, Method, MethodSpec, OperatorOptions, Untold};
 use mimique_stimulus::{JoinedTake, TakeOptions};
 use serde_json::{Value, json};
 
@@ -99,7 +99,12 @@ fn compared(
         _ => precision.weights,
     };
     // The stored optima are of a head that was not filtered, every shape solved.
-    let own = MethodSpec { head_lowpass_hz: Some(0.0), gaze: Some(Gaze::Markers), ..spec.clone() };
+    let own = MethodSpec {
+        head_lowpass_hz: Some(0.0),
+        gaze: Some(Gaze::Markers),
+        untold: Some(Untold::Solve),
+        ..spec.clone()
+    };
     Some((Ok(own), by))
 }
 

@@ -1,8 +1,8 @@
 //! Labels into and out of the expressions, CSV, ELAN and the segments of a study file.
 
-use std::fmt::Write as _;
-
-use mimique_stimulus::{EafAnnotation, EafDocument, TakeSegment, study_segments, write_segments};
+use mimique_stimulus::{
+    EafAnnotation, EafDocument, TakeSegment, study_segments, write_segments_with,
+};
 use serde_json::{Value, json};
 
 use super::WHAT;
@@ -75,23 +75,19 @@ impl Workspace {
     /// [`Problem`]: no take.
     pub fn labels_csv(&self) -> Result<String, Problem> {
         let (_, rate_hz) = self.length()?;
-        let mut header = write_segments(&[], rate_hz);
-        header.truncate(header.trim_end().len());
-        let mut text = format!("{header},probability,second,second_probability,confirmed\n");
-        for own in self.labels.boxes.all() {
-            let segment = self.segment_of(own);
-            let row = write_segments(std::slice::from_ref(&segment), rate_hz);
-            let row = row[header.len()..].trim();
-            // A name is written as the row has that of its segment.
-            let second = own.second.map(|(label, p)| (&self.labels.names[label], p));
-            let (name, p) = second.map_or((String::new(), String::new()), |(name, p)| {
-                (format!("\"{}\"", name.replace('"', "\"\"")), p.to_string())
-            });
-            let confirmed = u8::from(own.confirmed);
-            // Writing to a String does not fail.
-            let _ = writeln!(text, "{row},{},{name},{p},{confirmed}", own.probability);
-        }
-        Ok(text)
+        let boxes = self.labels.boxes.all();
+        let segments: Vec<TakeSegment> = boxes.iter().map(|own| self.segment_of(own)).collect();
+        let beside = |own: &LabelBox| {
+            let (second, probability) = match own.second {
+                Some((label, p)) => (self.labels.names[label].clone(), p.to_string()),
+                None => (String::new(), String::new()),
+            };
+            let confirmed = u8::from(own.confirmed).to_string();
+            [own.probability.to_string(), second, probability, confirmed]
+        };
+        let beside: Vec<[String; 4]> = boxes.iter().map(beside).collect();
+        let names = ["probability", "second", "second_probability", "confirmed"];
+        Ok(write_segments_with(&segments, rate_hz, &names, &beside))
     }
 
     /// The labels as tiers of an ELAN document: confirmed, suggested, and how probable those are; all

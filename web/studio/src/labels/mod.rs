@@ -5,7 +5,7 @@ mod boxes;
 mod carry;
 
 use mimique_annotate::{
-    AnnotatedTake, Decode, Lesson, Mark, Marked, Method, Model, Rows, Take as MotionTake,
+    AnnotatedTake, Decode, Decoding, Lesson, Mark, Marked, Method, Model, Rows, Take as MotionTake,
 };
 use serde_json::{Value, json};
 
@@ -113,15 +113,22 @@ impl Workspace {
         let (shapes, columns, method) = match &labelling.model {
             Some(model) => {
                 let columns = model.columns(&all_shapes).map_err(said)?;
-                (model.shapes.clone(), columns, model.settings)
+                (model.shapes.clone(), columns, model.settings.of_labels())
             }
             None => (all_shapes.clone(), (0..all_shapes.len()).collect(), Method::default()),
         };
-        let lesson =
-            Lesson { labels: labelling.names.clone(), shapes, method, thinned_to_hz: THINNED_HZ };
+        let lesson = Lesson {
+            channel: WHAT.to_owned(),
+            labels: labelling.names.clone(),
+            shapes,
+            method,
+            thinned_to_hz: Some(THINNED_HZ),
+            decoding: Decoding::default(),
+        };
         let annotated = AnnotatedTake {
             name: self.take_name().to_owned(),
             person: String::new(),
+            kind: String::new(),
             take: take.columns(&columns).map_err(said)?,
             marked: marked.collect(),
         };
@@ -253,7 +260,7 @@ impl Workspace {
         self.labels.boxes.get_mut(index).ok_or_else(|| Problem::of(WHAT, what))
     }
 
-    fn take_name(&self) -> &str {
+    pub(crate) fn take_name(&self) -> &str {
         match &self.take {
             Some(Take::Markers { name, .. } | Take::Weights { name, .. }) => name,
             None => "",

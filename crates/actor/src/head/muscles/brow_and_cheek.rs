@@ -27,7 +27,7 @@ pub(super) fn brow_down(flesh: &Flesh) -> Vec<Vec3> {
         let inner = flesh.spot(bit, (13.0, y), (11.0, 11.0));
         let middle = flesh.spot(bit, (31.0, y), (13.0, 10.0));
         let root = flesh.spot(bit, (5.0, 8.0), (8.0, 8.0));
-        v3(-3.6, -7.8, 2.2) * inner + v3(-1.6, -4.8, 1.2) * middle + v3(-0.6, -2.0, 1.2) * root
+        v3(-4.6, -8.6, 2.4) * inner + v3(-2.4, -5.4, 1.2) * middle + v3(-0.6, -2.4, 1.4) * root
     })
 }
 
@@ -63,11 +63,13 @@ pub(super) fn nose_sneer(flesh: &Flesh) -> Vec<Vec3> {
         let wing = flesh.spot(bit, (at.wing_half, at.nose_tip.y), (7.5, 8.5));
         let bridge = flesh.spot(bit, (9.0, -10.0), (8.0, 11.0));
         let fold = flesh.spot(bit, (24.0, -28.0), (10.0, 13.0));
+        let tip = flesh.spot(bit, (0.0, at.nose_tip.y), (12.0, 10.0));
         let brow = flesh.spot(bit, (11.0, at.brow_y - 2.0), (10.0, 9.0));
-        let mut d = v3(1.4, 4.8, -0.4) * wing
-            + v3(-0.8, 3.8, 2.6) * bridge
-            + v3(0.2, 3.2, 2.2) * fold
-            + v3(-1.4, -2.6, 0.9) * brow;
+        let mut d = v3(2.2, 5.4, -0.2) * wing
+            + v3(0.0, 1.8, 0.0) * tip
+            + v3(-0.4, 4.6, 2.6) * bridge
+            + v3(0.6, 4.6, 3.0) * fold
+            + v3(-1.4, -2.0, 0.9) * brow;
         if let Some(near) = flesh.near_lips(bit, 9.0) {
             let lift = super::super::vec3::bump((near.along - 0.45) / 0.4);
             d += v3(0.0, 2.6, 0.4) * (near.weight * near.upper * lift);

@@ -78,6 +78,7 @@ pub(super) fn squint(flesh: &Flesh) -> Vec<Vec3> {
     d
 }
 
+/// The levator lifts the upper lid off the iris; the lower one has no part in it.
 pub(super) fn wide(flesh: &Flesh) -> Vec<Vec3> {
-    slide(flesh, |u| 10.5 * arch(u), |u| -3.0 * arch(u))
+    slide(flesh, |u| 14.5 * arch(u), |u| -arch(u))
 }

@@ -1,4 +1,5 @@
-//! The 51 blendshapes, each a muscle's (or a few muscles') action on the control cage.
+//! The 51 blendshapes of the face, each a muscle's (or a few muscles') action on the control cage, and the
+//! three of the body.
 //!
 //! | shapes | muscle | FACS unit |
 //! |---|---|---|
@@ -27,30 +28,46 @@
 //! | jawOpen | digastric, relaxed masseter | AU 26, 27 |
 //! | jawForward, jawLeft, jawRight | pterygoids | AD 29, 30 |
 //! | cheekPuff | buccinator against the breath | AD 33, 34 |
+//! | breath | what lifts the ribs and widens the chest, scalenes | none |
+//! | flush, sweat | none: the stage shades the skin | none |
 
 mod brow_and_cheek;
+mod chest;
 mod field;
 mod jaw;
 mod lids;
 mod mouth;
 
+pub(crate) use chest::risen;
 pub(crate) use jaw::JawMotion;
 
 use super::Cage;
 use super::vec3::Vec3;
 use field::Flesh;
-use mimique_avatar::ARKIT_SHAPES;
+use mimique_avatar::{ARKIT_SHAPES, BODY_SHAPES};
 
-/// The 51 names, ARKit's without `tongueOut`, its last, in alphabetical order.
+/// The names of the face's shapes: ARKit's without `tongueOut`, its last, in alphabetical order.
 pub const SHAPE_NAMES: [&str; 51] = match ARKIT_SHAPES.first_chunk() {
     Some(names) => *names,
     None => unreachable!(),
 };
 
-/// Displacements of the cage's vertices, millimetres, one list per shape in [`SHAPE_NAMES`]' order.
+/// The names of all shapes of the head: the face's, then the body's.
+pub(crate) const HEAD_SHAPES: [&str; SHAPE_NAMES.len() + BODY_SHAPES.len()] = {
+    let mut names = [""; SHAPE_NAMES.len() + BODY_SHAPES.len()];
+    let mut k = 0;
+    while k < names.len() {
+        let face = SHAPE_NAMES.len();
+        names[k] = if k < face { SHAPE_NAMES[k] } else { BODY_SHAPES[k - face] };
+        k += 1;
+    }
+    names
+};
+
+/// Displacements of the cage's vertices, millimetres, one list per shape in [`HEAD_SHAPES`]' order.
 pub(crate) fn all(cage: &Cage) -> Vec<Vec<Vec3>> {
     let flesh = Flesh::new(cage);
-    SHAPE_NAMES
+    HEAD_SHAPES
         .iter()
         .map(|name| match (name.strip_suffix("Left"), name.strip_suffix("Right")) {
             // Whole mouth and jaw to one side: their own shapes, mirrored.
@@ -94,6 +111,7 @@ fn left(flesh: &Flesh, stem: &str) -> Vec<Vec3> {
 fn both(flesh: &Flesh, name: &str) -> Vec<Vec3> {
     match name {
         "browInnerUp" => flesh.on_both_sides(&brow_and_cheek::brow_inner_up(flesh)),
+        "breath" => chest::breath(flesh),
         "cheekPuff" => flesh.on_both_sides(&brow_and_cheek::cheek_puff(flesh)),
         "jawForward" => jaw::forward(flesh),
         "jawOpen" => jaw::open(flesh),

@@ -49,10 +49,14 @@ pub(super) fn stretch(flesh: &Flesh) -> Vec<Vec3> {
     flesh.map(|bit| {
         let corner = corner_pull(flesh, bit, 13.0);
         let neck = flesh.spot(bit, (34.0, at.chin_y + 8.0), (16.0, 12.0));
-        let mut d = v3(9.5, -3.0, -5.5) * corner + v3(2.0, -2.2, 0.0) * neck;
-        if let Some(near) = flesh.near_lips(bit, 7.0) {
-            let middle = bump(near.along / 0.5) * near.weight * left_along(near.along);
+        let mut d = v3(9.5, -4.2, -5.5) * corner + v3(2.0, -2.2, 0.0) * neck;
+        if let Some(near) = flesh.near_lips(bit, 8.0) {
+            let left = near.weight * left_along(near.along);
+            let middle = bump(near.along / 0.5) * left;
             d += v3(0.0, mix(-0.9, 0.2, near.upper), -1.4) * middle;
+            // The platysma draws the lower lip's sides out and down: a broad, flat opening.
+            let side = bump((near.along - 0.62) / 0.34) * left * (1.0 - near.upper);
+            d += v3(2.2, -3.4, -0.6) * side;
         }
         d
     })
@@ -165,7 +169,7 @@ pub(super) fn shrug_lower(flesh: &Flesh) -> Vec<Vec3> {
         if let Some(near) = flesh.near_lips(bit, 8.0) {
             let middle = 1.0 - libm::pow(near.along.abs(), 2.5);
             let own = near.weight * (1.0 - near.upper) * middle;
-            d += v3(0.0, 3.0, 1.6) * own + v3(0.0, -0.6, 2.6) * (own * red(bit));
+            d += v3(0.0, 3.8, 1.6) * own + v3(0.0, -0.6, 2.6) * (own * red(bit));
             // The lower lip pushes the upper one before it.
             d += v3(0.0, 2.2, 0.8) * (near.weight * near.upper * middle);
         }

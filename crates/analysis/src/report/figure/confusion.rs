@@ -7,47 +7,57 @@ use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Svg, clipped, shade};
 use crate::report::figure::{LEFT, RIGHT};
 
-/// Shown against answered: the share of each row.
-pub(crate) fn confusion(
+/// The words of a confusion matrix.
+pub struct ConfusionWords {
+    /// What it shows.
+    pub caption: String,
+    /// Over the rows: what was there.
+    pub rows: String,
+    /// Over the columns: what was answered.
+    pub columns: String,
+    /// Headings of what its table has beside the counts.
+    pub beside: Vec<String>,
+}
+
+/// A row of a confusion matrix.
+pub struct ConfusionRow {
+    /// Its place among the columns.
+    pub label: usize,
+    /// How often each was answered.
+    pub counts: Vec<u64>,
+    /// What its table has beside the counts.
+    pub beside: Vec<String>,
+}
+
+/// A confusion matrix as a heat map: the share of each row in percent. `recognised` says in words how
+/// much of each row was answered rightly.
+pub fn confusion_matrix(
     language: Language,
     id: &str,
-    of: &str,
-    result: &Confusion,
-    name: impl Fn(&str) -> String,
+    words: &ConfusionWords,
+    names: &[String],
+    rows: &[ConfusionRow],
+    recognised: &str,
 ) -> Figure {
-    let shown = result.shown();
-    let columns = result.labels.len();
-    let size = ((RIGHT - LEFT) / columns as f64).min(64.0);
+    let ConfusionWords { caption, rows: of_rows, columns, beside } = words;
+    let size = ((RIGHT - LEFT) / names.len() as f64).min(64.0);
     let (top, height) = (58.0, 40.0);
-    let caption = language.pick(
-        format!("{of}: emotion played (rows) and recognised (columns), percent of each row"),
-        format!(
-            "{of} : émotion jouée (lignes) et reconnue (colonnes), en pourcentage de chaque ligne"
-        ),
-    );
-    let mut svg = Svg::new(&caption, top + height * shown.len() as f64 + 14.0);
-    let names: Vec<String> = result.labels.iter().map(|label| name(label)).collect();
-    let mut data = DataTable::new(
-        id,
-        caption.clone(),
-        std::iter::once(language.pick("played", "jouée").to_owned())
-            .chain(names.iter().cloned())
-            .chain([language.pick("recall", "rappel").to_owned(), "95 %".to_owned()]),
-    );
-    svg.text(LEFT, 18.0, "soft", Anchor::Start, language.pick("recognised as", "reconnue comme"));
-    column_labels(&mut svg, &names, size);
-    let mut best = Vec::new();
-    for (i, label) in shown.iter().enumerate() {
+    let mut svg = Svg::new(caption, top + height * rows.len() as f64 + 14.0);
+    let headings = std::iter::once(of_rows).chain(names).chain(beside);
+    let mut data = DataTable::new(id, caption.clone(), headings.cloned());
+    svg.text(LEFT, 18.0, "soft", Anchor::Start, columns);
+    column_labels(&mut svg, names, size);
+    for (i, ConfusionRow { label, counts, beside }) in rows.iter().enumerate() {
         let y = top + height * i as f64;
-        svg.text(LEFT - 10.0, y + height / 2.0 + 4.0, "", Anchor::End, &clipped(&name(label), 15));
-        let row: u64 = result.labels.iter().map(|answer| result.count(label, answer)).sum();
-        let mut cells = vec![name(label)];
-        for (j, answer) in result.labels.iter().enumerate() {
-            let count = result.count(label, answer);
+        let name = &names[*label];
+        svg.text(LEFT - 10.0, y + height / 2.0 + 4.0, "", Anchor::End, &clipped(name, 15));
+        let row: u64 = counts.iter().sum();
+        let mut cells = vec![name.clone()];
+        for (j, &count) in counts.iter().enumerate() {
             let share = count as f64 / row as f64;
             let x = LEFT + size * j as f64;
             svg.rect([x + 1.0, y + 1.0, size - 2.0, height - 2.0], &shade(share));
-            if answer == label {
+            if j == *label {
                 svg.class_rect([x + 2.0, y + 2.0, size - 4.0, height - 4.0], "empty");
             }
             if count > 0 {
@@ -56,15 +66,47 @@ pub(crate) fn confusion(
             }
             cells.push(count.to_string());
         }
-        let [recall, interval] = recall_cells(language, result, label);
-        if !recall.is_empty() {
-            best.push(format!("{} {recall}", name(label)));
-        }
-        cells.extend([recall, interval]);
+        cells.extend(beside.iter().cloned());
         data.row(cells);
     }
-    let alt = alternative_text(language, shown.len(), columns, &best.join(", "));
-    Figure { id: id.to_owned(), caption, alt, svg: svg.finish(), data }
+    let alt = alternative_text(language, rows.len(), names.len(), recognised);
+    Figure { id: id.to_owned(), caption: caption.clone(), alt, svg: svg.finish(), data }
+}
+
+/// Emotions played against emotions recognised.
+pub(crate) fn confusion(
+    language: Language,
+    id: &str,
+    of: &str,
+    result: &Confusion,
+    name: impl Fn(&str) -> String,
+) -> Figure {
+    let words = ConfusionWords {
+        caption: language.pick(
+            format!("{of}: emotion played (rows) and recognised (columns), percent of each row"),
+            format!(
+                "{of} : émotion jouée (lignes) et reconnue (colonnes), en pourcentage de chaque ligne"
+            ),
+        ),
+        rows: language.pick("played", "jouée").to_owned(),
+        columns: language.pick("recognised as", "reconnue comme").to_owned(),
+        beside: vec![language.pick("recall", "rappel").to_owned(), "95 %".to_owned()],
+    };
+    let names: Vec<String> = result.labels.iter().map(|label| name(label)).collect();
+    let mut best = Vec::new();
+    let mut rows = Vec::new();
+    for label in result.shown() {
+        let beside = recall_cells(language, result, label);
+        if !beside[0].is_empty() {
+            best.push(format!("{} {}", name(label), beside[0]));
+        }
+        rows.push(ConfusionRow {
+            label: result.labels.iter().position(|own| own == label).unwrap_or(0),
+            counts: result.labels.iter().map(|answer| result.count(label, answer)).collect(),
+            beside: beside.to_vec(),
+        });
+    }
+    confusion_matrix(language, id, &words, &names, &rows, &best.join(", "))
 }
 
 /// The names of the answers above their columns.

@@ -3,6 +3,7 @@
 mod boxes;
 pub(crate) mod conditions;
 mod confusion;
+mod courses;
 mod differences;
 pub(crate) mod flow_chart;
 mod likert;
@@ -12,6 +13,8 @@ pub(crate) mod svg;
 
 pub(crate) use boxes::boxes;
 pub(crate) use confusion::confusion;
+pub use confusion::{ConfusionRow, ConfusionWords, confusion_matrix};
+pub use courses::{CoursePanel, time_courses};
 pub(crate) use differences::differences;
 pub(crate) use likert::likert;
 pub(crate) use shares::shares;

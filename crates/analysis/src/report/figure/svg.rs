@@ -5,14 +5,14 @@ use std::fmt::Write;
 use crate::report::document::escape;
 
 /// Width of every figure, so that text has the same size in all of them.
-pub(crate) const WIDTH: f64 = 440.0;
+pub const WIDTH: f64 = 440.0;
 
 /// Blues from light to dark, even steps of lightness: readable in grey and by the colour-blind.
 const LIGHTEST: [f64; 3] = [227.0, 238.0, 249.0];
 const DARKEST: [f64; 3] = [8.0, 48.0, 107.0];
 
 /// A drawing that grows downwards.
-pub(crate) struct Svg {
+pub struct Svg {
     body: String,
     height: f64,
     title: String,
@@ -20,18 +20,23 @@ pub(crate) struct Svg {
 
 /// Where a text is anchored.
 #[derive(Clone, Copy)]
-pub(crate) enum Anchor {
+pub enum Anchor {
+    /// It begins there.
     Start,
+    /// Its middle is there.
     Middle,
+    /// It ends there.
     End,
 }
 
 impl Svg {
-    pub(crate) fn new(title: &str, height: f64) -> Self {
+    /// An empty drawing of a height; its title says what it shows.
+    pub fn new(title: &str, height: f64) -> Self {
         Self { body: String::new(), height, title: title.to_owned() }
     }
 
-    pub(crate) fn text(&mut self, x: f64, y: f64, class: &str, anchor: Anchor, text: &str) {
+    /// A line of text.
+    pub fn text(&mut self, x: f64, y: f64, class: &str, anchor: Anchor, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -47,12 +52,13 @@ impl Svg {
     }
 
     /// A text on a filled area, light or dark by what is behind it.
-    pub(crate) fn text_on(&mut self, x: f64, y: f64, shade: f64, text: &str) {
+    pub fn text_on(&mut self, x: f64, y: f64, shade: f64, text: &str) {
         let class = if shade > 0.5 { "on-dark" } else { "on-light" };
         self.text(x, y, class, Anchor::Middle, text);
     }
 
-    pub(crate) fn rect(&mut self, [x, y, width, height]: [f64; 4], fill: &str) {
+    /// A filled rectangle: left, top, width, height.
+    pub fn rect(&mut self, [x, y, width, height]: [f64; 4], fill: &str) {
         let _ = writeln!(
             self.body,
             r#"<rect x="{}" y="{}" width="{}" height="{}" fill="{fill}"/>"#,
@@ -63,7 +69,8 @@ impl Svg {
         );
     }
 
-    pub(crate) fn class_rect(&mut self, [x, y, width, height]: [f64; 4], class: &str) {
+    /// The same in a style of its own.
+    pub fn class_rect(&mut self, [x, y, width, height]: [f64; 4], class: &str) {
         let _ = writeln!(
             self.body,
             r#"<rect x="{}" y="{}" width="{}" height="{}" class="{class}"/>"#,
@@ -74,7 +81,8 @@ impl Svg {
         );
     }
 
-    pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], class: &str) {
+    /// A straight line.
+    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], class: &str) {
         let _ = writeln!(
             self.body,
             r#"<line x1="{}" y1="{}" x2="{}" y2="{}" class="{class}"/>"#,
@@ -86,13 +94,25 @@ impl Svg {
     }
 
     /// A line through several points.
-    pub(crate) fn path(&mut self, points: &[[f64; 2]], class: &str) {
+    pub fn path(&mut self, points: &[[f64; 2]], class: &str) {
         let points: Vec<String> =
             points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
         let _ = writeln!(self.body, r#"<path d="M{}" class="{class}"/>"#, points.join("L"));
     }
 
-    pub(crate) fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
+    /// A line of a colour and dashes of its own.
+    pub fn coloured_path(&mut self, points: &[[f64; 2]], (colour, dashes): (&str, &str)) {
+        let points: Vec<String> =
+            points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        let _ = writeln!(
+            self.body,
+            r#"<path d="M{}" fill="none" stroke="{colour}" stroke-width="1.5" stroke-dasharray="{dashes}"/>"#,
+            points.join("L")
+        );
+    }
+
+    /// A filled circle.
+    pub fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
             self.body,
             r#"<circle cx="{}" cy="{}" r="{}" class="{class}"/>"#,
@@ -112,7 +132,8 @@ impl Svg {
         );
     }
 
-    pub(crate) fn finish(self) -> String {
+    /// The drawing as text.
+    pub fn finish(self) -> String {
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" class="mm-figure" aria-label="{title}">
 <style>{STYLE}</style>
@@ -169,7 +190,7 @@ pub(crate) fn short(value: f64) -> String {
 }
 
 /// Cuts a label to so many characters.
-pub(crate) fn clipped(text: &str, most: usize) -> String {
+pub fn clipped(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
     }
@@ -179,18 +200,20 @@ pub(crate) fn clipped(text: &str, most: usize) -> String {
 }
 
 /// An axis over a range of values: round ticks, and the place of a value between two edges.
-pub(crate) struct Axis {
+pub struct Axis {
     low: f64,
     high: f64,
     left: f64,
     right: f64,
+    /// Round values from the lowest to the highest.
     pub ticks: Vec<f64>,
     /// Decimals of the ticks.
     pub decimals: usize,
 }
 
 impl Axis {
-    pub(crate) fn new(low: f64, high: f64, left: f64, right: f64) -> Self {
+    /// An axis of values from `low` to `high` at least, between the edges `left` and `right`.
+    pub fn new(low: f64, high: f64, left: f64, right: f64) -> Self {
         let span = if high > low { high - low } else { 1.0 };
         let raw = span / 5.0;
         let power = 10f64.powf(raw.log10().floor());
@@ -217,7 +240,8 @@ impl Axis {
         }
     }
 
-    pub(crate) fn place(&self, value: f64) -> f64 {
+    /// Where a value lies.
+    pub fn place(&self, value: f64) -> f64 {
         self.left + (value - self.low) / (self.high - self.low) * (self.right - self.left)
     }
 }

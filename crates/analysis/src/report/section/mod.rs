@@ -22,7 +22,7 @@ use crate::hypothesis::HypothesisResult;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::report::ReportFile;
-use crate::report::document::{Block, Document, Figure, escape};
+use crate::report::document::{Block, Document, Figure};
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
@@ -260,13 +260,8 @@ impl Writer<'_> {
     }
 
     /// Adds a figure whose own label is its description.
-    pub(crate) fn figure(&mut self, mut figure: Figure) {
-        figure.svg = figure.svg.replacen(
-            &format!("aria-label=\"{}\"", escape(&figure.caption)),
-            &format!("aria-label=\"{}\"", escape(&figure.alt)),
-            1,
-        );
-        self.blocks.push(Block::Figure(figure));
+    pub(crate) fn figure(&mut self, figure: Figure) {
+        self.blocks.push(Block::figure(figure));
     }
 
     /// Shares of right answers by the levels of a factor.

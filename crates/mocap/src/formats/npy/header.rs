@@ -8,26 +8,82 @@ use crate::formats::source::{self, Source};
 
 /// What every array begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
-const REMEDY: &str = "save it with numpy.save(file, weights), float32 or float64, frames x shapes";
 /// Longest header: names and sizes of three keys take a hundred bytes.
 const LONGEST_HEADER: u64 = 1 << 16;
 
-/// The header of an array.
+/// The header of an array of R dimensions.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Header {
+pub(super) struct Header<const R: usize> {
     /// Bytes of a number: 4 or 8.
     pub(super) width: usize,
     pub(super) big_endian: bool,
     pub(super) fortran_order: bool,
-    pub(super) rows: usize,
-    pub(super) columns: usize,
+    pub(super) shape: [usize; R],
     /// Where the numbers begin, bytes from the start of the file.
     pub(super) data: u64,
 }
 
-/// Read and check the header.
-pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadError> {
-    let wrong = |at: u64, what: String| ReadError::at_byte(at, "header", what, REMEDY);
+/// Read and check the header; `remedy` is what to do about an array that is none of R dimensions.
+pub(super) fn header<const R: usize>(
+    file: &mut dyn Source,
+    length: u64,
+    remedy: &'static str,
+) -> Result<Header<R>, ReadError> {
+    let Description { keys, text_at, data } = description(file, length, remedy)?;
+    let wrong = |what: String| ReadError::at_byte(text_at, "header", what, remedy);
+    let (width, big_endian) = match &keys.descr[..] {
+        "<f4" => (4, false),
+        ">f4" => (4, true),
+        "<f8" => (8, false),
+        ">f8" => (8, true),
+        other => return Err(wrong(format!("numbers of type {other:?}"))),
+    };
+    let other = || wrong(format!("an array of shape {:?}", keys.shape));
+    let shape: [usize; R] = keys.shape[..].try_into().map_err(|_| other())?;
+    if shape.get(1..).is_some_and(|rest| rest.contains(&0)) {
+        return Err(other());
+    }
+    held_against(&keys.shape, width, length - data, data)?;
+    Ok(Header { width, big_endian, fortran_order: keys.fortran_order, shape, data })
+}
+
+/// Refuses an array that does not fill its file.
+pub(super) fn held_against(
+    shape: &[usize],
+    width: usize,
+    bytes: u64,
+    data: u64,
+) -> Result<(), ReadError> {
+    let numbers = shape.iter().try_fold(1_usize, |all, n| all.checked_mul(*n));
+    let wanted = numbers.and_then(|n| n.checked_mul(width)).map(|n| n as u64);
+    if wanted == Some(bytes) {
+        return Ok(());
+    }
+    let counts: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    let what = format!(
+        "{bytes} bytes of numbers, {} of them at {width} bytes are {}",
+        counts.join(" x "),
+        wanted.map_or("beyond memory".to_owned(), |n| n.to_string())
+    );
+    Err(ReadError::at_byte(data, "data", what, "copy the file again, or save one array per file"))
+}
+
+/// What a header says, and where it and the numbers stand.
+pub(super) struct Description {
+    pub(super) keys: Keys,
+    /// Where its text begins, bytes from the start of the file.
+    text_at: u64,
+    /// Where the numbers begin.
+    pub(super) data: u64,
+}
+
+/// Reads what the header says of an array of any type and shape.
+pub(super) fn description(
+    file: &mut dyn Source,
+    length: u64,
+    remedy: &'static str,
+) -> Result<Description, ReadError> {
+    let wrong = |at: u64, what: String| ReadError::at_byte(at, "header", what, remedy);
     let start = source::beginning(file, 12)?;
     let [_, _, _, _, _, _, major, minor, a, b, c, d] = start[..] else {
         return Err(wrong(length, format!("the file ends after {length} bytes")));
@@ -47,45 +103,27 @@ pub(super) fn header(file: &mut dyn Source, length: u64) -> Result<Header, ReadE
     let keys = literal(&text).ok_or_else(|| {
         wrong(text_at, format!("{:?} is not the dictionary of an array", text.trim()))
     })?;
-    let (width, big_endian) = match keys.descr {
-        "<f4" => (4, false),
-        ">f4" => (4, true),
-        "<f8" => (8, false),
-        ">f8" => (8, true),
-        other => return Err(wrong(text_at, format!("numbers of type {other:?}"))),
-    };
-    let [rows, columns] = keys.shape[..] else {
-        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
-    };
-    if columns == 0 {
-        return Err(wrong(text_at, format!("an array of shape {:?}", keys.shape)));
-    }
-    let wanted = rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).map(|n| n as u64);
-    if wanted != Some(length - data) {
-        let what = format!(
-            "{} bytes of numbers, {rows} x {columns} of them at {width} bytes are {}",
-            length - data,
-            wanted.map_or("beyond memory".to_owned(), |n| n.to_string())
-        );
-        return Err(ReadError::at_byte(
-            data,
-            "data",
-            what,
-            "copy the file again, or save one array per file",
-        ));
-    }
-    Ok(Header { width, big_endian, fortran_order: keys.fortran_order, rows, columns, data })
+    Ok(Description { keys, text_at, data })
+}
+
+/// The shape in the first bytes of a file, where the header is whole there.
+pub(super) fn shape_at_the_beginning(bytes: &[u8]) -> Option<Vec<usize>> {
+    let text = bytes.strip_prefix(MAGIC)?;
+    let start = text.iter().position(|b| *b == b'{')?;
+    let end = text.iter().position(|b| *b == b'}')?;
+    let text = std::str::from_utf8(text.get(start..=end)?).ok()?;
+    literal(text).map(|keys| keys.shape)
 }
 
 /// The values of the header's three keys.
-struct Keys<'t> {
-    descr: &'t str,
-    fortran_order: bool,
-    shape: Vec<usize>,
+pub(super) struct Keys {
+    pub(super) descr: String,
+    pub(super) fortran_order: bool,
+    pub(super) shape: Vec<usize>,
 }
 
 /// A dictionary as NumPy writes it; `None` for anything else.
-fn literal(text: &str) -> Option<Keys<'_>> {
+fn literal(text: &str) -> Option<Keys> {
     let mut rest = text.trim().strip_prefix('{')?.strip_suffix('}')?.trim();
     let (mut descr, mut fortran_order, mut shape) = (None, None, None);
     while !rest.is_empty() {
@@ -94,7 +132,7 @@ fn literal(text: &str) -> Option<Keys<'_>> {
         rest = match key {
             "descr" => {
                 let (value, after) = quoted(rest)?;
-                descr = Some(value);
+                descr = Some(value.to_owned());
                 after
             }
             "fortran_order" => {

@@ -6,10 +6,14 @@
 //! and the caller says the rate.
 
 mod header;
+pub(super) mod npz;
 #[cfg(test)]
 mod tests;
+mod vertices;
 
 pub use header::npy_header;
+pub(super) use vertices::FORMAT as VERTICES;
+pub use vertices::{VertexArray, read_vertex_array};
 
 use std::io::SeekFrom;
 use std::path::{Path, PathBuf};
@@ -19,6 +23,7 @@ use super::format::{Format, Read, Recognise, Write};
 use super::source::{self, Source};
 use crate::{ReadError, WeightOptions, WeightsTable};
 
+const REMEDY: &str = "save it with numpy.save(file, weights), float32 or float64, frames x shapes";
 const BESIDE: &str = "write NAME.shapes.json beside NAME.npy: \
                       {\"shape_names\": [\"jawOpen\", ...], \"rate_hz\": 60}";
 pub(super) static FORMAT: Format = Format {
@@ -29,7 +34,7 @@ pub(super) static FORMAT: Format = Format {
     reads: "format 1.0 to 3.0; `f4` and `f8`, both byte orders, C and Fortran order; names and rate from `NAME.shapes.json` beside it, else the avatar's shapes and the rate that is asked for",
     recognise: Recognise::Beginning(|bytes| bytes.starts_with(MAGIC)),
     read: Read::BinaryWeights(read),
-    write: Some(Write::Weights(write)),
+    write: Some(Write::Weights { columns: None, write }),
 };
 
 /// What stands beside an array.
@@ -83,18 +88,28 @@ fn read(
     options: &WeightOptions<'_>,
 ) -> Result<WeightsTable, ReadError> {
     let length = source::length(file)?;
-    let header = header(file, length)?;
+    let header: Header<2> = header(file, length, REMEDY)?;
     let beside = path.map(Beside::read).transpose()?.flatten();
-    let columns = header.columns;
+    let columns = header.shape[1];
     let names = match &beside {
         Some(beside) => &beside.shape_names,
         None => options.shape_names,
     };
+    check_names(names, columns, beside.is_some())?;
+    let rate_hz = options.rate_hz.or(beside.as_ref().and_then(|beside| beside.rate_hz));
+    let rate_hz = checked_rate(rate_hz)?;
+    let weights = numbers(file, &header, names)?;
+    let first_frame = beside.as_ref().map_or(0, |beside| beside.first_frame);
+    Ok(WeightsTable::at_rate(names.to_vec(), weights, first_frame, rate_hz))
+}
+
+/// Refuses names that are not one of its own for each column.
+fn check_names(names: &[String], columns: usize, with_the_array: bool) -> Result<(), ReadError> {
     if names.len() != columns {
-        let what = match (&beside, names.len()) {
-            (Some(_), n) => format!("{columns} columns, NAME.shapes.json has {n} names"),
-            (None, 0) => format!("{columns} columns, whose names are not known"),
-            (None, n) => format!("{columns} columns, the avatar has {n} shapes"),
+        let what = match (with_the_array, names.len()) {
+            (true, n) => format!("{columns} columns, NAME.shapes.json has {n} names"),
+            (false, 0) => format!("{columns} columns, whose names are not known"),
+            (false, n) => format!("{columns} columns, the avatar has {n} shapes"),
         };
         return Err(ReadError::at_byte(0, "header", what, BESIDE));
     }
@@ -102,48 +117,35 @@ fn read(
         let what = format!("shape {:?} empty or twice", names[k]);
         return Err(ReadError::at_byte(0, "names", what, "give every column a name of its own"));
     }
-    let rate_hz = options.rate_hz.or(beside.as_ref().and_then(|beside| beside.rate_hz));
-    let Some(rate_hz) = rate_hz.filter(|rate| rate.is_finite() && *rate > 0.0) else {
-        let what = "no rate: an array has none";
-        return Err(ReadError::at_byte(
+    Ok(())
+}
+
+/// The rate, which an array has not.
+fn checked_rate(rate_hz: Option<f64>) -> Result<f64, ReadError> {
+    rate_hz.filter(|rate| rate.is_finite() && *rate > 0.0).ok_or_else(|| {
+        ReadError::at_byte(
             0,
             "header",
-            what,
+            "no rate: an array has none",
             "give it, or write NAME.shapes.json beside NAME.npy: {\"shape_names\": [...], \"rate_hz\": 60}",
-        ));
-    };
-    let weights = numbers(file, &header, names)?;
-    let first_frame = beside.as_ref().map_or(0, |beside| beside.first_frame);
-    Ok(WeightsTable::at_rate(names.to_vec(), weights, first_frame, rate_hz))
+        )
+    })
 }
 
 /// The numbers, frame by frame.
 fn numbers(
     file: &mut dyn Source,
-    header: &Header,
+    header: &Header<2>,
     names: &[String],
 ) -> Result<Vec<f64>, ReadError> {
-    let Header { width, big_endian, rows, columns, data, .. } = *header;
-    file.seek(SeekFrom::Start(data)).map_err(ReadError::Read)?;
-    // The header was held against the length of the file: no more is asked for than there is.
-    let mut bytes = vec![0; rows * columns * width];
-    let filled = source::fill(file, &mut bytes)?;
-    bytes.truncate(filled);
-    let value = |place: usize| {
-        let here = bytes.get(place * width..(place + 1) * width)?;
-        Some(match (width, big_endian) {
-            (4, false) => f64::from(f32::from_le_bytes(here.try_into().ok()?)),
-            (4, true) => f64::from(f32::from_be_bytes(here.try_into().ok()?)),
-            (_, false) => f64::from_le_bytes(here.try_into().ok()?),
-            (_, true) => f64::from_be_bytes(here.try_into().ok()?),
-        })
-    };
+    let Header { shape: [rows, columns], data, width, .. } = *header;
+    let numbers = stored(file, header)?;
     let mut weights = Vec::with_capacity(rows * columns);
     for row in 0..rows {
         for (column, name) in names.iter().enumerate().take(columns) {
             let place =
                 if header.fortran_order { column * rows + row } else { row * columns + column };
-            let found = value(place);
+            let found = numbers.get(place).copied();
             weights.push(found.filter(|w| w.is_finite()).ok_or_else(|| {
                 let what = format!(
                     "row {row}, column {column} ({name}): {}",
@@ -155,6 +157,26 @@ fn numbers(
         }
     }
     Ok(weights)
+}
+
+/// The numbers of an array in the order of the file, as many as there are.
+fn stored<const R: usize>(
+    file: &mut dyn Source,
+    header: &Header<R>,
+) -> Result<Vec<f64>, ReadError> {
+    let (width, big_endian) = (header.width, header.big_endian);
+    file.seek(SeekFrom::Start(header.data)).map_err(ReadError::Read)?;
+    // The header was held against the length of the file: no more is asked for than there is.
+    let mut bytes = vec![0; header.shape.iter().product::<usize>() * width];
+    let filled = source::fill(file, &mut bytes)?;
+    bytes.truncate(filled);
+    let value = |here: &[u8]| match (width, big_endian) {
+        (4, false) => here.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b))),
+        (4, true) => here.try_into().map_or(f64::NAN, |b| f64::from(f32::from_be_bytes(b))),
+        (_, false) => here.try_into().map_or(f64::NAN, f64::from_le_bytes),
+        (_, true) => here.try_into().map_or(f64::NAN, f64::from_be_bytes),
+    };
+    Ok(bytes.chunks_exact(width).map(value).collect())
 }
 
 /// The array, and beside it its names, rate and first frame.

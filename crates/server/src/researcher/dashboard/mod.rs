@@ -1,7 +1,9 @@
 //! What the dashboard counts: sessions, answers, times, where people leave; and when it changes.
 
-pub(crate) mod distribution;
 pub(crate) mod figures;
+pub(crate) mod keeper;
+pub(crate) mod kept;
 pub(crate) mod overview;
 pub(crate) mod pulse;
-pub(crate) mod session_view;
+pub(crate) mod session_sums;
+pub(crate) mod tally;

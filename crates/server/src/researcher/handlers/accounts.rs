@@ -1,15 +1,14 @@
 //! `/researcher/…`: logging in, links, people, tokens, the log, the language.
 
 use axum::extract::{Extension, Path, Query, State};
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue};
 use axum::response::Response;
 use mimique_analysis::Language;
-use mimique_storage::{LinkPurpose, Role};
+use mimique_storage::Role;
 use serde::Deserialize;
 
 use crate::accounts::audit::audit;
 use crate::accounts::csrf::{Anonymous, FormToken, Guarded};
-use crate::accounts::email::normal_email;
 use crate::accounts::identity::{Researcher, Visitor};
 use crate::accounts::{links, login, password};
 use crate::clock::now_ms;
@@ -18,7 +17,7 @@ use crate::http::language::LANGUAGE_COOKIE;
 use crate::http::responses::{see, with_cookies};
 use crate::researcher::pages::entry;
 use crate::researcher::pages::frame::Frame;
-use crate::researcher::pages::people::{Done, account_page, log_page, people_page};
+use crate::researcher::pages::people::{Done, account_page, log_page};
 use crate::secret;
 use crate::state::App;
 use crate::state::rate_limit::Peer;
@@ -177,7 +176,12 @@ pub(crate) async fn new_token(
     // A token that could make tokens could not be revoked.
     person_only(&who)?;
     let role = role(&form.role)?;
-    who.needs(role)?;
+    if role == Role::Nothing {
+        return Err(Error::NoSuchRole);
+    }
+    if role > who.most() {
+        return Err(Error::NotAllowed);
+    }
     let name: String = form.name.trim().chars().filter(|c| !c.is_control()).take(60).collect();
     if name.is_empty() {
         return Err(Error::NamelessToken);
@@ -204,87 +208,6 @@ pub(crate) async fn revoke_token(
     app.storage.revoke_token(key, now_ms()).await?;
     audit(&app, &who, "revoke a token", "", &token.name).await?;
     Ok(see("/researcher/account"))
-}
-
-pub(crate) async fn people(State(app): State<App>, who: Researcher) -> Result<Response, Error> {
-    everybodys_page(&app, &who, None).await
-}
-
-#[derive(Deserialize)]
-pub(crate) struct Invitation {
-    email: String,
-    role: String,
-}
-
-pub(crate) async fn invite(
-    State(app): State<App>,
-    headers: HeaderMap,
-    Guarded { who, form }: Guarded<Invitation>,
-) -> Result<Response, Error> {
-    // A token that could make accounts, or ways into them, could not be revoked.
-    person_only(&who)?;
-    who.needs(Role::Owner)?;
-    let role = role(&form.role)?;
-    let link = links::invite(&app, &form.email, role).await?;
-    let whom = normal_email(&form.email).unwrap_or_default();
-    audit(&app, &who, "invite", "", &format!("{whom} ({})", role.word())).await?;
-    let address = whole_address(&app, &headers, &link);
-    everybodys_page(&app, &who, Some(Done::Link { whom, address })).await
-}
-
-#[derive(Deserialize)]
-pub(crate) struct PersonAction {
-    action: String,
-    #[serde(default)]
-    role: String,
-}
-
-pub(crate) async fn person(
-    State(app): State<App>,
-    Path(key): Path<i64>,
-    headers: HeaderMap,
-    Guarded { who, form }: Guarded<PersonAction>,
-) -> Result<Response, Error> {
-    person_only(&who)?;
-    who.needs(Role::Owner)?;
-    let accounts = app.storage.accounts().await?;
-    let account = accounts.into_iter().find(|account| account.key == key);
-    let account = account.ok_or(Error::NotFound)?;
-    let mut done = None;
-    let last = Error::LastOwner;
-    let subject = match form.action.as_str() {
-        "role" => {
-            let role = role(&form.role)?;
-            if !app.storage.set_role(key, role).await? {
-                return Err(last);
-            }
-            format!("{} ({})", account.email, role.word())
-        }
-        "disable" => {
-            if !app.storage.disable_account(key, now_ms()).await? {
-                return Err(last);
-            }
-            account.email.clone()
-        }
-        "enable" => {
-            app.storage.enable_account(key).await?;
-            account.email.clone()
-        }
-        "reset" if account.disabled_ms.is_some() => return Err(Error::AccountDisabled),
-        "reset" => {
-            let purpose = LinkPurpose::Reset;
-            let link = links::new_link(&app.storage, purpose, &account.email, account.role).await?;
-            let address = whole_address(&app, &headers, &link);
-            done = Some(Done::Link { whom: account.email.clone(), address });
-            account.email.clone()
-        }
-        _ => return Err(Error::UnknownAction),
-    };
-    audit(&app, &who, &format!("account: {}", form.action), "", &subject).await?;
-    match done {
-        Some(done) => everybodys_page(&app, &who, Some(done)).await,
-        None => Ok(see("/researcher/people")),
-    }
 }
 
 #[derive(Deserialize)]
@@ -320,36 +243,15 @@ pub(crate) async fn language(
 async fn own_page(app: &App, who: &Researcher, done: Option<Done>) -> Result<Response, Error> {
     let tokens = app.storage.tokens().await?;
     let own: Vec<_> = tokens.iter().filter(|token| token.email == who.account.email).collect();
-    Ok(account_page(&Frame::new(app, who), &own, done.as_ref()))
+    Ok(account_page(&Frame::new(app, who), who, &own, done.as_ref()))
 }
 
-async fn everybodys_page(
-    app: &App,
-    who: &Researcher,
-    done: Option<Done>,
-) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
-    let accounts = app.storage.accounts().await?;
-    let tokens = app.storage.tokens().await?;
-    Ok(people_page(&Frame::new(app, who), &accounts, &tokens, done.as_ref()))
-}
-
-fn person_only(who: &Researcher) -> Result<(), Error> {
+pub(super) fn person_only(who: &Researcher) -> Result<(), Error> {
     who.session().map(|_| ()).ok_or(Error::NotAllowed)
 }
 
-fn role(word: &str) -> Result<Role, Error> {
+pub(super) fn role(word: &str) -> Result<Role, Error> {
     Role::from_word(word).ok_or(Error::NoSuchRole)
-}
-
-/// The address as people open it.
-fn whole_address(app: &App, headers: &HeaderMap, path: &str) -> String {
-    if let Some(url) = &app.access.public_url {
-        return format!("{}{path}", url.trim_end_matches('/'));
-    }
-    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok()).unwrap_or_default();
-    let scheme = if app.is_encrypted() { "https" } else { "http" };
-    format!("{scheme}://{host}{path}")
 }
 
 /// A page of this server for researchers; never an address elsewhere.

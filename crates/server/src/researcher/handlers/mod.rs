@@ -2,4 +2,5 @@
 
 pub(crate) mod accounts;
 mod inline_styles;
+pub(crate) mod people;
 pub(crate) mod studies;

@@ -10,10 +10,11 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use mimique_analysis::Language;
 use mimique_session::Standing;
-use mimique_storage::{Exclusion, Role, SessionRecord};
+use mimique_storage::{Exclusion, Role, SessionRecord, StorageError};
 use mimique_study::Multilingual as _;
 use serde::Deserialize;
 use tokio::sync::mpsc;
+use tokio_stream::StreamExt as _;
 use tokio_stream::wrappers::ReceiverStream;
 
 use super::inline_styles::report_policy;
@@ -22,14 +23,15 @@ use crate::accounts::csrf::Guarded;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::export::{self, Cells, Format, Options, Pieces};
+use crate::export::{self, Cells, Export, Format, Options};
 use crate::http::extract::Asked;
 use crate::http::responses::{attachment, see};
 use crate::participant::withdrawal::withdrawal_hash;
-use crate::researcher::dashboard::overview::Overview;
+use crate::researcher::dashboard::overview::{Notice, Overview, Person, Wanted};
 use crate::researcher::pages::frame::Frame;
 use crate::researcher::pages::home::{Listed, home_page};
-use crate::researcher::pages::participant::{Shown, participant_page};
+use crate::researcher::pages::participant::{EventRow, MOST_EVENTS, Shown, participant_page};
+use crate::researcher::pages::standing_words::list_word;
 use crate::researcher::pages::study::{Hosting, study_page};
 use crate::retention;
 use crate::state::App;
@@ -47,28 +49,67 @@ pub(crate) async fn home(State(app): State<App>, who: Researcher) -> Result<Resp
         .into_iter()
         .map(|upload| (upload.study_id, upload.changed_ms))
         .collect();
+    let counts = app.storage.session_counts().await?;
     let mut listed = Vec::new();
     for study in app.catalogue.studies() {
-        let sessions = app.storage.sessions(study.id()).await?;
-        let completed = sessions.iter().filter(|s| s.standing == Standing::Completed).count();
+        if who.role_in(study.id()) == Role::Nothing {
+            continue;
+        }
+        let own = || counts.iter().filter(|([id, ..], _)| id == study.id());
+        let sessions = own().map(|(_, count)| count).sum();
+        let is_completed = |[_, _, status]: &[String; 3]| {
+            Standing::from_stored_word(status) == Some(Standing::Completed)
+        };
+        let completed = own().filter(|(of, _)| is_completed(of)).map(|(_, count)| count).sum();
         let uploaded_ms = uploads.get(study.id()).copied();
-        listed.push(Listed { study, sessions: sessions.len(), completed, uploaded_ms });
+        listed.push(Listed { study, sessions, completed, uploaded_ms });
     }
+    let may_upload = who.most() >= Role::Owner;
     let doubt = retention::clock_doubt(&app.storage, now_ms()).await?;
-    Ok(home_page(&Frame::new(&app, &who), &listed, doubt))
+    Ok(home_page(&Frame::new(&app, &who), &listed, doubt, may_upload))
+}
+
+/// Which participants the page lists.
+#[derive(Deserialize)]
+pub(crate) struct ListQuery {
+    /// Those who stand so alone, by the word that is stored (`abandoned` for those without a sign of life).
+    standing: Option<String>,
+    /// Which page of them, from 1.
+    page: Option<usize>,
 }
 
 pub(crate) async fn study(
     State(app): State<App>,
     Path(id): Path<String>,
+    Asked(query): Asked<ListQuery>,
     who: Researcher,
 ) -> Result<Response, Error> {
-    let study = app.study(&id)?;
-    let overview = overview(&app, &study, &who).await?;
+    let study = visible(&app, &who, &id, Role::Viewer)?;
+    let standing = query.standing.as_deref().map(standing_of).transpose()?;
+    let wanted = Wanted { standing, page: query.page.unwrap_or(1).saturating_sub(1) };
+    let language = study.study().language_for(who.language.code());
+    let overview = Overview::load(&app.storage, &study, &app.sums, language, wanted).await?;
     let is_uploaded = uploads::is_uploaded(&app, study.id()).await?;
     let overdue = app.storage.overdue(study.id()).await?;
     let hosting = Hosting { is_uploaded, overdue };
-    Ok(study_page(&Frame::new(&app, &who), &study, &overview, hosting))
+    Ok(study_page(&Frame::in_study(&app, &who, study.id()), &study, &overview, hosting))
+}
+
+/// The standing that an address names.
+fn standing_of(word: &str) -> Result<Standing, Error> {
+    let found = Standing::ALL.into_iter().find(|standing| list_word(*standing) == word);
+    found.ok_or(Error::NotFound)
+}
+
+/// A study in which somebody may do so much.
+fn visible(
+    app: &App,
+    who: &Researcher,
+    id: &str,
+    role: Role,
+) -> Result<std::sync::Arc<HostedStudy>, Error> {
+    who.needs_in(id, role)?;
+    app.study(id)
 }
 
 /// A line whenever something of the study has changed; the page then fetches what it shows.
@@ -78,7 +119,7 @@ pub(crate) async fn live(
     headers: axum::http::HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
-    let study = app.study(&id)?.id().to_owned();
+    let study = visible(&app, &who, &id, Role::Viewer)?.id().to_owned();
     let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
     let mut beats = app.pulse.listen();
     let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
@@ -98,7 +139,8 @@ pub(crate) async fn live(
                 changed = beats.changed() => if changed.is_err() { break },
                 // Whoever has logged out meanwhile, or lost the account, sees no more.
                 () = tokio::time::sleep(RECHECK) => {
-                    if Researcher::of(&app, &headers).await.is_err() {
+                    let now = Researcher::of(&app, &headers).await;
+                    if now.and_then(|who| who.needs_in(&study, Role::Viewer)).is_err() {
                         break;
                     }
                 }
@@ -120,26 +162,31 @@ pub(crate) async fn participant(
     Path((id, number)): Path<(String, u64)>,
     who: Researcher,
 ) -> Result<Response, Error> {
-    let study = app.study(&id)?;
-    let overview = overview(&app, &study, &who).await?;
-    let found = overview.sessions.iter().find(|(session, _)| session.participant == number);
-    let (session, view) = found.ok_or(Error::NotFound)?;
-    let events = app.storage.stored_events(session.key).await?;
+    let study = visible(&app, &who, &id, Role::Viewer)?;
+    let session = session(&app, study.id(), number).await?;
+    let sums = app.sums.of_session(&app.storage, &session).await?;
+    let notice = Notice::of(&app.storage, &session).await?;
+    let events = first_events(&app, &session).await?;
     let mut exclusions = app.storage.exclusions(study.id()).await?;
     exclusions.retain(|change| change.session_key == session.key);
-    if who.role >= Role::Analyst {
+    if who.role_in(study.id()) >= Role::Analyst {
         let subject = mimique_storage::participant_id(number);
         audit(&app, &who, "read a participant’s answers", study.id(), &subject).await?;
     }
-    let shown = Shown {
-        study: &study,
-        overview: &overview,
-        session,
-        view,
-        events: &events,
-        exclusions: &exclusions,
-    };
-    Ok(participant_page(&Frame::new(&app, &who), &shown))
+    let person = Person { session, sums, notice };
+    let shown = Shown { study: &study, person: &person, events: &events, exclusions: &exclusions };
+    Ok(participant_page(&Frame::in_study(&app, &who, study.id()), &shown))
+}
+
+/// The events that the page shows, and one more where there are more.
+async fn first_events(app: &App, session: &SessionRecord) -> Result<Vec<EventRow>, Error> {
+    let stored = app.storage.stored_events(session.key, 0..session.next_sequence);
+    let mut stored = stored.take(MOST_EVENTS + 1);
+    let mut events = Vec::new();
+    while let Some(event) = stored.next().await {
+        events.push(EventRow::of(&event?));
+    }
+    Ok(events)
 }
 
 #[derive(Deserialize)]
@@ -153,13 +200,13 @@ pub(crate) async fn exclude(
     Guarded { who, form }: Guarded<Reason>,
 ) -> Result<Response, Error> {
     const LONGEST: usize = 200;
-    who.needs(Role::Analyst)?;
+    let study = visible(&app, &who, &id, Role::Analyst)?;
     let reason = form.reason.split_whitespace().collect::<Vec<_>>().join(" ");
     let reason: String = reason.chars().filter(|c| !c.is_control()).take(LONGEST).collect();
     if reason.is_empty() {
         return Err(Error::NoReason);
     }
-    change_exclusion(&app, &who, &id, number, Some(reason)).await
+    change_exclusion(&app, &who, &study, number, Some(reason)).await
 }
 
 #[derive(Deserialize)]
@@ -170,8 +217,8 @@ pub(crate) async fn include(
     Path((id, number)): Path<(String, u64)>,
     Guarded { who, .. }: Guarded<Nothing>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Analyst)?;
-    change_exclusion(&app, &who, &id, number, None).await
+    let study = visible(&app, &who, &id, Role::Analyst)?;
+    change_exclusion(&app, &who, &study, number, None).await
 }
 
 #[derive(Deserialize)]
@@ -185,8 +232,7 @@ pub(crate) async fn erase(
     Path((id, number)): Path<(String, u64)>,
     Guarded { who, form }: Guarded<Confirmation>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
-    let study = app.study(&id)?;
+    let study = visible(&app, &who, &id, Role::Owner)?;
     let name =
         mimique_storage::participant_id(session(&app, study.id(), number).await?.participant);
     if !form.confirmation.trim().eq_ignore_ascii_case(&name) {
@@ -207,8 +253,7 @@ pub(crate) async fn withdraw(
     Path(id): Path<String>,
     Guarded { who, form }: Guarded<Code>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
-    let study = app.study(&id)?;
+    let study = visible(&app, &who, &id, Role::Owner)?;
     let hash = withdrawal_hash(&form.code);
     let name = audit::name(&who);
     let done = app.storage.withdraw_by_code(Some(study.id()), &hash, &name, now_ms()).await?;
@@ -221,8 +266,7 @@ pub(crate) async fn keep_overdue(
     Path(id): Path<String>,
     Guarded { who, .. }: Guarded<Nothing>,
 ) -> Result<Response, Error> {
-    who.needs(Role::Owner)?;
-    let study = app.study(&id)?;
+    let study = visible(&app, &who, &id, Role::Owner)?;
     let kept = app.storage.keep_overdue(study.id()).await?;
     audit(&app, &who, "keep answers over their time", study.id(), &kept.to_string()).await?;
     Ok(see(&format!("/researcher/studies/{}", study.id())))
@@ -243,11 +287,10 @@ pub(crate) async fn confirm_clock(
 async fn change_exclusion(
     app: &App,
     who: &Researcher,
-    id: &str,
+    study: &HostedStudy,
     number: u64,
     reason: Option<String>,
 ) -> Result<Response, Error> {
-    let study = app.study(id)?;
     let session = session(app, study.id(), number).await?;
     let action = if reason.is_some() { "exclude" } else { "take an exclusion back" };
     let at_ms = now_ms();
@@ -259,8 +302,10 @@ async fn change_exclusion(
 }
 
 async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
-    let sessions = app.storage.sessions(study).await?;
-    sessions.into_iter().find(|session| session.participant == number).ok_or(Error::NotFound)
+    match app.storage.participant_session(study, number).await {
+        Err(StorageError::UnknownSession) => Err(Error::NotFound),
+        found => Ok(found?),
+    }
 }
 
 /// What may be asked of an export.
@@ -278,24 +323,16 @@ pub(crate) async fn export(
     Asked(query): Asked<ExportQuery>,
     who: Researcher,
 ) -> Result<Response, Error> {
-    who.needs(Role::Analyst)?;
-    let study = app.study(&id)?.id().to_owned();
+    let study = visible(&app, &who, &id, Role::Analyst)?.id().to_owned();
     let subject =
         if query.with_identifiers { format!("{word}, identifiers") } else { word.clone() };
     let cells = if query.neutralised { Cells::Neutralised } else { Cells::AsTheyAre };
     let options = Options { with_identifiers: query.with_identifiers, cells };
     let (name, bytes) = match (Format::from_word(&word), word.as_str()) {
         (Some(format), _) => {
-            if let Some(pieces) = Pieces::open(&app.storage, Some(&study), format, options).await? {
-                audit(&app, &who, "export", &study, &subject).await?;
-                return attachment(&pieces.name(), pieces.into_body());
-            }
-            let exported = export::export(&app.storage, Some(&study), format, options).await?;
-            if format == Format::PsychDs {
-                (format!("{study}_psych-ds.zip"), exported.into_zip()?)
-            } else {
-                exported.files.into_iter().next().ok_or(Error::NotFound)?
-            }
+            let export = Export::open(&app.storage, Some(&study), format, options).await?;
+            audit(&app, &who, "export", &study, &subject).await?;
+            return attachment(&export.download_name(), export.into_body());
         }
         (None, "dictionary") => {
             let bytes = export::dictionary(&app.storage, &study).await?;
@@ -316,8 +353,7 @@ pub(crate) async fn report(
     Path((id, code, name)): Path<(String, String, String)>,
     who: Researcher,
 ) -> Result<Response, Error> {
-    who.needs(Role::Analyst)?;
-    let study = app.study(&id)?;
+    let study = visible(&app, &who, &id, Role::Analyst)?;
     let language = Language::from_code(&code).ok_or(Error::NotFound)?;
     let report = app.reports.get(&app.storage, &study, language).await?;
     if name == "report.zip" {
@@ -340,9 +376,4 @@ pub(crate) async fn report(
     }
     let name = name.rsplit('/').next().unwrap_or_default().to_owned();
     attachment(&name, file.text.clone().into_bytes())
-}
-
-async fn overview(app: &App, study: &HostedStudy, who: &Researcher) -> Result<Overview, Error> {
-    let language = study.study().language_for(who.language.code());
-    Overview::load(&app.storage, study, &app.session_views, language).await
 }

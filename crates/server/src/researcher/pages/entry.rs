@@ -71,6 +71,9 @@ pub(crate) fn link_page(
                 p {
                     (language.pick("Role: ", "Rôle : ")) strong { (role_word(language, link.role)) } ", "
                     (role_line(language, link.role)) "."
+                    @if let Some(study) = &link.study_id {
+                        " " (language.pick("In the study ", "Dans l’étude ")) code { (study) } "."
+                    }
                 }
             }
             (problem_line(problem))

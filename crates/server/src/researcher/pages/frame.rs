@@ -15,7 +15,10 @@ use crate::state::App;
 pub(crate) struct Frame {
     pub assets: String,
     pub language: Language,
+    /// What the reader may do with what the page is about: a study, or the server.
     pub role: Role,
+    /// What the reader may do with the server.
+    in_all: Role,
     pub email: String,
     pub csrf: String,
 }
@@ -26,9 +29,15 @@ impl Frame {
             assets: app.assets.prefix(),
             language: who.language,
             role: who.role,
+            in_all: who.role,
             email: who.account.email.clone(),
             csrf: FormToken::of(app, who).value,
         }
+    }
+
+    /// A page about a study.
+    pub fn in_study(app: &App, who: &Researcher, study: &str) -> Self {
+        Self { role: who.role_in(study), ..Self::new(app, who) }
     }
 
     /// The text in the reader's language.
@@ -50,7 +59,7 @@ impl Frame {
     pub fn page(&self, title: &str, address: &str, body: &Markup) -> Response {
         let nav = html! {
             a href="/researcher" { (self.say("Studies", "Études")) }
-            @if self.may(Role::Owner) {
+            @if self.in_all >= Role::Owner {
                 a href="/researcher/people" { (self.say("People", "Personnes")) }
                 a href="/researcher/log" { (self.say("Log", "Journal")) }
             }
@@ -140,6 +149,7 @@ pub(crate) fn field(label: &str, name: &str, kind: &str, complete: &str, hint: &
 /// The word for a role.
 pub(crate) fn role_word(language: Language, role: Role) -> &'static str {
     match role {
+        Role::Nothing => language.pick("single studies", "certaines études"),
         Role::Viewer => language.pick("viewer", "lecture"),
         Role::Analyst => language.pick("analyst", "analyse"),
         Role::Owner => language.pick("owner", "responsable"),
@@ -149,6 +159,8 @@ pub(crate) fn role_word(language: Language, role: Role) -> &'static str {
 /// What a role may do, in a line.
 pub(crate) fn role_line(language: Language, role: Role) -> &'static str {
     match role {
+        Role::Nothing => language
+            .pick("has roles in single studies alone", "n’a de rôle que dans certaines études"),
         Role::Viewer => language.pick(
             "sees the dashboard, without free text and without export",
             "voit le tableau de bord, sans les textes libres et sans l’export",

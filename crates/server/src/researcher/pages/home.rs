@@ -13,14 +13,19 @@ use mimique_study::Multilingual as _;
 /// A study and how many sessions it has, of which so many complete.
 pub(crate) struct Listed {
     pub study: std::sync::Arc<HostedStudy>,
-    pub sessions: usize,
-    pub completed: usize,
+    pub sessions: u64,
+    pub completed: u64,
     /// When it came through the page, if it did.
     pub uploaded_ms: Option<i64>,
 }
 
 /// The list of studies.
-pub(crate) fn home_page(frame: &Frame, studies: &[Listed], doubt: Option<ClockDoubt>) -> Response {
+pub(crate) fn home_page(
+    frame: &Frame,
+    studies: &[Listed],
+    doubt: Option<ClockDoubt>,
+    may_upload: bool,
+) -> Response {
     let title = frame.say("Studies", "Études");
     let body = html! {
         h1 { (title) }
@@ -58,7 +63,7 @@ pub(crate) fn home_page(frame: &Frame, studies: &[Listed], doubt: Option<ClockDo
                     }
                 }
             }
-            @if frame.may(Role::Owner) {
+            @if may_upload {
                 div.actions {
                     a.button href="/researcher/upload" { (frame.say("Upload a study", "Déposer une étude")) }
                 }

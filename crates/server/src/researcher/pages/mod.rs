@@ -5,5 +5,6 @@ pub(crate) mod frame;
 pub(crate) mod home;
 pub(crate) mod participant;
 pub(crate) mod people;
-mod standing_words;
+pub(crate) mod standing_words;
 pub(crate) mod study;
+mod study_roles;

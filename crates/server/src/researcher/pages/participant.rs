@@ -2,33 +2,64 @@
 
 use axum::response::Response;
 use maud::{Markup, html};
-use mimique_session::wire::Event;
-use mimique_storage::{Exclusion, Role, SessionRecord, StoredEvent};
+use mimique_storage::{Exclusion, Role, StoredEvent};
 use mimique_study::Multilingual as _;
 use serde_json::Value;
 
 use super::frame::{Frame, time};
 use super::study::{browser, status};
-use crate::researcher::dashboard::overview::Overview;
-use crate::researcher::dashboard::session_view::SessionView;
+use crate::researcher::dashboard::overview::Person;
 use crate::state::hosted_study::HostedStudy;
 
 /// Events on the page at most; the export has all of them.
-const MOST_EVENTS: usize = 1000;
+pub(crate) const MOST_EVENTS: usize = 1000;
+/// Characters of an event's answers on the page at most.
+const LONGEST_ANSWER: usize = 2000;
 
 /// What the page shows.
 pub(crate) struct Shown<'a> {
     pub study: &'a HostedStudy,
-    pub overview: &'a Overview,
-    pub session: &'a SessionRecord,
-    pub view: &'a SessionView,
-    pub events: &'a [StoredEvent],
+    pub person: &'a Person,
+    pub events: &'a [EventRow],
     pub exclusions: &'a [Exclusion],
+}
+
+/// What the page shows of an event.
+pub(crate) struct EventRow {
+    sequence: u64,
+    at_ms: f64,
+    kind: String,
+    place: String,
+    answers: String,
+    misfit: Option<String>,
+}
+
+impl EventRow {
+    /// That of an event as it is stored.
+    pub fn of(stored: &StoredEvent) -> Self {
+        let body: Value = serde_json::from_str(&stored.body).unwrap_or_default();
+        let text = |name: &str| body[name].as_str().unwrap_or_default();
+        let place = match text("clip") {
+            "" => text("step").to_owned(),
+            clip if text("step").is_empty() => clip.to_owned(),
+            clip => format!("{} ({clip})", text("step")),
+        };
+        let cut = |text: &str| text.chars().take(LONGEST_ANSWER).collect();
+        Self {
+            sequence: stored.sequence,
+            at_ms: stored.at_ms,
+            kind: cut(text("type")),
+            place: cut(&place),
+            answers: cut(&answers(&body)),
+            misfit: stored.misfit.clone(),
+        }
+    }
 }
 
 /// One participant.
 pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
-    let Shown { study, session, view, .. } = shown;
+    let Shown { study, person, .. } = shown;
+    let session = &person.session;
     let id = study.id();
     let name = mimique_storage::participant_id(session.participant);
     let address = format!("/researcher/studies/{id}/participants/{}", session.participant);
@@ -42,11 +73,11 @@ pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
         }
         div.card {
             h1 { (name) }
-            p { (status(frame, session, view, shown.overview)) }
+            p { (status(frame, session, person.notice)) }
             dl.facts {
                 div { dt { (frame.say("Started", "Début")) } dd { (time(Some(session.started_ms))) } }
                 div { dt { (frame.say("Last event", "Dernier événement")) } dd { (time(session.last_event_ms)) } }
-                @if let Some((done, all)) = view.progress {
+                @if let Some((done, all)) = person.sums.as_ref().and_then(|sums| sums.progress) {
                     div { dt { (frame.say("Steps", "Étapes")) } dd { (done) "/" (all) } }
                 }
                 div { dt { (frame.say("Events", "Événements")) } dd { (session.event_count) } }
@@ -68,7 +99,7 @@ pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
 }
 
 fn exclusion(frame: &Frame, shown: &Shown<'_>, address: &str) -> Markup {
-    let reason = shown.overview.excluded.get(&shown.session.key);
+    let reason = shown.exclusions.last().and_then(|last| last.reason.as_ref());
     html! {
         div.card {
             h2 { (frame.say("Exclusion", "Exclusion")) }
@@ -190,40 +221,33 @@ fn timeline(frame: &Frame, shown: &Shown<'_>) -> Markup {
     }
 }
 
-fn row(frame: &Frame, stored: &StoredEvent, with_answers: bool) -> Markup {
-    let event = &stored.event;
-    let text = |name: &str| event.body[name].as_str().unwrap_or_default();
-    let place = match text("clip") {
-        "" => text("step").to_owned(),
-        clip if text("step").is_empty() => clip.to_owned(),
-        clip => format!("{} ({clip})", text("step")),
-    };
+fn row(frame: &Frame, event: &EventRow, with_answers: bool) -> Markup {
     html! {
         tr {
             td.number { (event.sequence) }
             td { (time(Some(event.at_ms as i64))) }
             td {
-                (text("type"))
-                @if let Some(misfit) = &stored.misfit {
+                (event.kind)
+                @if let Some(misfit) = &event.misfit {
                     span.soft {
                         (frame.say(" (counts for nothing: ", " (ne compte pas : "))
                         code { (misfit) } ")"
                     }
                 }
             }
-            td { (place) }
-            @if with_answers { td { (answers(event)) } }
+            td { (event.place) }
+            @if with_answers { td { (event.answers) } }
         }
     }
 }
 
 /// What was answered, question by question.
-fn answers(event: &Event) -> String {
+fn answers(body: &Value) -> String {
     let cell = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    if let Some(question) = event.body["question"].as_str() {
-        return format!("{question}: {}", cell(&event.body["value"]));
+    if let Some(question) = body["question"].as_str() {
+        return format!("{question}: {}", cell(&body["value"]));
     }
-    let Some(answers) = event.body["answers"].as_object() else { return String::new() };
+    let Some(answers) = body["answers"].as_object() else { return String::new() };
     let pairs: Vec<_> =
         answers.iter().map(|(question, value)| format!("{question}: {}", cell(value))).collect();
     pairs.join("; ")

@@ -2,9 +2,11 @@
 
 use axum::response::Response;
 use maud::{Markup, html};
-use mimique_storage::{Account, ApiToken, AuditEntry, Role};
+use mimique_storage::{Account, ApiToken, AuditEntry, Role, StudyRole};
 
 use super::frame::{Frame, field, role_line, role_word, time};
+use super::study_roles::{own_roles, study_choice, study_roles};
+use crate::accounts::identity::Researcher;
 use crate::accounts::password::SHORTEST_PASSWORD;
 
 /// What was just done, to be said on the page.
@@ -17,8 +19,20 @@ pub(crate) enum Done {
     Password,
 }
 
+/// Everybody who has an account, and the studies that they may have roles in.
+pub(crate) struct Everybody<'a> {
+    pub accounts: &'a [Account],
+    pub roles: &'a [StudyRole],
+    pub studies: &'a [String],
+}
+
 /// One's own account: password, sessions, tokens.
-pub(crate) fn account_page(frame: &Frame, tokens: &[&ApiToken], done: Option<&Done>) -> Response {
+pub(crate) fn account_page(
+    frame: &Frame,
+    who: &Researcher,
+    tokens: &[&ApiToken],
+    done: Option<&Done>,
+) -> Response {
     let title = frame.say("Your account", "Votre compte");
     let hint = format!(
         "{} {SHORTEST_PASSWORD} {}",
@@ -33,6 +47,7 @@ pub(crate) fn account_page(frame: &Frame, tokens: &[&ApiToken], done: Option<&Do
                 strong { (frame.email) } ", " (role_word(frame.language, frame.role)) ": "
                 (role_line(frame.language, frame.role)) "."
             }
+            (own_roles(frame, who))
             form method="post" action="/researcher/logout-everywhere" {
                 (frame.token())
                 button type="submit" { (frame.say("Log out everywhere", "Se déconnecter partout")) }
@@ -66,7 +81,7 @@ pub(crate) fn account_page(frame: &Frame, tokens: &[&ApiToken], done: Option<&Do
             form.stack method="post" action="/researcher/tokens" {
                 (frame.token())
                 (field(frame.say("Name", "Nom"), "name", "text", "off", ""))
-                (roles(frame, "role", frame.role))
+                (roles(frame, "role", who.most()))
                 div.actions { button type="submit" { (frame.say("Make a token", "Créer un jeton")) } }
             }
         }
@@ -77,7 +92,7 @@ pub(crate) fn account_page(frame: &Frame, tokens: &[&ApiToken], done: Option<&Do
 /// Everybody's accounts.
 pub(crate) fn people_page(
     frame: &Frame,
-    accounts: &[Account],
+    everybody: &Everybody<'_>,
     tokens: &[ApiToken],
     done: Option<&Done>,
 ) -> Response {
@@ -91,11 +106,14 @@ pub(crate) fn people_page(
                 table {
                     thead { tr {
                         th scope="col" { (frame.say("E-mail", "Courriel")) }
-                        th scope="col" { (frame.say("Role", "Rôle")) }
+                        th scope="col" { (frame.say("Role in all studies", "Rôle dans toutes les études")) }
+                        th scope="col" { (frame.say("Roles in single studies", "Rôles dans certaines études")) }
                         th scope="col" { (frame.say("Since", "Depuis")) }
                         th scope="col" { (frame.say("Actions", "Actions")) }
                     } }
-                    tbody { @for account in accounts { (person(frame, account)) } }
+                    tbody {
+                        @for account in everybody.accounts { (person(frame, account, everybody)) }
+                    }
                 }
             }
         }
@@ -105,6 +123,7 @@ pub(crate) fn people_page(
                 (frame.token())
                 (field(frame.say("E-mail", "Courriel"), "email", "email", "off", ""))
                 (roles(frame, "role", Role::Owner))
+                (study_choice(frame, everybody.studies))
                 div.actions {
                     button type="submit" { (frame.say("Make a link", "Créer un lien")) }
                 }
@@ -124,7 +143,7 @@ pub(crate) fn people_page(
     frame.page(title, "/researcher/people", &body)
 }
 
-fn person(frame: &Frame, account: &Account) -> Markup {
+fn person(frame: &Frame, account: &Account, everybody: &Everybody<'_>) -> Markup {
     let action = format!("/researcher/people/{}", account.key);
     let button = |what: &str, text: &str| {
         html! {
@@ -146,7 +165,7 @@ fn person(frame: &Frame, account: &Account) -> Markup {
                         (frame.token())
                         input type="hidden" name="action" value="role";
                         select name="role" aria-label={ (frame.say("Role of ", "Rôle de ")) (account.email) } {
-                            @for role in Role::ALL {
+                            @for role in [Role::Nothing].into_iter().chain(Role::ALL) {
                                 option value=(role.word()) selected[role == account.role] {
                                     (role_word(frame.language, role))
                                 }
@@ -158,6 +177,7 @@ fn person(frame: &Frame, account: &Account) -> Markup {
                     }
                 }
             }
+            td { (study_roles(frame, account, everybody)) }
             td { (time(Some(account.created_ms))) }
             td {
                 div.row {

@@ -4,6 +4,14 @@ use mimique_session::Standing;
 
 use mimique_analysis::Language;
 
+/// The word of a standing in addresses of lists.
+pub(crate) fn list_word(standing: Standing) -> &'static str {
+    match standing {
+        Standing::Abandoned => "abandoned",
+        other => other.stored_word(),
+    }
+}
+
 /// A standing in the researcher's language.
 pub(super) fn standing_word(standing: Standing, language: Language) -> &'static str {
     match standing {

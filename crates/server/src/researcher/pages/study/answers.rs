@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::bars::{bars_with, round};
-use crate::researcher::dashboard::distribution::{Distribution, Shape};
+use crate::researcher::dashboard::tally::{Distribution, Shape};
 use crate::researcher::pages::frame::Frame;
 
 /// The distribution of the answers to each question.
@@ -41,12 +41,13 @@ fn answer(frame: &Frame, distribution: &Distribution) -> Markup {
         Shape::Counts(counts) => {
             bars_with(&caption, counts.iter().map(|(label, count)| (label.as_str(), *count)))
         }
-        Shape::Numbers { count, least, mean, greatest } => html! {
+        Shape::Numbers(numbers) => html! {
             div {
                 p.caption { (caption) }
                 p lang=(frame.language.code()) {
-                    (count_line(*count)) ", " (round(*least)) " – " (round(*greatest)) ", "
-                    (frame.say("mean", "moyenne")) " " (round(*mean))
+                    (count_line(numbers.count)) ", " (round(numbers.least)) " – "
+                    (round(numbers.greatest)) ", " (frame.say("mean", "moyenne")) " "
+                    (round(numbers.sum / numbers.count as f64))
                 }
             }
         },

@@ -65,7 +65,8 @@ pub(crate) fn study_page(
             data-off=(frame.say("Not connected: trying again.", "Non connecté : nouvel essai.")) {}
         div data-live={ (address) "/live" } {
             (counts(frame, study, overview))
-            (participants(frame, id, overview))
+            @if overview.behind > 0 { (behind(frame, overview.behind)) }
+            (participants(frame, id, &overview.listed))
             @if !overview.conditions.is_empty() { (conditions(frame, overview)) }
             (stops(frame, overview))
             @if !overview.balance.is_empty() { (balance(frame, overview)) }
@@ -89,6 +90,19 @@ pub(super) fn stage_word(language: Language, word: &str) -> &str {
     }
 }
 
+/// Some sessions have changed more than can be counted while somebody waits.
+fn behind(frame: &Frame, sessions: usize) -> Markup {
+    html! {
+        p.soft role="status" {
+            (frame.say(
+                "Of so many sessions the figures below do not count the newest events yet: ",
+                "Pour ce nombre de sessions, les chiffres ci-dessous ne comptent pas encore les derniers événements : ",
+            ))
+            (sessions) "."
+        }
+    }
+}
+
 /// How many participants there are of each standing.
 fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
     html! {
@@ -96,8 +110,8 @@ fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
             @for (standing, count) in &overview.standings {
                 div { dt { (standing_word(*standing, frame.language)) } dd { (count) } }
             }
-            @if !overview.excluded.is_empty() {
-                div { dt { (frame.say("excluded", "exclus")) } dd { (overview.excluded.len()) } }
+            @if overview.excluded > 0 {
+                div { dt { (frame.say("excluded", "exclus")) } dd { (overview.excluded) } }
             }
             @if let Some(wanted) = study.study().recruitment.participants {
                 div { dt { (frame.say("wanted", "prévus")) } dd { (wanted) } }

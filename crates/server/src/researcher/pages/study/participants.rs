@@ -4,19 +4,25 @@ use maud::{Markup, html};
 use mimique_session::Standing;
 use mimique_storage::SessionRecord;
 
-use crate::researcher::dashboard::overview::Overview;
-use crate::researcher::dashboard::session_view::SessionView;
+use crate::researcher::dashboard::overview::{Listed, Notice, ON_A_PAGE, Person, Wanted};
 use crate::researcher::pages::frame::{Frame, time};
-use crate::researcher::pages::standing_words::standing_word;
+use crate::researcher::pages::standing_words::{list_word, standing_word};
 
-/// The participants, a row each.
-pub(super) fn participants(frame: &Frame, id: &str, overview: &Overview) -> Markup {
+/// The participants, a row each, page by page.
+pub(super) fn participants(frame: &Frame, id: &str, listed: &Listed) -> Markup {
     let title = frame.say("Participants", "Participants");
     html! {
         div.card {
             h2 { (title) }
-            @if overview.sessions.is_empty() {
-                p.soft { (frame.say("Nobody yet.", "Personne pour l’instant.")) }
+            (choice(frame, id, listed))
+            @if listed.people.is_empty() {
+                p.soft {
+                    @if listed.wanted.standing.is_none() {
+                        (frame.say("Nobody yet.", "Personne pour l’instant."))
+                    } @else {
+                        (frame.say("Nobody stands so.", "Personne n’est dans cet état."))
+                    }
+                }
             } @else {
                 div.table-scroll tabindex="0" role="region" aria-label=(title) {
                     table {
@@ -31,11 +37,60 @@ pub(super) fn participants(frame: &Frame, id: &str, overview: &Overview) -> Mark
                             th scope="col" { (frame.say("Browser", "Navigateur")) }
                         } }
                         tbody {
-                            // The newest first: they are the ones to be watched.
-                            @for (session, view) in overview.sessions.iter().rev() {
-                                (participant(frame, id, session, view, overview))
-                            }
+                            @for person in &listed.people { (participant(frame, id, person)) }
                         }
+                    }
+                }
+                (pages(frame, id, listed))
+            }
+        }
+    }
+}
+
+/// The address of a page of the list.
+fn address(id: &str, standing: Option<Standing>, page: usize) -> String {
+    let mut query = Vec::new();
+    query.extend(standing.map(|standing| format!("standing={}", list_word(standing))));
+    query.extend((page > 0).then(|| format!("page={}", page + 1)));
+    let mark = if query.is_empty() { "" } else { "?" };
+    format!("/researcher/studies/{id}{mark}{}", query.join("&"))
+}
+
+/// Which participants are listed.
+fn choice(frame: &Frame, id: &str, listed: &Listed) -> Markup {
+    let label = frame.say("Participants by status", "Participants par état");
+    let current = |standing| (listed.wanted.standing == standing).then_some("true");
+    html! {
+        nav.row aria-label=(label) {
+            a href=(address(id, None, 0)) aria-current=[current(None)] {
+                (frame.say("all", "tous"))
+            }
+            @for standing in Standing::ALL {
+                a href=(address(id, Some(standing), 0)) aria-current=[current(Some(standing))] {
+                    (standing_word(standing, frame.language))
+                }
+            }
+        }
+    }
+}
+
+/// Which of how many are on this page, and where the others are.
+fn pages(frame: &Frame, id: &str, listed: &Listed) -> Markup {
+    let Wanted { standing, page } = listed.wanted;
+    let first = page * ON_A_PAGE + 1;
+    let last = first + listed.people.len() - 1;
+    html! {
+        @if listed.of > ON_A_PAGE {
+            nav.row aria-label=(frame.say("Pages of participants", "Pages de participants")) {
+                @if page > 0 {
+                    a rel="prev" href=(address(id, standing, page - 1)) {
+                        (frame.say("Newer", "Plus récents"))
+                    }
+                }
+                span { (first) "–" (last) (frame.say(" of ", " sur ")) (listed.of) }
+                @if last < listed.of {
+                    a rel="next" href=(address(id, standing, page + 1)) {
+                        (frame.say("Older", "Plus anciens"))
                     }
                 }
             }
@@ -43,13 +98,8 @@ pub(super) fn participants(frame: &Frame, id: &str, overview: &Overview) -> Mark
     }
 }
 
-fn participant(
-    frame: &Frame,
-    id: &str,
-    session: &SessionRecord,
-    view: &SessionView,
-    overview: &Overview,
-) -> Markup {
+fn participant(frame: &Frame, id: &str, person: &Person) -> Markup {
+    let Person { session, sums, notice } = person;
     let number = session.participant;
     html! {
         tr {
@@ -58,15 +108,17 @@ fn participant(
                     (mimique_storage::participant_id(number))
                 }
             }
-            td { (status(frame, session, view, overview)) }
+            td { (status(frame, session, *notice)) }
             td.progress {
-                @if let (Some((done, all)), true) = (view.progress, !session.is_deleted()) {
+                @if let Some((done, all)) = sums.as_ref().and_then(|sums| sums.progress) {
                     progress max=(all) value=(done)
                         aria-label={ (done) (frame.say(" of ", " sur ")) (all) (frame.say(" steps", " étapes")) } {}
                     span.number { (done) "/" (all) }
                 }
             }
-            td { @if overview.standing(session, view).is_open() { (view.step) } }
+            td {
+                @if let (Some(sums), true) = (sums, notice.standing.is_open()) { (sums.step) }
+            }
             td { (time(Some(session.started_ms))) }
             td { (time(session.last_event_ms)) }
             td.number { (session.event_count) }
@@ -76,27 +128,21 @@ fn participant(
 }
 
 /// How a session stands, and what is to be noticed of it.
-pub(crate) fn status(
-    frame: &Frame,
-    session: &SessionRecord,
-    view: &SessionView,
-    overview: &Overview,
-) -> Markup {
-    let standing = overview.standing(session, view);
-    let tag = match standing {
+pub(crate) fn status(frame: &Frame, session: &SessionRecord, notice: Notice) -> Markup {
+    let tag = match notice.standing {
         Standing::Completed => "tag good",
         Standing::InProgress => "tag",
         _ => "tag warn",
     };
     html! {
-        span class=(tag) { (standing_word(standing, frame.language)) }
+        span class=(tag) { (standing_word(notice.standing, frame.language)) }
         @if session.event_count < session.next_sequence {
             " " span.tag.warn { (frame.say("events missing", "événements manquants")) }
         }
-        @if let Some(conflicts) = overview.conflicts.get(&session.key) {
-            " " span.tag.bad { (conflicts) (frame.say(" conflicting", " contradictoires")) }
+        @if notice.conflicts > 0 {
+            " " span.tag.bad { (notice.conflicts) (frame.say(" conflicting", " contradictoires")) }
         }
-        @if overview.excluded.contains_key(&session.key) {
+        @if notice.is_excluded {
             " " span.tag.bad { (frame.say("excluded", "exclu")) }
         }
     }

@@ -1,0 +1,214 @@
+// A face that shows what the body does: inputs, the face, the body beside it, courses below; live.
+import { openStage, preparedClip, putClip } from "../stage/host.js";
+import { made } from "../stage/player.js";
+import { ExertionPictures } from "../drawing/exertion.js";
+import { ExertionSettings } from "./exertion-settings.js";
+import { callWorker } from "./worker-calls.js";
+
+const $ = (id) => document.getElementById(id);
+const LOOK = { background: "#808080", width: 480, height: 480 };
+const SLOT = "exertion";
+const CLIP = "studio-exertion";
+const NO_AVATAR = "Open an avatar above, or take the built-in head, to see the face.";
+
+/// One of the player's panels.
+export class Exertion {
+  #page;
+  #settings;
+  #pictures;
+  #canvas = $("exertion-canvas");
+  #veil = $("exertion-veil");
+  #opening = null;
+  #stage = null;
+  #drawing = null;
+  #pack = { key: null, bytes: null };
+  #isBusy = false;
+  #isStale = false;
+  facts = null;
+  drawn = 0;
+  slot = SLOT;
+
+  /// `page`: {player, avatarKey(), takeIsMotion(), captureOptions(), save(name, text), changed(), report(error)}
+  constructor(page) {
+    this.#page = page;
+    this.#settings = new ExertionSettings($("exertion-settings"), (name) => this.#set(name), (kind, file) => this.#open(kind, file).catch(page.report));
+    this.#pictures = new ExertionPictures((window) => {
+      this.#settings.window(window);
+      this.update();
+    });
+    $("exertion-body").append(this.#pictures.body);
+    $("exertion-courses").append(this.#pictures.courses, this.#pictures.clip);
+    $("exertion").addEventListener("toggle", () => this.sourcesChanged());
+    const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
+    const name = () => `exertion-${this.#settings.value("source")}`;
+    on("exertion-weights", async () => page.save(`${name()}-weights.csv`, await callWorker("exertionWeightsCsv")));
+    on("exertion-series", async () => page.save(`${name()}-series.csv`, await callWorker("exertionSeriesCsv")));
+    on("exertion-plot", async () => page.save(`${name()}.svg`, await callWorker("exertionPlot")));
+    on("exertion-study", async () => page.save(`${name()}-study.json`, await callWorker("exertionStudy")));
+    on("exertion-copy", async () => {
+      await navigator.clipboard.writeText(await callWorker("exertionStudy"));
+      $("exertion-copied").textContent = "Copied: captures, segments and methods for a study file.";
+    });
+  }
+
+  get canvas() {
+    return this.#canvas;
+  }
+
+  title() {
+    return "Exertion";
+  }
+
+  clip() {
+    if (this.facts) return preparedClip(CLIP);
+    if (!this.#drawing) return null;
+    const [from, to] = this.#drawing.windowS;
+    return { duration_ms: 1000 * (to - from), rate_hz: 60 };
+  }
+
+  frameAt(timeMs) {
+    const { frames, rate_hz } = this.facts;
+    return Math.min(Math.max(Math.round((timeMs * rate_hz) / 1000), 0), frames - 1);
+  }
+
+  turn() {
+    const [yaw, pitch] = $("view").value.split(",").map(Number);
+    this.#stage?.setView({ yaw, pitch });
+  }
+
+  draw(timeMs) {
+    if (!$("exertion").open) return true;
+    this.#pictures.at(timeMs);
+    if (!this.facts || !this.#stage) return true;
+    try {
+      const drawn = this.#stage.drawNow(CLIP, timeMs);
+      this.drawn += drawn;
+      return drawn;
+    } catch {
+      this.#stage.reopen().then(() => this.#page.player.draw(), this.#page.report);
+      return true;
+    }
+  }
+
+  /// Draws a frame for certain, for exports.
+  async show(timeMs) {
+    await this.#stage.show(CLIP, timeMs);
+  }
+
+  /// Another avatar or capture, or the section was opened.
+  sourcesChanged() {
+    const can = this.#page.takeIsMotion();
+    this.#settings.choice("source", "take", can);
+    if (!can && this.#settings.value("source") === "take") this.#settings.choose("source", "run");
+    return this.update();
+  }
+
+  /// Computes and shows; of what is set meanwhile the last counts.
+  async update() {
+    if (!$("exertion").open) return;
+    this.#isStale = true;
+    if (this.#isBusy) return;
+    this.#isBusy = true;
+    try {
+      while (this.#isStale) {
+        this.#isStale = false;
+        await this.#compute();
+      }
+    } catch (error) {
+      this.#page.report(error);
+    } finally {
+      this.#isBusy = false;
+    }
+  }
+
+  // A motion goes on for minutes, a recording as long as it is.
+  #set(name) {
+    if (name === "source" && this.#settings.value("source") !== "file") this.#settings.usual();
+    if (name === "source") this.#heartOf(false);
+    this.update();
+  }
+
+  #heartOf(recorded) {
+    this.#settings.choice("heart", "recorded", recorded);
+    if (!recorded && this.#settings.value("heart") === "recorded") this.#settings.choose("heart", "thesis");
+    if (recorded) this.#settings.choose("heart", "recorded");
+  }
+
+  async #open(kind, file) {
+    if (kind === "model") {
+      await callWorker("exertionModel", file.name, await file.text());
+      this.#settings.choice("model", "file", true, file.name);
+      this.#settings.choose("model", "file");
+      return this.update();
+    }
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    const { isActivity, hasHeart, spanS } = await callWorker("exertionFile", file.name, bytes, ...this.#page.captureOptions());
+    this.#settings.choice("source", "file", true, file.name);
+    this.#settings.choose("source", "file");
+    if (isActivity) this.#settings.last(spanS);
+    else this.#settings.usual();
+    this.#heartOf(hasHeart);
+    return this.update();
+  }
+
+  async #compute() {
+    const started = performance.now();
+    const told = await callWorker("exertion", JSON.stringify(this.#settings.read()));
+    this.#settings.say(told.problem ?? null);
+    for (const button of $("exertion-save").querySelectorAll("button")) button.disabled = Boolean(told.problem);
+    $("exertion-copied").textContent = "";
+    if (told.problem) {
+      this.facts = null;
+      this.#veil.textContent = told.problem.text;
+      this.#veil.hidden = false;
+      $("exertion-notes").replaceChildren();
+      return this.#page.changed();
+    }
+    this.#drawing = told.drawing;
+    this.#pictures.put(told.drawing);
+    if (told.face) await this.#face(told.face);
+    else {
+      this.facts = null;
+      this.#veil.textContent = NO_AVATAR;
+      this.#veil.hidden = false;
+    }
+    this.#page.changed();
+    this.#page.player.seek(this.#page.player.timeMs);
+    this.#tell(told, performance.now() - started);
+  }
+
+  async #face(face) {
+    const key = this.#page.avatarKey();
+    if (this.#pack.key !== key) this.#pack = { key, bytes: await callWorker("slotPack", SLOT) };
+    const weights = await callWorker("weights", SLOT);
+    await putClip({
+      clip: CLIP, avatarHash: `${key}-bank`, avatarPack: this.#pack.bytes, weights,
+      frames: face.frames, shapes: face.shapes.length, rate_hz: face.rate_hz,
+    });
+    this.#opening ??= openStage(this.#canvas, LOOK);
+    this.#stage = await this.#opening;
+    this.facts = face;
+    this.turn();
+    this.#canvas.setAttribute("aria-label", "The face in the window");
+    this.#veil.hidden = true;
+  }
+
+  #tell({ name, person, end, warnings, notes, face }, took) {
+    const [open, stretched, eyes, brows] = end.curves.map((curve) => curve.toFixed(0));
+    const rows = [
+      ["Person", `heart ${person.heartRest.toFixed(0)} to ${person.heartMost.toFixed(0)} per minute, VO2max ${person.vo2Max.toFixed(1)} ml/kg/min`],
+      [`After ${end.second} s`, `heart ${end.heartRate.toFixed(0)} per minute (${(100 * end.rcn).toFixed(0)} % of its reserve), ${end.breaths.toFixed(0)} breaths per minute`],
+      ["", `EPOC ${end.epoc.toFixed(1)} ml/kg, exertion ${end.borg.toFixed(1)} of 20`],
+      ["Face", `mouth open ${open} %, stretched ${stretched} %, eyes ${eyes} %, brows ${brows} %`],
+      ["Computed", `${name}, in ${took.toFixed(0)} ms`],
+    ];
+    $("exertion-facts").replaceChildren(...rows.map(([term, words]) => made("div", {}, made("dt", {}, term), made("dd", { className: "number" }, words))));
+    const said = (className) => (text) => made("p", { className }, text);
+    const all = [...warnings.map(said("notice warn")), ...[...notes, ...(face?.warnings ?? [])].map(said("soft"))];
+    // What is the same is not said anew to those who hear the page.
+    const text = all.map((line) => line.textContent).join("\n");
+    if ($("exertion-notes").dataset.text === text && $("exertion-notes").childElementCount > 0) return;
+    $("exertion-notes").dataset.text = text;
+    $("exertion-notes").replaceChildren(...all);
+  }
+}
