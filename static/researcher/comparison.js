@@ -38,10 +38,10 @@ export class ShownComparison {
   }
 }
 
-function lips({ lipVertexErrorMm: error, lipClosureMisses: misses }) {
+function lips({ clips: [first, second], lipVertexErrorMm: error, lipClosureMisses: misses }) {
   const said = [];
   if (error !== undefined) said.push(`Lip vertex error ${error.toFixed(2)} mm.`);
-  if (misses !== undefined) said.push(`Where the lips of the first are shut, those of the second are open in ${(100 * misses).toFixed(1)} % of the frames.`);
+  if (misses !== undefined) said.push(`Where the lips of ${first} are shut, those of ${second} are open in ${(100 * misses).toFixed(1)} % of the frames.`);
   return said.join(" ");
 }
 

@@ -91,11 +91,12 @@ for (const [scheme, width, hands, locale] of [["light", 1280, "mouse", "en-GB"],
       await tabTo(page, "#distance");
       await page.keyboard.type("55");
       await page.keyboard.press("Tab");
+      // What was typed is drawn when a picture has been taken.
+      await look("calibration");
       const card = await page.locator(".bank-card").boundingBox();
       const [long, short] = [Math.max(card.width, card.height), Math.min(card.width, card.height)];
       assert.ok(Math.abs(long / short - 85.6 / 53.98) < 0.01, "the shape of a card");
       assert.equal(card.width > card.height, width > 600, "upright where the screen is narrow");
-      await look("calibration");
       await go(page, hands);
       here = await leave(page, here);
 

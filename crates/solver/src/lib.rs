@@ -78,7 +78,9 @@ mod quadratic;
 mod surface;
 
 pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
-pub use energy::sensitivity::{ShapeSensitivity, ToldBy, is_told, shape_sensitivities};
+pub use energy::sensitivity::{
+    ShapeSensitivity, ToldBy, error_alone, is_told, shape_sensitivities,
+};
 pub use energy::thin_shell::{apply_shell, shell_gram};
 pub use fit::frame::FrameSolver;
 pub use fit::problem::FitError;

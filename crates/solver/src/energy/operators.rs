@@ -258,6 +258,13 @@ impl Operators {
         self.shell_scale
     }
 
+    /// |D_k|^2: the squared displacements of all markers by each shape at weight 1, square metres.
+    pub fn marker_squares(&self) -> Vec<f64> {
+        let n = self.shape_count();
+        let rows = || self.parts.marker_deltas.chunks_exact(n);
+        (0..n).map(|k| rows().map(|row| row[k] * row[k]).sum()).collect()
+    }
+
     /// The largest displacement of any marker by each shape at weight 1, metres: shapes under a
     /// millimetre are all but unseen.
     pub fn marker_reach(&self) -> Vec<f64> {

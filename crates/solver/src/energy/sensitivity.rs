@@ -49,6 +49,12 @@ pub fn is_told(square: f64) -> bool {
     square.sqrt() * RANGE > NOISE_M
 }
 
+/// Standard error of a shape's weight at 1 mm of noise where all other weights are known; infinite where no marker
+/// moves.
+pub fn error_alone(square: f64) -> f64 {
+    NOISE_M / square.sqrt()
+}
+
 /// What the markers tell of each of the `free` shapes, in their order.
 ///
 /// With noise sigma on each coordinate: alone is sigma / |D_k|; together is the root of the diagonal of
@@ -78,7 +84,7 @@ pub fn shape_sensitivities(operators: &Operators, free: &[usize]) -> Vec<ShapeSe
             let variance = told[i * count + i];
             let correlation =
                 |j: usize| told[i * count + j] / (variance * told[j * count + j]).sqrt();
-            let alone = NOISE_M / gram[i * count + i].sqrt();
+            let alone = error_alone(gram[i * count + i]);
             let together = variance.sqrt();
             ShapeSensitivity {
                 shape: free[i],

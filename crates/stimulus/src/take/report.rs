@@ -155,12 +155,10 @@ pub(crate) fn untold_shapes(operators: &Operators, spec: &MethodSpec) -> Option<
         return None;
     }
     let parts = operators.parts();
-    let n = parts.shape_names.len();
-    let square =
-        |k: usize| -> f64 { parts.marker_deltas.chunks_exact(n).map(|row| row[k] * row[k]).sum() };
-    let names: Vec<&str> = (0..n)
-        .filter(|&k| !is_told(square(k)) && !spec.locked.contains(&parts.shape_names[k]))
-        .map(|k| parts.shape_names[k].as_str())
+    let squares = operators.marker_squares();
+    let names: Vec<&str> = (parts.shape_names.iter().zip(squares))
+        .filter(|(name, square)| !is_told(*square) && !spec.locked.contains(name))
+        .map(|(name, _)| name.as_str())
         .collect();
     (!names.is_empty()).then(|| {
         format!(

@@ -2,7 +2,8 @@
 
 use mimique_avatar::turns_eyes;
 use mimique_solver::{
-    Group, MethodSpec, Operators, ShapeSensitivity, ToldBy, is_told, shape_sensitivities,
+    Group, MethodSpec, Operators, ShapeSensitivity, ToldBy, error_alone, is_told,
+    shape_sensitivities,
 };
 use serde::Serialize;
 
@@ -79,13 +80,11 @@ impl JoinedTake<'_> {
         let told = shape_sensitivities(operators, &free);
         let asked = asked.with_names_of(names, &[]);
         let driven: Vec<&String> = self.driven_shapes().collect();
-        let deltas = &operators.parts().marker_deltas;
-        let n = names.len();
+        let squares = operators.marker_squares();
         (names.iter().enumerate())
             .map(|(k, name)| match told.iter().find(|told| told.shape == k) {
                 Some(told) => free_row(names, told),
                 None => {
-                    let length = deltas.chunks_exact(n).map(|row| row[k] * row[k]).sum::<f64>();
                     let state = match () {
                         () if driven.contains(&name) => ShapeState::Driven,
                         () if asked.locked.contains(name) => ShapeState::Locked,
@@ -95,7 +94,7 @@ impl JoinedTake<'_> {
                     ShapeRow {
                         shape: name.clone(),
                         state,
-                        alone: (length > 0.0).then(|| 1e-3 / length.sqrt()),
+                        alone: Some(error_alone(squares[k])).filter(|alone| alone.is_finite()),
                         together: None,
                         standard_error: None,
                         confused_with: None,
