@@ -171,11 +171,12 @@ fn judge_consistency(
 }
 
 /// The approximation for many items: 8 / (n - 4) (C(n, 3) / 4 - d + 1/2) + f is chi-square with
-/// f = n (n - 1)(n - 2) / (n - 4)² degrees of freedom.
+/// f = n (n - 1)(n - 2) / (n - 4)² degrees of freedom where its tail is that of fewer than d; so few or fewer
+/// are fewer than d + 1.
 fn chi_square_of_triads(found: usize, items: usize) -> f64 {
     let (n, rest) = (items as f64, items as f64 - 4.0);
     let df = n * (n - 1.0) * (n - 2.0) / (rest * rest);
-    let statistic = 8.0 / rest * (choose(items, 3) as f64 / 4.0 - found as f64 + 0.5) + df;
+    let statistic = 8.0 / rest * (choose(items, 3) as f64 / 4.0 - found as f64 - 0.5) + df;
     chi_square_upper(statistic, df).p
 }
 

@@ -109,7 +109,9 @@ fn turn(
             columns: questions.iter().map(|question| question.name.clone()).collect(),
         })?;
         if let Some(value) = values[place].iter().find(|value| !(low..=high).contains(*value)) {
-            return Err(Unfit::OutsideRange { column: name.clone(), value: *value, low, high }.into());
+            return Err(
+                Unfit::OutsideRange { column: name.clone(), value: *value, low, high }.into()
+            );
         }
         values[place].iter_mut().for_each(|value| *value = low + high - *value);
     }
@@ -158,7 +160,8 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     question: "Do questions that are added up measure one thing? Cronbach's alpha",
     options: &[&[
         ProcedureOption::list("questions", "Columns of numbers, one a question").required(),
-        ProcedureOption::list("reversed", "Those of them that are turned round").requires(&["range"]),
+        ProcedureOption::list("reversed", "Those of them that are turned round")
+            .requires(&["range"]),
         ProcedureOption::list("range", "Lowest and highest answer, for what is turned round"),
     ]],
     run,
@@ -189,8 +192,11 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
     let reversed = match arguments.list("reversed") {
         [] => None,
         questions => {
-            let numbers: Vec<f64> =
-                arguments.list("range").iter().filter_map(|word| word.trim().parse().ok()).collect();
+            let numbers: Vec<f64> = arguments
+                .list("range")
+                .iter()
+                .filter_map(|word| word.trim().parse().ok())
+                .collect();
             let range = <[f64; 2]>::try_from(numbers).ok().filter(|[low, high]| low < high);
             let word = arguments.list("range").join(",");
             let range = range.ok_or(Refusal::Unfit(Unfit::NotARange { option: "range", word }))?;
@@ -231,7 +237,10 @@ mod tests {
 
     fn columns(values: &[&[f64]]) -> Vec<Numbers> {
         let name = |place: usize| format!("q{}", place + 1);
-        let of = |(place, values): (usize, &&[f64])| Numbers { name: name(place), values: values.to_vec() };
+        let of = |(place, values): (usize, &&[f64])| Numbers {
+            name: name(place),
+            values: values.to_vec(),
+        };
         values.iter().enumerate().map(of).collect()
     }
 

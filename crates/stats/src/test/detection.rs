@@ -328,7 +328,17 @@ fn words(result: &Detection) -> String {
         result.participants,
         lines::dropped(result.dropped)
     ));
-    let heads = ["category", "hits", "false alarms", "d' of all", "se", "c of all", "mean d'", "95 % interval", "p"];
+    let heads = [
+        "category",
+        "hits",
+        "false alarms",
+        "d' of all",
+        "se",
+        "c of all",
+        "mean d'",
+        "95 % interval",
+        "p",
+    ];
     let mut rows = vec![lines::row(heads)];
     for found in &result.categories {
         let counts = found.counts;
@@ -396,7 +406,8 @@ mod tests {
         let factor = |name: &str| table.factor(name).unwrap();
         let found = detection(&factor("p"), &factor("t"), &factor("a")).unwrap();
         let x = &found.categories[0];
-        let own: Vec<f64> = x.people.iter().filter_map(|p| p.sensitivity.map(|s| s.d_prime)).collect();
+        let own: Vec<f64> =
+            x.people.iter().filter_map(|p| p.sensitivity.map(|s| s.d_prime)).collect();
         assert_eq!((x.people.len(), own.len()), (3, 2));
         assert!((x.d_prime_mean.unwrap() - (own[0] + own[1]) / 2.0).abs() < 1e-15);
         assert!(x.few_signals);

@@ -244,9 +244,13 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     name: "difference-scaling",
     question: "How does a perceived difference grow with a parameter? Difference scaling (MLDS)",
     options: &[&[
-        ProcedureOption::list("levels", "Columns of the levels: three of a triad, or four of two pairs")
+        ProcedureOption::list(
+            "levels",
+            "Columns of the levels: three of a triad, or four of two pairs",
+        )
+        .required(),
+        ProcedureOption::text("answer", "Column: 1 where the second pair differs more, else 0")
             .required(),
-        ProcedureOption::text("answer", "Column: 1 where the second pair differs more, else 0").required(),
         ProcedureOption::text("participant", "Column of the participants, for intervals"),
         ROUNDS,
         SEED,
@@ -311,7 +315,8 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
     }
     let columns = names.iter().map(|name| table.numbers(name)).collect::<Result<Vec<_>, _>>()?;
     let answer = arguments.numbers(table, "answer")?;
-    let people = arguments.text("participant").map(|name| table.combined_factor(name)).transpose()?;
+    let people =
+        arguments.text("participant").map(|name| table.combined_factor(name)).transpose()?;
     let mut used: Vec<_> = columns.iter().collect();
     used.push(&answer);
     let factors: Vec<&Factor> = people.iter().collect();
@@ -331,7 +336,11 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
             _ => [own(0), own(1), own(2), own(3)],
         };
         let participant = people.as_ref().map_or(0, |factor| factor.codes[at] as usize);
-        judgements.push(DifferenceJudgement { participant, levels, second_differs_more: given == 1.0 });
+        judgements.push(DifferenceJudgement {
+            participant,
+            levels,
+            second_differs_more: given == 1.0,
+        });
     }
     let rounds = if people.is_some() { arguments.whole("rounds", DEFAULT_ROUNDS)? } else { 0 };
     let outcome = difference_scaling(&judgements, rounds as usize, arguments.whole("seed", 1)?)?;
@@ -443,8 +452,10 @@ mod tests {
         let why = difference_scaling(&sure, 0, 1).unwrap();
         assert_eq!(why.reason(), Some(&NoEstimate::JudgementsSeparated.into()));
         // 0.3 and 0.4 are only ever shown together, against themselves.
-        let one = |levels| DifferenceJudgement { participant: 0, levels, second_differs_more: true };
-        let untold = [one([0.0, 0.1, 0.1, 0.2]), one([0.1, 0.2, 0.0, 0.1]), one([0.3, 0.4, 0.3, 0.4])];
+        let one =
+            |levels| DifferenceJudgement { participant: 0, levels, second_differs_more: true };
+        let untold =
+            [one([0.0, 0.1, 0.1, 0.2]), one([0.1, 0.2, 0.0, 0.1]), one([0.3, 0.4, 0.3, 0.4])];
         let why = difference_scaling(&untold, 0, 1).unwrap();
         assert_eq!(why.reason(), Some(&NoEstimate::LevelsNotTold.into()));
         assert!(difference_scaling(&[one([0.0, 0.1, 0.0, 0.1])], 0, 1).is_err());

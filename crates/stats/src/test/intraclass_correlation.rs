@@ -81,14 +81,11 @@ pub struct IntraclassCorrelation {
 
 /// Agreement of the groups (raters) over the blocks (clips). Refuses fewer than 5 whole clips or 3 raters;
 /// undefined where clips or ratings do not differ.
-pub fn intraclass_correlation(
-    ratings: &Blocks,
-) -> Result<Outcome<IntraclassCorrelation>, Refusal> {
+pub fn intraclass_correlation(ratings: &Blocks) -> Result<Outcome<IntraclassCorrelation>, Refusal> {
     let (clips, raters) = (ratings.blocks.len(), ratings.groups.len());
-    for (column, levels, needed) in [
-        ("clip", &ratings.blocks, CLIPS_NEEDED),
-        ("rater", &ratings.groups, RATERS_NEEDED),
-    ] {
+    for (column, levels, needed) in
+        [("clip", &ratings.blocks, CLIPS_NEEDED), ("rater", &ratings.groups, RATERS_NEEDED)]
+    {
         if levels.len() < needed {
             let (levels, rows) = (levels.clone(), clips * raters);
             let column = column.to_owned();
@@ -349,7 +346,8 @@ mod tests {
 
     #[test]
     fn units_do_not_matter() {
-        let rows = [[1.0, 2.0, 2.5], [3.0, 3.5, 2.0], [4.0, 5.0, 4.5], [2.0, 2.0, 3.0], [5.0, 4.0, 6.0]];
+        let rows =
+            [[1.0, 2.0, 2.5], [3.0, 3.5, 2.0], [4.0, 5.0, 4.5], [2.0, 2.0, 3.0], [5.0, 4.0, 6.0]];
         let scaled = rows.map(|row| row.map(|y| 100.0 - 12.5 * y));
         let of = |rows: &[[f64; 3]]| intraclass_correlation(&ratings(rows)).unwrap().ok().unwrap();
         for (own, other) in of(&rows).forms.iter().zip(of(&scaled).forms) {

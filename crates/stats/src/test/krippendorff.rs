@@ -135,7 +135,12 @@ impl UnitValues {
             units[own].push(value.codes[at] as usize);
         }
         let number = |name: &String| parse_number(name, true).unwrap_or(f64::NAN);
-        Ok(Self { numbers: value.levels.iter().map(number).collect(), names: value.levels, units, dropped })
+        Ok(Self {
+            numbers: value.levels.iter().map(number).collect(),
+            names: value.levels,
+            units,
+            dropped,
+        })
     }
 
     /// Whether all values are numbers.
@@ -386,7 +391,11 @@ mod tests {
         for unit in 0..30 {
             let true_value = (random.uniform() * 5.0).floor();
             for rater in 0..3 {
-                let value = if random.uniform() < 0.7 { true_value } else { (random.uniform() * 5.0).floor() };
+                let value = if random.uniform() < 0.7 {
+                    true_value
+                } else {
+                    (random.uniform() * 5.0).floor()
+                };
                 text += &format!("{unit},{rater},{value}\n");
             }
         }
@@ -396,7 +405,10 @@ mod tests {
         for (level, outcome) in of(1).levels.iter() {
             let found = outcome.clone().ok().unwrap();
             let [low, high] = found.interval.unwrap();
-            assert!(low < found.alpha && found.alpha < high && high - low < 0.6, "{level} {found:?}");
+            assert!(
+                low < found.alpha && found.alpha < high && high - low < 0.6,
+                "{level} {found:?}"
+            );
         }
     }
 

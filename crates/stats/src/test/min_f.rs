@@ -84,7 +84,8 @@ pub fn min_f_prime(
         (Ok(f1), Ok(f2)) => (f1, f2),
         (Err(why), _) | (_, Err(why)) => return Ok(Outcome::undefined(why)),
     };
-    let means = means_of(&values, &method, &Factor { codes: vec![0; rows.len()], ..method.clone() });
+    let means =
+        means_of(&values, &method, &Factor { codes: vec![0; rows.len()], ..method.clone() });
     Ok(Outcome::Ok(combined(f1, f2).with(rows.len(), complete.dropped(), &method, &means[0])))
 }
 
@@ -232,7 +233,8 @@ impl TestResult for MinFPrime {
 
     fn rows(&self) -> Vec<Outcome<TestRow>> {
         let means = || self.means.iter().map(|(_, mean)| *mean);
-        let range = means().fold(f64::NEG_INFINITY, f64::max) - means().fold(f64::INFINITY, f64::min);
+        let range =
+            means().fold(f64::NEG_INFINITY, f64::max) - means().fold(f64::INFINITY, f64::min);
         vec![Outcome::Ok(TestRow {
             variant: String::new(),
             term: Term::Whole,
@@ -328,7 +330,7 @@ mod tests {
         let m = factor("m", vec![0, 1, 0, 1, 0, 1, 0, 1, 0]);
         let p = factor("p", vec![0, 0, 0, 0, 1, 1, 1, 1, 2]);
         let s = factor("s", vec![0, 0, 1, 1, 0, 0, 1, 1, 0]);
-        let y = rating(&[1.0, 2.0, 2.0, 4.0, 3.0, 3.0, 2.0, 5.0, 4.0]);
+        let y = rating(&[1.0, 2.0, 2.0, 4.0, 3.0, 3.0, 2.0, 6.0, 4.0]);
         let found = min_f_prime(&y, [&m, &p, &s]).unwrap().ok().unwrap();
         assert_eq!((found.f1.units, found.f1.incomplete, found.f2.incomplete), (2, 1, 0));
         let parallel = rating(&[1.0, 2.0, 1.0, 2.0, 3.0, 4.0, 3.0, 4.0, 3.0]);

@@ -180,8 +180,7 @@ fn share(ratings: impl Iterator<Item = f64>, holds: impl Fn(f64) -> bool) -> Opt
 /// Screens people and compares conditions. Refuses a reference, an anchor or a condition that nobody rated.
 pub fn panel(ratings: &PanelRatings, options: &PanelOptions) -> Result<Panel, Refusal> {
     let reference = ratings.condition(&options.reference)?;
-    let anchor =
-        options.anchor.as_ref().map(|anchor| ratings.condition(anchor)).transpose()?;
+    let anchor = options.anchor.as_ref().map(|anchor| ratings.condition(anchor)).transpose()?;
     let persons = 0..ratings.participants.len();
     let segments = 0..ratings.segments.len();
     let above = |rating: f64| rating > options.score;
@@ -357,7 +356,10 @@ fn words(result: &Panel) -> String {
     if !out.is_empty() {
         let mut rows = vec![lines::row(["left out", "reference below 90", "anchor above 90"])];
         let percent = |share: Option<f64>| {
-            share.map_or_else(|| "-".to_owned(), |share| format!("{} %", format_number(100.0 * share)))
+            share.map_or_else(
+                || "-".to_owned(),
+                |share| format!("{} %", format_number(100.0 * share)),
+            )
         };
         for person in out {
             rows.push(vec![
@@ -395,7 +397,9 @@ mod tests {
         let mut text = "p,s,c,y\n".to_owned();
         for person in 0..4 {
             for segment in 0..10 {
-                for (condition, rating) in ["ref", "anchor", "a", "b"].iter().zip(rate(person, segment)) {
+                for (condition, rating) in
+                    ["ref", "anchor", "a", "b"].iter().zip(rate(person, segment))
+                {
                     text += &format!("{person},{segment},{condition},{rating}\n");
                 }
             }

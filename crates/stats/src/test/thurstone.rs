@@ -110,8 +110,7 @@ pub fn thurstone(
         side: model.side.then(|| model.side_bias(&found.at)),
         tau: model.ties.then(|| model.tie(&found.at)),
         loglik: found.log_likelihood,
-        items_cluster: covariance
-            .and_then(|c| equal_worths(model.items, participants, &worth, c)),
+        items_cluster: covariance.and_then(|c| equal_worths(model.items, participants, &worth, c)),
         lr_items: LikelihoodRatio::of(found.log_likelihood, without, df),
         worth,
     }))

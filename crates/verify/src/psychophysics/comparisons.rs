@@ -1,12 +1,13 @@
 //! Bradley and Terry's model, Thurstone's, the consistency of judges.
 
+use mimique_adaptive::{Comparison, Worths, all_pairs, information, spanning_tree};
 use mimique_stats::{
-    BradleyTerry, BradleyTerryOptions, NoEstimate, Outcome, PairedComparisons, Refusal, Separation,
-    Undefined, Unfit, bradley_terry as fit,
+    BradleyTerry, BradleyTerryOptions, Chosen, NoEstimate, Outcome, PairedComparisons, Refusal,
+    Separation, Undefined, Unfit, bradley_terry as fit,
 };
 use serde_json::{Value, json};
 
-use super::{Given, Stop};
+use super::{Given, Stop, defined};
 
 /// Draws of participants: as many as the cases' own.
 const ROUNDS: usize = 600;
@@ -67,4 +68,50 @@ fn separated(found: &BradleyTerry, why: &Separation) -> Value {
         "items_without_win": why.items_without_win,
         "penalised": found.penalised,
     })
+}
+
+/// Worths on a normal scale.
+pub(super) fn thurstone(given: &Given<'_>) -> Result<Value, Stop> {
+    let options =
+        BradleyTerryOptions { side: given.flag("side"), ..BradleyTerryOptions::default() };
+    Ok(json!(defined(mimique_stats::thurstone(&comparisons(given)?, &options)?)?))
+}
+
+/// Circular triads, agreement between judges.
+pub(super) fn consistency(given: &Given<'_>) -> Result<Value, Stop> {
+    Ok(json!(defined(mimique_stats::consistency(&comparisons(given)?)?)?))
+}
+
+/// Which pairs to ask about next.
+pub(super) fn active_pairs(given: &Given<'_>) -> Result<Value, Stop> {
+    let data = comparisons(given)?;
+    let items = data.items.len();
+    let answers: Vec<Comparison> = data
+        .answers
+        .iter()
+        .map(|answer| {
+            let share = match answer.chosen {
+                Chosen::Left => 1.0,
+                Chosen::Same => 0.5,
+                Chosen::Right => 0.0,
+            };
+            Comparison::one(answer.left, answer.right, share)
+        })
+        .collect();
+    let worths = Worths::of(items, &answers, given.options.get("prior_sd")?.number()?);
+    let mut told = information(&worths, &all_pairs(items));
+    let batch = spanning_tree(items, &told);
+    told.sort_by(|one, other| other.nats.total_cmp(&one.nats));
+    let name = |item: usize| data.items[item].as_str();
+    let diagonal: Vec<f64> =
+        (0..items).map(|item| worths.covariance[item * items + item]).collect();
+    let pairs =
+        told.iter().map(|pair| json!({ "a": name(pair.a), "b": name(pair.b), "nats": pair.nats }));
+    let batch = batch.iter().map(|pair| json!([name(pair.a), name(pair.b)]));
+    Ok(json!({
+        "mean": worths.mean,
+        "covariance_diagonal": diagonal,
+        "information": pairs.collect::<Vec<_>>(),
+        "batch": batch.collect::<Vec<_>>(),
+    }))
 }

@@ -2,13 +2,16 @@
 //! analysis is told, what it must find, and how nearly.
 
 mod comparisons;
+mod levels;
+mod ratings;
 mod tolerance;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use mimique_stats::Table;
-use serde_json::Value;
+use mimique_stats::{Outcome, Table};
+use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::document::{Document, Part};
 use crate::{Case, Family, VerifyError};
@@ -21,7 +24,22 @@ const ENDING: &str = ".expected.json";
 type Compute = fn(&Given<'_>) -> Result<Value, Stop>;
 
 /// The kinds of cases and what computes them.
-const KINDS: [(&str, Compute); 1] = [("bradley_terry", comparisons::bradley_terry)];
+const KINDS: [(&str, Compute); 14] = [
+    ("bradley_terry", comparisons::bradley_terry),
+    ("thurstone_v", comparisons::thurstone),
+    ("consistency", comparisons::consistency),
+    ("active_pairs", comparisons::active_pairs),
+    ("questplus", levels::quest_plus),
+    ("staircase", levels::staircase),
+    ("psychometric", levels::psychometric),
+    ("mlds", levels::difference_scale),
+    ("signal_detection", ratings::detection),
+    ("equivalence", ratings::equivalence),
+    ("icc", ratings::intraclass_correlation),
+    ("cronbach_alpha", ratings::cronbach),
+    ("krippendorff_alpha", ratings::krippendorff),
+    ("multi_stimulus", ratings::panel),
+];
 
 /// What the computation of a case is given.
 struct Given<'a> {
@@ -56,6 +74,22 @@ impl From<VerifyError> for Stop {
 impl From<mimique_stats::Refusal> for Stop {
     fn from(why: mimique_stats::Refusal) -> Self {
         Self::refused(&why)
+    }
+}
+
+/// The numbers of an outcome; what is undefined makes the case wrong, with its reason.
+fn defined<T>(outcome: Outcome<T>) -> Result<T, Stop> {
+    match outcome {
+        Outcome::Ok(found) => Ok(found),
+        Outcome::Undefined { reason } => Err(Stop::refused(&reason)),
+    }
+}
+
+/// As cases write it: what is undefined is null.
+fn or_null<T: Serialize>(outcome: &Outcome<T>) -> Value {
+    match outcome {
+        Outcome::Ok(found) => json!(found),
+        Outcome::Undefined { .. } => Value::Null,
     }
 }
 

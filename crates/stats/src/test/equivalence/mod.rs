@@ -272,7 +272,12 @@ fn larger(lower: Tail, upper: Tail) -> Tail {
     if lower.ln_p > upper.ln_p { lower } else { upper }
 }
 
-fn t_tests(difference: f64, se: f64, df: f64, options: &EquivalenceOptions) -> Outcome<EquivalenceT> {
+fn t_tests(
+    difference: f64,
+    se: f64,
+    df: f64,
+    options: &EquivalenceOptions,
+) -> Outcome<EquivalenceT> {
     // A spread of nothing but rounding is none.
     if !(se > 1e-14 * difference.abs() && se > 0.0) {
         return Outcome::undefined(NoEstimate::NoVariance);
@@ -311,23 +316,25 @@ fn signed_ranks(
     name: &str,
     options: &EquivalenceOptions,
 ) -> Result<Outcome<EquivalenceWilcoxon>, Refusal> {
-    let one_sided = |bound: f64, alternative: Alternative| {
-        let values = differences.iter().map(|d| d - bound).collect();
-        let shifted = Numbers { name: name.to_owned(), values };
-        let tested = wilcoxon(&shifted, WilcoxonOptions { alternative, ..Default::default() })?;
-        Ok(tested.map(|found| SignedRankTail {
-            plus: found.statistic,
-            tail: Tail { p: found.p_value, ln_p: found.ln_p },
-            variant: found.variant,
-        }))
-    };
+    let one_sided =
+        |bound: f64, alternative: Alternative| -> Result<Outcome<SignedRankTail>, Refusal> {
+            let values = differences.iter().map(|d| d - bound).collect();
+            let shifted = Numbers { name: name.to_owned(), values };
+            let tested = wilcoxon(&shifted, WilcoxonOptions { alternative, ..Default::default() })?;
+            Ok(tested.map(|found| SignedRankTail {
+                plus: found.statistic,
+                tail: Tail { p: found.p_value, ln_p: found.ln_p },
+                variant: found.variant,
+            }))
+        };
     let [low, high] = options.bounds;
-    let (lower, upper) = match (one_sided(low, Alternative::Greater)?, one_sided(high, Alternative::Less)?) {
-        (Outcome::Ok(lower), Outcome::Ok(upper)) => (lower, upper),
-        (Outcome::Undefined { reason }, _) | (_, Outcome::Undefined { reason }) => {
-            return Ok(Outcome::Undefined::<_, Undefined> { reason });
-        }
-    };
+    let (lower, upper) =
+        match (one_sided(low, Alternative::Greater)?, one_sided(high, Alternative::Less)?) {
+            (Outcome::Ok(lower), Outcome::Ok(upper)) => (lower, upper),
+            (Outcome::Undefined { reason }, _) | (_, Outcome::Undefined { reason }) => {
+                return Ok(Outcome::Undefined::<_, Undefined> { reason });
+            }
+        };
     let any = one_sided(0.0, Alternative::TwoSided)?.ok().map(|found| found.tail.p);
     let Tail { p, ln_p } = larger(lower.tail, upper.tail);
     let all: Vec<f64> = differences.iter().map(|d| rounded(*d)).collect();
@@ -365,7 +372,11 @@ fn rank_sum(x: &[f64], y: &[f64], shift: f64, alternative: Alternative) -> Optio
     (sd > 0.0).then(|| (u, normal_tail((distance - correction) / sd, alternative)))
 }
 
-fn rank_sums(x: &[f64], y: &[f64], options: &EquivalenceOptions) -> Outcome<EquivalenceMannWhitney> {
+fn rank_sums(
+    x: &[f64],
+    y: &[f64],
+    options: &EquivalenceOptions,
+) -> Outcome<EquivalenceMannWhitney> {
     let [low, high] = options.bounds;
     let lower = rank_sum(x, y, low, Alternative::Greater);
     let upper = rank_sum(x, y, high, Alternative::Less);
@@ -395,8 +406,7 @@ mod tests {
         Numbers { name: name.to_owned(), values: values.to_vec() }
     }
 
-    const SMALL: [f64; 12] =
-        [0.1, -0.2, 0.05, 0.15, -0.1, 0.0, 0.2, -0.05, 0.1, -0.15, 0.05, 0.12];
+    const SMALL: [f64; 12] = [0.1, -0.2, 0.05, 0.15, -0.1, 0.0, 0.2, -0.05, 0.1, -0.15, 0.05, 0.12];
 
     #[test]
     fn the_verdict_is_what_both_tests_say() {
@@ -430,14 +440,16 @@ mod tests {
     #[test]
     fn exchanging_the_groups_mirrors_everything() {
         let (a, b) = (numbers("a", &SMALL), numbers("b", &SMALL.map(|x| 0.4 - 2.0 * x)));
-        let options = EquivalenceOptions { bounds: [-0.3, 0.5], alpha: 0.05 };
-        let mirrored = EquivalenceOptions { bounds: [-0.5, 0.3], alpha: 0.05 };
+        // No value is as far from another one as a bound: such ties are rounding's.
+        let options = EquivalenceOptions { bounds: [-0.312_3, 0.512_3], alpha: 0.05 };
+        let mirrored = EquivalenceOptions { bounds: [-0.512_3, 0.312_3], alpha: 0.05 };
         let one = equivalence_of_groups(&a, &b, &options).unwrap();
         let other = equivalence_of_groups(&b, &a, &mirrored).unwrap();
         let (one_t, other_t) = (one.welch.ok().unwrap(), other.welch.ok().unwrap());
         assert!((one_t.p_lower - other_t.p_upper).abs() < 1e-14);
         assert!((one_t.interval_90[0] + other_t.interval_90[1]).abs() < 1e-14);
-        let (one, other) = (one.mann_whitney_normal.ok().unwrap(), other.mann_whitney_normal.ok().unwrap());
+        let (one, other) =
+            (one.mann_whitney_normal.ok().unwrap(), other.mann_whitney_normal.ok().unwrap());
         assert!((one.p_lower - other.p_upper).abs() < 1e-12, "{one:?} {other:?}");
     }
 
@@ -449,7 +461,8 @@ mod tests {
         assert!((found.wilcoxon.ok().unwrap().p - 1.0 / 256.0).abs() < 1e-14);
         let on_the_bound = equivalence_of_pairs(&numbers("d", &[0.5; 8]), &options).unwrap();
         assert!(on_the_bound.wilcoxon.reason().is_some(), "all differences from the bound are 0");
-        let equal = equivalence_of_groups(&numbers("a", &[3.0; 4]), &numbers("b", &[3.0; 5]), &options);
+        let equal =
+            equivalence_of_groups(&numbers("a", &[3.0; 4]), &numbers("b", &[3.0; 5]), &options);
         assert!(equal.unwrap().welch.reason().is_some());
         for bounds in [[0.5, -0.5], [0.0, 0.0], [f64::NAN, 1.0]] {
             let wrong = EquivalenceOptions { bounds, alpha: 0.05 };

@@ -35,13 +35,19 @@ const COLUMNS: [ProcedureOption; 7] = [
 pub(crate) const PROCEDURE: Procedure = Procedure {
     name: "equivalence",
     question: "Is a difference smaller than the smallest one that matters? Two one-sided tests",
-    options: &[&COLUMNS, &[
-        ProcedureOption::text("smallest-effect", "The smallest difference that matters, either way")
+    options: &[
+        &COLUMNS,
+        &[
+            ProcedureOption::text(
+                "smallest-effect",
+                "The smallest difference that matters, either way",
+            )
             .required_unless("bounds"),
-        ProcedureOption::list("bounds", "Lower and upper bound instead, such as -0.3,0.5")
-            .excludes(&["smallest-effect"]),
-        ProcedureOption::text("alpha", "Level of each of the two tests [default: 0.05]"),
-    ]],
+            ProcedureOption::list("bounds", "Lower and upper bound instead, such as -0.3,0.5")
+                .excludes(&["smallest-effect"]),
+            ProcedureOption::text("alpha", "Level of each of the two tests [default: 0.05]"),
+        ],
+    ],
     run,
     sample: Sample::Equivalence,
     r: r#"

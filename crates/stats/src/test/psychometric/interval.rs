@@ -126,8 +126,7 @@ fn drawn(
         .into_par_iter()
         .map(|round| {
             let counts = checked(&draw(&mut Stream::new(seed, round as u64)), options).ok()?;
-            let likelihood =
-                Likelihood::new(&counts, options.shape, options.guess, options.lapse);
+            let likelihood = Likelihood::new(&counts, options.shape, options.guess, options.lapse);
             let summit = likelihood.highest();
             let function = likelihood.function(summit.at);
             let found = [likelihood.half(summit.at), function.location, function.spread];

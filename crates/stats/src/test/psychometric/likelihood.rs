@@ -54,12 +54,7 @@ pub(super) struct Summit {
 }
 
 impl<'a> Likelihood<'a> {
-    pub(super) fn new(
-        counts: &'a [LevelCount],
-        shape: Shape,
-        guess: f64,
-        lapse: Lapse,
-    ) -> Self {
+    pub(super) fn new(counts: &'a [LevelCount], shape: Shape, guess: f64, lapse: Lapse) -> Self {
         let [low, high] = ends(counts, shape);
         let width = high - low;
         let bounds = match shape {
@@ -140,11 +135,8 @@ impl<'a> Likelihood<'a> {
     }
 
     fn terrain(&self, at: Place) -> Terrain {
-        let mut found = Terrain {
-            height: self.ln_prior(at[2]),
-            score: [0.0; 3],
-            information: [[0.0; 3]; 3],
-        };
+        let mut found =
+            Terrain { height: self.ln_prior(at[2]), score: [0.0; 3], information: [[0.0; 3]; 3] };
         if self.lapse == Lapse::Free {
             let rest = 1.0 - at[2];
             found.score[2] = -9.0 / rest;
@@ -186,7 +178,8 @@ impl<'a> Likelihood<'a> {
                     || (at[i] >= high && terrain.score[i] >= 0.0);
                 !(at_bound || low == high || (i == 0 && hold_half))
             });
-            let Some(plain) = step(&terrain, free, 0.0).or_else(|| step(&terrain, free, 1e-6)) else {
+            let Some(plain) = step(&terrain, free, 0.0).or_else(|| step(&terrain, free, 1e-6))
+            else {
                 break;
             };
             let gain: f64 = (0..3).map(|i| plain[i] * terrain.score[i]).sum();
@@ -196,9 +189,8 @@ impl<'a> Likelihood<'a> {
             let mut moved = false;
             while damping < 1e12 {
                 let Some(way) = step(&terrain, free, damping) else { break };
-                let next = [0, 1, 2].map(|i| {
-                    (at[i] + way[i]).clamp(self.bounds[i][0], self.bounds[i][1])
-                });
+                let next =
+                    [0, 1, 2].map(|i| (at[i] + way[i]).clamp(self.bounds[i][0], self.bounds[i][1]));
                 let found = self.terrain(next);
                 if found.height > terrain.height {
                     (at, terrain, moved) = (next, found, true);

@@ -119,12 +119,13 @@ impl PsychometricFit {
 
 /// Sorted levels, those alike joined. Refuses levels that are no numbers, more right answers than answers, fewer
 /// than three levels, and for Weibull levels below 0.
-fn checked(counts: &[LevelCount], options: &PsychometricOptions) -> Result<Vec<LevelCount>, Refusal> {
+fn checked(
+    counts: &[LevelCount],
+    options: &PsychometricOptions,
+) -> Result<Vec<LevelCount>, Refusal> {
     let mut sorted: Vec<LevelCount> = counts.iter().copied().filter(|own| own.n > 0).collect();
-    if let Some((row, own)) = counts
-        .iter()
-        .enumerate()
-        .find(|(_, own)| !own.level.is_finite() || own.correct > own.n)
+    if let Some((row, own)) =
+        counts.iter().enumerate().find(|(_, own)| !own.level.is_finite() || own.correct > own.n)
     {
         let LevelCount { level, n, correct } = *own;
         return Err(Unfit::CountsOfLevel { row: row + 1, level, n, correct }.into());

@@ -14,8 +14,8 @@ use crate::procedure::arguments::{
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::{Refusal, Unfit};
-use crate::table::sample::complete_rows;
 use crate::table::Table;
+use crate::table::sample::complete_rows;
 use crate::words::format_number;
 
 /// `--function`.
@@ -212,11 +212,7 @@ fn words(told: &Told) -> String {
         format_number(fit.lapse_estimate),
         if told.lapse == Lapse::Free { " (free)" } else { " (fixed)" }
     ));
-    lines.add(format!(
-        "deviance = {}, df = {}",
-        format_number(fit.deviance),
-        fit.df
-    ));
+    lines.add(format!("deviance = {}, df = {}", format_number(fit.deviance), fit.df));
     let mut rows = vec![lines::row(["level", "right", "of", "share", "fitted"])];
     let function = fit.psychometric();
     for own in &told.levels {
