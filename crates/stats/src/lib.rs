@@ -60,8 +60,8 @@ pub use table::{Numbers, Table, TableError};
 pub use test::aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
 pub use test::bradley_terry::{
     BradleyTerry, BradleyTerryOptions, DefaultTest, EqualWorths, LackOfFit, LikelihoodRatio,
-    PenalisedWorths, Resampling, Separation, SideOrTie, WinsTest, WorthContrast, WorthEstimates,
-    bradley_terry,
+    PenalisedWorths, Resampling, Separation, SideOrTie, WORTHS_RATIO, WinsTest, WorthContrast,
+    WorthEstimates, bradley_terry,
 };
 pub use test::chi_square::{ChiSquare, ChiSquareVariant, GTest, chi_square};
 pub use test::consistency::{Consistency, JudgeConsistency, consistency};

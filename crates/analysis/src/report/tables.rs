@@ -58,7 +58,7 @@ fn difference_heading(language: Language, kind: MeasureKind) -> String {
     let unit = match kind {
         MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
         MeasureKind::ResponseTime => " (s)",
-        MeasureKind::Rating => "",
+        MeasureKind::Rating | MeasureKind::Choice => "",
     };
     language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"))
 }

@@ -23,10 +23,10 @@ use mimique_study::{OrderError, Study};
 pub(crate) use latent::ClipEffects;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
-    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
+    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
     Recognition, Times,
 };
-pub(crate) use person::{BEFORE_REPLAY_MS, Person, Raw, as_json};
+pub(crate) use person::{BEFORE_REPLAY_MS, Companion, Person, Raw, as_json};
 pub(crate) use random::Draws;
 pub use read::ParametersError;
 pub(crate) use scales::{factor_levels, traits};

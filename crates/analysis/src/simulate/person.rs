@@ -1,11 +1,12 @@
 //! One simulated person: what is answered, when, and how far the person goes.
 
+use mimique_stats::Chosen;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{Answers, KindOfQuestion as _};
 use serde_json::Value;
 
 use super::latent::{ClipEffects, told};
-use super::model::{Asked, Model, Rated, Recognised, Way};
+use super::model::{Asked, Between, Model, Rated, Recognised, Way};
 use super::random::Draws;
 
 /// One simulated person. Answers, times and what happens to the display have streams of their own, so
@@ -54,6 +55,22 @@ pub(crate) enum Raw {
     Option(usize),
     /// Anything else, as JSON.
     Json(Value),
+}
+
+/// What a trial shows.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    clip: usize,
+    beside: Option<Companion>,
+}
+
+/// A clip that is played in step beside the trial's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Companion {
+    /// Its place among the clips.
+    pub clip: usize,
+    /// Whether it stands on the left.
+    pub left: bool,
 }
 
 /// How a clip is shown in one trial.
@@ -179,9 +196,11 @@ impl<'m> Person<'m> {
         &mut self,
         question: usize,
         clip: usize,
+        beside: Option<Companion>,
         trial: usize,
     ) -> Option<Raw> {
-        self.mind.answer(&mut self.answers, question, Some(clip), trial)
+        let seen = Some(Seen { clip, beside });
+        self.mind.answer(&mut self.answers, question, seen, trial)
     }
 
     /// Time from one answer to the next, milliseconds.
@@ -233,9 +252,10 @@ impl Mind<'_> {
         &self,
         draws: &mut Draws,
         question: usize,
-        clip: Option<usize>,
+        seen: Option<Seen>,
         trial: usize,
     ) -> Option<Raw> {
+        let clip = seen.map(|seen| seen.clip);
         let asked = &self.model.questions[question];
         if let Some(check) = &asked.question.attention_check {
             return self.answer_to_check(draws, asked, &check.expected);
@@ -271,6 +291,7 @@ impl Mind<'_> {
                     (value * 100.0).round() / 100.0
                 })
             }
+            Way::Compared(between) => Raw::Json(self.choose(draws, between, seen).into()),
             Way::Drawn { weights } => Raw::Json(asked.question.kind.drawn(weights, draws)),
         })
     }
@@ -290,6 +311,25 @@ impl Mind<'_> {
             return Some(Raw::Json(expected.clone()));
         }
         other_than(asked, expected, draws)
+    }
+
+    /// Which of two clips: left, same or right.
+    fn choose(&self, draws: &mut Draws, between: &Between, seen: Option<Seen>) -> &'static str {
+        let beside = seen.and_then(|seen| Some((seen.clip, seen.beside?)));
+        let looks = !draws.happens(between.lapse) && !self.careless;
+        let [left, right] = match beside {
+            Some((clip, beside)) if looks => {
+                let worth = |clip: usize| self.values[between.latent][clip];
+                let (own, other) = (worth(clip), worth(beside.clip));
+                if beside.left { [other, own] } else { [own, other] }
+            }
+            _ => [0.0; 2],
+        };
+        let (side, tie) =
+            if looks { (between.side, between.tie) } else { (0.0, between.tie.map(|_| 0.0)) };
+        let same = tie.map_or(0.0, |tie| libm::exp(tie + (left + right) / 2.0));
+        let weights = [libm::exp(left + side / 2.0), same, libm::exp(right - side / 2.0)];
+        Chosen::ALL[draws.weighted(&weights)].word()
     }
 
     /// The place of the option that is taken for what a clip shows.
@@ -365,6 +405,12 @@ const MOST_DRAWS: usize = 100;
 /// An answer that an attention check does not expect.
 fn other_than(asked: &Asked<'_>, expected: &Value, draws: &mut Draws) -> Option<Raw> {
     match &asked.way {
+        Way::Compared(between) => {
+            let sides =
+                Chosen::ALL.iter().filter(|side| between.tie.is_some() || **side != Chosen::Same);
+            let mut others = sides.map(|side| side.word()).filter(|side| expected != side);
+            others.next().map(|side| Raw::Json(side.into()))
+        }
         Way::Drawn { weights } => {
             let mut drawn = (0..MOST_DRAWS).map(|_| asked.question.kind.drawn(weights, draws));
             drawn.find(|answer| answer != expected).map(Raw::Json)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mimique_study::{KindOfQuestion as _, Question, Scale, Study, SyntaxError};
 use serde_json::Value;
 
-use super::parameters::{ByLevel, Interaction, Parameters, Rating, Recognition};
+use super::parameters::{ByLevel, Compared, Interaction, Parameters, Rating, Recognition};
 use super::scales::{all_scales, factor_levels};
 
 /// A parameters file that cannot be used.
@@ -21,7 +21,8 @@ pub struct ParametersError {
 }
 
 /// Keys whose maps are replaced whole: their own keys are levels, options or places.
-const WHOLE: [&str; 5] = ["effects", "confusion", "personBySd", "thresholds", "interactions"];
+const WHOLE: [&str; 6] =
+    ["effects", "confusion", "personBySd", "thresholds", "interactions", "worth"];
 
 impl Parameters {
     /// Reads a parameters file (JSON, comments allowed): what it does not name stays as `base` has it.
@@ -33,7 +34,7 @@ impl Parameters {
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")
         })?;
-        for part in ["ratings", "recognition", "choices", "numbers"] {
+        for part in ["ratings", "recognition", "comparisons", "choices", "numbers"] {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);
@@ -62,6 +63,9 @@ impl Parameters {
             if let Some(asked) = study.all_questions().find(|each| each.id == *question) {
                 check_confusion(&place, recognition, asked, &levels)?;
             }
+        }
+        for (question, compared) in &self.comparisons {
+            check_compared(&format!("/comparisons/{question}"), compared, &levels)?;
         }
         for (question, shares_given) in &self.choices {
             let Some(asked) = study.all_questions().find(|each| each.id == *question) else {
@@ -191,6 +195,29 @@ fn check_recognition(
     interactions(&at("interactions"), &recognition.interactions, levels)?;
     if !recognition.by.is_empty() {
         known_factor(&at("by"), &recognition.by, levels)?;
+    }
+    Ok(())
+}
+
+fn check_compared(
+    place: &str,
+    compared: &Compared,
+    levels: &Levels,
+) -> Result<(), ParametersError> {
+    let at = |key: &str| format!("{place}/{key}");
+    let known = known_factor(&at("factor"), &compared.factor, levels)?;
+    for (level, worth) in &compared.worth {
+        let pointer = format!("{}/{level}", at("worth"));
+        known_level(&pointer, level, known)?;
+        finite(&pointer, *worth)?;
+    }
+    deviation(&at("personSd"), compared.person_sd)?;
+    deviation(&at("segmentSd"), compared.segment_sd)?;
+    finite(&at("side"), compared.side)?;
+    finite(&at("tie"), compared.tie)?;
+    if !(0.0..=1.0).contains(&compared.lapse) {
+        let problem = format!("{} is no share", compared.lapse);
+        return Err(problem_at(&at("lapse"), problem, "give 0 to 1"));
     }
     Ok(())
 }

@@ -28,6 +28,7 @@ pub(crate) use clustered::{clustered_of, equal_worths};
 pub use fit_of_model::LackOfFit;
 pub(crate) use model::Model;
 use model::{Maximum, Parameters};
+pub use procedure::WORTHS_RATIO;
 pub(crate) use procedure::{PROCEDURE, SIDE, side};
 pub use resample::Resampling;
 use resample::{Resampled, origin, resampled};

@@ -43,23 +43,23 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     run,
     sample: Sample::Comparisons,
     r: r#"
-# Bradley and Terry's model with a side bias and, where there are ties, Davidson's: Newton on the
-# multinomial logit; equal worths by F on the covariance clustered by participant.
-bradley_terry <- function(participant, left, right, answer) {
+# Bradley and Terry's model with a side bias, where it is asked for, and, where there are ties,
+# Davidson's: Newton on the multinomial logit; without worths all items are alike.
+bradley_terry_fit <- function(left, right, answer, side, worths = TRUE) {
   items <- sort(unique(c(left, right)))
   k <- length(items)
   n <- length(answer)
   item <- function(shown) {
     m <- matrix(0, n, k)
     m[cbind(seq_len(n), match(shown, items))] <- 1
-    m[, -k, drop = FALSE] - m[, k]
+    if (worths) m[, -k, drop = FALSE] - m[, k] else m[, integer(), drop = FALSE]
   }
   l <- item(left)
   r <- item(right)
-  slopes <- list(left = cbind(l, 0.5), same = cbind((l + r) / 2, 0), right = cbind(r, -0.5))
-  ties <- any(answer == "same")
-  slopes <- if (ties) Map(cbind, slopes, c(0, 1, 0)) else slopes[c("left", "right")]
-  theta <- numeric(k + ties)
+  slopes <- list(left = l, same = (l + r) / 2, right = r)
+  if (side) slopes <- Map(cbind, slopes, c(0.5, 0, -0.5))
+  slopes <- if (any(answer == "same")) Map(cbind, slopes, c(0, 1, 0)) else slopes[c("left", "right")]
+  theta <- numeric(ncol(slopes$left))
   sum_of <- function(f) Reduce(`+`, lapply(names(slopes), f))
   for (step in 1:100) {
     eta <- sapply(slopes, function(x) x %*% theta)
@@ -68,37 +68,53 @@ bradley_terry <- function(participant, left, right, answer) {
     centre <- sum_of(function(a) slopes[[a]] * p[, a])
     scores <- sum_of(function(a) slopes[[a]] * (answer == a)) - centre
     information <- sum_of(function(a) crossprod((slopes[[a]] - centre) * sqrt(p[, a])))
+    if (length(theta) == 0) break
     change <- solve(information, colSums(scores))
     theta <- theta + change
     if (max(abs(change)) < 1e-12) break
   }
-  people <- rowsum(scores, participant)
+  list(theta = theta, scores = scores, information = information, q = k - 1,
+    loglik = sum(log(p[cbind(seq_len(n), match(answer, names(slopes)))])))
+}
+worth_range <- function(w) diff(range(w, -sum(w))) / log(3)
+
+# Equal worths by F on the covariance clustered by participant.
+bradley_terry <- function(participant, left, right, answer, side = TRUE) {
+  fit <- bradley_terry_fit(left, right, answer, side)
+  people <- rowsum(fit$scores, participant)
   g <- nrow(people)
-  q <- k - 1
-  covariance <- solve(information) %*% crossprod(people) %*% solve(information) * g / (g - 1)
-  w <- theta[1:q]
+  q <- fit$q
+  covariance <- solve(fit$information) %*% crossprod(people) %*% solve(fit$information) * g / (g - 1)
+  w <- fit$theta[1:q]
   f <- sum(w * solve(covariance[1:q, 1:q], w)) * (g - q) / (q * (g - 1))
-  c(statistic = f, p = pf(f, q, g - q, lower.tail = FALSE), effect = diff(range(w, -sum(w))) / log(3), n = g)
+  c(statistic = f, p = pf(f, q, g - q, lower.tail = FALSE), effect = worth_range(w), n = g)
+}
+
+# The same by the likelihood ratio, answers taken for independent.
+bradley_terry_ratio <- function(participant, left, right, answer, side = TRUE) {
+  fit <- bradley_terry_fit(left, right, answer, side)
+  none <- bradley_terry_fit(left, right, answer, side, worths = FALSE)
+  statistic <- 2 * (fit$loglik - none$loglik)
+  c(statistic = statistic, p = pchisq(statistic, fit$q, lower.tail = FALSE),
+    effect = worth_range(fit$theta[1:fit$q]), n = length(answer))
 }
 "#,
     python: r#"
-def bradley_terry(participant, left, right, answer):
-    """With a side bias and, where there are ties, Davidson's: equal worths by F on the covariance
-    clustered by participant."""
+def bradley_terry_fit(left, right, answer, side, worths=True):
+    """Bradley and Terry's model with a side bias, where it is asked for, and, where there are ties,
+    Davidson's: Newton on the multinomial logit; without worths all items are alike."""
     items = np.unique(np.concatenate([left, right]))
-    k = len(items)
+    k, n = len(items), len(answer)
 
     def item(shown):
         m = (np.asarray(shown)[:, None] == items).astype(float)
-        return m[:, :-1] - m[:, -1:]
+        return m[:, :-1] - m[:, -1:] if worths else m[:, :0]
 
     l, r = item(left), item(right)
-    column = np.ones((len(l), 1))
-    slopes = dict(
-        left=np.hstack([l, 0.5 * column]),
-        same=np.hstack([(l + r) / 2, 0 * column]),
-        right=np.hstack([r, -0.5 * column]),
-    )
+    column = np.ones((n, 1))
+    slopes = dict(left=l, same=(l + r) / 2, right=r)
+    if side:
+        slopes = {a: np.hstack([x, by * column]) for (a, x), by in zip(slopes.items(), (0.5, 0, -0.5))}
     if (answer == "same").any():
         slopes = {a: np.hstack([x, float(a == "same") * column]) for a, x in slopes.items()}
     else:
@@ -113,18 +129,43 @@ def bradley_terry(participant, left, right, answer):
         information = sum(
             ((x - centre) * p[:, [i]]).T @ (x - centre) for i, x in enumerate(slopes.values())
         )
+        if not len(theta):
+            break
         change = np.linalg.solve(information, scores.sum(axis=0))
         theta = theta + change
         if np.abs(change).max() < 1e-12:
             break
+    loglik = sum(np.log(p[answer == a, i]).sum() for i, a in enumerate(slopes))
+    return theta, scores, information, loglik, k - 1
+
+
+def worth_range(w):
+    return np.ptp(np.append(w, -w.sum())) / math.log(3)
+
+
+def bradley_terry(participant, left, right, answer, side=True):
+    """Equal worths by F on the covariance clustered by participant."""
+    theta, scores, information, _, q = bradley_terry_fit(left, right, answer, side)
     people = np.array([scores[participant == one].sum(axis=0) for one in np.unique(participant)])
-    g, q = len(people), k - 1
+    g = len(people)
     inverse = np.linalg.inv(information)
     covariance = inverse @ people.T @ people @ inverse * g / (g - 1)
     w = theta[:q]
     f = w @ np.linalg.solve(covariance[:q, :q], w) * (g - q) / (q * (g - 1))
-    worth = np.append(w, -w.sum())
-    return dict(statistic=f, p=stats.f.sf(f, q, g - q), effect=np.ptp(worth) / math.log(3), n=g)
+    return dict(statistic=f, p=stats.f.sf(f, q, g - q), effect=worth_range(w), n=g)
+
+
+def bradley_terry_ratio(participant, left, right, answer, side=True):
+    """The same by the likelihood ratio, answers taken for independent."""
+    theta, _, _, loglik, q = bradley_terry_fit(left, right, answer, side)
+    *_, none, _ = bradley_terry_fit(left, right, answer, side, worths=False)
+    statistic = 2 * (loglik - none)
+    return dict(
+        statistic=statistic,
+        p=stats.chi2.sf(statistic, q),
+        effect=worth_range(theta[:q]),
+        n=len(answer),
+    )
 "#,
     golden_cases: "",
 };
@@ -165,9 +206,6 @@ impl TestResult for BradleyTerry {
                 crate::NoEstimate::TooFewParticipants { participants: self.participants, items };
             return vec![Outcome::undefined(Undefined::from(why))];
         };
-        let range =
-            |end: fn(f64, f64) -> f64, from: f64| found.worth.iter().copied().fold(from, end);
-        let width = range(f64::max, f64::NEG_INFINITY) - range(f64::min, f64::INFINITY);
         vec![Outcome::Ok(TestRow {
             variant: self.variant.to_owned(),
             term: Term::Whole,
@@ -175,9 +213,59 @@ impl TestResult for BradleyTerry {
             degrees_of_freedom: vec![test.df1, test.df2],
             p_value: test.p,
             ln_p: test.ln_p,
-            effect: Some(width / super::clustered::JND),
+            effect: Some(found.range_in_jnd()),
             n: self.participants,
         })]
+    }
+}
+
+/// Of the likelihood-ratio test of equal worths, which takes the answers for independent.
+pub const WORTHS_RATIO: TestNames = TestNames {
+    test: "Bradley-Terry, likelihood ratio",
+    short: "LR",
+    in_words: [
+        "likelihood-ratio test of equal worths in the Bradley-Terry model",
+        "test du rapport de vraisemblance des valeurs égales dans le modèle de Bradley-Terry",
+    ],
+    statistic: "chi-square",
+    statistic_symbol: "χ²",
+    function: "bradley_terry_ratio",
+    ..BradleyTerry::NAMES
+};
+
+impl BradleyTerry {
+    /// The row of [`WORTHS_RATIO`] in a table of tests.
+    pub fn ratio_row(&self) -> Outcome<TestRow> {
+        self.estimates.clone().map(|found| TestRow {
+            variant: self.variant.to_owned(),
+            term: Term::Whole,
+            statistic: found.lr_items.statistic,
+            degrees_of_freedom: vec![found.lr_items.df],
+            p_value: found.lr_items.p,
+            ln_p: found.lr_items.ln_p,
+            effect: Some(found.range_in_jnd()),
+            n: self.trials,
+        })
+    }
+}
+
+impl WorthEstimates {
+    /// From the least to the greatest worth, in just noticeable differences.
+    pub fn range_in_jnd(&self) -> f64 {
+        let range =
+            |end: fn(f64, f64) -> f64, from: f64| self.worth.iter().copied().fold(from, end);
+        let width = range(f64::max, f64::NEG_INFINITY) - range(f64::min, f64::INFINITY);
+        width / super::clustered::JND
+    }
+
+    /// Worths in just noticeable differences, each with its interval.
+    pub fn in_jnd(&self) -> Vec<(f64, Option<[f64; 2]>)> {
+        let interval = |item: usize| {
+            let ends = self.worth_interval.as_ref().map(|all| all[item]);
+            ends.map(|ends| ends.map(|end| end / super::clustered::JND))
+        };
+        let own = |(item, worth): (usize, &f64)| (worth / super::clustered::JND, interval(item));
+        self.worth.iter().enumerate().map(own).collect()
     }
 }
 

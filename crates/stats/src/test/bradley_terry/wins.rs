@@ -21,6 +21,17 @@ pub struct WinsTest {
 
 /// None where participants did not all compare each item equally often, or where all wins are alike.
 pub(super) fn test(data: &PairedComparisons) -> Option<WinsTest> {
+    let found = friedman(&blocks(data)?).ok()?;
+    Some(WinsTest {
+        statistic: found.statistic,
+        df: found.df,
+        p: found.p_value,
+        iman_davenport: found.iman_davenport,
+    })
+}
+
+/// Wins of each item by participant; none where they did not all compare each item equally often.
+fn blocks(data: &PairedComparisons) -> Option<Blocks> {
     let items = data.items.len();
     let mut wins = vec![vec![0.0; items]; data.participants.len()];
     let mut shown = vec![vec![0_usize; items]; data.participants.len()];
@@ -40,18 +51,19 @@ pub(super) fn test(data: &PairedComparisons) -> Option<WinsTest> {
     if shown.iter().any(|own| own.iter().any(|count| *count != own[0])) {
         return None;
     }
-    let blocks = Blocks {
+    Some(Blocks {
         groups: data.items.clone(),
         blocks: data.participants.clone(),
         responses: wins,
         incomplete: 0,
         dropped: 0,
-    };
-    let found = friedman(&blocks).ok()?;
-    Some(WinsTest {
-        statistic: found.statistic,
-        df: found.df,
-        p: found.p_value,
-        iman_davenport: found.iman_davenport,
     })
+}
+
+impl PairedComparisons {
+    /// Wins of each item (a tie is half a win), a block per participant; none where participants did not all compare
+    /// each item equally often.
+    pub fn wins(&self) -> Option<Blocks> {
+        blocks(self)
+    }
 }
