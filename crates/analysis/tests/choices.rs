@@ -129,6 +129,21 @@ fn planted_worths_side_and_ties_are_found_again() {
 }
 
 #[test]
+fn worths_are_fitted_to_an_export() {
+    let study = study(&three_methods());
+    let simulated = planted(&study, &WORTHS, 0.4);
+    let simulation = Simulation::new(&study, "hash", &simulated, 7).unwrap();
+    let csv = simulated_export(&simulation, &study, 60);
+    let fitted = Parameters::fit(&Table::parse(csv.as_bytes()).unwrap(), &study).unwrap();
+    let own = &fitted.comparisons["nearer"];
+    for (level, worth) in WORTHS {
+        assert!((own.worth[level] - worth).abs() < 0.35, "{level}: {own:?}");
+    }
+    assert!((own.side - 0.4).abs() < 0.2 && (own.tie + 0.5).abs() < 0.25, "{own:?}");
+    fitted.check(&study).unwrap();
+}
+
+#[test]
 fn of_two_methods_the_sign_test_of_people_decides() {
     let study = study(&two_methods());
     let chosen = planted(&study, &[("box", -0.6), ("lsts30", 0.6)], 0.0);

@@ -105,14 +105,20 @@ fn overall(naming: &Naming<'_>, factor: &str, label: &str, line: &TestLine) -> S
             "valeurs selon le modèle de Bradley-Terry, erreurs groupées par participant",
         ),
     };
+    let effect = line.row.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2));
+    let effect = match line.unit {
+        Unit::WinsOfPeople => format!("{} = {effect}", line.names.effect_symbol),
+        _ => language.pick(
+            format!("worths span {effect} just noticeable differences"),
+            format!("les valeurs s’étendent sur {effect} différences juste perceptibles"),
+        ),
+    };
     let numbers = format!(
-        "{}{} = {}, {}, {} = {}",
+        "{}{} = {}, {}, {effect}",
         line.names.statistic,
         line.degrees_in_brackets(),
         language.number(line.row.statistic),
         language.p(line.p_that_counts()),
-        line.names.effect_symbol,
-        line.row.effect.map_or_else(|| "–".to_owned(), |effect| language.fixed(effect, 2))
     );
     let n = line.row.n;
     if line.p_that_counts() < LEVEL {

@@ -6,6 +6,7 @@
 //! number and purpose: the same seed gives the same events in any order and on any number of threads.
 
 mod defaults;
+mod draws;
 mod fit;
 mod latent;
 mod model;
@@ -16,6 +17,7 @@ mod random;
 mod read;
 mod scales;
 mod session;
+mod values;
 
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_study::{OrderError, Study};

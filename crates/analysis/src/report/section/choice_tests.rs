@@ -5,6 +5,7 @@ use mimique_stats::{BradleyTerry, Outcome, PairedComparisons, Thurstone, WorthEs
 
 use crate::choices::reading::{self, chosen_in};
 use crate::choices::tested::{self, ChoiceTests};
+use crate::language::Language;
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure;
 use crate::report::section::Writer;
@@ -46,16 +47,7 @@ impl Writer<'_> {
             &found.as_in_the_thesis,
             &found.recommended,
         );
-        let headings = language.pick(
-            ["Assumes independent answers", "Recommended (each person’s answers belong together)"],
-            [
-                "Suppose des réponses indépendantes",
-                "Recommandé (les réponses d’une personne vont ensemble)",
-            ],
-        );
-        for (group, heading) in table.groups.iter_mut().skip(1).zip(headings) {
-            group.0 = heading.to_owned();
-        }
+        tables::headings_of_choices(language, &mut table);
         self.blocks.push(Block::Table(table));
         if let Some(worths) = &found.worths {
             self.worths(&id, factor, worths, found.thurstone.as_ref());
@@ -99,20 +91,14 @@ impl Writer<'_> {
             let table = self.shares(id, &named, worths);
             self.blocks.push(Block::Table(table));
         }
-        let caption = language.pick(
-            format!(
-                "Ranking by {}: worths ({}) with 95 % intervals",
-                self.naming.factor(factor),
-                worths.variant
-            ),
-            format!(
-                "Classement par {} : valeurs ({}) et intervalles à 95 %",
-                self.naming.factor(factor),
-                worths.variant
-            ),
-        );
+        let shown = self.naming.factor(factor);
         match (&worths.estimates, &worths.penalised) {
             (Outcome::Ok(found), _) => {
+                let model = model_in_words(language, found);
+                let caption = language.pick(
+                    format!("Ranking by {shown}: worths ({model}) with 95 % intervals"),
+                    format!("Classement par {shown} : valeurs ({model}) et intervalles à 95 %"),
+                );
                 let ranked = found.in_jnd().into_iter().zip(&named);
                 let ranked: Vec<_> =
                     ranked.map(|((jnd, ends), name)| (name.clone(), jnd, ends)).collect();
@@ -289,4 +275,16 @@ impl Writer<'_> {
             format!("Cohérence (Kendall et Babington Smith) : {circular} triades circulaires sur {most} au plus parmi {judges} personnes ; accord entre elles u = {u}{p}."),
         )));
     }
+}
+
+/// What was fitted.
+fn model_in_words(language: Language, found: &WorthEstimates) -> String {
+    let mut words = language.pick("Bradley-Terry model", "modèle de Bradley-Terry").to_owned();
+    if found.tie.is_some() {
+        words += language.pick(", Davidson’s ties", ", égalités de Davidson");
+    }
+    if found.side.is_some() {
+        words += language.pick(", side bias", ", biais de côté");
+    }
+    words
 }
