@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod choices;
 mod hypothesis;
 mod language;
 mod power;
@@ -56,8 +57,8 @@ pub use power::{
 pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
-    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, ParametersError,
-    Rating, Recognition, SimulatedSession, Simulation, Times,
+    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters,
+    ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
 };
 pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

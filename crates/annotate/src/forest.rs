@@ -1,11 +1,11 @@
 //! A random forest (Breiman, Machine Learning 2001): trees on bootstrap samples of the rows.
 
+use mimique_stats::Stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{as_many, at_most};
 use crate::numbers::highest;
-use crate::random::Stream;
 use crate::{AnnotateError, Examples, Rows, Tree};
 
 /// Rows that go through a tree together.

@@ -3,10 +3,10 @@
 //! minimise C sum_i s_i loss_i + 1/2 |W|^2 over W (K x D) and a free bias (K), where loss_i is minus
 //! the log probability of row i's label under softmax(W x + b) and s_i the weight of its label.
 
+use mimique_stats::{Stop, minimise};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{above_zero, as_many, at_most};
-use crate::lbfgs::{Stop, minimise};
 use crate::numbers::{dot, softmax, softmax_and_log_sum};
 use crate::{AnnotateError, ClassWeight, Examples, Rows};
 

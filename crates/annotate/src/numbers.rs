@@ -3,6 +3,7 @@
 //! ([`mimique_solver::widest`]), which changes no bit.
 
 use mimique_solver::{exp_all, widest};
+pub(crate) use mimique_stats::dot;
 
 /// ln(sum of e^x); minus infinity of none. The numbers in `values` are lost.
 pub(crate) fn log_sum(values: &mut [f64]) -> f64 {
@@ -60,23 +61,6 @@ pub(crate) const LANES: usize = 8;
 #[inline(always)]
 pub(crate) fn together([a, b, c, d, e, f, g, h]: [f64; LANES]) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
-}
-
-/// Sum of the products.
-#[inline(always)]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; LANES];
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
-        }
-    }
-    let mut sum = together(sums);
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        sum += a * b;
-    }
-    sum
 }
 
 /// Sum of the squared differences.

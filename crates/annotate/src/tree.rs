@@ -3,10 +3,10 @@
 
 use std::hint::select_unpredictable;
 
+use mimique_stats::Stream;
 use serde::{Deserialize, Serialize};
 
 use crate::Examples;
-use crate::random::Stream;
 
 /// A node: a question, or a leaf.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

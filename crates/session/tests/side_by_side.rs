@@ -5,7 +5,7 @@ mod support;
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Effect, Input, Phase, TrialStep, View, update, view};
-use mimique_session::rows::{SessionRecord, Table, tidy};
+use mimique_session::rows::{SessionRecord, Table, tidy, wide};
 use mimique_study::Study;
 use serde_json::{Value, json};
 use support::{Page, failure, first_answer, study_text};
@@ -121,6 +121,22 @@ fn the_export_names_the_companion_its_side_and_what_was_chosen() {
         };
         assert_eq!(row["chosen"], expected);
     }
+    // A row a participant: the clips of both sides and the one chosen stand behind each choice.
+    let people = wide(&study, &BTreeMap::new(), [record]);
+    let row = &named(&people)[0];
+    let choices: Vec<&&str> = row.keys().filter(|name| name.ends_with(".nearer")).collect();
+    assert_eq!(choices.len(), 36);
+    for name in choices {
+        let of = |part: &str| row[format!("{name}.{part}").as_str()];
+        let expected = match row[*name].as_str().unwrap() {
+            "same" => &Value::Null,
+            side => of(side),
+        };
+        assert_eq!(of("chosen"), expected, "{name}");
+        assert_ne!(of("left"), of("right"), "{name}");
+        assert!(of("left").is_string() && of("right").is_string(), "{name}");
+    }
+    assert!(!row.keys().any(|name| name.ends_with(".fidelity.left")), "a rating has no sides");
 }
 
 fn named(table: &Table) -> Vec<BTreeMap<&str, &Value>> {

@@ -20,6 +20,7 @@
 mod adjust;
 mod distributions;
 mod estimate;
+mod numerics;
 mod outcome;
 mod procedure;
 mod ranks;
@@ -32,33 +33,67 @@ mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
 pub use distributions::tail::{
-    Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_upper,
-    normal_quantile_upper, normal_tail, normal_upper, t_quantile_upper, t_two_sided, t_upper,
+    Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_quantile,
+    f_upper, normal_quantile_upper, normal_tail, normal_upper, t_quantile_upper, t_two_sided,
+    t_upper,
 };
 pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
+pub use numerics::dot;
+pub use numerics::minimise::{Minimum, Stop, minimise};
+pub use numerics::random::Stream;
 pub use outcome::{Labelled, Outcome};
 pub use procedure::arguments::{Arguments, Choice, ProcedureOption, Required, Takes};
 pub use procedure::row::{Term, TestNames, TestResult, TestRow};
 pub use procedure::{Answer, PROCEDURES, Procedure, Sample};
 pub use ranks::Ranks;
-pub use refusal::Refusal;
+pub use refusal::{Refusal, Unfit};
 pub use summary::confusion::{Confusion, confusion};
 pub use summary::describe::{Description, describe, median, moments, quantile_sorted};
 pub use table::blocks::Blocks;
+pub use table::comparisons::{Chosen, Compared, PairedComparisons, Presentation};
 pub use table::contingency::Contingency;
 pub use table::factor::Factor;
 pub use table::number::parse_number;
 pub use table::pairs::{paired_differences, rounded};
 pub use table::{Numbers, Table, TableError};
 pub use test::aligned_rank_transform::{AlignedRankTransform, ArtEffect, aligned_rank_transform};
+pub use test::bradley_terry::{
+    BradleyTerry, BradleyTerryOptions, DefaultTest, EqualWorths, LackOfFit, LikelihoodRatio,
+    PenalisedWorths, Resampling, Separation, SideOrTie, WORTHS_RATIO, WinsTest, WorthContrast,
+    WorthEstimates, bradley_terry,
+};
 pub use test::chi_square::{ChiSquare, ChiSquareVariant, GTest, chi_square};
+pub use test::consistency::{Consistency, JudgeConsistency, consistency};
+pub use test::cronbach::{Cronbach, Reversed, cronbach};
+pub use test::detection::{
+    DetectedCategory, Detection, MeanTest, PersonSensitivity, Sensitivity, SignalCounts, detection,
+};
+pub use test::difference_scaling::{DifferenceJudgement, DifferenceScale, difference_scaling};
+pub use test::equivalence::{
+    EquivalenceMannWhitney, EquivalenceOfGroups, EquivalenceOfPairs, EquivalenceOptions,
+    EquivalenceT, EquivalenceVerdict, EquivalenceWilcoxon, equivalence_of_groups,
+    equivalence_of_pairs,
+};
 pub use test::friedman::{Friedman, ImanDavenport, PairwiseHolm, Quade, friedman};
+pub use test::intraclass_correlation::{
+    IccForm, IntraclassCorrelation, RatingMeanSquares, intraclass_correlation,
+};
+pub use test::krippendorff::{
+    AlphaEstimate, Krippendorff, MeasurementLevel, UnitValues, krippendorff,
+};
 pub use test::kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
 pub use test::mann_whitney::{MannWhitney, mann_whitney};
+pub use test::min_f::{MinFPrime, RepeatedMeasuresF, min_f_prime};
+pub use test::panel::{Panel, PanelOptions, PanelRatings, ScreenedPerson, panel};
+pub use test::psychometric::{
+    BootstrapInterval, Lapse, LevelCount, PsychometricFit, PsychometricOptions, ThresholdPlace,
+    bootstrap, bootstrap_through, psychometric,
+};
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};
 pub use test::spearman::{Spearman, bonett_wright_interval, spearman};
+pub use test::thurstone::{Thurstone, thurstone};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
-pub use undefined::Undefined;
+pub use undefined::{NoEstimate, Undefined};
 pub use words::{format_number, format_p};

@@ -1,7 +1,9 @@
 //! Answers about two clips that are shown together: which factors of the clips they can be told of.
 
+use std::collections::BTreeSet;
+
 use crate::question::{KindOfQuestion as _, Question};
-use crate::study_file::{Clip, Component, Measure, Study};
+use crate::study_file::{Clip, Component, Measure, Study, TrialsComponent};
 
 /// Why the answers to a question cannot be told of the levels of a factor: they are about two clips.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,6 +32,41 @@ pub enum AnswerOfPair {
 type Shown<'c> = (&'c Clip, Option<&'c Clip>);
 
 impl Study {
+    /// The levels of `factor` that stand beside each other where `question` chooses between two clips, each two
+    /// once, of the `levels` that are compared; all of them if there are none.
+    pub fn levels_chosen_between(
+        &self,
+        question: &Question,
+        factor: &str,
+        levels: &[String],
+    ) -> BTreeSet<[String; 2]> {
+        let clips = self.clips();
+        let mut pairs = BTreeSet::new();
+        for block in self.blocks_asking(question) {
+            let Some(beside) = &block.beside else { continue };
+            for clip in clips.iter().filter(|clip| block.clips.takes(clip)) {
+                let other = beside.of(clip, &clips).and_then(|other| other.factor_text(factor));
+                let (Some(one), Some(other)) = (clip.factor_text(factor), other) else { continue };
+                let is_compared = |level| levels.is_empty() || levels.contains(level);
+                if one != other && is_compared(&one) && is_compared(&other) {
+                    pairs.insert(if one < other { [one, other] } else { [other, one] });
+                }
+            }
+        }
+        pairs
+    }
+
+    /// The blocks of trials that ask a question.
+    fn blocks_asking<'s>(
+        &'s self,
+        question: &'s Question,
+    ) -> impl Iterator<Item = &'s TrialsComponent> {
+        self.components.values().filter_map(|component| match component {
+            Component::Trials(block) if block.questions.contains(&question.id) => Some(block),
+            _ => None,
+        })
+    }
+
     /// Why answers to `question` cannot be told of the levels of `factor`; `None` where they can be, as in
     /// trials of one clip. `levels` are those that are compared, all of them if there are none.
     ///
@@ -43,12 +80,7 @@ impl Study {
         factor: &str,
         levels: &[String],
     ) -> Option<AnswerOfPair> {
-        let blocks = || {
-            self.components.values().filter_map(|component| match component {
-                Component::Trials(block) if block.questions.contains(&question.id) => Some(block),
-                _ => None,
-            })
-        };
+        let blocks = || self.blocks_asking(question);
         if blocks().all(|block| block.beside.is_none()) {
             return None;
         }

@@ -11,6 +11,7 @@
 //! | annotation | `segmentation.json`, `features.json`, `classify/`, `hmm/`, `evaluate/`, `elan/` | `mimique-annotate` |
 //! | layouts | `kmeans_*.json`, `greedy_*.json`, `avatar_*.json` … | `mimique-solver` |
 //! | exertion | `work/`, `heart/`, `metabolism/`, `activity/`, `breathing/`, `svr/`, `train/`, `rules/`, `weights/`, `chain/`, `errors/` | `mimique-exertion`, `mimique-exertion-training` |
+//! | psychophysics | `NAME.expected.json` with `kind` | `mimique-stats`, `mimique-adaptive` |
 //!
 //! A number that is wrong is a wrong [`Case`]; a file that cannot be read is a [`VerifyError`]. Names,
 //! values and, where a case has them, tolerances come from the files.
@@ -43,6 +44,7 @@ mod error;
 mod exertion;
 mod files;
 mod layouts;
+mod psychophysics;
 mod solver;
 mod statistics;
 
@@ -67,12 +69,13 @@ pub trait Family: Sync {
 }
 
 /// Every family.
-pub static FAMILIES: [&dyn Family; 5] = [
+pub static FAMILIES: [&dyn Family; 6] = [
     &statistics::Statistics,
     &solver::Solver,
     &annotation::ANNOTATION,
     &exertion::Exertion,
     &layouts::LAYOUTS,
+    &psychophysics::Psychophysics,
 ];
 
 /// How many folders below the one that is named are looked into.

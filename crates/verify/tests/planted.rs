@@ -108,7 +108,7 @@ fn folders_are_found_below_the_one_that_is_named() {
 fn what_cannot_be_read_is_refused_with_file_place_value_and_remedy() {
     assert_eq!(
         said(&[("notes.txt", "x")]),
-        "DIR: holds no case that is known; give a folder of cases (statistics, solver, annotation, exertion, layouts)"
+        "DIR: holds no case that is known; give a folder of cases (statistics, solver, annotation, exertion, layouts, psychophysics)"
     );
     let damaged = said(&[("expected.json", "{\"cases\": [")]);
     assert!(damaged.starts_with("DIR/expected.json: line 1, column 11: no JSON (EOF"), "{damaged}");

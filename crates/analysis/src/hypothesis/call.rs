@@ -35,6 +35,12 @@ pub(crate) enum Design {
     PersonMean,
     /// What was shown and what was answered.
     Answers,
+    /// Choices between levels: participant, left, right, answer.
+    Choices,
+    /// Choices of one of two levels less those of the other, by trial or by person.
+    NetChoices,
+    /// How often each person chose each level.
+    Wins,
 }
 
 impl Design {
@@ -53,6 +59,9 @@ impl Design {
             Self::Level => "of_level",
             Self::PersonMean => "of_person_means",
             Self::Answers => "of_answers",
+            Self::Choices => "of_choices",
+            Self::NetChoices => "of_net_choices",
+            Self::Wins => "of_wins",
         }
     }
 }

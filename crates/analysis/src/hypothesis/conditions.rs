@@ -67,7 +67,7 @@ pub(crate) fn words(
     let value = |mean: f64| match kind {
         MeasureKind::Recognition => language.percent(mean),
         MeasureKind::ResponseTime => format!("{} s", language.fixed(mean, 2)),
-        MeasureKind::Rating => language.fixed(mean, 2),
+        MeasureKind::Rating | MeasureKind::Choice => language.fixed(mean, 2),
     };
     let mut words = String::new();
     let told = conditions.iter().filter_map(|(name, own)| {

@@ -16,6 +16,7 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
 use serde::Serialize;
 
+use crate::choices::{self, answers, tested};
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
 use crate::hypothesis::not_tested::NotTested;
@@ -70,6 +71,9 @@ pub(crate) fn test_hypothesis(
     hypothesis: &Hypothesis,
 ) -> HypothesisResult {
     let language = naming.language;
+    if hypothesis.test.is_of_choices() {
+        return of_choices(naming, export, study, hypothesis);
+    }
     let measure = measure_of(export, study, hypothesis, language);
     let trials_without_level = measure.as_ref().map_or(0, |measure| {
         let of_clips = hypothesis.factors.iter().filter(|name| export.factors.contains(name));
@@ -115,6 +119,51 @@ pub(crate) fn test_hypothesis(
         p_holm_over_hypotheses: None,
         recommended: people,
         reading,
+    }
+}
+
+/// Tests a hypothesis about choices between two clips.
+fn of_choices(
+    naming: &Naming<'_>,
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+) -> HypothesisResult {
+    let language = naming.language;
+    let asked = study.questions.iter().find(|question| question.id == hypothesis.response);
+    let label = asked.map_or(hypothesis.response.as_str(), |question| {
+        question.prompt.in_language(language.code())
+    });
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let order = naming.level_order(factor);
+    let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
+        None if export.answers_to(&hypothesis.response).is_empty() => {
+            let response = hypothesis.response.clone();
+            not_tested(language, &NotTested::NoAnswers { response })
+        }
+        None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
+        Some(data) => {
+            let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
+            let reading = choices::reading::choices(naming, &found, factor, label);
+            let tests = found.as_in_the_thesis.tests;
+            Read { trials: tests, people: found.recommended, reading }
+        }
+    };
+    HypothesisResult {
+        id: hypothesis.id.clone(),
+        statement: hypothesis.statement.in_language(language.code()).to_owned(),
+        test: hypothesis.test,
+        measure: hypothesis.response.clone(),
+        kind: MeasureKind::Choice,
+        factors: hypothesis.factors.clone(),
+        as_in_the_thesis: TrialLevel::new(read.trials),
+        p: deciding_p(&read.people),
+        recommended: read.people,
+        trials_without_level: 0,
+        people_by_condition: Labelled::default(),
+        p_holm_over_hypotheses: None,
+        reading: read.reading,
     }
 }
 
@@ -204,6 +253,9 @@ fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Meas
 /// Why the answers of a hypothesis cannot be told of the levels of its factors, where they are about two
 /// clips.
 pub(crate) fn of_pair(study: &Study, hypothesis: &Hypothesis) -> Option<AnswerOfPair> {
+    if hypothesis.test.is_of_choices() {
+        return None;
+    }
     let is_asked = |question: &&Question| question.response_ids().contains(&hypothesis.response);
     let question = study.questions.iter().find(is_asked)?;
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();

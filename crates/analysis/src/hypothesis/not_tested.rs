@@ -47,8 +47,8 @@ impl NotTested {
 pub(crate) fn of_pair_in_words(of_pair: &AnswerOfPair, language: Language) -> String {
     match of_pair {
         AnswerOfPair::Choice { question, factor } => language.pick(
-            format!("\"{question}\" says which of two clips: its answers are of no level of \"{factor}\"; the counts of the choices are in this report"),
-            format!("« {question} » dit lequel de deux extraits : ses réponses ne sont celles d’aucun niveau de « {factor} » ; les effectifs des choix sont dans ce rapport"),
+            format!("\"{question}\" says which of two clips: its answers are of no level of \"{factor}\"; the choices and their tests are in this report"),
+            format!("« {question} » dit lequel de deux extraits : ses réponses ne sont celles d’aucun niveau de « {factor} » ; les choix et leurs tests sont dans ce rapport"),
         ),
         AnswerOfPair::Rating { question, factor, clip, beside } => language.pick(
             format!("\"{question}\" was asked of two clips together that differ in \"{factor}\", such as \"{clip}\" beside \"{beside}\": which of them is meant nobody knows; ask it in trials of one clip, or beside one and the same {factor} that is not compared"),

@@ -1,11 +1,11 @@
 //! One line of a table of tests: what any test gives, with what it was a test of.
 
 use mimique_stats::{
-    AlignedRankTransform, Blocks, ChiSquare, Contingency, Factor, Friedman, HodgesLehmann,
-    KruskalWallis, MannWhitney, Numbers, Outcome, Refusal, ScheirerRayHare, Spearman,
-    SumsOfSquares, Term, TestNames, TestResult, TestRow, Wilcoxon, WilcoxonOptions,
-    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
-    spearman, wilcoxon,
+    AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency, Factor,
+    Friedman, HodgesLehmann, KruskalWallis, MannWhitney, Numbers, Outcome, Refusal,
+    ScheirerRayHare, Sign, Spearman, SumsOfSquares, Term, TestNames, TestResult, TestRow,
+    WORTHS_RATIO, Wilcoxon, WilcoxonOptions, aligned_rank_transform, chi_square, friedman,
+    kruskal_wallis, mann_whitney, scheirer_ray_hare, sign, spearman, wilcoxon,
 };
 use serde::{Serialize, Serializer};
 
@@ -25,6 +25,12 @@ pub(crate) enum Unit {
     DifferencesOfPeople(String),
     /// Each person's own correlation.
     CorrelationsOfPeople,
+    /// Each person's choices of one of two levels less those of the other.
+    ChoicesOfPeople,
+    /// How often each person chose each level.
+    WinsOfPeople,
+    /// Answers, those of one participant together.
+    ClusteredByPerson,
 }
 
 impl Unit {
@@ -36,6 +42,9 @@ impl Unit {
             Self::MeansWithinPeople => "on person means".to_owned(),
             Self::DifferencesOfPeople(pair) => format!("of person differences {pair}"),
             Self::CorrelationsOfPeople => "of each person's rho".to_owned(),
+            Self::ChoicesOfPeople => "of each person's choices".to_owned(),
+            Self::WinsOfPeople => "on each person's wins".to_owned(),
+            Self::ClusteredByPerson => "clustered by participant".to_owned(),
         }
     }
 
@@ -263,6 +272,33 @@ impl TestLine {
     /// Friedman with Iman and Davenport's F.
     pub(crate) fn friedman(blocks: &Blocks, call: Call) -> TestOutcome {
         Self::one::<Friedman>(Ok(friedman(blocks)), &Unit::MeansWithinPeople, call)
+    }
+
+    /// Friedman on how often each person chose each level.
+    pub(crate) fn friedman_on_wins(wins: &Blocks, call: Call) -> TestOutcome {
+        Self::one::<Friedman>(Ok(friedman(wins)), &Unit::WinsOfPeople, call)
+    }
+
+    /// The sign test.
+    pub(crate) fn sign(
+        differences: &Numbers,
+        alternative: Alternative,
+        unit: &Unit,
+        call: Call,
+    ) -> TestOutcome {
+        let line = Self::one::<Sign>(sign(differences, alternative), unit, call);
+        line.map(|line| line.with_term(Term::Whole))
+    }
+
+    /// Equal worths, clustered by participant.
+    pub(crate) fn worths(found: &BradleyTerry, call: Call) -> TestOutcome {
+        Self::one(Ok(Outcome::Ok(found.clone())), &Unit::ClusteredByPerson, call)
+    }
+
+    /// Equal worths by the likelihood ratio.
+    pub(crate) fn worths_ratio(found: &BradleyTerry, call: Call) -> TestOutcome {
+        let line = |row| Self { names: WORTHS_RATIO, unit: Unit::Trials, row, p_holm: None, call };
+        found.ratio_row().map(line).map_reason(Why::from)
     }
 
     /// Scheirer-Ray-Hare with type I sums of squares: both factors and their interaction.

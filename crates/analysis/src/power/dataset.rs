@@ -13,9 +13,11 @@ use serde_json::Value;
 
 use super::design::{Design, Step, has_conditions};
 use crate::simulate::{
-    Asked, BEFORE_REPLAY_MS, ClipEffects, Model, Person, Raw, Way, as_json, eighths,
+    Asked, BEFORE_REPLAY_MS, ClipEffects, Companion, Model, Person, Raw, Way, as_json, eighths,
 };
-use crate::trials::export::{Answer, Export, Person as Who, Trial, exclude_people, why_left_out};
+use crate::trials::export::{
+    Answer, Beside, Export, Person as Who, Trial, exclude_people, why_left_out,
+};
 use crate::trials::straight_lining::Runs;
 
 impl Design<'_> {
@@ -105,12 +107,12 @@ impl<'d> Data<'d> {
                     }
                 }
                 Step::Page(_) => {}
-                Step::Trial { clip, block } => {
+                Step::Trial { clip, beside, block } => {
                     if person.fate.leaves_after.is_some_and(|after| done >= after) {
                         break;
                     }
                     has_rows = true;
-                    let shown = (*clip, block.as_str(), done);
+                    let shown = (*clip, *beside, block.as_str(), done);
                     self.trial(&mut person, (&mut who, &mut runs), place, shown, &earlier);
                     done += 1;
                 }
@@ -134,14 +136,14 @@ impl<'d> Data<'d> {
         person: &mut Person<'_>,
         (who, runs): (&mut Who, &mut Runs<'d>),
         place: usize,
-        (clip, block, done): (usize, &str, usize),
+        (clip, beside, block, done): (usize, Option<Companion>, &str, usize),
         earlier: &Answers,
     ) {
         let Some(Component::Trials(component)) = self.design.study.components.get(block) else {
             return;
         };
         let needs = &self.design.needs;
-        let (trial, mut since_onset_ms) = self.show(person, component, clip);
+        let (trial, mut since_onset_ms) = self.show(person, component, (clip, beside));
         who.trials += 1;
         let mut quickest: Option<f64> = None;
         let mut told = Answers::new();
@@ -152,7 +154,7 @@ impl<'d> Data<'d> {
                 continue;
             }
             let ms = if needs.times { person.answering_ms(Some(clip)) } else { 0.0 };
-            let raw = person.trial_answer(question, clip, done);
+            let raw = person.trial_answer(question, clip, beside, done);
             if let Some(check) = &asked.question.attention_check {
                 let answer = raw.clone().map(|raw| as_json(asked, raw));
                 who.failed_checks += usize::from(!is_same(answer.as_ref(), &check.expected));
@@ -199,13 +201,17 @@ impl<'d> Data<'d> {
         &self,
         person: &mut Person<'_>,
         component: &TrialsComponent,
-        clip: usize,
+        (clip, beside): (usize, Option<Companion>),
     ) -> (Trial, f64) {
         let mut trial = Trial {
             stimulus: self.model.clips[clip].id.as_str().into(),
-            // The order of trials, and what stands beside a clip, have no part in the study's tests.
+            // The order of trials has no part in the study's tests.
             order: None,
-            beside: None,
+            beside: beside.map(|beside| Beside {
+                clip: self.model.clips[beside.clip].id.as_str().into(),
+                left: beside.left,
+                levels: self.levels[beside.clip].clone(),
+            }),
             levels: self.levels[clip].clone(),
             frames: None,
             late: None,

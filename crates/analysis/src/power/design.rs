@@ -1,9 +1,9 @@
 //! What participants of simulated studies go through: clips, orders, pages, and what must be drawn.
 
-use mimique_study::{Draw, Measure, OrderError, OrderedItem, Study, order};
+use mimique_study::{Clip, Component, Draw, Measure, OrderError, OrderedItem, Sides, Study, order};
 
 use super::clips::{ScaledClips, scaled};
-use crate::simulate::{Draws, Model, Parameters, condition_and_slot};
+use crate::simulate::{Companion, Draws, Model, Parameters, condition_and_slot};
 use crate::trials::straight_lining;
 
 /// What participants go through, the same in every run.
@@ -18,8 +18,8 @@ pub(crate) struct Design<'s> {
 
 /// A step with answers.
 pub(crate) enum Step {
-    /// A trial: its clip, its block's name.
-    Trial { clip: usize, block: String },
+    /// A trial: its clip, what is played beside it, its block's name.
+    Trial { clip: usize, beside: Option<Companion>, block: String },
     /// A page of questions.
     Page(String),
 }
@@ -47,17 +47,26 @@ impl<'s> Design<'s> {
         let clips = scaled(study, clips.unwrap_or(own));
         let conditions = study.conditions();
         let projection = study.projection();
+        let own_clips = study.clips();
         let mut walks = Vec::with_capacity(participants);
         for number in 1..=participants as u64 {
             let (condition, slot) = condition_and_slot(&conditions, number);
             let draw = Draw { seed: study.seed, config_hash, participant: slot, condition };
             let mut walk = Vec::new();
-            for item in order(&projection, draw)? {
+            let items = order(&projection, draw)?;
+            let mut sides = Sides::new(&projection, draw, &items);
+            for item in items {
                 match item {
                     OrderedItem::Trial { component, clip, .. } => {
-                        let places = clips.stand_ins.get(&clip).into_iter().flatten();
-                        let trial = |&clip: &usize| Step::Trial { clip, block: component.clone() };
-                        walk.extend(places.map(trial));
+                        let beside = companion((study, &own_clips), &component, &clip, &mut sides);
+                        let copies = |clip: &str| clips.stand_ins.get(clip).into_iter().flatten();
+                        for (copy, &clip) in copies(&clip).enumerate() {
+                            // A copy of a clip stands beside the same copy of its companion.
+                            let beside = beside.as_ref().and_then(|(id, left)| {
+                                Some(Companion { clip: *copies(id).nth(copy)?, left: *left })
+                            });
+                            walk.push(Step::Trial { clip, beside, block: component.clone() });
+                        }
                     }
                     OrderedItem::Component { component } => walk.push(Step::Page(component)),
                 }
@@ -91,6 +100,20 @@ impl<'s> Design<'s> {
     pub(crate) fn model(&self, parameters: &'s Parameters) -> Model<'s> {
         Model::new(self.study, parameters, self.clips.clips.clone())
     }
+}
+
+/// The clip that a block plays beside another, and whether it stands on the left.
+fn companion(
+    (study, clips): (&Study, &[Clip]),
+    block: &str,
+    clip: &str,
+    sides: &mut Sides,
+) -> Option<(String, bool)> {
+    let Some(Component::Trials(trials)) = study.components.get(block) else { return None };
+    let beside = trials.beside.as_ref()?;
+    let left = sides.is_left(block, beside);
+    let own = clips.iter().find(|own| own.id == clip)?;
+    Some((beside.of(own, clips)?.id.clone(), left))
 }
 
 /// Mixes the trials of a study with more clips than its own: copies of a clip must not follow it.

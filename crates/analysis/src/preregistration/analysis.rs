@@ -1,8 +1,10 @@
 //! Analysis plan and exclusions in words. What is said here is what `report::hypothesis` computes.
 
+use std::collections::BTreeSet;
+
 use mimique_stats::{
-    ChiSquare, Friedman, KruskalWallis, MannWhitney, ScheirerRayHare, Spearman, TestNames,
-    TestResult, Wilcoxon,
+    ChiSquare, Friedman, KruskalWallis, MannWhitney, ScheirerRayHare, Sign, Spearman, TestNames,
+    TestResult, WORTHS_RATIO, Wilcoxon,
 };
 use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
@@ -120,11 +122,16 @@ struct Setting {
 impl Setting {
     fn of(study: &Study, hypothesis: &Hypothesis) -> Self {
         let factor = hypothesis.factors.first().map_or("", String::as_str);
+        let asked = study.all_questions().find(|question| question.id == hypothesis.response);
+        let chosen_between = asked.filter(|_| hypothesis.test.is_of_choices()).map(|question| {
+            let pairs = study.levels_chosen_between(question, factor, &[]);
+            pairs.iter().flatten().collect::<BTreeSet<_>>().len()
+        });
         let levels = match hypothesis.levels.len() {
+            0 if chosen_between.is_some() => chosen_between.unwrap_or_default(),
             0 => factor_levels(study, &study.clips()).get(factor).map_or(0, Vec::len),
             named => named,
         };
-        let asked = study.all_questions().find(|question| question.id == hypothesis.response);
         let about_people = |factor: &str| {
             !study.factor_names().iter().any(|name| name == factor)
                 && (traits(study).contains_key(factor)
@@ -165,7 +172,9 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
         format!("{wilcoxon} on person means, exact and conditional on the observed ranks, zeros by Pratt"),
         format!("{wilcoxon} sur les moyennes par personne, exact et conditionnel aux rangs observés, zéros selon Pratt"),
     );
-    if is_two_way(hypothesis.test) {
+    if hypothesis.test.is_of_choices() {
+        test_of_choices(language, setting.levels)
+    } else if is_two_way(hypothesis.test) {
         interaction_test(language, setting.traits_of_two).to_owned()
     } else if setting.is_trait {
         match (hypothesis.test, setting.levels) {
@@ -196,6 +205,22 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
     }
 }
 
+/// The test of choices between two clips that decides.
+fn test_of_choices(language: Language, levels: usize) -> String {
+    if levels == 2 {
+        let sign = name(language, Sign::NAMES);
+        return language.pick(
+            format!("{sign} of people: whether more of them choose one more often than the other, exact binomial, two-sided; who chooses both equally often is left out"),
+            format!("{sign} sur les personnes : si davantage choisissent l’un plus souvent que l’autre, binomial exact, bilatéral ; qui choisit les deux aussi souvent n’est pas compté"),
+        );
+    }
+    let few = 2 * levels.saturating_sub(1);
+    language.pick(
+        format!("equal worths in the Bradley-Terry model, with Davidson’s ties where “no difference” is an answer and a side bias where the sides vary: Wald’s F with errors clustered by participant (with {few} participants or fewer: Friedman’s test on each one’s wins); then, for pairs, t tests clustered by participant, corrected by Holm; intervals by drawing participants 2000 times"),
+        format!("égalité des valeurs dans le modèle de Bradley-Terry, avec les égalités de Davidson si « pas de différence » est une réponse et un biais de côté si les côtés varient : F de Wald à erreurs groupées par participant (avec {few} participants ou moins : test de Friedman sur les victoires de chacun) ; puis, pour les paires, tests t groupés par participant, corrigés par Holm ; intervalles par 2000 tirages de participants"),
+    )
+}
+
 /// The test of an interaction that decides, by how many of the two factors are about people.
 fn interaction_test(language: Language, traits: usize) -> &'static str {
     match traits {
@@ -217,6 +242,10 @@ fn interaction_test(language: Language, traits: usize) -> &'static str {
 /// The test of the thesis, in words.
 fn test_of_the_thesis(language: Language, hypothesis: &Hypothesis, setting: &Setting) -> String {
     match hypothesis.test {
+        _ if hypothesis.test.is_of_choices() && setting.levels == 2 => {
+            of_trials(language, Sign::NAMES)
+        }
+        _ if hypothesis.test.is_of_choices() => of_trials(language, WORTHS_RATIO),
         _ if is_two_way(hypothesis.test) => {
             of_trials(language, ScheirerRayHare::NAMES) + ", type I"
         }

@@ -188,6 +188,13 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         "For each participant, response and level: the mean of the answers over the trials kept; for a choice with a right answer the share of right answers; for a response time its mean in seconds. These values, one a person and level, are what is tested.",
         "Pour chaque participant, réponse et niveau : la moyenne des réponses sur les essais gardés ; pour un choix à bonne réponse, la proportion de bonnes réponses ; pour un temps de réponse, sa moyenne en secondes. Ce sont ces valeurs, une par personne et niveau, qui sont testées.",
     );
+    if study.hypotheses.iter().any(|hypothesis| hypothesis.test.is_of_choices()) {
+        text.line("");
+        text.both(
+            "For each choice between two clips: the levels on the left and on the right, and which was chosen.",
+            "Pour chaque choix entre deux extraits : les niveaux à gauche et à droite, et celui qui a été choisi.",
+        );
+    }
 }
 
 fn measured(text: &mut Text, language: Language, question: &Question) {

@@ -58,7 +58,7 @@ fn difference_heading(language: Language, kind: MeasureKind) -> String {
     let unit = match kind {
         MeasureKind::Recognition => language.pick(" (points of %)", " (points de %)"),
         MeasureKind::ResponseTime => " (s)",
-        MeasureKind::Rating => "",
+        MeasureKind::Rating | MeasureKind::Choice => "",
     };
     language.pick(format!("difference{unit} [95 %]"), format!("différence{unit} [95 %]"))
 }
@@ -127,6 +127,20 @@ pub(crate) fn two_columns(
     }
     drop_empty_differences(&mut table);
     table
+}
+
+/// Over tests of choices between two clips, which do not take one value per person.
+pub(crate) fn headings_of_choices(language: Language, table: &mut DataTable) {
+    let headings = language.pick(
+        ["Assumes independent answers", "Recommended (each person’s answers belong together)"],
+        [
+            "Suppose des réponses indépendantes",
+            "Recommandé (les réponses d’une personne vont ensemble)",
+        ],
+    );
+    for (group, heading) in table.groups.iter_mut().skip(1).zip(headings) {
+        group.0 = heading.to_owned();
+    }
 }
 
 /// Label, test and difference of each recommended test, as those of trials stand: overall first, then

@@ -40,6 +40,25 @@ pub(crate) struct Spread<'p> {
     pub interactions: &'p [Interaction],
 }
 
+/// No level and no factor.
+static NO_LEVELS: ByLevel = BTreeMap::new();
+static NO_EFFECTS: BTreeMap<String, ByLevel> = BTreeMap::new();
+
+impl Spread<'_> {
+    /// Nothing that differs.
+    pub(crate) fn none() -> Self {
+        Self {
+            mean: 0.0,
+            person_sd: 0.0,
+            person_by_sd: &NO_LEVELS,
+            segment_sd: 0.0,
+            clip_sd: 0.0,
+            effects: &NO_EFFECTS,
+            interactions: &[],
+        }
+    }
+}
+
 impl<'p> From<&'p Rating> for Spread<'p> {
     fn from(rating: &'p Rating) -> Self {
         Self {

@@ -6,6 +6,7 @@
 //! number and purpose: the same seed gives the same events in any order and on any number of threads.
 
 mod defaults;
+mod draws;
 mod fit;
 mod latent;
 mod model;
@@ -16,6 +17,7 @@ mod random;
 mod read;
 mod scales;
 mod session;
+mod values;
 
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_study::{OrderError, Study};
@@ -23,10 +25,10 @@ use mimique_study::{OrderError, Study};
 pub(crate) use latent::ClipEffects;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
-    ByLevel, Careless, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
+    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
     Recognition, Times,
 };
-pub(crate) use person::{BEFORE_REPLAY_MS, Person, Raw, as_json};
+pub(crate) use person::{BEFORE_REPLAY_MS, Companion, Person, Raw, as_json};
 pub(crate) use random::Draws;
 pub use read::ParametersError;
 pub(crate) use scales::{factor_levels, traits};

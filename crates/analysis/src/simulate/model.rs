@@ -1,11 +1,11 @@
 //! The parameters made ready for drawing: every question with its way of being answered.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use mimique_stats::normal_quantile_upper;
 use mimique_study::{Choice, Clip, KindOfQuestion as _, Question, Scale, Simulated, Study};
 
-use super::latent::{ClipEffects, Latent};
+use super::latent::{ClipEffects, Latent, Spread};
 use super::parameters::Parameters;
 use super::scales::{segment_places, traits};
 
@@ -45,6 +45,8 @@ pub(crate) enum Way {
     Several { weights: Vec<f64>, fewest: usize, most: usize },
     /// A typed number.
     Number { mean: f64, sd: f64, low: f64, high: f64, whole: bool },
+    /// Which of two clips, by their worths.
+    Compared(Between),
     /// As the kind of question draws it; a weight for each option.
     Drawn { weights: Vec<f64> },
 }
@@ -69,6 +71,17 @@ pub(crate) struct Recognised {
     /// A clip each: the right option, the latent value above which it is chosen, the weights of the
     /// wrong ones. None for a clip whose right answer is no option.
     pub clips: Vec<Option<Row>>,
+}
+
+/// How somebody chooses between two clips.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Between {
+    /// Place of the worths among the latent values.
+    pub latent: usize,
+    pub side: f64,
+    /// None where "no difference" is no answer.
+    pub tie: Option<f64>,
+    pub lapse: f64,
 }
 
 /// The answers to one clip.
@@ -159,6 +172,7 @@ impl<'s> Model<'s> {
                     whole: field.integer,
                 }
             }
+            Simulated::Compared { same } => Way::Compared(self.between(question, same)),
             Simulated::Drawn { .. } => Way::Drawn { weights: weights(question.kind.options()) },
         }
     }
@@ -183,6 +197,26 @@ impl<'s> Model<'s> {
             })
         });
         rated.collect()
+    }
+
+    /// The worths of a choice between two clips.
+    fn between(&mut self, question: &Question, same: bool) -> Between {
+        let Some(compared) = self.parameters.comparisons.get(&question.id) else {
+            let latent =
+                self.add(Latent::new(&question.id, &Spread::none(), &self.clips, |_| false));
+            return Between { latent, side: 0.0, tie: same.then_some(0.0), lapse: 0.0 };
+        };
+        let effects = BTreeMap::from([(compared.factor.clone(), compared.worth.clone())]);
+        let person_by_sd = BTreeMap::from([(compared.factor.clone(), compared.person_sd)]);
+        let spread = Spread {
+            person_by_sd: &person_by_sd,
+            clip_sd: compared.segment_sd,
+            effects: &effects,
+            ..Spread::none()
+        };
+        let latent = self.add(Latent::new(&question.id, &spread, &self.clips, |_| false));
+        let tie = same.then_some(compared.tie);
+        Between { latent, side: compared.side, tie, lapse: compared.lapse }
     }
 
     /// What is recognised in each clip, where a question has a right answer.

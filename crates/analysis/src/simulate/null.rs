@@ -32,6 +32,11 @@ impl Parameters {
         if let Some(rating) = self.ratings.get_mut(&hypothesis.response) {
             drop_effects(&mut rating.effects, &mut rating.interactions, tested);
         }
+        if let Some(compared) = self.comparisons.get_mut(&hypothesis.response)
+            && tested(&compared.factor)
+        {
+            compared.worth.values_mut().for_each(|worth| *worth = 0.0);
+        }
         if let Some(recognition) = self.recognition.get_mut(&hypothesis.response) {
             drop_effects(&mut recognition.effects, &mut recognition.interactions, tested);
             let asked = study.all_questions().find(|each| each.id == hypothesis.response);

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `ratings` | a scale each: mean, spreads of people, clips and noise, thresholds, effects |
 //! | `recognition` | a question with a right answer each: confusion matrix, spreads, effects |
+//! | `comparisons` | a question that chooses between two clips each: worths, spreads, side, ties |
 //! | `choices`, `numbers` | how other questions are answered, those about the participant too |
 //! | `times` | log-normal answering times |
 //! | `careless`, `attentionPass`, `dropout` | who does not take part as asked |
@@ -28,6 +29,9 @@ pub struct Parameters {
     pub ratings: BTreeMap<String, Rating>,
     /// Questions whose right answer the clip holds.
     pub recognition: BTreeMap<String, Recognition>,
+    /// Questions that choose between two clips.
+    #[serde(default)]
+    pub comparisons: BTreeMap<String, Compared>,
     /// Other choices: share of each option.
     pub choices: BTreeMap<String, ByLevel>,
     /// Numbers that are typed.
@@ -108,6 +112,29 @@ pub struct Recognition {
     pub effects: BTreeMap<String, ByLevel>,
     /// Shifts of combinations.
     pub interactions: Vec<Interaction>,
+}
+
+/// A choice between two clips: Bradley and Terry's model with Davidson's ties and a side bias.
+///
+/// P(left) : P(same) : P(right) = exp(wl + s/2) : exp(t + (wl + wr)/2) : exp(wr - s/2); the worth of a clip is that
+/// of its level + person x level + clip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Compared {
+    /// The factor of the clips whose levels have worths.
+    pub factor: String,
+    /// Level -> worth, log scale; 0 for what is not named. A difference of ln 3 = 1.1 is chosen in 75 %.
+    pub worth: ByLevel,
+    /// Standard deviation of how people take to each level.
+    pub person_sd: f64,
+    /// Standard deviation of a level from one segment to the other: of clips.
+    pub segment_sd: f64,
+    /// What standing on the left adds.
+    pub side: f64,
+    /// t: the logarithm of Davidson's nu. Of two equal clips exp(t) / (2 + exp(t)) of answers see no difference.
+    pub tie: f64,
+    /// Share of answers without looking.
+    pub lapse: f64,
 }
 
 /// A number that is typed: normal, kept within the question's bounds.

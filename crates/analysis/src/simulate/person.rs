@@ -1,11 +1,13 @@
 //! One simulated person: what is answered, when, and how far the person goes.
 
+use mimique_stats::Chosen;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{Answers, KindOfQuestion as _};
 use serde_json::Value;
 
+use super::draws::{other_than, several, whole_number};
 use super::latent::{ClipEffects, told};
-use super::model::{Asked, Model, Rated, Recognised, Way};
+use super::model::{Asked, Between, Model, Rated, Recognised, Way};
 use super::random::Draws;
 
 /// One simulated person. Answers, times and what happens to the display have streams of their own, so
@@ -54,6 +56,22 @@ pub(crate) enum Raw {
     Option(usize),
     /// Anything else, as JSON.
     Json(Value),
+}
+
+/// What a trial shows.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    clip: usize,
+    beside: Option<Companion>,
+}
+
+/// A clip that is played in step beside the trial's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Companion {
+    /// Its place among the clips.
+    pub clip: usize,
+    /// Whether it stands on the left.
+    pub left: bool,
 }
 
 /// How a clip is shown in one trial.
@@ -179,9 +197,11 @@ impl<'m> Person<'m> {
         &mut self,
         question: usize,
         clip: usize,
+        beside: Option<Companion>,
         trial: usize,
     ) -> Option<Raw> {
-        self.mind.answer(&mut self.answers, question, Some(clip), trial)
+        let seen = Some(Seen { clip, beside });
+        self.mind.answer(&mut self.answers, question, seen, trial)
     }
 
     /// Time from one answer to the next, milliseconds.
@@ -233,9 +253,10 @@ impl Mind<'_> {
         &self,
         draws: &mut Draws,
         question: usize,
-        clip: Option<usize>,
+        seen: Option<Seen>,
         trial: usize,
     ) -> Option<Raw> {
+        let clip = seen.map(|seen| seen.clip);
         let asked = &self.model.questions[question];
         if let Some(check) = &asked.question.attention_check {
             return self.answer_to_check(draws, asked, &check.expected);
@@ -271,6 +292,7 @@ impl Mind<'_> {
                     (value * 100.0).round() / 100.0
                 })
             }
+            Way::Compared(between) => Raw::Json(self.choose(draws, between, seen).into()),
             Way::Drawn { weights } => Raw::Json(asked.question.kind.drawn(weights, draws)),
         })
     }
@@ -290,6 +312,25 @@ impl Mind<'_> {
             return Some(Raw::Json(expected.clone()));
         }
         other_than(asked, expected, draws)
+    }
+
+    /// Which of two clips: left, same or right.
+    fn choose(&self, draws: &mut Draws, between: &Between, seen: Option<Seen>) -> &'static str {
+        let beside = seen.and_then(|seen| Some((seen.clip, seen.beside?)));
+        let looks = !draws.happens(between.lapse) && !self.careless;
+        let [left, right] = match beside {
+            Some((clip, beside)) if looks => {
+                let worth = |clip: usize| self.values[between.latent][clip];
+                let (own, other) = (worth(clip), worth(beside.clip));
+                if beside.left { [other, own] } else { [own, other] }
+            }
+            _ => [0.0; 2],
+        };
+        let (side, tie) =
+            if looks { (between.side, between.tie) } else { (0.0, between.tie.map(|_| 0.0)) };
+        let same = tie.map_or(0.0, |tie| libm::exp(tie + (left + right) / 2.0));
+        let weights = [libm::exp(left + side / 2.0), same, libm::exp(right - side / 2.0)];
+        Chosen::ALL[draws.weighted(&weights)].word()
     }
 
     /// The place of the option that is taken for what a clip shows.
@@ -316,39 +357,6 @@ impl Mind<'_> {
     }
 }
 
-/// Places of several options, ascending: at least `fewest`, at most `most`.
-fn several(draws: &mut Draws, weights: &[f64], fewest: usize, most: usize) -> Vec<usize> {
-    let most_likely = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let mut chosen: Vec<usize> = (0..weights.len())
-        .filter(|&place| draws.happens(0.5 * weights[place] / most_likely))
-        .collect();
-    while chosen.len() > most {
-        let place = draws.below(chosen.len());
-        chosen.remove(place);
-    }
-    while chosen.len() < fewest && chosen.len() < weights.len() {
-        let place = draws.below(weights.len());
-        if !chosen.contains(&place) {
-            chosen.push(place);
-        }
-    }
-    chosen.sort_unstable();
-    chosen
-}
-
-/// The nearest whole number within bounds.
-fn whole_number(value: f64, low: f64, high: f64) -> f64 {
-    let value = value.round();
-    // Rounding must not leave bounds that are no whole numbers.
-    if value < low {
-        low.ceil()
-    } else if value > high {
-        high.floor()
-    } else {
-        value
-    }
-}
-
 /// An answer as the page sends it.
 pub(crate) fn as_json(asked: &Asked<'_>, raw: Raw) -> Value {
     match raw {
@@ -356,28 +364,5 @@ pub(crate) fn as_json(asked: &Asked<'_>, raw: Raw) -> Value {
         Raw::Option(place) => asked.question.kind.options()[place].value.as_str().into(),
         Raw::Number(value) if value.fract() == 0.0 && value.abs() < 9e15 => (value as i64).into(),
         Raw::Number(value) => value.into(),
-    }
-}
-
-/// Most answers that are drawn to find one that an attention check does not expect.
-const MOST_DRAWS: usize = 100;
-
-/// An answer that an attention check does not expect.
-fn other_than(asked: &Asked<'_>, expected: &Value, draws: &mut Draws) -> Option<Raw> {
-    match &asked.way {
-        Way::Drawn { weights } => {
-            let mut drawn = (0..MOST_DRAWS).map(|_| asked.question.kind.drawn(weights, draws));
-            drawn.find(|answer| answer != expected).map(Raw::Json)
-        }
-        Way::Scales(rated) => {
-            let scale = rated.first()?.scale;
-            let other = (0..scale.points).map(|point| scale.value(point));
-            other.into_iter().find(|value| expected.as_f64() != Some(*value)).map(Raw::Number)
-        }
-        _ => {
-            let options = asked.question.kind.options();
-            let other = options.iter().position(|option| expected.as_str() != Some(&option.value));
-            other.map(Raw::Option)
-        }
     }
 }

@@ -5,8 +5,11 @@ use std::collections::BTreeMap;
 use mimique_study::{KindOfQuestion as _, Question, Scale, Study, SyntaxError};
 use serde_json::Value;
 
-use super::parameters::{ByLevel, Interaction, Parameters, Rating, Recognition};
+use super::parameters::{Compared, Parameters, Rating, Recognition};
 use super::scales::{all_scales, factor_levels};
+use super::values::{
+    by_factor, deviation, effects, finite, interactions, known_factor, known_level, shares,
+};
 
 /// A parameters file that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -20,8 +23,12 @@ pub struct ParametersError {
     pub remedy: String,
 }
 
+/// Factor -> its levels.
+pub(super) type Levels = BTreeMap<String, Vec<String>>;
+
 /// Keys whose maps are replaced whole: their own keys are levels, options or places.
-const WHOLE: [&str; 5] = ["effects", "confusion", "personBySd", "thresholds", "interactions"];
+const WHOLE: [&str; 6] =
+    ["effects", "confusion", "personBySd", "thresholds", "interactions", "worth"];
 
 impl Parameters {
     /// Reads a parameters file (JSON, comments allowed): what it does not name stays as `base` has it.
@@ -33,7 +40,7 @@ impl Parameters {
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")
         })?;
-        for part in ["ratings", "recognition", "choices", "numbers"] {
+        for part in ["ratings", "recognition", "comparisons", "choices", "numbers"] {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);
@@ -62,6 +69,9 @@ impl Parameters {
             if let Some(asked) = study.all_questions().find(|each| each.id == *question) {
                 check_confusion(&place, recognition, asked, &levels)?;
             }
+        }
+        for (question, compared) in &self.comparisons {
+            check_compared(&format!("/comparisons/{question}"), compared, &levels)?;
         }
         for (question, shares_given) in &self.choices {
             let Some(asked) = study.all_questions().find(|each| each.id == *question) else {
@@ -195,6 +205,29 @@ fn check_recognition(
     Ok(())
 }
 
+fn check_compared(
+    place: &str,
+    compared: &Compared,
+    levels: &Levels,
+) -> Result<(), ParametersError> {
+    let at = |key: &str| format!("{place}/{key}");
+    let known = known_factor(&at("factor"), &compared.factor, levels)?;
+    for (level, worth) in &compared.worth {
+        let pointer = format!("{}/{level}", at("worth"));
+        known_level(&pointer, level, known)?;
+        finite(&pointer, *worth)?;
+    }
+    deviation(&at("personSd"), compared.person_sd)?;
+    deviation(&at("segmentSd"), compared.segment_sd)?;
+    finite(&at("side"), compared.side)?;
+    finite(&at("tie"), compared.tie)?;
+    if !(0.0..=1.0).contains(&compared.lapse) {
+        let problem = format!("{} is no share", compared.lapse);
+        return Err(problem_at(&at("lapse"), problem, "give 0 to 1"));
+    }
+    Ok(())
+}
+
 fn check_confusion(
     place: &str,
     recognition: &Recognition,
@@ -234,7 +267,7 @@ fn check_confusion(
     Ok(())
 }
 
-fn problem_at(
+pub(super) fn problem_at(
     pointer: &str,
     problem: impl Into<String>,
     remedy: impl Into<String>,
@@ -287,104 +320,4 @@ fn merge(base: &mut Value, given: Value, depth: usize) {
         }
         (base, given) => *base = given,
     }
-}
-
-fn finite(pointer: &str, value: f64) -> Result<(), ParametersError> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(problem_at(pointer, format!("{value} is not a number"), "give a number"))
-}
-
-fn deviation(pointer: &str, value: f64) -> Result<(), ParametersError> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(());
-    }
-    Err(problem_at(pointer, format!("{value} is no standard deviation"), "give 0 or more"))
-}
-
-type Levels = BTreeMap<String, Vec<String>>;
-
-fn known_factor<'l>(
-    pointer: &str,
-    factor: &str,
-    levels: &'l Levels,
-) -> Result<&'l [String], ParametersError> {
-    levels.get(factor).map(Vec::as_slice).ok_or_else(|| {
-        let names: Vec<&str> = levels.keys().map(String::as_str).collect();
-        problem_at(
-            pointer,
-            format!("there is no factor \"{factor}\""),
-            format!("the study has {}", names.join(", ")),
-        )
-    })
-}
-
-fn known_level(pointer: &str, level: &str, levels: &[String]) -> Result<(), ParametersError> {
-    if levels.iter().any(|known| known == level) {
-        return Ok(());
-    }
-    Err(problem_at(
-        pointer,
-        format!("there is no level \"{level}\""),
-        format!("the levels are {}", levels.join(", ")),
-    ))
-}
-
-fn by_factor(pointer: &str, by: &ByLevel, levels: &Levels) -> Result<(), ParametersError> {
-    for (factor, sd) in by {
-        let pointer = format!("{pointer}/{factor}");
-        known_factor(&pointer, factor, levels)?;
-        deviation(&pointer, *sd)?;
-    }
-    Ok(())
-}
-
-fn effects(
-    pointer: &str,
-    effects: &BTreeMap<String, ByLevel>,
-    levels: &Levels,
-) -> Result<(), ParametersError> {
-    for (factor, shifts) in effects {
-        let pointer = format!("{pointer}/{factor}");
-        let known = known_factor(&pointer, factor, levels)?;
-        for (level, shift) in shifts {
-            let pointer = format!("{pointer}/{level}");
-            known_level(&pointer, level, known)?;
-            finite(&pointer, *shift)?;
-        }
-    }
-    Ok(())
-}
-
-fn interactions(
-    pointer: &str,
-    given: &[Interaction],
-    levels: &Levels,
-) -> Result<(), ParametersError> {
-    for (place, interaction) in given.iter().enumerate() {
-        finite(&format!("{pointer}/{place}/shift"), interaction.shift)?;
-        for (factor, level) in &interaction.levels {
-            let pointer = format!("{pointer}/{place}/levels/{factor}");
-            known_level(&pointer, level, known_factor(&pointer, factor, levels)?)?;
-        }
-    }
-    Ok(())
-}
-
-fn shares(pointer: &str, row: &ByLevel, answers: &[&str]) -> Result<(), ParametersError> {
-    for (answer, share) in row {
-        let pointer = format!("{pointer}/{answer}");
-        if !answers.contains(&answer.as_str()) {
-            let remedy = format!("the options are {}", answers.join(", "));
-            return Err(problem_at(&pointer, format!("there is no option \"{answer}\""), remedy));
-        }
-        if !(share.is_finite() && *share >= 0.0) {
-            return Err(problem_at(&pointer, format!("{share} is no share"), "give 0 or more"));
-        }
-    }
-    if row.values().sum::<f64>() <= 0.0 {
-        return Err(problem_at(pointer, "the shares add up to 0", "give some answer a share"));
-    }
-    Ok(())
 }

@@ -7,7 +7,7 @@ use mimique_study::{Answers, Calibration, Display, Multilingual as _, OrderError
 
 use super::latent::ClipEffects;
 use super::model::Model;
-use super::person::{BEFORE_REPLAY_MS, Person, Showing, as_json};
+use super::person::{BEFORE_REPLAY_MS, Companion, Person, Showing, as_json};
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
 const FIRST_SESSION_MS: f64 = 1_767_603_600_000.0;
@@ -283,6 +283,10 @@ impl Walk<'_, '_> {
     fn answer_trial(&mut self, clip: &str, training: bool) {
         let here = self.page.state.record.step;
         let Some(clip) = self.model.clip(clip) else { return };
+        let trial = self.page.plan.steps[here].trial();
+        let beside = trial.and_then(|trial| trial.beside.as_ref()).and_then(|beside| {
+            Some(Companion { clip: self.model.clip(&beside.clip)?, left: beside.left })
+        });
         for question in self.page.plan.steps[here].questions() {
             let record = &self.page.state.record;
             if !question.is_shown(&record.drafts, &record.answers) {
@@ -291,7 +295,7 @@ impl Walk<'_, '_> {
             let Some(place) = self.model.question(&question.id) else { continue };
             let person = if training { &mut self.practice } else { &mut self.person };
             let ms = person.answering_ms(Some(clip));
-            let Some(raw) = person.trial_answer(place, clip, self.trial) else { continue };
+            let Some(raw) = person.trial_answer(place, clip, beside, self.trial) else { continue };
             let value = as_json(&self.model.questions[place], raw);
             self.page.wait(ms);
             self.page.send(Input::Answer { question: question.id.clone(), value });

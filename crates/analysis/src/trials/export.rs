@@ -74,6 +74,8 @@ pub(crate) struct Beside {
     pub clip: Arc<str>,
     /// Whether it stood on the left.
     pub left: bool,
+    /// Its value of each of [`Export::factors`].
+    pub levels: Vec<Option<Arc<str>>>,
 }
 
 /// What was left out, and why.

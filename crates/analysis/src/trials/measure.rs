@@ -20,6 +20,8 @@ pub(crate) enum MeasureKind {
     Recognition,
     /// Seconds.
     ResponseTime,
+    /// Which of two clips: no number by itself.
+    Choice,
 }
 
 /// One number a trial.

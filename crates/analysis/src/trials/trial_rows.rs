@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use mimique_stats::Table;
-use mimique_study::{Exclusions, Study};
+use mimique_study::{Clip, Exclusions, Study};
 
 use crate::trials::column::Column;
 use crate::trials::error::ExportError;
@@ -37,6 +37,8 @@ pub(crate) struct TrialReader<'t> {
     correct: Column<'t>,
     truth: Column<'t>,
     levels: Vec<Column<'t>>,
+    /// Levels of each clip of the study, by its identifier: the rows have those of the trial's own clip alone.
+    of_clips: HashMap<String, Vec<Option<Arc<str>>>>,
 }
 
 /// What a stretch of rows holds.
@@ -105,6 +107,7 @@ impl<'t> TrialReader<'t> {
             correct: column("correct"),
             truth: column("truth"),
             levels: export.factors.iter().map(|factor| column(factor)).collect(),
+            of_clips: levels_of_clips(study, &export.factors),
         }
     }
 
@@ -181,7 +184,11 @@ impl<'t> TrialReader<'t> {
         let left = self.beside_side.text(row) == Some("left");
         Ok(Trial {
             levels: self.levels.iter().map(&mut level).collect(),
-            beside: level(&self.beside).map(|clip| Beside { clip, left }),
+            beside: level(&self.beside).map(|clip| Beside {
+                levels: self.levels_of(&clip),
+                clip,
+                left,
+            }),
             stimulus: texts.shared(self.stimulus.text(row).unwrap_or_default()),
             order: self.order.number(row)?.map(|order| order as usize),
             frames: self.frames.number(row)?,
@@ -189,6 +196,21 @@ impl<'t> TrialReader<'t> {
             longest_ms: self.longest.number(row)?,
         })
     }
+}
+
+impl TrialReader<'_> {
+    fn levels_of(&self, clip: &str) -> Vec<Option<Arc<str>>> {
+        self.of_clips.get(clip).cloned().unwrap_or_else(|| vec![None; self.levels.len()])
+    }
+}
+
+/// The value of each factor of each clip.
+fn levels_of_clips(study: &Study, factors: &[String]) -> HashMap<String, Vec<Option<Arc<str>>>> {
+    let levels = |clip: &Clip| {
+        factors.iter().map(|factor| clip.factor_text(factor).map(Arc::from)).collect()
+    };
+    let clips = study.clips().into_iter();
+    clips.map(|clip| (clip.id.clone(), levels(&clip))).collect()
 }
 
 impl TrialRows {

@@ -1,11 +1,10 @@
 //! Intervals by resampling whole takes, or persons (Efron and Tibshirani 1993, section 13.3).
 
-use mimique_stats::quantile_sorted;
+use mimique_stats::{Stream, quantile_sorted};
 
 use super::{Counts, Score};
 use crate::AnnotateError;
 use crate::error::above_zero;
-use crate::random::Stream;
 
 /// Fewest takes (or persons) whose resamples say something.
 pub const FEWEST: usize = 5;

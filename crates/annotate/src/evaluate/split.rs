@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::random::Stream;
+use mimique_stats::Stream;
+
 use crate::{AnnotateError, AnnotatedTake};
 
 /// Takes that train, and takes that test.

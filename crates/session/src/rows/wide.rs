@@ -1,6 +1,6 @@
 //! The wide form: one row a participant, one column a trial x response.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ use super::tidy::TidyForm;
 use crate::record::Record;
 use crate::wire::SessionStarted;
 use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
-use mimique_study::{ClipSource, Study};
+use mimique_study::{ClipSource, KindOfQuestion as _, Study};
 
 /// Columns of the tidy form that are the same in all rows of a participant.
 const PERSONAL: [&str; 10] = [
@@ -26,8 +26,16 @@ const PERSONAL: [&str; 10] = [
     "config_hash",
 ];
 
+/// What stands behind the columns of a choice between two clips: the clip on each side, and the one chosen.
+const OF_CHOICES: [(&str, &str); 3] = [
+    ("left", "Clip on the left where"),
+    ("right", "Clip on the right where"),
+    ("chosen", "Clip that was chosen where"),
+];
+
 /// The wide form: the participant's columns, then `TRIAL.RESPONSE` for each answer (in alphabetical
-/// order of trial, so that all participants share one order) and `TRIAL.RESPONSE.rt`.
+/// order of trial, so that all participants share one order) and `TRIAL.RESPONSE.rt`; behind an answer that
+/// chooses between two clips `TRIAL.RESPONSE.left`, `.right` and `.chosen`, the clips.
 pub fn wide<'a>(
     study: &Study,
     clips: &BTreeMap<String, ClipSource>,
@@ -45,22 +53,37 @@ pub fn wide<'a>(
 #[derive(Debug, Clone)]
 pub struct WideForm {
     tidy: TidyForm,
-    /// Name of the column of each trial and response.
-    answers: BTreeMap<(String, String), String>,
+    /// Column of each trial and response.
+    answers: BTreeMap<(String, String), AnswerColumn>,
+    /// Questions that choose between two clips.
+    choices: BTreeSet<String>,
+}
+
+/// The column of an answer.
+#[derive(Debug, Clone)]
+struct AnswerColumn {
+    name: String,
+    /// Whether it chooses between two clips.
+    is_choice: bool,
 }
 
 impl WideForm {
     /// The form of a version of a study and its clips as they were prepared, without a session.
     pub fn new(study: &Study, clips: &BTreeMap<String, ClipSource>) -> Self {
-        Self { tidy: TidyForm::new(study, clips), answers: BTreeMap::new() }
+        let choices = study.all_questions().filter(|question| question.kind.compares_clips());
+        let choices = choices.map(|question| question.id.clone()).collect();
+        Self { tidy: TidyForm::new(study, clips), answers: BTreeMap::new(), choices }
     }
 
     /// Makes columns for the answers of a record. What was measured of plays is not asked for.
     pub fn look_at(&mut self, record: &Record) {
         for (trial, response, is_demographics) in self.tidy.responses(record) {
-            self.answers
-                .entry((trial, response))
-                .or_insert_with_key(|(trial, response)| name(trial, response, is_demographics));
+            let is_choice = self.choices.contains(&response);
+            let column = |(trial, response): &(String, String)| AnswerColumn {
+                name: name(trial, response, is_demographics),
+                is_choice,
+            };
+            self.answers.entry((trial, response)).or_insert_with_key(column);
         }
     }
 
@@ -74,7 +97,7 @@ impl WideForm {
         let known = self.tidy.columns();
         let personal = PERSONAL.iter().filter_map(|name| known.iter().find(|c| c.name == *name));
         let mut columns: Vec<Column> = personal.cloned().collect();
-        for ((trial, response), name) in &self.answers {
+        for ((trial, response), AnswerColumn { name, is_choice }) in &self.answers {
             let about = format!("Answer to {response} in {trial}");
             let mut rt = Column::new(
                 &format!("{name}.rt"),
@@ -83,6 +106,11 @@ impl WideForm {
             );
             rt.unit = Some("ms".to_owned());
             columns.extend([Column::new(name, ColumnKind::Any, &about), rt]);
+            let of_choices = OF_CHOICES.iter().filter(|_| *is_choice).map(|(suffix, what)| {
+                let about = format!("{what} {response} was asked in {trial}");
+                Column::new(&format!("{name}.{suffix}"), ColumnKind::Text, &about)
+            });
+            columns.extend(of_choices);
         }
         columns
     }
@@ -97,15 +125,25 @@ impl WideForm {
         let places = ["trial_id", "response_id", "answer", "rt"].map(|name| self.tidy.place(name));
         let [Some(trial), Some(response), Some(answer), Some(rt)] = places else { return None };
         let text = |cell: &'_ Value| cell.as_str().unwrap_or_default().to_owned();
-        let given: BTreeMap<(String, String), [&Value; 2]> = rows
-            .iter()
-            .map(|row| ((text(&row[trial]), text(&row[response])), [&row[answer], &row[rt]]))
-            .collect();
-        for key in self.answers.keys() {
-            let pair = given.get(key).copied().unwrap_or([&Value::Null, &Value::Null]);
-            cells.extend(pair.map(Value::clone));
+        let given: BTreeMap<(String, String), &Vec<Value>> =
+            rows.iter().map(|row| ((text(&row[trial]), text(&row[response])), row)).collect();
+        for (key, column) in &self.answers {
+            let row = given.get(key);
+            let own = |place: usize| row.map_or(Value::Null, |row| row[place].clone());
+            cells.extend([own(answer), own(rt)]);
+            if column.is_choice {
+                let row = row.map(|row| row.as_slice());
+                cells.extend(row.map_or([const { Value::Null }; 3], |row| self.sides(row)));
+            }
         }
         Some(cells)
+    }
+
+    /// The clips on the left and on the right of a row of the tidy form, and the one chosen.
+    fn sides(&self, row: &[Value]) -> [Value; 3] {
+        let own = |name| self.tidy.place(name).map_or(Value::Null, |place| row[place].clone());
+        let [clip, beside, chosen] = ["stimulus", "beside", "chosen"].map(own);
+        if own("beside_side") == "left" { [beside, clip, chosen] } else { [clip, beside, chosen] }
     }
 }
 

@@ -16,7 +16,7 @@ use serde::Serialize;
 use statrs::distribution::{Beta, ContinuousCDF, Normal, StudentsT};
 
 use crate::distributions::special::{
-    LnTails, UnitPoint, beta_tails, gamma_tails, ln_one_minus_exp,
+    LnTails, UnitPoint, beta_tails, gamma_tails, ln_beta, ln_one_minus_exp,
 };
 
 /// A tail probability and its natural logarithm.
@@ -169,6 +169,34 @@ pub fn beta_quantile(p: f64, a: f64, b: f64) -> f64 {
     }
 }
 
+/// The f below which an F variable falls with probability `p`, between 0 and 1; NaN without degrees of freedom.
+pub fn f_quantile(p: f64, df1: f64, df2: f64) -> f64 {
+    // From the beta variable df1 F / (df1 F + df2), whichever end of it keeps its digits, ...
+    let (a, b) = (df1 / 2.0, df2 / 2.0);
+    let mut f = if p < 0.5 {
+        let x = beta_quantile(p, a, b);
+        df2 * x / (df1 * (1.0 - x))
+    } else {
+        let y = beta_quantile(1.0 - p, b, a);
+        df2 * (1.0 - y) / (df1 * y)
+    };
+    // ... then Newton's steps on our own tails.
+    for _ in 0..4 {
+        if !(f.is_finite() && f > 0.0) {
+            break;
+        }
+        let point = UnitPoint::from_parts(df1 * f, df2);
+        let lower = beta_tails(a, b, point).lower.exp();
+        let ln_density = a * libm::log(df1 / df2) + (a - 1.0) * libm::log(f)
+            - (a + b) * libm::log1p(df1 * f / df2)
+            - ln_beta(a, b);
+        let step = (lower - p) / libm::exp(ln_density);
+        let next = f - step;
+        f = if next > 0.0 { next } else { f / 2.0 };
+    }
+    f
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,6 +207,17 @@ mod tests {
         assert!((t_quantile_upper(0.025, 6.0) - 2.446_911_851_144_969).abs() < 1e-12);
         let x = beta_quantile(0.975, 3.0, 8.0);
         assert!((beta_tails(3.0, 8.0, UnitPoint::new(x)).lower.exp() - 0.975).abs() < 1e-12);
+    }
+
+    #[test]
+    fn quantiles_of_f_invert_its_tail() {
+        for (df1, df2) in [(1.0, 1.0), (3.0, 44.7), (10.0, 33.0), (0.6, 200.0), (250.0, 2.5)] {
+            for p in [0.001, 0.025, 0.3, 0.5, 0.9, 0.975, 0.9999] {
+                let f = f_quantile(p, df1, df2);
+                let upper = f_upper(f, df1, df2).p;
+                assert!((upper - (1.0 - p)).abs() < 1e-12, "{df1} {df2} {p}: {f} {upper}");
+            }
+        }
     }
 
     #[test]

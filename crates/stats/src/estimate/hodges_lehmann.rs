@@ -33,27 +33,32 @@ pub(crate) fn intervals(
     nonzero: Option<&Tally>,
     exact: bool,
 ) -> (HodgesLehmann, HodgesLehmann) {
-    let cut = one_sample_cut(all.total());
-    let of_all = interval_of_walsh(all, cut);
+    let cut = one_sample_cut(all.total(), LEVEL);
+    let of_all = interval_of_walsh(all, cut, LEVEL);
     let thesis_cut = thesis_cut(nonzero.unwrap_or(all), exact);
     if nonzero.is_none() && thesis_cut == Some(cut) {
         return (of_all, of_all);
     }
-    let mut thesis = interval_of_walsh(nonzero.unwrap_or(all), thesis_cut.unwrap_or(0));
+    let mut thesis = interval_of_walsh(nonzero.unwrap_or(all), thesis_cut.unwrap_or(0), LEVEL);
     thesis.level_reached &= thesis_cut.is_some();
     (of_all, thesis)
 }
 
+/// The interval of the location at a level, from all differences.
+pub(crate) fn one_sample_interval(all: &Tally, level: f64) -> HodgesLehmann {
+    interval_of_walsh(all, one_sample_cut(all.total(), level), level)
+}
+
 /// Walsh averages to leave out at each end: the signed rank distribution without ties decides (exactly
 /// up to 200 differences, normal beyond), which is conservative with ties.
-fn one_sample_cut(n: u64) -> u64 {
+fn one_sample_cut(n: u64, level: f64) -> u64 {
     if n <= 200 {
-        return exact_cut(n);
+        return exact_cut(n, level);
     }
     let size = n as f64;
     let variance = size * (size + 1.0) * (2.0 * size + 1.0) / 24.0;
     let half = pairs_of(n) as f64 / 2.0;
-    let reach = normal_quantile_upper((1.0 - LEVEL) / 2.0) * variance.sqrt() + 0.5;
+    let reach = normal_quantile_upper((1.0 - level) / 2.0) * variance.sqrt() + 0.5;
     (half - reach).floor().max(0.0) as u64
 }
 
@@ -62,7 +67,7 @@ fn one_sample_cut(n: u64) -> u64 {
 fn thesis_cut(nonzero: &Tally, exact: bool) -> Option<u64> {
     let n = nonzero.total();
     if exact {
-        return Some(exact_cut(n));
+        return Some(exact_cut(n, LEVEL));
     }
     let size = n as f64;
     let variance = size * (size + 1.0) * (2.0 * size + 1.0) / 24.0 - nonzero.tie_term() / 48.0;
@@ -74,28 +79,28 @@ fn thesis_cut(nonzero: &Tally, exact: bool) -> Option<u64> {
     (cut >= 0.0).then_some(cut as u64)
 }
 
-/// How many Walsh averages to leave out at each end so that 2.5 % stay outside.
-fn exact_cut(n: u64) -> u64 {
+/// How many Walsh averages to leave out at each end so that half of what the level leaves stays outside.
+fn exact_cut(n: u64, level: f64) -> u64 {
     let ranks: Vec<u64> = (1..=n).collect();
-    cut_of(toss_distribution(&ranks))
+    cut_of(toss_distribution(&ranks), level)
 }
 
-/// The quantile of 2.5 % of an integer distribution from 0, less one: with it as index from 1 the
+/// The quantile of (1 - level) / 2 of an integer distribution from 0, less one: with it as index from 1 the
 /// interval begins.
-pub(crate) fn cut_of(distribution: impl IntoIterator<Item = f64>) -> u64 {
+pub(crate) fn cut_of(distribution: impl IntoIterator<Item = f64>, level: f64) -> u64 {
     let mut below = 0.0;
     let quantile = distribution
         .into_iter()
         .take_while(|probability| {
             below += probability;
-            below <= (1.0 - LEVEL) / 2.0
+            below <= (1.0 - level) / 2.0
         })
         .count() as u64;
     quantile.saturating_sub(1)
 }
 
 /// The interval between the (cut+1)-th smallest and (cut+1)-th largest Walsh averages.
-fn interval_of_walsh(differences: &Tally, cut: u64) -> HodgesLehmann {
+fn interval_of_walsh(differences: &Tally, cut: u64, level: f64) -> HodgesLehmann {
     let walsh = WalshAverages::of(differences);
     let pairs = pairs_of(differences.total());
     let cut = cut.min((pairs - 1) / 2);
@@ -104,9 +109,9 @@ fn interval_of_walsh(differences: &Tally, cut: u64) -> HodgesLehmann {
         estimate,
         ci_low,
         ci_high,
-        conf_level: LEVEL,
+        conf_level: level,
         // Even the widest interval misses with probability 2 / 2^n.
-        level_reached: 0.5f64.powi(differences.total().min(2000) as i32 - 1) <= 1.0 - LEVEL,
+        level_reached: 0.5f64.powi(differences.total().min(2000) as i32 - 1) <= 1.0 - level,
     }
 }
 

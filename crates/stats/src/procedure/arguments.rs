@@ -175,6 +175,24 @@ impl Arguments {
         })
     }
 
+    /// The whole number of an option, `default` where it was not given.
+    pub(crate) fn whole(&self, option: &'static str, default: u64) -> Result<u64, Refusal> {
+        let Some(word) = self.text(option) else { return Ok(default) };
+        word.parse().map_err(|_| Refusal::OptionNotWhole { option, word: word.to_owned() })
+    }
+
+    /// The number of an option within bounds; none where it was not given.
+    pub(crate) fn real(
+        &self,
+        option: &'static str,
+        [least, most]: [f64; 2],
+    ) -> Result<Option<f64>, Refusal> {
+        let Some(word) = self.text(option) else { return Ok(None) };
+        let number = word.parse().ok().filter(|value| (least..=most).contains(value));
+        let refusal = || Refusal::OptionNotWithin { option, word: word.to_owned(), least, most };
+        number.map(Some).ok_or_else(refusal)
+    }
+
     /// The direction that `--alternative` names.
     pub(crate) fn alternative(&self) -> Result<Alternative, Refusal> {
         Ok(match self.chosen(&ALTERNATIVE)? {
@@ -228,3 +246,16 @@ pub(crate) const ALTERNATIVE: ProcedureOption = ProcedureOption::one_of(
     ],
     Some("two-sided"),
 );
+
+/// `--rounds`: how often is drawn again for an interval.
+pub(crate) const ROUNDS: ProcedureOption =
+    ProcedureOption::text("rounds", "Draws for the intervals; 0 for none [default: 2000]");
+
+/// `--seed`: of everything that is drawn.
+pub(crate) const SEED: ProcedureOption = ProcedureOption::text(
+    "seed",
+    "Seed of the draws: the same seed, the same intervals [default: 1]",
+);
+
+/// What is drawn where no number of draws was given.
+pub(crate) const DEFAULT_ROUNDS: u64 = 2000;

@@ -14,8 +14,10 @@ use crate::outcome::Outcome;
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::test::{
-    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
-    sign, spearman, wilcoxon,
+    aligned_rank_transform, bradley_terry, chi_square, consistency, cronbach, detection,
+    difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
+    kruskal_wallis, mann_whitney, min_f, panel, psychometric, scheirer_ray_hare, sign, spearman,
+    thurstone, wilcoxon,
 };
 use crate::{adjust, summary};
 use arguments::{Arguments, ProcedureOption};
@@ -58,12 +60,28 @@ pub enum Sample {
     TwoFactors,
     /// Values, two factors, their blocks, and the number of the effect from 1.
     TwoFactorsInBlocks,
+    /// Participants, left items, right items, answers.
+    Comparisons,
+    /// The same, each participant having chosen once of each pair.
+    Tournaments,
+    /// Ratings, methods, participants, segments.
+    PeopleAndSegments,
+    /// Differences of pairs, lower and upper bound.
+    Equivalence,
+    /// A matrix of ratings: one row per clip, one column per rater.
+    Ratings,
+    /// Participants, segments, conditions, ratings, the reference, the anchor.
+    Panel,
+    /// Participants, what was shown, what was answered, the category.
+    Answers,
+    /// What a coefficient without a test is of: its functions stand in the procedure's own tests.
+    Coefficient,
     /// Something else: no test.
     Other,
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 12] = [
+pub static PROCEDURES: [&Procedure; 24] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -73,6 +91,18 @@ pub static PROCEDURES: [&Procedure; 12] = [
     &spearman::PROCEDURE,
     &friedman::PROCEDURE,
     &aligned_rank_transform::PROCEDURE,
+    &min_f::PROCEDURE,
+    &equivalence::PROCEDURE,
+    &bradley_terry::PROCEDURE,
+    &thurstone::PROCEDURE,
+    &consistency::PROCEDURE,
+    &panel::PROCEDURE,
+    &psychometric::PROCEDURE,
+    &difference_scaling::PROCEDURE,
+    &detection::PROCEDURE,
+    &intraclass_correlation::PROCEDURE,
+    &krippendorff::PROCEDURE,
+    &cronbach::PROCEDURE,
     &summary::describe::PROCEDURE,
     &summary::confusion::PROCEDURE,
     &adjust::PROCEDURE,
@@ -99,6 +129,16 @@ impl Answer {
         // Results are structs of numbers and texts, which JSON always has a form for.
         let json = serde_json::to_string_pretty(outcome).unwrap_or_else(|error| error.to_string());
         Self { json, text, test: None }
+    }
+
+    /// Of a result that says itself whether it is defined.
+    pub(crate) fn of_result<T: Serialize>(
+        result: &T,
+        text: String,
+        test: Option<(TestNames, Vec<Outcome<TestRow>>)>,
+    ) -> Self {
+        let json = serde_json::to_string_pretty(result).unwrap_or_else(|error| error.to_string());
+        Self { json, text, test }
     }
 
     /// The same of a test, which has rows in a table of tests.

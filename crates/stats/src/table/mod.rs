@@ -7,6 +7,7 @@
 pub(crate) mod blocks;
 pub(crate) mod cells;
 pub(crate) mod coded;
+pub(crate) mod comparisons;
 pub(crate) mod contingency;
 pub(crate) mod csv;
 pub(crate) mod factor;

@@ -320,7 +320,7 @@ impl TestResult for Friedman {
     }
 }
 
-fn words(result: &Friedman) -> String {
+pub(crate) fn words(result: &Friedman) -> String {
     let mut lines = Lines::default();
     lines.add(format!("Friedman test ({})", result.variant));
     lines.add(format!(

@@ -120,7 +120,7 @@ fn exact_tail_and_cut(u: usize, m: usize, n: usize) -> (Tail, Option<u64>) {
     let at_most: f64 = distribution[..=u].iter().sum();
     let at_least: f64 = distribution[u..].iter().sum();
     let reachable = distribution[0] <= (1.0 - LEVEL) / 2.0;
-    (Tail::from_p(at_most.min(at_least)).doubled(), reachable.then(|| cut_of(distribution)))
+    (Tail::from_p(at_most.min(at_least)).doubled(), reachable.then(|| cut_of(distribution, LEVEL)))
 }
 
 /// Cut of the interval by the normal approximation; none where 95 % cannot be reached.
@@ -132,7 +132,7 @@ fn normal_cut(m: usize, n: usize, tie_term: f64) -> Option<u64> {
 }
 
 /// Variance of U of samples of `m` and `n`, corrected for ties.
-fn u_variance(m: usize, n: usize, tie_term: f64) -> f64 {
+pub(crate) fn u_variance(m: usize, n: usize, tie_term: f64) -> f64 {
     let (pairs, total) = ((m * n) as f64, (m + n) as f64);
     pairs / 12.0 * ((total + 1.0) - tie_term / (total * (total - 1.0)))
 }

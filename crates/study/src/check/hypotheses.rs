@@ -7,7 +7,7 @@ use super::problem::Problem;
 use super::values::{Count, Nearest};
 use super::{Subject, assigned, responses};
 use crate::columns::ASSIGNED_CONDITION;
-use crate::question::KindOfQuestion as _;
+use crate::question::{KindOfQuestion as _, Question};
 use crate::study_file::{Hypothesis, Measure, TestName};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -35,6 +35,10 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
         return;
     };
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    if hypothesis.test.is_of_choices() {
+        choices(subject, hypothesis, (question, &levels), pointer, issues);
+        return;
+    }
     for (index, factor) in hypothesis.factors.iter().enumerate() {
         let compared = if index == 0 { levels.as_slice() } else { &[] };
         let of_pair = subject.study.answer_of_pair(question, hypothesis.measure, factor, compared);
@@ -53,6 +57,61 @@ fn response(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issue
             Problem::NotTested { question: question.id.clone() },
         );
     }
+}
+
+/// That a test of choices is of answers that choose between levels, all of which are joined by choices.
+fn choices(
+    subject: &Subject<'_>,
+    hypothesis: &Hypothesis,
+    (question, levels): (&Question, &[String]),
+    pointer: &str,
+    issues: &mut Issues,
+) {
+    let id = || question.id.clone();
+    if !question.kind.compares_clips() || hypothesis.measure != Measure::Answer {
+        let test = hypothesis.test.as_str();
+        issues.error(below(pointer, "test"), Problem::NoChoice { question: id(), test });
+        return;
+    }
+    let [factor] = hypothesis.factors.as_slice() else { return };
+    if !factor_names(subject).contains(factor) {
+        return;
+    }
+    let place = below(&below(pointer, "factors"), 0);
+    let pairs = subject.study.levels_chosen_between(question, factor, levels);
+    let parts = parts(&pairs, levels);
+    match parts.as_slice() {
+        [] => {
+            let factor = factor.clone();
+            issues.error(place, Problem::NoPairsOf { question: id(), factor });
+        }
+        [_] => {}
+        several => {
+            let parts: Vec<String> = several.iter().map(|part| part.join(", ")).collect();
+            let parts = format!("({})", parts.join("), ("));
+            issues.error(place, Problem::PairsInParts { question: id(), parts });
+        }
+    }
+}
+
+/// The levels in parts that pairs join; levels that are named and in no pair are parts of their own.
+fn parts(pairs: &BTreeSet<[String; 2]>, levels: &[String]) -> Vec<Vec<String>> {
+    if pairs.is_empty() {
+        return Vec::new();
+    }
+    let of_pairs = pairs.iter().flatten();
+    let all: BTreeSet<&String> = of_pairs.chain(levels).collect();
+    let mut parts: Vec<Vec<String>> = all.into_iter().map(|level| vec![level.clone()]).collect();
+    for [one, other] in pairs {
+        let place = |level: &String| parts.iter().position(|part| part.contains(level));
+        if let (Some(one), Some(other)) = (place(one), place(other))
+            && one != other
+        {
+            let joined = parts.remove(one.max(other));
+            parts[one.min(other)].extend(joined);
+        }
+    }
+    parts
 }
 
 /// What an analysis can group by.
@@ -113,8 +172,13 @@ fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues:
             issues.error(place, Problem::LevelTwice { level: level.clone() });
         }
     }
-    let count = if levels.is_empty() { values.len() } else { levels.len() };
-    let two = matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney);
+    let count = match (levels.len(), choice_levels(subject, hypothesis)) {
+        (0, Some(compared)) => compared,
+        (0, None) => values.len(),
+        (named, _) => named,
+    };
+    let two =
+        matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney | TestName::Sign);
     if (two && count != 2) || count < 2 {
         let factor = factor.clone();
         let problem = match two {
@@ -123,4 +187,17 @@ fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues:
         };
         issues.error(place, problem);
     }
+}
+
+/// How many levels a test of choices compares where none are named: those that stand beside each other; none of
+/// another test, or where that is a problem of its own.
+fn choice_levels(subject: &Subject<'_>, hypothesis: &Hypothesis) -> Option<usize> {
+    if !hypothesis.test.is_of_choices() {
+        return None;
+    }
+    let question = responses::question(subject.study, &hypothesis.response)?;
+    let factor = hypothesis.factors.first()?;
+    let pairs = subject.study.levels_chosen_between(question, factor, &[]);
+    let levels: BTreeSet<&String> = pairs.iter().flatten().collect();
+    (!levels.is_empty()).then_some(levels.len())
 }

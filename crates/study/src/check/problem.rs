@@ -450,7 +450,16 @@ AskedInNoTrial { question: String }: "not-asked",
     "ask it in the trials of the sequence, or test a question that is asked there";
 ChoiceOfPair { question: String, factor: String }: "of-two-clips",
     "\"{question}\" says which of two clips: its answers are of no level of \"{factor}\"",
-    "read how often each was chosen in the report, or test a question about one clip";
+    "take the test \"sign\" of two levels or \"bradley-terry\" of more, or test a question about one clip";
+NoChoice { question: String, test: &'static str }: "no-choice",
+    "\"{test}\" is a test of choices between two clips, which \"{question}\" is not",
+    "name a question of type \"comparison\" and its answer, or take another test";
+NoPairsOf { question: String, factor: String }: "no-pairs",
+    "no two clips between which \"{question}\" chooses differ in the levels of \"{factor}\" that are compared",
+    "name levels that stand beside each other in its trials, or leave out \"levels\"";
+PairsInParts { question: String, parts: String }: "pairs-in-parts",
+    "no answer to \"{question}\" chooses between the levels of different parts: {parts}",
+    "show pairs between them, or name levels of one part";
 RatingOfPair { question: String, factor: String, clip: String, beside: String }: "of-two-clips",
     "\"{question}\" rates two clips together that differ in \"{factor}\", such as \"{clip}\" beside \"{beside}\": which of them is meant nobody knows",
     "ask it in trials of one clip, or beside one and the same {factor} that is not compared; or ask which is better by a question of type \"comparison\"";

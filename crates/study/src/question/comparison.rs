@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Question;
-use super::kind::{KindOfQuestion, Told, pick};
-use super::simulation::{Chance, Simulated};
+use super::kind::{KindOfQuestion, Summary, Told, pick};
+use super::simulation::Simulated;
 use super::view::{ChoiceView, QuestionKindView, Showing};
 use crate::answer::AnswerProblem;
 use crate::check::Issues;
-use crate::text::Words;
+use crate::text::{Words, words};
 
 /// Which of the two clips that are shown side by side: `"left"`, `"right"` or `"same"`. The export names
 /// the clip that was chosen in its column `chosen`.
@@ -59,16 +59,22 @@ impl KindOfQuestion for Comparison {
     }
 
     fn simulated(&self) -> Simulated<'_> {
-        Simulated::Drawn { by_shares: false }
-    }
-
-    fn drawn(&self, _weights: &[f64], chance: &mut dyn Chance) -> Value {
-        let sides = ["left", "right", "same"];
-        sides[chance.below(if self.allow_same { 3 } else { 2 })].into()
+        Simulated::Compared { same: self.allow_same }
     }
 
     fn compares_clips(&self) -> bool {
         true
+    }
+
+    fn summary(&self) -> Summary {
+        Summary::Sides(self.sides())
+    }
+
+    fn answer_in_words(&self, asked: &Question, answer: &str, language: &str) -> String {
+        match asked.sign(answer) {
+            Some(own) => own.label.in_language(language).to_owned(),
+            None => in_words(answer, words(language)).to_owned(),
+        }
     }
 
     fn sign_values(&self) -> Option<Vec<&'static str>> {
@@ -115,7 +121,6 @@ fn ways_to_say(side: &str, words: &Words) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::words;
 
     #[test]
     fn a_side_is_told_by_the_words_that_differ() {

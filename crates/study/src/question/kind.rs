@@ -69,6 +69,8 @@ pub enum QuestionKind {
 pub enum Summary {
     /// How often each option was chosen.
     Options,
+    /// How often each of these answers was given, which the page has its own words for.
+    Sides(Vec<&'static str>),
     /// How often each point was chosen.
     Points(RangeInclusive<i64>),
     /// Least, mean and greatest.
@@ -195,6 +197,11 @@ pub trait KindOfQuestion {
     /// What can be shown of many answers together.
     fn summary(&self) -> Summary {
         Summary::Numbers
+    }
+
+    /// What the page says for an answer that is no option of the study's own.
+    fn answer_in_words(&self, _asked: &Question, answer: &str, _language: &str) -> String {
+        answer.to_owned()
     }
 
     /// The values that `signs` can have, for a kind that shows them as its options.

@@ -46,6 +46,11 @@ pub enum Simulated<'a> {
     },
     /// A typed number.
     Number(&'a NumberField),
+    /// Which of two clips, by their worths.
+    Compared {
+        /// Whether "no difference" can be answered.
+        same: bool,
+    },
     /// By [`super::KindOfQuestion::drawn`].
     Drawn {
         /// Whether its options are chosen by shares, which a parameters file can give.

@@ -49,6 +49,33 @@ pub enum TestName {
     Friedman,
     /// Factors and their interaction on aligned ranks.
     AlignedRankTransform,
+    /// Which of two is chosen more often, of answers that choose between clips.
+    Sign,
+    /// Worths of several from answers that choose between two of them.
+    BradleyTerry,
+}
+
+impl TestName {
+    /// Whether it is a test of answers that choose between two clips.
+    pub fn is_of_choices(self) -> bool {
+        matches!(self, Self::Sign | Self::BradleyTerry)
+    }
+
+    /// As a study file writes it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::KruskalWallis => "kruskal-wallis",
+            Self::Wilcoxon => "wilcoxon",
+            Self::MannWhitney => "mann-whitney",
+            Self::ScheirerRayHare => "scheirer-ray-hare",
+            Self::ChiSquare => "chi-square",
+            Self::Spearman => "spearman",
+            Self::Friedman => "friedman",
+            Self::AlignedRankTransform => "aligned-rank-transform",
+            Self::Sign => "sign",
+            Self::BradleyTerry => "bradley-terry",
+        }
+    }
 }
 
 /// What of a response is tested.

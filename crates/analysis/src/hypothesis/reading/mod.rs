@@ -54,7 +54,9 @@ pub(crate) fn person_level(
 pub(crate) fn difference(language: Language, kind: MeasureKind, value: f64) -> String {
     match kind {
         MeasureKind::Recognition => language.fixed(value * 100.0, 1),
-        MeasureKind::ResponseTime | MeasureKind::Rating => language.fixed(value, 2),
+        MeasureKind::ResponseTime | MeasureKind::Rating | MeasureKind::Choice => {
+            language.fixed(value, 2)
+        }
     }
 }
 
@@ -63,7 +65,7 @@ fn unit(language: Language, kind: MeasureKind) -> &'static str {
     match kind {
         MeasureKind::Recognition => language.pick(" percentage points", " points de pourcentage"),
         MeasureKind::ResponseTime => " s",
-        MeasureKind::Rating => "",
+        MeasureKind::Rating | MeasureKind::Choice => "",
     }
 }
 

@@ -211,7 +211,9 @@ fn topic(language: Language, kind: MeasureKind, label: &str) -> String {
         MeasureKind::ResponseTime => {
             language.pick("In response time", "En temps de réponse").to_owned()
         }
-        MeasureKind::Rating => language.pick(format!("On “{label}”"), format!("Pour « {label} »")),
+        MeasureKind::Rating | MeasureKind::Choice => {
+            language.pick(format!("On “{label}”"), format!("Pour « {label} »"))
+        }
     }
 }
 
@@ -223,6 +225,7 @@ fn higher(language: Language, kind: MeasureKind) -> &'static str {
         MeasureKind::ResponseTime => {
             language.pick("was answered more slowly than", "a demandé plus de temps que")
         }
+        MeasureKind::Choice => language.pick("was chosen over", "a été préférée à"),
         MeasureKind::Rating => language.pick("was rated higher than", "a été notée plus haut que"),
     }
 }

@@ -8,6 +8,7 @@ mod differences;
 pub(crate) mod flow_chart;
 mod likert;
 pub(crate) mod people;
+mod ranking;
 mod shares;
 pub(crate) mod svg;
 
@@ -17,6 +18,7 @@ pub use confusion::{ConfusionRow, ConfusionWords, confusion_matrix};
 pub use courses::{CoursePanel, time_courses};
 pub(crate) use differences::differences;
 pub(crate) use likert::likert;
+pub(crate) use ranking::ranking;
 pub(crate) use shares::shares;
 
 use crate::report::figure::svg::WIDTH;

@@ -14,7 +14,9 @@ pub(super) const RIGHT: f64 = WIDTH - 12.0;
 pub(super) fn tick(language: Language, kind: MeasureKind, value: f64, decimals: usize) -> String {
     match kind {
         MeasureKind::Recognition => language.percent(value),
-        MeasureKind::Rating | MeasureKind::ResponseTime => language.fixed(value, decimals),
+        MeasureKind::Rating | MeasureKind::ResponseTime | MeasureKind::Choice => {
+            language.fixed(value, decimals)
+        }
     }
 }
 

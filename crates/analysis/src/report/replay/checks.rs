@@ -71,6 +71,13 @@ impl Collector {
         for comparison in &results.comparisons {
             all.comparison(comparison);
         }
+        for choices in &results.choices {
+            if let (Some(factor), Some(tests)) = (&choices.by, &choices.tests) {
+                let key = format!("choices:{}:{factor}", choices.response);
+                all.trial_level(&key, &tests.as_in_the_thesis);
+                all.person_level(&key, &tests.recommended);
+            }
+        }
         for two in &results.two_way {
             let key = format!("two-way:{}:{}", two.measure, two.factors.join(":"));
             all.trial_level(&key, &two.as_in_the_thesis);

@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
+use mimique_study::KindOfQuestion as _;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::language::Language;
 use crate::report::document::csv_text;
 use crate::report::section::Writer;
-use crate::trials::export::Export;
+use crate::trials::export::{Export, Trial};
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// A column of the trials' file.
@@ -50,6 +51,7 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         columns
             .push((factor.clone(), Cells::Texts(levels.map(Option::unwrap_or_default).collect())));
     }
+    columns.extend(of_companions(export));
     for (name, cells) in &export.about {
         let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());
         columns.push((name.clone(), Cells::Texts(texts.collect())));
@@ -66,6 +68,16 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
             columns.push((format!("{}.truth", asked.id), Cells::Texts(truth)));
             columns.push((format!("{}.answer", asked.id), Cells::Texts(given)));
         }
+        if asked.question.is_some_and(|question| question.kind.compares_clips()) {
+            let (mut given, mut chosen) = (vec![""; rows], vec![""; rows]);
+            for answer in export.answers_to(&asked.id) {
+                let trial = &export.trials[answer.trial];
+                given[answer.trial] = &answer.text;
+                chosen[answer.trial] = chosen_clip(trial, &answer.text);
+            }
+            columns.push((format!("{}.answer", asked.id), Cells::Texts(given)));
+            columns.push((format!("{}.chosen", asked.id), Cells::Texts(chosen)));
+        }
         measures.extend(measure);
         measures.extend(Measure::response_time(export, &asked, Language::English));
     }
@@ -77,6 +89,37 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         columns.push((measure.id, Cells::Numbers(cells)));
     }
     in_lines(&columns, rows)
+}
+
+/// What is played beside each clip: its identifier, its side, its factors. Nothing where no clip has a companion.
+fn of_companions(export: &Export) -> Vec<(String, Cells<'_>)> {
+    let besides = || export.trials.iter().map(|trial| trial.beside.as_ref());
+    if besides().all(|beside| beside.is_none()) {
+        return Vec::new();
+    }
+    let side = |left: bool| if left { "left" } else { "right" };
+    let clips = besides().map(|beside| beside.map_or("", |beside| &*beside.clip));
+    let sides = besides().map(|beside| beside.map_or("", |beside| side(beside.left)));
+    let mut columns = vec![
+        ("beside".to_owned(), Cells::Texts(clips.collect())),
+        ("beside_side".to_owned(), Cells::Texts(sides.collect())),
+    ];
+    for (place, factor) in export.factors.iter().enumerate() {
+        let levels = besides().map(|beside| beside?.levels[place].as_deref());
+        let cells = Cells::Texts(levels.map(Option::unwrap_or_default).collect());
+        columns.push((format!("beside.{factor}"), cells));
+    }
+    columns
+}
+
+/// The clip that an answer chooses; nothing where it chooses neither.
+fn chosen_clip<'e>(trial: &'e Trial, answer: &str) -> &'e str {
+    let Some(beside) = &trial.beside else { return "" };
+    match (answer, beside.left) {
+        ("left", true) | ("right", false) => &beside.clip,
+        ("left", false) | ("right", true) => &trial.stimulus,
+        _ => "",
+    }
 }
 
 /// The columns as CSV, pieces of it at the same time.

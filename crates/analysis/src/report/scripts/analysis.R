@@ -134,6 +134,40 @@ of_answers <- function(test, question, g, levels) {
   test(truth[keep], answer[keep])
 }
 
+# Choices between levels of a factor: who chose, the level on either side, the answer.
+choices_of <- function(question, g, levels) {
+  answer <- trials[[paste0(question, ".answer")]]
+  own <- trials[[g]]
+  other <- trials[[paste0("beside.", g)]]
+  keep <- !is.na(answer) & own %in% levels & other %in% levels
+  keep[keep] <- own[keep] != other[keep]
+  other_left <- trials$beside_side[keep] == "left"
+  list(person = person[keep], answer = answer[keep],
+       left = ifelse(other_left, other[keep], own[keep]),
+       right = ifelse(other_left, own[keep], other[keep]))
+}
+of_choices <- function(test, question, g, levels, side) {
+  d <- choices_of(question, g, levels)
+  test(d$person, d$left, d$right, d$answer, side == 1)
+}
+# Choices of the first of two levels less those of the second, of each trial or of each person.
+of_net_choices <- function(test, question, g, levels, unit) {
+  d <- choices_of(question, g, levels)
+  net <- (d$answer == "left") - (d$answer == "right")
+  net <- ifelse(d$left == levels[1], net, -net)
+  if (unit != "trials") net <- as.vector(tapply(net, d$person, sum))
+  test(net)
+}
+# How often each person (rows) chose each level (columns); a tie is half a choice.
+of_wins <- function(test, question, g, levels) {
+  d <- choices_of(question, g, levels)
+  won <- function(side, word) {
+    share <- (d$answer == word) + (d$answer == "same") / 2
+    tapply(share, list(d$person, factor(side, levels)), sum, default = 0)
+  }
+  test(won(d$left, "left") + won(d$right, "right"))
+}
+
 keys <- character()
 names_of <- character()
 found <- numeric()

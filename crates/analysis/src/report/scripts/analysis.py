@@ -209,6 +209,42 @@ def of_answers(test, question, g, levels):
     return test(truth[keep], answer[keep])
 
 
+def choices_of(question, g, levels):
+    """Choices between levels of a factor: who chose, the level on either side, the answer."""
+    answer, own, other = columns[question + ".answer"], columns[g], columns["beside." + g]
+    keep = (answer != "") & is_in(g, levels) & is_in("beside." + g, levels) & (own != other)
+    other_left = columns["beside_side"][keep] == "left"
+    left = np.where(other_left, other[keep], own[keep]).astype(str)
+    right = np.where(other_left, own[keep], other[keep]).astype(str)
+    return person[keep].astype(str), left, right, answer[keep].astype(str)
+
+
+def of_choices(test, question, g, levels, side):
+    return test(*choices_of(question, g, levels), side == 1)
+
+
+def of_net_choices(test, question, g, levels, unit):
+    """Choices of the first of two levels less those of the second, of each trial or person."""
+    who, left, _, answer = choices_of(question, g, levels)
+    net = (answer == "left").astype(float) - (answer == "right")
+    net = np.where(left == levels[0], net, -net)
+    if unit != "trials":
+        net = np.array([net[who == one].sum() for one in np.unique(who)])
+    return test(net)
+
+
+def of_wins(test, question, g, levels):
+    """How often each person (rows) chose each level (columns); a tie is half a choice."""
+    who, left, right, answer = choices_of(question, g, levels)
+    tie = (answer == "same") / 2
+
+    def wins(one, level):
+        on_left, on_right = ((who == one) & (side == level) for side in (left, right))
+        return ((answer == "left") + tie)[on_left].sum() + ((answer == "right") + tie)[on_right].sum()
+
+    return test(np.array([[wins(one, level) for level in levels] for one in np.unique(who)]))
+
+
 found = {}
 
 

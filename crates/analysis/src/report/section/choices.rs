@@ -1,13 +1,15 @@
-//! Which of two clips was chosen: how often each, against which. Counts of trials, no test: the choices of
-//! one person are not independent of each other.
+//! Which of two clips was chosen: how often each, against which, and whether that is more than chance.
 
 use std::collections::{BTreeMap, HashMap};
 
+use mimique_stats::PairedComparisons;
 use mimique_study::Clip;
 use serde::Serialize;
 
+use crate::choices::answers::by_factor;
+use crate::choices::tested::ChoiceTests;
 use crate::report::document::{Block, DataTable, slug};
-use crate::report::section::Writer;
+use crate::report::section::{MOST_LEVELS, Writer};
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Answer;
 
@@ -20,6 +22,9 @@ pub(crate) struct Choices {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
     pub pairs: Vec<ChoicesOfPair>,
+    /// Tests of the choices between the levels; none for single clips.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tests: Option<ChoiceTests>,
 }
 
 /// How often each of two was chosen where both were shown.
@@ -63,14 +68,16 @@ impl<'a> Writer<'a> {
         let said = |word: &str| answers.iter().filter(|answer| &*answer.text == word).count();
         let [left, right, same] = ["left", "right", "same"].map(said);
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("{left} answers chose the clip on the left, {right} the one on the right, {same} neither. The tables count trials; the choices of one person are not independent, so no test of these counts stands here."),
-            format!("{left} réponses ont choisi l’extrait de gauche, {right} celui de droite, {same} aucun des deux. Les tables comptent des essais ; les choix d’une personne ne sont pas indépendants, aucun test de ces effectifs ne figure donc ici."),
+            format!("{left} answers chose the clip on the left, {right} the one on the right, {same} neither. The tables of counts count trials; the recommended tests know that the choices of one person belong together."),
+            format!("{left} réponses ont choisi l’extrait de gauche, {right} celui de droite, {same} aucun des deux. Les tableaux d’effectifs comptent des essais ; les tests recommandés savent que les choix d’une personne vont ensemble."),
         )));
         let clips = self.study.clips();
         let clips: HashMap<&str, &Clip> =
             clips.iter().map(|clip| (clip.id.as_str(), clip)).collect();
         let mut factors = self.study.factor_names();
         factors.push("avatar".to_owned());
+        factors.sort_by_key(|factor| factor != "method");
+        let mut patterns: Vec<Vec<usize>> = Vec::new();
         for factor in factors {
             let level = |clip: &str| clips.get(clip).and_then(|clip| clip.factor_text(&factor));
             let pairs = counted(&choices, level, &self.naming.level_order(&factor));
@@ -82,14 +89,37 @@ impl<'a> Writer<'a> {
             );
             let id = format!("{}-choices-by-{}", slug(&asked.id), slug(&factor));
             let table = self.table_of_choices(id, &caption, &pairs, name);
-            self.add_choices(asked, Some(factor), pairs, table);
+            if pairs.is_empty() {
+                continue;
+            }
+            self.blocks.push(Block::Table(table));
+            let order = self.naming.level_order(&factor);
+            let data = by_factor(self.export, &asked.id, &factor, &order, &[]);
+            // Of two factors that part the clips alike the first is tested.
+            let data = data.filter(|data| {
+                let pattern = pattern(data);
+                let is_new = !patterns.contains(&pattern);
+                patterns.push(pattern);
+                is_new && data.items.len() <= MOST_LEVELS
+            });
+            let tests = data.map(|data| {
+                let tests = self.choice_tests(asked, &factor, &data);
+                self.consistency(&tests);
+                tests
+            });
+            let by = Some(factor);
+            self.results.choices.push(Choices { response: asked.id.clone(), by, pairs, tests });
         }
         let pairs = counted(&choices, |clip| Some(clip.to_owned()), &[]);
         let caption = language
             .pick(format!("{label}: choices by clip"), format!("{label} : choix par extrait"));
         let id = format!("{}-choices-by-clip", slug(&asked.id));
         let table = self.table_of_choices(id, &caption, &pairs, str::to_owned);
-        self.add_choices(asked, None, pairs, table);
+        if !pairs.is_empty() {
+            self.blocks.push(Block::Table(table));
+            let response = asked.id.clone();
+            self.results.choices.push(Choices { response, by: None, pairs, tests: None });
+        }
     }
 
     fn choice(&self, answer: &Answer) -> Option<Choice<'a>> {
@@ -129,20 +159,20 @@ impl<'a> Writer<'a> {
         }
         table
     }
+}
 
-    /// Adds counts, unless there are none: no two clips that were shown together differ.
-    fn add_choices(
-        &mut self,
-        asked: &AskedQuestion<'_>,
-        by: Option<String>,
-        pairs: Vec<ChoicesOfPair>,
-        table: DataTable,
-    ) {
-        if !pairs.is_empty() {
-            self.blocks.push(Block::Table(table));
-            self.results.choices.push(Choices { response: asked.id.clone(), by, pairs });
-        }
-    }
+/// Both items of each answer, numbered as they are met: alike for factors that part the clips alike.
+fn pattern(data: &PairedComparisons) -> Vec<usize> {
+    let mut met: Vec<usize> = Vec::new();
+    let items = data.answers.iter().flat_map(|answer| [answer.left, answer.right]);
+    items
+        .map(|item| {
+            met.iter().position(|own| *own == item).unwrap_or_else(|| {
+                met.push(item);
+                met.len() - 1
+            })
+        })
+        .collect()
 }
 
 /// The choices between any two levels that differ, each two once, in the given order or else by name.

@@ -9,6 +9,7 @@ use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::conditions::people_by_condition;
 use crate::report::section::Writer;
 use crate::report::tables;
+use crate::trials::measure::MeasureKind;
 
 /// Every hypothesis tested, and corrected for their number.
 pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
@@ -86,7 +87,7 @@ impl Writer<'_> {
         self.blocks.push(Block::Caution(reading::trial_level_caution(language).to_owned()));
         for result in hypotheses {
             self.blocks.push(Block::Heading(3, format!("{}. {}", result.id, result.statement)));
-            let table = tables::two_columns(
+            let mut table = tables::two_columns(
                 &self.naming,
                 format!("hypothesis-{}", slug(&result.id)),
                 language.pick(
@@ -98,6 +99,9 @@ impl Writer<'_> {
                 &result.as_in_the_thesis,
                 &result.recommended,
             );
+            if result.kind == MeasureKind::Choice {
+                tables::headings_of_choices(language, &mut table);
+            }
             self.blocks.push(Block::Table(table));
             let pairs = tables::many_pairs(
                 &self.naming,

@@ -19,6 +19,12 @@ impl Writer<'_> {
                 "Entre conditions : les réponses de chaque personne sont moyennées en une seule valeur ; Mann-Whitney pour deux conditions, Kruskal-Wallis au-delà.",
             );
         }
+        if self.results.choices.iter().any(|choices| choices.tests.is_some()) {
+            self.paragraph(
+                "Choices between two clips: of two levels the exact sign test of people (whether more of them choose one more often than the other; who chooses both equally often is left out). Of more, worths by Bradley and Terry’s model, with Davidson’s ties where “no difference” was an answer and a side bias where sides varied: equal worths by Wald’s F on the covariance clustered by participant, with few people by Friedman’s test on each one’s wins; pairs by t clustered by participant, Holm’s correction; intervals by drawing participants. A just noticeable difference (JND) is ln 3 of worth: 75 % of decided choices. For independent answers: sign test of trials, likelihood ratio.",
+                "Choix entre deux extraits : pour deux niveaux, test du signe exact sur les personnes (si davantage choisissent l’un plus souvent que l’autre ; qui choisit les deux aussi souvent n’est pas compté). Au-delà, valeurs selon le modèle de Bradley et Terry, avec les égalités de Davidson si « pas de différence » était une réponse et un biais de côté si les côtés variaient : égalité des valeurs par le F de Wald à covariance groupée par participant, avec peu de personnes par le test de Friedman sur les victoires de chacune ; paires par t groupé par participant, correction de Holm ; intervalles par tirage de participants. Une différence juste perceptible (JND) est ln 3 de valeur : 75 % des choix tranchés. Pour des réponses indépendantes : test du signe sur les essais, rapport de vraisemblance.",
+            );
+        }
         self.paragraph(
             "Effect sizes: r is the matched rank-biserial correlation, W Kendall’s coefficient of concordance, V Cramér’s, ε² is H / (n − 1) of Kruskal-Wallis, η²H the same of Scheirer-Ray-Hare (SRH), ηp² the partial eta squared of the aligned rank transform (ART).",
             "Tailles d’effet : r est la corrélation bisériale des rangs appariés, W le coefficient de concordance de Kendall, V celui de Cramér, ε² est H / (n − 1) de Kruskal-Wallis, η²H le même de Scheirer-Ray-Hare (SRH), ηp² l’êta carré partiel de la transformation des rangs alignés (ART).",

@@ -1,10 +1,12 @@
 //! Parameters fitted to an export: thresholds and effects by maximum likelihood, spreads of people,
-//! segments and clips from covariances of pairs, times by analysis of variance.
+//! segments and clips from covariances of pairs, worths of choices by Bradley and Terry's model, times by analysis of
+//! variance.
 //!
 //! What an export cannot tell stays as the study's defaults: interactions, trends over trials, the share
 //! of careless people, how many decline (they leave no rows), and spreads of which there are no pairs
 //! (with one clip an emotion nobody can tell the emotion from its clip).
 
+mod choices;
 mod components;
 mod ordinal;
 mod response;
@@ -43,6 +45,9 @@ impl Parameters {
             if let Some(truth) = asked.and_then(|asked| asked.kind.truth()) {
                 fit_recognition(&data, question, truth, recognition);
             }
+        }
+        for (question, compared) in &mut parameters.comparisons {
+            choices::fit(&export, question, compared);
         }
         fit_about(&export, &mut parameters);
         times::fit(table, &mut parameters);
@@ -206,6 +211,11 @@ fn rounded(parameters: &mut Parameters) {
         recognition.effects.values_mut().flat_map(BTreeMap::values_mut).for_each(short);
         let rows = recognition.confusion.values_mut().flat_map(BTreeMap::values_mut);
         rows.flat_map(BTreeMap::values_mut).for_each(short);
+    }
+    for compared in parameters.comparisons.values_mut() {
+        compared.worth.values_mut().for_each(short);
+        short(&mut compared.side);
+        short(&mut compared.tie);
     }
     parameters.choices.values_mut().flat_map(BTreeMap::values_mut).for_each(short);
     for number in parameters.numbers.values_mut() {

@@ -46,7 +46,7 @@ impl Counting {
     /// How those to each response of a study are counted, by the response.
     pub fn of(study: &Study) -> BTreeMap<String, Self> {
         let of = |question: &Question| match question.kind.summary() {
-            Summary::Points(_) | Summary::Options => Self::Values,
+            Summary::Points(_) | Summary::Options | Summary::Sides(_) => Self::Values,
             Summary::Numbers => Self::Numbers,
             Summary::Texts => Self::Texts,
         };
@@ -165,6 +165,10 @@ fn shape(question: &Question, language: &str, tally: &Tally) -> Shape {
             let options = question.kind.options().iter();
             counts(options.map(|option| (option.value.clone(), label(option))), tally)
         }
+        Summary::Sides(sides) => {
+            let said = |side: &str| question.kind.answer_in_words(question, side, language);
+            counts(sides.into_iter().map(|side| (side.to_owned(), said(side))), tally)
+        }
         Summary::Numbers => tally.numbers.map_or(Shape::Texts(tally.texts), Shape::Numbers),
         Summary::Texts => Shape::Texts(tally.texts),
     }
@@ -204,6 +208,18 @@ mod tests {
         let expected = [("A", 1), ("B", 2), ("C", 0), ("gone", 1)];
         let expected = expected.map(|(label, count)| (label.to_owned(), count));
         assert_eq!(counts(options.into_iter(), &tally), Shape::Counts(expected.to_vec()));
+    }
+
+    #[test]
+    fn choices_between_clips_have_a_bar_for_each_side() {
+        let question = json!({ "id": "nearer", "type": "comparison", "allowSame": true,
+            "prompt": "Which is nearer?" });
+        let question: Question = serde_json::from_value(question).unwrap();
+        let tally = tally(Counting::Values, &[json!("left"), json!("same"), json!("left")]);
+        let Shape::Counts(bars) = shape(&question, "en", &tally) else { panic!("no bars") };
+        let counts: Vec<u64> = bars.iter().map(|(_, count)| *count).collect();
+        assert_eq!(counts, [2, 1, 0], "{bars:?}");
+        assert!(bars[0].0.contains("left") && bars[2].0.contains("right"), "{bars:?}");
     }
 
     #[test]

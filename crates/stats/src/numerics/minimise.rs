@@ -4,10 +4,10 @@
 
 use std::collections::VecDeque;
 
-use crate::numbers::dot;
+use crate::numerics::dot;
 
 /// When to stop.
-pub(crate) struct Stop {
+pub struct Stop {
     /// Largest element of the gradient.
     pub gradient: f64,
     /// Most steps.
@@ -15,9 +15,11 @@ pub(crate) struct Stop {
 }
 
 /// Where the search ended.
-pub(crate) struct Found {
+pub struct Minimum {
     /// The place.
     pub at: Vec<f64>,
+    /// The value there.
+    pub value: f64,
     /// Largest element of the gradient there.
     pub gradient: f64,
     /// Whether that is small enough.
@@ -40,11 +42,11 @@ struct Step {
 }
 
 /// Minimise from a start; `value` writes the gradient into its second argument.
-pub(crate) fn minimise(
+pub fn minimise(
     start: Vec<f64>,
     stop: &Stop,
     mut value: impl FnMut(&[f64], &mut [f64]) -> f64,
-) -> Found {
+) -> Minimum {
     let mut at = start;
     let mut gradient = vec![0.0; at.len()];
     let mut height = value(&at, &mut gradient);
@@ -60,11 +62,12 @@ pub(crate) fn minimise(
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut length = if memory.is_empty() { 1.0 / largest(&gradient).max(1.0) } else { 1.0 };
         let mut moved = false;
+        let mut next_height = height;
         for _ in 0..60 {
             for ((n, a), d) in next.iter_mut().zip(&at).zip(&direction) {
                 *n = a + length * d;
             }
-            let next_height = value(&next, &mut next_gradient);
+            next_height = value(&next, &mut next_gradient);
             let promised = height + KEPT * length * slope + ROUNDING * height.abs();
             if next_height.is_nan() || next_height > promised {
                 high = length;
@@ -91,10 +94,10 @@ pub(crate) fn minimise(
         }
         std::mem::swap(&mut at, &mut next);
         std::mem::swap(&mut gradient, &mut next_gradient);
-        height = value(&at, &mut gradient);
+        height = next_height;
     }
     let gradient = largest(&gradient);
-    Found { at, gradient, converged: gradient <= stop.gradient }
+    Minimum { at, value: height, gradient, converged: gradient <= stop.gradient }
 }
 
 fn largest(values: &[f64]) -> f64 {

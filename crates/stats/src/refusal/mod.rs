@@ -1,6 +1,10 @@
 //! Why an input cannot be tested at all: codes with values; their words in English and French.
 
+mod unfit;
+
 use std::fmt;
+
+pub use unfit::Unfit;
 
 /// Why an input cannot be tested. Its words name the column and what to do.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,6 +111,24 @@ pub enum Refusal {
         /// The words that it takes.
         choices: Vec<&'static str>,
     },
+    /// An option that takes a whole number from 0 is given something else.
+    OptionNotWhole {
+        /// Its name, without dashes.
+        option: &'static str,
+        /// What was given.
+        word: String,
+    },
+    /// An option that takes a number within bounds is given something else.
+    OptionNotWithin {
+        /// Its name, without dashes.
+        option: &'static str,
+        /// What was given.
+        word: String,
+        /// The least number.
+        least: f64,
+        /// The largest number.
+        most: f64,
+    },
     /// Neither two columns nor a column of differences nor groups of pairs are named.
     NoPairs,
     /// A test of several factors is given another number of them.
@@ -118,6 +140,8 @@ pub enum Refusal {
         /// The most that it takes.
         most: usize,
     },
+    /// Data that a model or a coefficient is not made for.
+    Unfit(Unfit),
     /// More differences than an exact test is computed for.
     TooManyForExact {
         /// Differences that are not zero.
@@ -177,11 +201,19 @@ impl Refusal {
             Self::NotAChoice { option, word, choices } => {
                 format!("--{option}: there is no \"{word}\"; give {}", choices.join(", "))
             }
+            Self::OptionNotWhole { option, word } => {
+                format!("--{option}: \"{word}\" is no whole number; give one from 0")
+            }
+            Self::OptionNotWithin { option, word, least, most } => format!(
+                "--{option}: \"{word}\" is no number {}; give one",
+                within(*least, *most, ["from ", " to ", " on", "up to "])
+            ),
             Self::NoPairs => "no pairs are named; give --x X --y Y, or --difference D, or --response R --group G --levels A,B --pair P".to_owned(),
             Self::NumberOfFactors { named, least, most } => {
                 let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
                 format!("--factors names {named} columns; name {wanted}, separated by commas")
             }
+            Self::Unfit(why) => why.english(),
             Self::TooManyForExact { n, most } => format!(
                 "the exact variant is computed up to {most} non-zero differences, here are {n}; take an asymptotic variant"
             ),
@@ -239,11 +271,19 @@ impl Refusal {
             Self::NotAChoice { option, word, choices } => {
                 format!("--{option} : « {word} » n’existe pas ; donnez {}", choices.join(", "))
             }
+            Self::OptionNotWhole { option, word } => {
+                format!("--{option} : « {word} » n’est pas un nombre entier ; donnez-en un à partir de 0")
+            }
+            Self::OptionNotWithin { option, word, least, most } => format!(
+                "--{option} : « {word} » n’est pas un nombre {} ; donnez-en un",
+                within(*least, *most, ["de ", " à ", " ou plus", "jusqu’à "])
+            ),
             Self::NoPairs => "aucune paire n’est nommée ; donnez --x X --y Y, ou --difference D, ou --response R --group G --levels A,B --pair P".to_owned(),
             Self::NumberOfFactors { named, least, most } => {
                 let wanted = if least == most { format!("{least}") } else { format!("de {least} à {most}") };
                 format!("--factors nomme {named} colonnes ; nommez-en {wanted}, séparées par des virgules")
             }
+            Self::Unfit(why) => why.french(),
             Self::TooManyForExact { n, most } => format!(
                 "la variante exacte est calculée jusqu’à {most} différences non nulles, il y en a {n} ; prenez une variante asymptotique"
             ),
@@ -259,17 +299,33 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// The marks around a name, and the words after a list that was cut.
-type Marks = ([&'static str; 2], [&'static str; 2]);
+impl From<Unfit> for Refusal {
+    fn from(why: Unfit) -> Self {
+        Self::Unfit(why)
+    }
+}
 
-const ENGLISH: Marks = (["\"", "\""], [" and ", " more"]);
-const FRENCH: Marks = (["« ", " »"], [" et ", " autres"]);
+/// Bounds in words, either of which may be infinite.
+fn within(least: f64, most: f64, [from, to, on, up_to]: [&str; 4]) -> String {
+    match (least.is_finite(), most.is_finite()) {
+        (true, true) => format!("{from}{least}{to}{most}"),
+        (true, false) => format!("{from}{least}{on}"),
+        (false, true) => format!("{up_to}{most}"),
+        (false, false) => String::new(),
+    }
+}
+
+/// The marks around a name, and the words after a list that was cut.
+pub(crate) type Marks = ([&'static str; 2], [&'static str; 2]);
+
+pub(crate) const ENGLISH: Marks = (["\"", "\""], [" and ", " more"]);
+pub(crate) const FRENCH: Marks = (["« ", " »"], [" et ", " autres"]);
 
 /// Names that a list has at most.
 const LISTED: usize = 12;
 
 /// At most twelve names, quoted.
-fn listed(names: &[String], ([open, close], [and, more]): Marks) -> String {
+pub(crate) fn listed(names: &[String], ([open, close], [and, more]): Marks) -> String {
     let quoted = names.iter().take(LISTED).map(|name| format!("{open}{name}{close}"));
     let mut text = quoted.collect::<Vec<_>>().join(", ");
     if names.len() > LISTED {

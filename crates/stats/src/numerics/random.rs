@@ -4,10 +4,11 @@ use chacha20::ChaCha20Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 
 /// A ChaCha20 stream: the key is the seed, the stream number names the purpose (a tree, a draw).
-pub(crate) struct Stream(ChaCha20Rng);
+pub struct Stream(ChaCha20Rng);
 
 impl Stream {
-    pub(crate) fn new(seed: u64, number: u64) -> Self {
+    /// The stream of a purpose.
+    pub fn new(seed: u64, number: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let mut stream = ChaCha20Rng::from_seed(key);
@@ -17,7 +18,7 @@ impl Stream {
 
     /// A whole number below `bound` (above 0), each equally likely: draws that would favour the low
     /// ones are thrown away.
-    pub(crate) fn below(&mut self, bound: usize) -> usize {
+    pub fn below(&mut self, bound: usize) -> usize {
         let bound = bound.max(1) as u64;
         let fair = u64::MAX - u64::MAX % bound;
         loop {
@@ -28,8 +29,13 @@ impl Stream {
         }
     }
 
+    /// A number in [0, 1), in steps of 2^-53, each equally likely.
+    pub fn unit(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
     /// The first `count` of a random order of the items, swapped to the front.
-    pub(crate) fn draw_first<T>(&mut self, items: &mut [T], count: usize) {
+    pub fn draw_first<T>(&mut self, items: &mut [T], count: usize) {
         for place in 0..count.min(items.len()) {
             let other = place + self.below(items.len() - place);
             items.swap(place, other);

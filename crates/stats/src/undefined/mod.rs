@@ -1,11 +1,14 @@
 //! Why a statistic does not exist for the data: codes with values; their words in English and French.
 
+mod estimate;
+
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
 use crate::procedure::row::Term;
 use crate::refusal::Refusal;
+pub use estimate::NoEstimate;
 
 /// Why a statistic does not exist.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +80,8 @@ pub enum Undefined {
     },
     /// A correlation of 1 or -1, whose t has no finite value.
     PerfectCorrelation,
+    /// An estimate or a coefficient has no value.
+    Estimate(NoEstimate),
     /// The input was refused.
     Refused(Refusal),
 }
@@ -119,6 +124,7 @@ impl Undefined {
             Self::PerfectCorrelation => {
                 "the correlation is perfect: t has no finite value, no p is given".to_owned()
             }
+            Self::Estimate(why) => why.english(),
             Self::Refused(refusal) => refusal.english(),
         }
     }
@@ -164,6 +170,7 @@ impl Undefined {
                 "la corrélation est parfaite : t n’a pas de valeur finie, aucun p n’est donné"
                     .to_owned()
             }
+            Self::Estimate(why) => why.french(),
             Self::Refused(refusal) => refusal.french(),
         }
     }
@@ -178,6 +185,12 @@ impl fmt::Display for Undefined {
 impl Serialize for Undefined {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.english())
+    }
+}
+
+impl From<NoEstimate> for Undefined {
+    fn from(why: NoEstimate) -> Self {
+        Self::Estimate(why)
     }
 }
 
