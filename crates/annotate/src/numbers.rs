@@ -2,8 +2,8 @@
 //! every target. Many rows at once are done by the widest vectors that a processor has
 //! ([`mimique_solver::widest`]), which changes no bit.
 
-pub(crate) use mimique_stats::dot;
 use mimique_solver::{exp_all, widest};
+pub(crate) use mimique_stats::dot;
 
 /// ln(sum of e^x); minus infinity of none. The numbers in `values` are lost.
 pub(crate) fn log_sum(values: &mut [f64]) -> f64 {
