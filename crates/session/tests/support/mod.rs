@@ -10,7 +10,7 @@ use mimique_session::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_session::wire::{Event, Receipt, SessionStarted};
-use mimique_session::{Client, PlayLog, Record, StageFailure};
+use mimique_session::{Client, PlayLog, Record, SOUND_HEARD, StageFailure};
 use mimique_study::{Display, Study, config_hash};
 pub use mimique_test_support::{study_folder, study_text};
 use serde_json::{Value, json};
@@ -158,6 +158,12 @@ impl Page {
                     self.send(Input::Distance(Some(60.0)));
                 }
                 self.send(Input::Next);
+            }
+            View::Sound(_) => {
+                let answers =
+                    [("sound_check", json!(SOUND_HEARD)), ("sound_check_correct", json!(3))];
+                let answers = answers.map(|(name, value)| (name.to_owned(), value));
+                self.send(Input::SoundChecked(answers.into_iter().collect()));
             }
             View::Feedback(_) => self.send(Input::Next),
             View::Trial(trial) => match trial.phase {
