@@ -83,11 +83,14 @@ class Check {
       if (!all) return;
       heard = true;
       field.disabled = false;
+      problem.hidden = true;
+      field.removeAttribute("aria-describedby");
       play.textContent = w.sound_tones_again;
       play.classList.remove("primary");
       next.classList.add("primary");
       this.#say(w.sound_count_now);
     };
+    field.onchange = () => (problem.hidden = true);
     next.onclick = () => {
       const chosen = field.querySelector(":checked");
       if (!heard || !chosen) {

@@ -151,9 +151,14 @@ class ClipSound {
 
   /// Shows the caption of a time of the clip.
   caption(clipMs) {
+    showCaption(this.captionAt(clipMs));
+  }
+
+  /// What is said at a time of the clip, in the language of the page.
+  captionAt(clipMs) {
     const seconds = (clipMs - this.#source.delay_ms) / 1000;
     const now = this.#source.captions?.find(({ fromS, toS }) => fromS <= seconds && seconds < toS);
-    showCaption(now ? inLanguage(now.text) : "");
+    return now ? inLanguage(now.text) : "";
   }
 
   stop() {

@@ -8,6 +8,7 @@ mod record;
 pub mod rows;
 mod session_file;
 mod site_file;
+mod sound_answers;
 mod standing;
 pub mod wire;
 

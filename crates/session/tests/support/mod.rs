@@ -45,6 +45,8 @@ pub struct Page {
     pub completed: Option<u64>,
     /// What the browser reports about itself.
     pub display: Display,
+    /// What its stage says of the sound of a play.
+    pub sound: Value,
 }
 
 impl Page {
@@ -67,6 +69,7 @@ impl Page {
             played: Vec::new(),
             completed: None,
             display: display(),
+            sound: Value::Null,
         };
         page.send(Input::Opened(client()));
         page
@@ -106,7 +109,8 @@ impl Page {
                 self.played.push(clip);
                 let onset_ms = self.now_ms + 20.0;
                 self.now_ms += 2_000.0;
-                self.send(Input::Played(whole_play(onset_ms)));
+                let sound = self.sound.clone();
+                self.send(Input::Played(PlayLog { sound, ..whole_play(onset_ms) }));
             }
             Effect::Complete { events } => {
                 self.completed = Some(events);
