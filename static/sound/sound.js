@@ -204,6 +204,8 @@ export function attachCaptions(node) {
   place = captions === "off" ? null : { node, line: document.createElement("p"), rule: captions };
   if (!place) return;
   place.line.className = "caption-line";
+  place.line.hidden = !captionsShown();
+  node.append(place.line);
   if (captions === "offered") {
     const button = Object.assign(document.createElement("button"), { type: "button", textContent: label });
     button.dataset.action = "captions";
@@ -216,8 +218,6 @@ export function attachCaptions(node) {
     };
     node.append(button);
   }
-  place.line.hidden = !captionsShown();
-  node.append(place.line);
 }
 
 function captionsShown() {

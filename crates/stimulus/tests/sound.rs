@@ -195,3 +195,39 @@ fn a_sound_that_begins_past_its_end_or_is_none_names_place_and_remedy() {
     assert_eq!(error.pointer, "/stimuli/segments/2/sound/file");
     assert!(error.message.contains("neither WAV, MP3 nor Ogg Opus; export"), "{error}");
 }
+
+/// A tone whose pitch goes from one frequency to another within two seconds, then nothing: 8-bit PCM, one channel,
+/// 8000 Hz, 5 s.
+fn gliding(from_hz: f64, to_hz: f64) -> Vec<u8> {
+    let (rate, sounding, samples) = (8000.0, 16_000, 40_000_u32);
+    let mut bytes = b"RIFF".to_vec();
+    bytes.extend((36 + samples).to_le_bytes());
+    bytes.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0\x40\x1f\0\0\x40\x1f\0\0\x01\0\x08\0data");
+    bytes.extend(samples.to_le_bytes());
+    let mut phase = 0.0_f64;
+    for k in 0..samples {
+        let part = f64::from(k) / f64::from(sounding);
+        phase = (phase + (from_hz + (to_hz - from_hz) * part) / rate).fract();
+        // A triangle, louder and softer within an eighth of its time.
+        let triangle = 4.0 * (phase - 0.5).abs() - 1.0;
+        let level = (8.0 * part.min(1.0 - part)).clamp(0.0, 1.0);
+        bytes.push((128.0 + 40.0 * level * triangle) as u8);
+    }
+    bytes
+}
+
+/// `MIMIQUE_UPDATE_GOLDEN=1` writes the files anew.
+#[test]
+fn the_sounds_of_the_repository_are_made_by_code() {
+    let folder = mimique_test_support::study_folder().join("sounds");
+    for (name, bytes) in
+        [("rising.wav", gliding(180.0, 420.0)), ("falling.wav", gliding(260.0, 110.0))]
+    {
+        if std::env::var_os("MIMIQUE_UPDATE_GOLDEN").is_some() {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join(name), &bytes).unwrap();
+        }
+        assert_eq!(fs::read(folder.join(name)).unwrap(), bytes, "{name}");
+        assert_eq!(read_sound(&bytes).unwrap().duration_s, 5.0);
+    }
+}
