@@ -8,7 +8,7 @@ const LEAD_MS = 120;
 const WAKE_MS = 1200;
 // Sounds that begin or end in the middle of a file do so without a click, s.
 const FADE_S = 0.004;
-// Frames over which the mapping of the clocks is taken, at the beginning and at the end.
+// Most frames over which the mapping of the clocks is taken, at the beginning and at the end.
 const FRAMES = 15;
 const KEPT = "mimique-captions";
 
@@ -175,8 +175,9 @@ class ClipSound {
 
   /// What was heard (`session::SoundLog`); `onset`: when the first frame was drawn, performance.now.
   log(onset) {
-    const first = median(this.#zeros.slice(0, FRAMES));
-    const last = median(this.#zeros.slice(-FRAMES));
+    const part = Math.min(FRAMES, Math.ceil(this.#zeros.length / 3));
+    const first = median(this.#zeros.slice(0, part));
+    const last = median(this.#zeros.slice(this.#zeros.length - part));
     const heard = first !== null && onset !== null;
     const { latency, source } = this.#clock;
     return {

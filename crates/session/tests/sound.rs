@@ -130,5 +130,5 @@ fn a_study_without_sound_has_neither_page_nor_columns() {
     let table = tidy(&page.study, &BTreeMap::new(), []);
     assert_eq!(table.column("sound_status"), None);
     let projection = serde_json::to_string(&page.plan.study).unwrap();
-    assert!(!projection.contains("sound"), "nothing is sent of it");
+    assert!(!projection.contains("\"sound"), "nothing is sent of it");
 }
