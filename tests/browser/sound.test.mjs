@@ -11,37 +11,42 @@ import { looker } from "./lib/access.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place, tabTo, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
-import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+import { small, text, trials } from "./lib/small_study.mjs";
 import { wav } from "./lib/wav.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 
-const parts = stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, []);
-const [joy] = parts.segments;
 const cue = [{ fromS: 0, toS: 30, text: { en: "I have won!", fr: "J’ai gagné !" } }];
 const study = small("sound", {
   sound: { captions: "offered", check: { rounds: 1, correct: 1, attempts: 2, text: text("Headphones, please.") } },
   questions: [{ id: "rating", prompt: text("How strong?"), type: "likert", numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") }],
-  components: { faces: trials(["joy2.box.own", "joy2.box.later", "joy2.box.other", "joy2.box.none"], ["rating"]) },
+  components: { faces: trials(["joy.real.own", "joy.real.later", "joy.real.other", "joy.real.none"], ["rating"]) },
   sequence: { order: "fixed", components: ["faces"] },
   exclusions: { soundOffsetMs: 45, soundNotHeard: true },
   stimuli: {
-    ...parts,
+    avatars: { head: { builtin: { seed: 1, vertices: 2000 } } },
+    // Recorded weights have no markers; the check asks every file of a capture for a map.
+    captures: { take: { file: "take.csv", markers: "map.json", neutral: [0, 1], head: ["A", "B", "C"] } },
+    methods: { real: { method: "recorded" } },
     look: { width: 240, height: 240 },
     segments: [
-      { ...joy, sound: { file: "joy.wav", captions: cue } },
-      { id: "fear2", capture: "actor", performance: { expression: "fear", intensity: 2 }, sound: { file: "fear.wav" } },
+      { id: "joy", capture: "take", first: 0, end: 100, sound: { file: "joy.wav", captions: cue } },
+      { id: "fear", capture: "take", first: 100, end: 200, sound: { file: "fear.wav" } },
     ],
-    sounds: { own: {}, later: { delayMs: 120 }, other: { from: { joy2: "fear2" } }, none: { silent: true } },
-    clips: { cross: { segments: ["joy2"] } },
+    sounds: { own: {}, later: { delayMs: 120 }, other: { from: { joy: "fear" } }, none: { silent: true } },
+    clips: { cross: { segments: ["joy"] } },
   },
 });
 
 function written() {
   const folder = mkdtempSync(join(tmpdir(), "mimique-sound-"));
   writeFileSync(join(folder, "sound.json"), JSON.stringify(study));
-  writeFileSync(join(folder, "joy.wav"), wav(8, 440));
-  writeFileSync(join(folder, "fear.wav"), wav(8, 220));
+  // Four seconds of a mouth that opens and shuts, 50 frames per second.
+  const rows = Array.from({ length: 200 }, (_, frame) => `${frame},${(frame / 50).toFixed(2)},${Math.abs(Math.sin(frame / 8)).toFixed(3)}`);
+  writeFileSync(join(folder, "take.csv"), ["frame,time,jawOpen", ...rows, ""].join("\n"));
+  writeFileSync(join(folder, "map.json"), "{}");
+  writeFileSync(join(folder, "joy.wav"), wav(2.5, 440));
+  writeFileSync(join(folder, "fear.wav"), wav(2.5, 220));
   return join(folder, "sound.json");
 }
 
@@ -122,7 +127,7 @@ const ends = (page) => page.waitForSelector("main[data-view=end]", { timeout: 30
 test("sound: checked by keyboard, heard with the first frame, late and mismatched as the study asks, in the export", { skip: unable, timeout: 180_000 }, async () => {
   const file = written();
   const said = mimique(["check", file, "--without-clips"]);
-  assert.match(said, /sound joy\.wav: WAV, 8\.000 s, 8000 Hz, 1 channel/);
+  assert.match(said, /sound joy\.wav: WAV, 2\.500 s, 8000 Hz, 1 channel/);
   const server = await serve([file]);
   const address = `${server.url}/s/sound/?backend=webgl2`;
   const english = await open("webgl2");
@@ -174,7 +179,7 @@ test("sound: checked by keyboard, heard with the first frame, late and mismatche
     });
     const rated = rows.filter(({ trial_type }) => trial_type === "trial");
     const of = (id) => rated.find(({ stimulus, language }) => stimulus === id && language === "en");
-    const [own, later, other, none] = ["own", "later", "other", "none"].map((name) => of(`joy2.box.${name}`));
+    const [own, later, other, none] = ["own", "later", "other", "none"].map((name) => of(`joy.real.${name}`));
     for (const [row, delay] of [[own, 0], [later, 120], [other, 0]]) {
       assert.equal(row.sound_status, "played", row.stimulus);
       assert.equal(Number(row.sound_delay_ms), delay);

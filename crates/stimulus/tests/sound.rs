@@ -110,10 +110,11 @@ proptest! {
 
 /// A capture of recorded weights at 50 Hz: 200 frames.
 fn weights() -> String {
-    let rows = (0..200).map(|frame| {
-        format!("{:.2},{:.3}\n", f64::from(frame) / 50.0, f64::from(frame % 50) / 100.0)
-    });
-    format!("time,jawOpen\n{}", rows.collect::<String>())
+    let row = |frame: i32| {
+        let (time_s, weight) = (f64::from(frame) / 50.0, f64::from(frame % 50) / 100.0);
+        format!("{frame},{time_s:.2},{weight:.3}\n")
+    };
+    format!("frame,time,jawOpen\n{}", (0..200).map(row).collect::<String>())
 }
 
 fn study(stimuli: Value) -> Study {
