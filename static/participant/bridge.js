@@ -182,7 +182,7 @@ export async function playClip(clip, beside) {
   const there = beside ? { stage: await stage("beside"), clipId: beside } : null;
   const seen = watchView(() => here.stop("out of view"));
   try {
-    return JSON.stringify(onPageClock(await here.play(clip, there)));
+    return JSON.stringify(onPageClock(await here.play(clip, there, true)));
   } finally {
     seen.disconnect();
   }
@@ -219,6 +219,16 @@ function onPageClock({ onset_ms: onset, end_ms: end, frames, ...log }) {
 // Microseconds: browsers tell no finer.
 function thousandth(ms) {
   return Math.round(ms * 1000) / 1000;
+}
+
+/** Gives the sound check, or the captions below a clip, their place: scripts of studies with sound alone. */
+export function attachSound(node) {
+  const check = node.matches("input");
+  import(`../sound/${check ? "check" : "sound"}.js`).then(
+    ({ begin, attachCaptions }) => (check ? begin : attachCaptions)(node),
+    // What did not arrive is asked for again.
+    () => setTimeout(() => node.isConnected && attachSound(node), 2000),
+  );
 }
 
 /** Aborts the play in progress. */

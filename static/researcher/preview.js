@@ -3,6 +3,7 @@ import { backend, openStage, prepareClip, preparedClip, refreshPeriod } from "..
 import { Player, made } from "../stage/player.js";
 import { ExertionPictures } from "../drawing/exertion.js";
 import { ShownComparison } from "./comparison.js";
+import { PreviewSound } from "./preview-sound.js";
 
 const $ = (id) => document.getElementById(id);
 const study = document.body.dataset.study;
@@ -46,6 +47,7 @@ class ShownExertion {
 }
 
 const exertion = new ShownExertion();
+const sound = new PreviewSound(player, $("sound"), $("caption"));
 const comparison = new ShownComparison((frame) => {
   const rate = player.panels[0]?.clip()?.rate_hz;
   if (rate) player.seek((1000 * frame) / rate);
@@ -104,6 +106,7 @@ class Panel {
 
   async choose(id) {
     this.#wanted = id;
+    if (this === player.panels[0]) sound.put(null);
     compare();
     this.#select.value = id;
     this.#element.classList.toggle("empty", id === "");
@@ -122,6 +125,7 @@ class Panel {
       this.#stage ??= await openStage(this.#canvas, this.#look);
       if (this.#wanted !== id) return;
       this.#clipId = id;
+      if (this === player.panels[0]) sound.put(this.clip());
       this.#canvas.setAttribute("aria-label", `Animated face, clip ${id}`);
       this.#describe(summary);
       this.#veil.hidden = true;
@@ -165,13 +169,14 @@ class Panel {
   #describe(summary) {
     const clip = this.clip();
     const { statistics, gazeAtRest } = clip.report ?? {};
-    const { method } = this.#clips[this.#clipId];
+    const { method, sound: heard } = this.#clips[this.#clipId];
     const rows = [
       ["Method", methodWords(method)],
       ["Length", `${(summary.duration_ms / 1000).toFixed(2)} s, ${summary.frames} frames at ${round(summary.rate_hz)} Hz`],
       ["Solved in", `${summary.solve_ms.toFixed(0)} ms`],
       ["Weights", summary.weights_hash.slice(0, 16)],
     ];
+    if (heard) rows.push(["Sound", soundWords(heard)]);
     if (method?.headLowpassHz !== undefined) {
       rows.push(["Head low-pass", method.headLowpassHz > 0 ? `${method.headLowpassHz} Hz` : "none"]);
     }
@@ -199,6 +204,11 @@ function methodWords(method) {
   return [word ?? name ?? kind ?? "recorded", ...rest.slice(0, 3)].join(", ");
 }
 
+function soundWords({ file, media_type, duration_s, from_s, delay_ms }) {
+  const delay = delay_ms ? `, ${delay_ms > 0 ? "later" : "earlier"} by ${Math.abs(delay_ms)} ms` : "";
+  return `${file.slice(0, 16)}, ${media_type}, ${duration_s.toFixed(2)} s, from ${from_s.toFixed(2)} s${delay}`;
+}
+
 function round(value) {
   return Number(value.toFixed(2));
 }
@@ -223,7 +233,10 @@ async function start() {
   );
   player.onRate = (rate, longest) =>
     ($("rate").textContent = `${rate.toFixed(1)} frames/s, longest ${longest.toFixed(1)} ms`);
-  player.onDraw = (ms) => exertion.at(ms);
+  player.onDraw = (ms) => {
+    exertion.at(ms);
+    sound.at(ms);
+  };
   player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
   refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
   comparison.load(study).then(compare, problem);

@@ -1,7 +1,7 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
 import { sendPanic } from "../panics.js";
 import { loadAhead } from "./backend.js";
-import { StageFailure } from "./failure.js";
+import { failureOf, StageFailure } from "./failure.js";
 import { videoDuration } from "./video.js";
 import { fetchPack } from "./packs.js";
 import { picturesOf } from "./pictures.js";
@@ -91,6 +91,9 @@ async function prepare(clipId, source, onProgress) {
     if (source.bytes > 0) report(0.9 * Math.min(received / source.bytes, 1));
   };
   report(0);
+  const sound = source.sound && soundOf(source.sound, count);
+  // What goes wrong with it is said below, once the rest is there.
+  sound?.catch(() => {});
   if (source.video) {
     const bytes = await fetchPack(source.avatar, count);
     const video = URL.createObjectURL(new Blob([bytes], { type: source.video }));
@@ -100,7 +103,7 @@ async function prepare(clipId, source, onProgress) {
     });
     report(1);
     const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
-    return { clip: clipId, video, duration_ms, ...nothing, provenance: source.provenance, report: null, warnings: [] };
+    return { clip: clipId, video, duration_ms, ...nothing, sound: await sound, provenance: source.provenance, report: null, warnings: [] };
   }
   // The solver and the canvas come beside the packs.
   worker ??= startWorker();
@@ -129,11 +132,21 @@ async function prepare(clipId, source, onProgress) {
     provenance: source.provenance,
     solve_ms: solved.solve_ms,
     report: solved.report,
+    sound: await sound,
     warnings: [],
   };
   clip.warnings = warnings(clip, source);
   report(1);
   return clip;
+}
+
+// Studies without sound load nothing for it.
+async function soundOf(source, count) {
+  const load = import("../sound/sound.js").catch((error) => {
+    throw failureOf(error, "module");
+  });
+  const [{ loadSound }, bytes] = await Promise.all([load, fetchPack(source.file, count)]);
+  return loadSound(source, bytes);
 }
 
 function warnings(clip, source) {

@@ -94,14 +94,15 @@ class Stage {
   }
 
   /// Plays a prepared clip once; resolves with the log whatever happens. `beside`: {stage, clipId}
-  /// of another stage, played in step.
-  async play(clipId, beside = null) {
+  /// of another stage, played in step. Its sound is heard where that is asked for.
+  async play(clipId, beside = null, heard = false) {
     const clip = preparedClip(clipId);
     const parts = [{ stage: this, clip }];
     if (beside) parts.push({ stage: beside.stage, clip: preparedClip(beside.clipId) });
     if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
     const shown = parts.map((part) => part.clip);
-    const playback = new Playback(parts.map(({ stage, clip }) => stage.#part(clip)));
+    const sound = heard ? clip.sound : undefined;
+    const playback = new Playback(parts.map(({ stage, clip }) => stage.#part(clip)), sound);
     for (const { stage } of parts) stage.#playback = playback;
     try {
       for (const { stage, clip } of parts) await stage.#ready(clip);
@@ -109,7 +110,7 @@ class Stage {
       if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
-      return this.#log(shown, log);
+      return { ...this.#log(shown, log), sound: sound?.log(log.onset_ms) };
     } catch (error) {
       for (const { stage } of parts) stage.#fail(error.message);
       return this.#log(shown, playback.log(error.message));

@@ -12,9 +12,12 @@ const LATE = 1.5;
 const LAST_FRAME_MS = 500;
 // A play that shows nothing for so long is lost: its adapter, or its video, gives no frames any more.
 const SILENT_MS = 10_000;
+// About what a video that is loaded takes from being started to its first frame.
+const VIDEO_START_MS = 30;
 
 export class Playback {
   #parts;
+  #sound;
   #clock;
   #drift = 0;
   #drawn = new Map();
@@ -26,9 +29,10 @@ export class Playback {
   #finish = null;
 
   /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
-  /// video's}.
-  constructor(parts) {
+  /// video's}. `sound`: heard with the first frame.
+  constructor(parts, sound) {
     this.#parts = parts;
+    this.#sound = sound;
     this.#clock = parts.find((part) => part.clock)?.clock ?? null;
   }
 
@@ -42,9 +46,13 @@ export class Playback {
     document.addEventListener("visibilitychange", onHidden);
     try {
       onHidden();
+      const due = (this.#aborted === null && (await this.#sound?.start())) || 0;
+      // A video takes some time to start, which nobody knows beforehand.
+      if (due && this.#clock) await new Promise((resolve) => setTimeout(resolve, due - VIDEO_START_MS - performance.now()));
       if (this.#aborted === null) await this.#clock?.start();
-      if (this.#aborted === null) await new Promise((resolve) => this.#loop(durationMs, resolve));
+      if (this.#aborted === null) await new Promise((resolve) => this.#loop(durationMs, due, resolve));
     } finally {
+      this.#sound?.stop();
       this.#clock?.stop();
       document.removeEventListener("visibilitychange", onHidden);
     }
@@ -102,8 +110,9 @@ export class Playback {
     return ms;
   }
 
-  #loop(durationMs, resolve) {
-    const began = performance.now();
+  #loop(durationMs, due, resolve) {
+    // The first frame is the one nearest to its sound.
+    const began = Math.max(performance.now(), due - this.#refreshMs / 2);
     let request = 0;
     const lost = (why) => {
       this.#failure = why;
@@ -134,6 +143,7 @@ export class Playback {
         if (shown !== null) {
           const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
           frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
+          this.#sound?.frame(shown);
         }
       } catch (error) {
         lost(String(error?.message ?? error));

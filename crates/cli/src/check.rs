@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use mimique_comparison::{ClipDifference, StudyComparison, compare_clips};
 use mimique_stimulus::{
-    ADVISED_SMOOTHING, AdvisedMethod, Places, PrepareError, advised_methods, prepare,
+    ADVISED_SMOOTHING, AdvisedMethod, Places, PrepareError, Prepared, SoundError, StudySound,
+    advised_methods, prepare, study_sounds,
 };
 use mimique_study::text::template;
 use mimique_study::{Issue, Problem, Report, Severity, Study, check, json_schema, resolve_path};
@@ -58,9 +59,15 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     };
     let mut report = check_file(&file)?;
     let mut comparison = None;
+    let mut sounds = Vec::new();
     if let Some(checked) = &report.study {
-        let advised = advised(checked.study(), &file);
-        let clips = if args.without_clips { None } else { Some(clips(checked.study(), &file)?) };
+        let mut advised = advised(checked.study(), &file);
+        sounds = study_sounds(checked.study(), &Places::of(&file, PathBuf::new()));
+        let at_fault: Vec<Issue> = sounds.iter().filter_map(fault_of_sound).collect();
+        // What is wrong with a file is said once: the clips are not made of it.
+        let without_clips = args.without_clips || !at_fault.is_empty();
+        advised.extend(at_fault);
+        let clips = if without_clips { None } else { Some(clips(checked.study(), &file)?) };
         report.issues.extend(advised);
         if let Some(clips) = clips {
             report.issues.extend(clips.issues);
@@ -78,11 +85,13 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "warnings": report.warnings(),
             "config_hash": report.study.as_ref().map(|study| study.config_hash()),
             "issues": report.issues,
+            "sounds": sounds.iter().map(sound_facts).collect::<Vec<_>>(),
             "comparison": comparison,
         });
         writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
     } else {
         print(&mut out, &file, &report)?;
+        tell_sounds(&mut out, &sounds)?;
         if let Some(comparison) = &comparison {
             differences(&mut out, comparison)?;
         }
@@ -108,6 +117,67 @@ fn advised(study: &Study, file: &Path) -> Vec<Issue> {
         },
     };
     advised_methods(study, &places).into_iter().map(issue).collect()
+}
+
+/// What is wrong with a file of sound.
+fn fault_of_sound(sound: &StudySound) -> Option<Issue> {
+    let StudySound { pointer, file: path, from_s, facts } = sound;
+    let (path, from_s) = (path.clone(), *from_s);
+    let problem = match facts {
+        Err(SoundError::Unknown) => Problem::SoundUnknown { path },
+        Err(SoundError::Damaged { what }) => Problem::SoundDamaged { path, what: what.clone() },
+        Ok(facts) if from_s >= facts.duration_s => {
+            Problem::SoundBeginsLate { path, from_s, duration_s: facts.duration_s }
+        }
+        Ok(_) => return None,
+    };
+    Some(Issue::error(pointer, problem))
+}
+
+/// The clips whose sound ends before they do.
+fn short_sounds(study: &Study, prepared: &Prepared) -> Vec<Issue> {
+    let short = study.clips().into_iter().filter_map(|clip| {
+        let source = prepared.clips.get(&clip.id)?;
+        let sound = source.sound.as_ref()?;
+        let (audible_s, clip_s) = (sound.audible_s(), source.duration_ms / 1e3);
+        // Of a video the duration is known to browsers alone (0 here).
+        (audible_s < clip_s - SHORT_SOUND_S).then(|| Issue {
+            pointer: study.heard(&clip).map_or_else(String::new, |heard| heard.place.pointer()),
+            severity: Severity::Warning,
+            problem: Problem::SoundEndsEarly { clip: clip.id.clone(), audible_s, clip_s },
+        })
+    });
+    short.collect()
+}
+
+/// So much earlier than its clip a sound may end, seconds: three frames of a display.
+const SHORT_SOUND_S: f64 = 0.05;
+
+fn sound_facts(sound: &StudySound) -> serde_json::Value {
+    let facts = sound.facts.as_ref().ok();
+    serde_json::json!({
+        "file": sound.file,
+        "format": facts.map(|facts| facts.format.name()),
+        "duration_s": facts.map(|facts| facts.duration_s),
+        "sample_rate_hz": facts.map(|facts| facts.sample_rate_hz),
+        "channels": facts.map(|facts| facts.channels),
+    })
+}
+
+/// What the files of sound hold.
+fn tell_sounds(out: &mut impl std::io::Write, sounds: &[StudySound]) -> std::io::Result<()> {
+    for StudySound { file, facts, .. } in sounds {
+        let Ok(facts) = facts else { continue };
+        let (name, seconds) = (facts.format.name(), facts.duration_s);
+        let channels = if facts.channels == 1 { "channel" } else { "channels" };
+        let rate = facts.sample_rate_hz;
+        writeln!(
+            out,
+            "sound {file}: {name}, {seconds:.3} s, {rate} Hz, {} {channels}",
+            facts.channels
+        )?;
+    }
+    Ok(())
 }
 
 /// What the clips of a study tell when they are prepared.
@@ -137,7 +207,9 @@ fn clips(study: &Study, file: &Path) -> anyhow::Result<Clips> {
         let pointer = format!("/stimuli/segments/{}", at.unwrap_or_default());
         issue(pointer, Severity::Warning, Problem::ClipsUnlike { what, remedy })
     });
-    Ok(Clips { issues: unlike.collect(), comparison: Some(comparison) })
+    let mut issues: Vec<Issue> = unlike.collect();
+    issues.extend(short_sounds(study, &prepared));
+    Ok(Clips { issues, comparison: Some(comparison) })
 }
 
 /// In which millimetres methods differ: for every two of them the mean over the segments, and the frame of the

@@ -3,7 +3,7 @@
 //! Camera and light are the stage's and one for all clips, and no clip carries motion of the head: what can differ is
 //! how long clips are, when their frames are shown, where the eyes look, and when they blink.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_avatar::pack::{PackError, decode_pack};
 use mimique_avatar::{EyeAngles, GazeShapes, blinks};
@@ -174,7 +174,13 @@ pub fn compare_clips(
     sources: &BTreeMap<String, ClipSource>,
     read: ReadPack<'_>,
 ) -> Result<StudyComparison, ComparisonError> {
-    let clips = study.clips();
+    // Clips that differ by their sound alone show the same face.
+    let mut faces_shown = BTreeSet::new();
+    let mut clips = study.clips();
+    clips.retain(|clip| {
+        let Clip { avatar, segment, method, .. } = clip.clone();
+        faces_shown.insert((avatar, segment, method))
+    });
     let mut faces = Faces { read, skins: BTreeMap::new(), faces: BTreeMap::new() };
     let mut comparison = StudyComparison::default();
     // Surfaces last: the other clips of an avatar tell its landmarks.

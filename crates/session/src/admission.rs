@@ -11,6 +11,7 @@ use serde_json::Value;
 use crate::event::EventKind;
 use crate::plan::{Plan, Step, StepKind};
 use crate::record::Record;
+use crate::sound_answers::are_of_sound_check;
 
 /// Why an event cannot be a session's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +89,7 @@ struct Allowed {
     /// Place of its questions in [`Admission::asked`].
     asked: usize,
     is_timed: bool,
+    is_sound_check: bool,
 }
 
 impl Admission {
@@ -106,12 +108,13 @@ impl Admission {
                 clip: step.trial().map(|trial| trial.clip.clone()),
                 asked: place,
                 is_timed: step.time_limit.is_some(),
+                is_sound_check: step.kind == StepKind::Sound,
             };
             steps.insert(step.id.clone(), allowed);
         }
         let is_required = |step: &&Step| match &step.kind {
             StepKind::Trial(trial) => !trial.training,
-            StepKind::Questions { .. } => true,
+            StepKind::Questions { .. } | StepKind::Sound => true,
             _ => false,
         };
         let required = plan.steps.iter().filter(is_required).map(|step| step.id.clone()).collect();
@@ -159,6 +162,10 @@ impl Admission {
                 let step = self.step(step)?;
                 match step.clip {
                     Some(_) => Err(Misfit::OtherKind),
+                    None if step.is_sound_check => match are_of_sound_check(answers) {
+                        true => Ok(()),
+                        false => Err(Misfit::NoSuchAnswer),
+                    },
                     None => self.finished(step, answers, *timed_out),
                 }
             }

@@ -67,7 +67,7 @@ pub enum EventKind {
     ScreenedOut {
         /// Identifier of the step that stood on the screen.
         step: String,
-        /// `device`, `frames`, `screening` or `training`.
+        /// `device`, `frames`, `sound`, `screening` or `training`.
         reason: String,
         /// What was missing: the rules' keys, or the question.
         details: Vec<String>,
@@ -274,6 +274,28 @@ impl Calibrated {
     }
 }
 
+/// What was heard while a clip was played once (`static/sound/sound.js`), as [`PlayLog::sound`] holds it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SoundLog {
+    /// `played`, or why not: `suspended`, `undecodable`, `no_audio`, `interrupted`, `not_started`.
+    pub status: String,
+    /// When the sound of the segment's first frame was heard, milliseconds after the first drawn frame.
+    pub offset_ms: Option<f64>,
+    /// The delay that the study asks for, milliseconds.
+    pub delay_ms: f64,
+    /// How much later the sound was at the last frame than at the first, milliseconds.
+    pub drift_ms: Option<f64>,
+    /// From the audio clock to the loudspeaker, milliseconds.
+    pub latency_ms: Option<f64>,
+    /// What gave it: `timestamp`, `outputLatency`, `baseLatency` or `none`.
+    pub latency_source: String,
+    /// Whether captions were shown.
+    pub captions: bool,
+    /// Hash of the file.
+    pub file: String,
+}
+
 /// What the stage measured while a clip was played once (`static/stage/host.js`, `stage.play`).
 /// Fields that this version does not know are left out, those that are missing are zero.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -309,6 +331,9 @@ pub struct PlayLog {
     pub renderer: String,
     /// Side by side: the largest time between what the two clips showed in one frame, milliseconds.
     pub drift_ms: f64,
+    /// What was heard: a [`SoundLog`], which the page hands on as it is; null for a clip without sound.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub sound: Value,
     /// Why the play ended early; null for a whole play.
     pub aborted: Option<String>,
 }
@@ -318,6 +343,19 @@ impl PlayLog {
     pub const TOO_FEW_FRAMES: &str = "too few frames";
     /// Why a play ended early that was not wholly in view (`static/participant/bridge.js`).
     pub const OUT_OF_VIEW: &str = "out of view";
+
+    /// What the page notes of the first play of a trial whose sound was not played.
+    pub const NO_SOUND: &str = "no sound";
+
+    /// Whether a clip with sound was played without it.
+    pub fn is_mute(&self) -> bool {
+        self.sound.get("status").is_some_and(|status| status != "played")
+    }
+
+    /// What was heard; none for a clip without sound.
+    pub fn sound_log(&self) -> Option<SoundLog> {
+        SoundLog::deserialize(&self.sound).ok()
+    }
 
     /// Whether the clip was shown to its end.
     pub fn is_whole(&self) -> bool {

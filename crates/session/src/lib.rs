@@ -8,11 +8,13 @@ mod record;
 pub mod rows;
 mod session_file;
 mod site_file;
+mod sound_answers;
 mod standing;
 pub mod wire;
 
 pub use admission::{Admission, Misfit, SessionLimits};
-pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside, StageFailure};
+pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside, SoundLog, StageFailure};
+pub use flow::SOUND_HEARD;
 pub use record::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep, Record};
 pub use session_file::{SessionFile, SessionFileError, WrongLine};
 pub use site_file::SiteFile;

@@ -46,6 +46,8 @@ pub enum StepKind {
     Device,
     /// How large a CSS pixel is.
     Calibration(Calibration),
+    /// Where the volume is set and tones are counted.
+    Sound,
     /// Which answers to the practice clip before were right.
     Feedback {
         /// Index of the trial's step.
@@ -189,6 +191,9 @@ fn before_training(study: &StudyProjection) -> Vec<Step> {
     }
     if let Some(calibration) = study.calibration.clone() {
         push("calibration", StepKind::Calibration(calibration));
+    }
+    if !study.sound.is_null() {
+        push("sound", StepKind::Sound);
     }
     steps
 }

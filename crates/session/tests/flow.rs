@@ -376,7 +376,7 @@ fn every_code_that_the_stage_gives_has_its_words() {
     assert!(codes.len() >= 12, "{codes:?}");
     for code in codes {
         let name = format!("failed_{code}");
-        assert!(mimique_study::text::names().contains(&name.as_str()), "{name}");
+        assert!(mimique_study::text::names().any(|known| known == name), "{name}");
     }
 }
 

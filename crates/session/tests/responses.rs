@@ -30,6 +30,7 @@ fn sources(study: &Study) -> BTreeMap<String, ClipSource> {
             weights_hash: "w".into(),
             look: "stimulus".into(),
             video: None,
+            sound: None,
         };
         (clip.id, source)
     };

@@ -54,6 +54,7 @@ mod marker_map;
 mod prepare;
 mod provenance;
 mod segments;
+mod sound;
 mod suggest_map;
 mod take;
 mod weights;
@@ -81,8 +82,8 @@ pub use marker_map::{
     MarkerPlace, REACH_M, ScaleRule, TOLERANCE_M,
 };
 pub use prepare::{
-    AdvisedMethod, Places, PrepareError, Prepared, Progress, advised_methods, avatar_key,
-    exertion_drawing, is_source, prepare,
+    AdvisedMethod, Places, PrepareError, Prepared, Progress, StudySound, advised_methods,
+    avatar_key, exertion_drawing, is_source, prepare, study_sounds,
 };
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
@@ -91,6 +92,7 @@ pub use segments::{
     Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
     read_segments, stretches, study_segments, suggest, write_segments, write_segments_with,
 };
+pub use sound::{SoundError, SoundFacts, SoundFormat, read_sound};
 pub use suggest_map::{
     MarkerRole, OFF_SKIN_M, SuggestMapError, SuggestedMap, SuggestedMarker, suggest_map,
 };

@@ -26,10 +26,60 @@ pub const EXCLUSION_COLUMNS: [&str; 2] = ["excluded", "exclusion_reason"];
 /// Which condition the participant is in; in exports of studies with conditions, after `condition`.
 pub const ASSIGNED_CONDITION: &str = "assigned_condition";
 
+/// What was heard, in exports of studies whose clips have sound, after `beside_drift_ms`: name, kind, unit, what it
+/// means.
+pub const SOUND_COLUMNS: [(&str, ColumnKind, &str, &str); 11] = {
+    use ColumnKind::{Boolean, Integer, Number, Text};
+    [
+        (
+            "sound_check",
+            Text,
+            "",
+            "Whether the participant heard the tones of the sound check: heard, miscounted, or not_heard, as they say",
+        ),
+        ("sound_check_correct", Integer, "", "Rounds of its last attempt that were right"),
+        ("sound_check_attempts", Integer, "", "How often the rounds were gone through"),
+        (
+            "sound_status",
+            Text,
+            "",
+            "Of a clip with sound: played, or why not: suspended, undecodable, no_audio, interrupted, not_started",
+        ),
+        (
+            "sound_offset_ms",
+            Number,
+            "ms",
+            "When the sound of the segment's first frame was heard, after the first drawn frame; a delay that the study asks for is part of it",
+        ),
+        ("sound_delay_ms", Number, "ms", "The delay that the study asks for"),
+        (
+            "sound_drift_ms",
+            Number,
+            "ms",
+            "How much later the sound was, beside the face, at the last frame than at the first",
+        ),
+        (
+            "sound_latency_ms",
+            Number,
+            "ms",
+            "From the audio clock to the loudspeaker, as assumed in the offset",
+        ),
+        (
+            "sound_latency_source",
+            Text,
+            "",
+            "What gave that latency: timestamp (the browser's output timestamp), outputLatency, baseLatency, none",
+        ),
+        ("captions_shown", Boolean, "", "Whether captions were shown when the clip was played"),
+        ("sound_file", Text, "", "SHA-256 of the file of sound that was played"),
+    ]
+};
+
 /// Whether a column of exports is called so: nothing of a study may be.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION
         || EXCLUSION_COLUMNS.contains(&name)
+        || SOUND_COLUMNS.iter().any(|(column, ..)| *column == name)
         || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }
 

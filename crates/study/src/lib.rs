@@ -21,7 +21,7 @@ pub use check::{
     CheckedStudy, Count, FileLookup, Issue, Issues, JsonType, Known, Names, Nearest, Problem,
     Report, SCHEMA_ADDRESS, Severity, Shown, Wanted, check, json_schema,
 };
-pub use clip_source::ClipSource;
+pub use clip_source::{ClipSound, ClipSource};
 pub use device::{Display, Unmet};
 pub use instant::{instant_ms, iso_time};
 pub use order::{

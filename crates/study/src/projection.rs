@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::question::Question;
 use crate::study_file::{
     AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText,
     Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section,
-    Sequence, Study, Training, Translations, questions_among,
+    Sequence, SoundPages, Study, Training, Translations, questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -58,6 +59,11 @@ pub struct StudyProjection {
     pub instructions: Vec<Section>,
     /// How large a CSS pixel is, and how far away the eyes are.
     pub calibration: Option<Calibration>,
+    /// What the pages need of sound: [`SoundPages`], or null in a study without. The page hands it on to scripts that
+    /// such a study alone loads, and reads a few words of it: a reader of its own would weigh on every study.
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    #[schemars(with = "Option<SoundPages>")]
+    pub sound: Value,
     /// Trials for practice.
     pub training: Option<Training>,
     /// Questions that several components ask.
@@ -97,6 +103,7 @@ impl Study {
             attention_checks: self.attention_checks.clone(),
             instructions: self.instructions.clone(),
             calibration: self.calibration.clone(),
+            sound: serde_json::to_value(self.sound_pages()).unwrap_or_default(),
             training: self.training.clone(),
             questions: self.questions.clone(),
             components: self.components.clone(),
@@ -128,6 +135,16 @@ impl Multilingual for StudyProjection {
 }
 
 impl StudyProjection {
+    /// What the pages say of sound in a language, by name; nothing in a study without.
+    pub fn sound_word(&self, language: &str, name: &str) -> &str {
+        self.sound["words"][language][name].as_str().unwrap_or_default()
+    }
+
+    /// Whether only those may take part who hear the tones of the sound check.
+    pub fn hearing_is_required(&self) -> bool {
+        self.sound["check"]["hearing"] == "required"
+    }
+
     /// Every question: demographics, those of questionnaires, shared ones.
     pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
         questions_among(self.demographics.as_ref(), &self.components, &self.questions)

@@ -10,7 +10,8 @@ use support::study_folder;
 
 /// Codes that no text of a study file can bring about; `upload` is of the archive around it,
 /// `smoothing-advised`, `clips-unlike` and `not-prepared` of the captures and clips that it names.
-const NEVER: [&str; 5] = ["shape", "upload", "smoothing-advised", "clips-unlike", "not-prepared"];
+const NEVER: [&str; 6] =
+    ["shape", "upload", "smoothing-advised", "clips-unlike", "not-prepared", "sound-ends-early"];
 
 #[test]
 fn every_code_has_an_expected_report() {

@@ -87,6 +87,7 @@ impl<'d> Data<'d> {
             trials: 0,
             failed_checks: 0,
             longest_run: 0,
+            heard: true,
             excluded: None,
         };
         let mut has_rows = !person.about.is_empty() || self.design.study.training.is_some();
@@ -216,6 +217,7 @@ impl<'d> Data<'d> {
             frames: None,
             late: None,
             longest_ms: None,
+            sound_off_ms: None,
         };
         let clip_ms = eighths(self.model.parameters.times.clip_ms);
         let mut since_onset_ms = clip_ms;

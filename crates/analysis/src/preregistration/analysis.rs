@@ -313,6 +313,27 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
             format!("les essais ayant une image de plus de {} ms", language.number(longest)),
         ));
     }
+    if rules.sound_not_heard {
+        words.push(
+            language
+                .pick(
+                    "people who do not hear the tones of the sound check",
+                    "les personnes qui n’entendent pas les sons du contrôle d’écoute",
+                )
+                .to_owned(),
+        );
+    }
+    if let Some(most) = rules.sound_offset_ms {
+        words.push(language.pick(
+            format!(
+                "trials whose sound was not played, or was heard more than {most} ms beside its time"
+            ),
+            format!(
+                "les essais dont le son n’a pas été joué, ou entendu à plus de {} ms de son instant",
+                language.number(most)
+            ),
+        ));
+    }
     if let Some(rule) = &rules.straight_lining {
         let run = rule.longest_run;
         let asked: Vec<String> = from

@@ -165,6 +165,13 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         text.item(&naming.factor(&factor), &naming.factor(&factor), &words);
     }
     text.line("");
+    if study.has_sound() {
+        text.both(
+            "Clips have sound, played by the browser’s audio clock with the first frame of the face; its offset to that frame is measured in every play (`sound_offset_ms`, `sound_drift_ms`). Before practice participants set the volume and count tones (`sound_check`).",
+            "Les extraits ont du son, joué par l’horloge audio du navigateur avec la première image du visage ; son décalage par rapport à cette image est mesuré à chaque lecture (`sound_offset_ms`, `sound_drift_ms`). Avant l’entraînement, les participants règlent le volume et comptent des sons (`sound_check`).",
+        );
+        text.line("");
+    }
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
     let asked: Vec<&String> = blocks(study).flat_map(|block| &block.questions).collect();

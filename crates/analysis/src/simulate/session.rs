@@ -2,7 +2,7 @@
 
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_session::{Client, PlayLog};
+use mimique_session::{Client, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{Answers, Calibration, Display, Multilingual as _, OrderError};
 
 use super::latent::ClipEffects;
@@ -130,7 +130,7 @@ impl Walk<'_, '_> {
                     }
                     self.shown(&step.id);
                     self.read(800.0);
-                    self.watch(&client, trial.maximum_replays, trial.training);
+                    self.watch(&client, &trial.clip, trial.maximum_replays, trial.training);
                     self.answer_trial(&trial.clip, trial.training);
                     self.trial += usize::from(!trial.training);
                 }
@@ -149,6 +149,11 @@ impl Walk<'_, '_> {
                 }
                 StepKind::Device => {
                     self.check_device(&client);
+                    continue;
+                }
+                StepKind::Sound => {
+                    self.shown(&step.id);
+                    self.hear();
                     continue;
                 }
                 StepKind::Calibration(calibration) => {
@@ -191,6 +196,46 @@ impl Walk<'_, '_> {
         }
     }
 
+    /// The volume is set, and the tones of every round are counted right.
+    fn hear(&mut self) {
+        let check = self.model.study.sound.clone().unwrap_or_default().check;
+        self.read(15_000.0);
+        let number = self.page.plan.started.participant;
+        let mut draws = super::random::Draws::new(0, Some(number), "tones");
+        let mut round = || {
+            let tones = 1 + draws.below(check.most_tones.max(1) as usize) as u32;
+            [tones; 2]
+        };
+        let rounds: Vec<[u32; 2]> = (0..check.rounds).map(|_| round()).collect();
+        self.page.wait(5_000.0 * f64::from(check.rounds));
+        let answers = [
+            ("sound_check", SOUND_HEARD.into()),
+            ("sound_check_correct", check.rounds.into()),
+            ("sound_check_attempts", 1.into()),
+            ("sound_check_rounds", serde_json::json!(rounds)),
+        ];
+        let answers = answers.map(|(name, value)| (name.to_owned(), value));
+        self.page.send(Input::SoundChecked(answers.into_iter().collect()));
+    }
+
+    /// What a browser would have heard: sound on time.
+    fn heard(&self, clip: &str) -> serde_json::Value {
+        let study = self.model.study;
+        let clips = &self.page.plan.study.clips;
+        let clip = clips.iter().find(|each| each.id == clip);
+        let Some(heard) = clip.and_then(|clip| study.heard(clip)) else {
+            return Default::default();
+        };
+        let log = SoundLog {
+            status: "played".to_owned(),
+            offset_ms: Some(heard.delay_ms),
+            delay_ms: heard.delay_ms,
+            drift_ms: Some(0.0),
+            ..SoundLog::default()
+        };
+        serde_json::to_value(log).unwrap_or_default()
+    }
+
     /// The person closes the page, or takes everything back: then nothing is left.
     fn leave(&mut self) {
         if self.person.fate.withdraws {
@@ -208,7 +253,7 @@ impl Walk<'_, '_> {
         self.page.wait(ms);
     }
 
-    fn watch(&mut self, client: &Client, most_replays: Option<u32>, training: bool) {
+    fn watch(&mut self, client: &Client, clip: &str, most_replays: Option<u32>, training: bool) {
         let person = if training { &mut self.practice } else { &mut self.person };
         let showing = person.showing(most_replays);
         let webgl2 = self.model.parameters.display.webgl2;
@@ -230,7 +275,8 @@ impl Walk<'_, '_> {
             }
             self.page.send(Input::Play);
             self.page.wait(60.0);
-            let log = self.log(&showing, backend, client, None);
+            let sound = self.heard(clip);
+            let log = PlayLog { sound, ..self.log(&showing, backend, client, None) };
             self.page.wait(self.model.parameters.times.clip_ms);
             self.page.send(Input::Played(log));
         }
@@ -276,6 +322,7 @@ impl Walk<'_, '_> {
             beside_provenance: String::new(),
             renderer: String::new(),
             drift_ms: 0.0,
+            sound: serde_json::Value::Null,
             aborted: aborted.map(str::to_owned),
         }
     }

@@ -30,6 +30,9 @@ pub(crate) struct Person {
     /// Most equal answers in a row, where the study has a rule about them; else 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub longest_run: usize,
+    /// Whether the tones of the sound check were heard.
+    #[serde(skip)]
+    pub heard: bool,
     /// Why the person is left out.
     pub excluded: Option<Reason>,
 }
@@ -66,6 +69,8 @@ pub(crate) struct Trial {
     pub frames: Option<f64>,
     pub late: Option<f64>,
     pub longest_ms: Option<f64>,
+    /// How far its sound was from its time; infinitely where it was not played.
+    pub sound_off_ms: Option<f64>,
 }
 
 /// A clip that was played beside the trial's own.
@@ -249,6 +254,8 @@ pub(crate) fn why_left_out(
         Some(Reason::LateFrames)
     } else if over(trial.longest_ms, rules.longest_frame_ms) {
         Some(Reason::LongFrame)
+    } else if over(trial.sound_off_ms, rules.sound_offset_ms) {
+        Some(Reason::SoundOffset)
     } else if quick {
         Some(Reason::AnsweredTooSoon)
     } else {
@@ -283,6 +290,8 @@ pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&st
             .is_some_and(|limit| person.failed_checks > limit as usize)
         {
             Some(Reason::AttentionChecks)
+        } else if rules.sound_not_heard && !person.heard {
+            Some(Reason::SoundNotHeard)
         } else if rules
             .straight_lining
             .as_ref()
@@ -308,6 +317,9 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
     if let Some(limit) = rules.failed_attention_checks {
         words.push(format!("failedAttentionChecks > {limit}"));
     }
+    if rules.sound_not_heard {
+        words.push("soundNotHeard".to_owned());
+    }
     if let Some(rule) = &rules.straight_lining {
         words.push(format!("straightLining.longestRun > {}", rule.longest_run));
     }
@@ -316,6 +328,9 @@ fn rules_in_words(rules: &Exclusions) -> Vec<String> {
     }
     if let Some(limit) = rules.longest_frame_ms {
         words.push(format!("longestFrameMs > {limit}"));
+    }
+    if let Some(limit) = rules.sound_offset_ms {
+        words.push(format!("soundOffsetMs > {limit}"));
     }
     if let Some(limit) = rules.shortest_rt_ms {
         words.push(format!("rt_open < {limit} ms"));

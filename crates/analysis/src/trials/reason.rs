@@ -23,6 +23,10 @@ pub enum Reason {
     Pilot,
     /// A person whom the study could not take.
     ScreenedOut,
+    /// A person who did not hear the tones of the sound check.
+    SoundNotHeard,
+    /// A trial whose sound was not played, or not when it should have been.
+    SoundOffset,
     /// A person who gave the same answer in too many trials in a row.
     StraightLining,
     /// A person who withdrew.
@@ -42,6 +46,8 @@ impl Reason {
             Self::LongFrame => "long frame",
             Self::Pilot => "pilot",
             Self::ScreenedOut => "screened out",
+            Self::SoundNotHeard => "sound not heard",
+            Self::SoundOffset => "sound off its time",
             Self::StraightLining => "straight-lining",
             Self::Withdrawn => "withdrawn",
         }
@@ -59,6 +65,8 @@ impl Reason {
             Self::LongFrame => "image trop longue",
             Self::Pilot => "pilote",
             Self::ScreenedOut => "non retenus",
+            Self::SoundNotHeard => "son non entendu",
+            Self::SoundOffset => "son décalé",
             Self::StraightLining => "réponses toujours identiques",
             Self::Withdrawn => "retirés",
         }

@@ -24,8 +24,8 @@ pub(super) struct Sessions<'t> {
 impl<'t> Sessions<'t> {
     /// Reads everybody who has a row.
     pub(super) fn read(table: &'t Table) -> Result<Self, ExportError> {
-        let [participant, status, stage, attention] =
-            ["participant_id", "status", "stage", "attention_passed"]
+        let [participant, status, stage, attention, sound] =
+            ["participant_id", "status", "stage", "attention_passed", "sound_check"]
                 .map(|name| Column::of(table, name));
         let mut people: Vec<Person> = Vec::new();
         let mut place: HashMap<&str, usize> = HashMap::new();
@@ -44,6 +44,7 @@ impl<'t> Sessions<'t> {
                         trials: 0,
                         failed_checks: 0,
                         longest_run: 0,
+                        heard: sound.text(row) == Some("heard"),
                         excluded: None,
                     });
                     stages.push(stage.text(row).unwrap_or("live"));

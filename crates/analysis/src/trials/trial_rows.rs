@@ -32,6 +32,9 @@ pub(crate) struct TrialReader<'t> {
     frames: Column<'t>,
     late: Column<'t>,
     longest: Column<'t>,
+    sound: Column<'t>,
+    sound_offset: Column<'t>,
+    sound_delay: Column<'t>,
     response: Column<'t>,
     answer: Column<'t>,
     correct: Column<'t>,
@@ -102,6 +105,9 @@ impl<'t> TrialReader<'t> {
             frames: column("frames"),
             late: column("frames_late"),
             longest: column("frame_longest_ms"),
+            sound: column("sound_status"),
+            sound_offset: column("sound_offset_ms"),
+            sound_delay: column("sound_delay_ms"),
             response: column("response_id"),
             answer: column("answer"),
             correct: column("correct"),
@@ -179,6 +185,14 @@ impl<'t> TrialReader<'t> {
         Ok(read)
     }
 
+    /// How far a clip's sound was from its time; infinitely far where it was not played, none of a clip without.
+    fn sound_off(&self, row: usize) -> Result<Option<f64>, ExportError> {
+        let Some(status) = self.sound.text(row) else { return Ok(None) };
+        let offset = self.sound_offset.number(row)?.filter(|_| status == "played");
+        let asked = self.sound_delay.number(row)?.unwrap_or_default();
+        Ok(Some(offset.map_or(f64::INFINITY, |offset| (offset - asked).abs())))
+    }
+
     fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
         let left = self.beside_side.text(row) == Some("left");
@@ -194,6 +208,7 @@ impl<'t> TrialReader<'t> {
             frames: self.frames.number(row)?,
             late: self.late.number(row)?,
             longest_ms: self.longest.number(row)?,
+            sound_off_ms: self.sound_off(row)?,
         })
     }
 }

@@ -112,6 +112,10 @@ impl Transition<'_> {
         if log.is_whole() && !rules.is_none_or(enough) {
             log.aborted = Some(PlayLog::TOO_FEW_FRAMES.to_owned());
         }
+        // The clip is offered once more; a browser that plays no sound at all keeps nobody from going on.
+        if log.is_whole() && log.is_mute() && self.state.record.attempt.mute_plays == 0 {
+            log.aborted = Some(PlayLog::NO_SOUND.to_owned());
+        }
         log
     }
 
@@ -121,6 +125,15 @@ impl Transition<'_> {
             self.screen_out("frames", vec!["minimumFrameShare".to_owned()]);
             self.leave();
         }
+    }
+
+    /// The volume was set, and the tones were heard or not.
+    pub(super) fn sound_checked(&mut self, answers: &Answers) -> bool {
+        let is_there = self.step().is_some_and(|step| step.kind == StepKind::Sound);
+        if is_there {
+            self.finish_page(answers.clone(), false);
+        }
+        is_there
     }
 
     pub(super) fn remeasure(&mut self) -> bool {
@@ -210,6 +223,8 @@ impl Transition<'_> {
         if let Some(rule) = screening(study, &self.state) {
             let question = rule.condition.question.clone();
             self.screen_out("screening", vec![question]);
+        } else if study.hearing_is_required() && did_not_hear(&self.state) {
+            self.screen_out("sound", Vec::new());
         } else if self.state.record.practice_failed && screens_out_of_training(study) {
             self.screen_out("training", Vec::new());
         } else if let Some(rule) = &study.attention_checks
@@ -234,6 +249,14 @@ pub(super) fn screening<'a>(
 ) -> Option<&'a ScreeningRule> {
     let answers = &state.record.answers;
     study.screening.iter().find(|rule| rule.condition.holds(answers.get(&rule.condition.question)))
+}
+
+/// What the sound check says of somebody who heard its tones.
+pub const SOUND_HEARD: &str = "heard";
+
+/// Whether the tones of the sound check were played and not heard.
+fn did_not_hear(state: &State) -> bool {
+    state.record.answers.get("sound_check").is_some_and(|outcome| outcome != SOUND_HEARD)
 }
 
 fn screens_out_of_training(study: &StudyProjection) -> bool {

@@ -1,6 +1,6 @@
 //! What comes in: acts of the participant, reports of the page.
 
-use mimique_study::Display;
+use mimique_study::{Answers, Display};
 use serde_json::Value;
 
 use crate::event::{Client, PlayLog, StageFailure};
@@ -90,6 +90,8 @@ pub enum Input {
     NoCard,
     /// How far the participant sits from the screen, centimetres.
     Distance(Option<f64>),
+    /// The sound check was gone through: its outcome is the answer `sound_check`, and what was counted stands beside it.
+    SoundChecked(Answers),
     /// The button that gives more time.
     ExtendTime,
     /// Time has passed (a break and a time limit wait for it). About once a second is enough.
@@ -141,6 +143,7 @@ impl Input {
             Self::CardWidth { .. } => "card_width",
             Self::NoCard => "no_card",
             Self::Distance(_) => "distance",
+            Self::SoundChecked(_) => "sound_checked",
             Self::ExtendTime => "extend_time",
             Self::Tick => "tick",
             Self::Withdraw => "withdraw",

@@ -34,7 +34,7 @@ pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
 pub use agreement::AgreementView;
 pub use effect::Effect;
 pub(crate) use gate::unmet;
-pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM};
+pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM, SOUND_HEARD};
 pub use input::Input;
 pub use mimique_study::{ChoiceView, QuestionKindView};
 pub use render::view;
@@ -45,6 +45,6 @@ pub use view::{
     ProgressView, RecordsView, SectionView, StageSize, TrialView, View,
 };
 pub use view_gate::{
-    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, SoundView,
 };
 pub use view_question::QuestionView;

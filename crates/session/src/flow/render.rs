@@ -9,6 +9,7 @@ use super::view::{
     BesideView, ButtonView, CodeView, EndView, FailedView, Phase, ProgressView, RecordsView,
     SectionView, TrialView, View,
 };
+use crate::event::PlayLog;
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::record::CutShort;
 use crate::standing::Standing;
@@ -101,6 +102,7 @@ impl Screen<'_> {
             StepKind::Calibration(calibration) => {
                 View::Calibration(Box::new(self.calibration(step, calibration)))
             }
+            StepKind::Sound => View::Sound(Box::new(self.sound(step))),
             StepKind::Feedback { of } => View::Feedback(Box::new(self.feedback(step, *of))),
             StepKind::Page(section) => {
                 let next = self.plan.step(self.state.record.step + 1);
@@ -173,11 +175,15 @@ impl Screen<'_> {
             Phase::Ready if fullscreen_first => words.fullscreen_first(),
             Phase::Playing => words.playing(),
             Phase::Failed { .. } => failed,
+            Phase::Answering if progress.play.as_ref().is_some_and(PlayLog::is_mute) => {
+                self.sound_word("sound_not_played")
+            }
             Phase::Answering => words.answer_now(),
             Phase::Loading { .. } if saving && prepared => words.saving(),
             Phase::Loading { .. } => words.loading(),
             Phase::Ready => match progress.cut_short {
                 Some(CutShort::OutOfView) => words.play_out_of_view(),
+                Some(CutShort::NoSound) => self.sound_word("sound_not_played"),
                 Some(CutShort::TooFewFrames) => words.play_too_slow(),
                 Some(CutShort::Interrupted) => words.play_interrupted(),
                 None => words.watch_first(),
@@ -213,6 +219,9 @@ impl Screen<'_> {
             clock: self.clock(step),
             phase,
             message: message.to_owned(),
+            captions: self.plan.study.sound["captions"]
+                .as_str()
+                .map(|rule| [rule, self.sound_word("sound_captions")].map(str::to_owned)),
             can_play,
             play_label: play_label.to_owned(),
             can_replay: can_play && progress.plays > 0,

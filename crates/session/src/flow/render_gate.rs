@@ -7,7 +7,7 @@ use super::gate::{self, CARD_HEIGHT_MM, CARD_WIDTH_MM, DISTANCES_CM};
 use super::render::Screen;
 use super::view::{ClockView, StageSize};
 use super::view_gate::{
-    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView,
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, SoundView,
 };
 use crate::plan::Step;
 use crate::record::EndReason;
@@ -164,6 +164,22 @@ impl Screen<'_> {
         }
     }
 
+    /// What the pages say of sound.
+    pub(super) fn sound_word(&self, name: &str) -> &str {
+        self.plan.study.sound_word(&self.state.record.language, name)
+    }
+
+    pub(super) fn sound(&self, step: &Step) -> SoundView {
+        let text = ["sound_note", "sound_text"].map(|name| self.sound_word(name).to_owned());
+        SoundView {
+            step: step.id.clone(),
+            heading: self.sound_word("sound_heading").to_owned(),
+            text: text.into_iter().filter(|text| !text.is_empty()).collect(),
+            pages: self.plan.study.sound.to_string(),
+            progress: self.progress(),
+        }
+    }
+
     pub(super) fn clock(&self, step: &Step) -> Option<ClockView> {
         let limit = step.time_limit.as_ref()?;
         let words = self.words;
@@ -238,6 +254,9 @@ impl Screen<'_> {
                 .iter()
                 .map(|each| words.unmet(each).0)
                 .collect(),
+            Standing::ScreenedOut if self.state.record.did_not_hear() => {
+                vec![self.sound_word("sound_screened_out").to_owned()]
+            }
             Standing::ScreenedOut => gate::screening(&self.plan.study, self.state)
                 .map_or_else(Vec::new, |rule| self.paragraphs(&rule.reason)),
             Standing::PracticeFailed => vec![words.screened_out_training().to_owned()],

@@ -104,6 +104,7 @@ impl<'a> Transition<'a> {
             }
             Input::NoCard => self.no_card(),
             Input::Distance(centimetres) => self.distance(*centimetres),
+            Input::SoundChecked(answers) => self.sound_checked(answers),
             Input::ExtendTime => self.extend_time(),
         }
     }

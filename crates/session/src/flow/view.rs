@@ -1,7 +1,7 @@
 //! The vocabulary of the screen: what the page renders, without deciding anything itself.
 
 use super::agreement::AgreementView;
-use super::view_gate::{CalibrationView, DeviceView, FeedbackView};
+use super::view_gate::{CalibrationView, DeviceView, FeedbackView, SoundView};
 use super::view_question::QuestionView;
 
 /// What stands on the screen.
@@ -58,6 +58,8 @@ pub enum View {
     Device(Box<DeviceView>),
     /// How large a CSS pixel is.
     Calibration(Box<CalibrationView>),
+    /// Where the volume is set.
+    Sound(Box<SoundView>),
     /// Which answers to a practice clip were right.
     Feedback(Box<FeedbackView>),
     /// A trial.
@@ -191,6 +193,9 @@ pub struct TrialView {
     pub phase: Phase,
     /// What to tell: loading, watch first, answer now, interrupted.
     pub message: String,
+    /// Whether the clip's captions are shown below it ([`mimique_study::CaptionRule`] as in the file), and the label
+    /// of the button that switches them; none where no clip has sound.
+    pub captions: Option<[String; 2]>,
     /// Whether the play button works.
     pub can_play: bool,
     /// What it says: play, or play again.

@@ -80,6 +80,21 @@ pub struct DistanceView {
     pub problem: Option<String>,
 }
 
+/// Where the volume is set and the tones are counted (`static/sound/check.js`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SoundView {
+    /// Identifier of the step.
+    pub step: String,
+    /// Heading.
+    pub heading: String,
+    /// Paragraphs below it.
+    pub text: Vec<String>,
+    /// What the script gets: [`mimique_study::SoundPages`] as JSON.
+    pub pages: String,
+    /// How far the session is.
+    pub progress: ProgressView,
+}
+
 /// Which answers to a practice clip were right.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FeedbackView {

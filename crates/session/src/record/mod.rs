@@ -130,8 +130,17 @@ impl Record {
 
     /// Whether the session ended since the device showed too few frames of a clip.
     pub fn was_too_slow(&self) -> bool {
+        self.was_screened_out_by("frames")
+    }
+
+    /// Whether the session ended since the tones of the sound check were not heard.
+    pub fn did_not_hear(&self) -> bool {
+        self.was_screened_out_by("sound")
+    }
+
+    fn was_screened_out_by(&self, cause: &str) -> bool {
         self.early_end.as_ref().is_some_and(
-            |end| matches!(&end.reason, EndReason::ScreenedOut { by, .. } if by == "frames"),
+            |end| matches!(&end.reason, EndReason::ScreenedOut { by, .. } if by == cause),
         )
     }
 

@@ -25,6 +25,8 @@ pub struct Attempt {
     pub frames: usize,
     /// Plays that showed too few frames.
     pub slow_plays: u32,
+    /// Plays whose sound was not played.
+    pub mute_plays: u32,
     /// Whether the page filled the screen in that play.
     pub play_fullscreen: bool,
     /// Why the last play does not count, if it does not.
@@ -63,6 +65,7 @@ impl Attempt {
         if let Some(why) = self.cut_short {
             self.interruptions += 1;
             self.slow_plays += u32::from(why == CutShort::TooFewFrames);
+            self.mute_plays += u32::from(why == CutShort::NoSound);
             return;
         }
         self.plays += 1;
@@ -83,6 +86,7 @@ impl Attempt {
                 shown_ms: self.shown_ms,
                 earlier_plays: self.earlier_plays + self.plays,
                 slow_plays: self.slow_plays,
+                mute_plays: self.mute_plays,
                 interruptions: self.interruptions,
                 focus_losses: self.focus_losses,
                 ..Self::default()
@@ -100,6 +104,8 @@ pub enum CutShort {
     OutOfView,
     /// It showed fewer frames than the study wants.
     TooFewFrames,
+    /// Its sound was not played.
+    NoSound,
 }
 
 impl CutShort {
@@ -108,6 +114,7 @@ impl CutShort {
         match log.aborted.as_deref()? {
             PlayLog::OUT_OF_VIEW => Some(Self::OutOfView),
             PlayLog::TOO_FEW_FRAMES => Some(Self::TooFewFrames),
+            PlayLog::NO_SOUND => Some(Self::NoSound),
             _ => Some(Self::Interrupted),
         }
     }
@@ -168,7 +175,7 @@ pub struct EarlyEnd {
 pub enum EndReason {
     /// The study does not take this participant.
     ScreenedOut {
-        /// `device`, `frames`, `screening` or `training`.
+        /// `device`, `frames`, `sound`, `screening` or `training`.
         by: String,
         /// What was missing: the rules' keys, or the question.
         details: Vec<String>,

@@ -118,6 +118,16 @@ fn play_cells(play: &PlayLog, attempt: &Attempt, opened_ms: f64, cells: &mut Cel
     put("weights_hash", play.weights_hash.as_str().into());
     let renderer = Some(play.renderer.as_str()).filter(|hash| !hash.is_empty());
     put("renderer", renderer.into());
+    let Some(sound) = play.sound_log() else { return };
+    let number = |ms: Option<f64>| ms.map_or(Value::Null, milliseconds);
+    put("sound_status", sound.status.into());
+    put("sound_offset_ms", number(sound.offset_ms));
+    put("sound_delay_ms", milliseconds(sound.delay_ms));
+    put("sound_drift_ms", number(sound.drift_ms));
+    put("sound_latency_ms", number(sound.latency_ms));
+    put("sound_latency_source", sound.latency_source.into());
+    put("captions_shown", sound.captions.into());
+    put("sound_file", sound.file.into());
 }
 
 /// Kinds of steps that have answers.

@@ -11,7 +11,7 @@ use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
-use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
+use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS, SOUND_COLUMNS};
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
     iso_time,
@@ -51,10 +51,18 @@ impl TidyForm {
     pub fn new(study: &Study, clips: &BTreeMap<String, ClipSource>) -> Self {
         let factors = study.factor_names();
         let mut columns = Vec::new();
-        for (name, kind, unit, description) in FIXED_COLUMNS {
+        let column = |(name, kind, unit, description): (&str, _, &str, &str)| {
             let mut column = Column::new(name, kind, description);
             column.unit = (!unit.is_empty()).then(|| unit.to_owned());
-            columns.push(column);
+            column
+        };
+        let has_sound = study.has_sound();
+        for fixed in FIXED_COLUMNS {
+            let name = fixed.0;
+            columns.push(column(fixed));
+            if name == "beside_drift_ms" && has_sound {
+                columns.extend(SOUND_COLUMNS.map(column));
+            }
             if name == "condition" {
                 columns.extend(assigned_column(study));
             }
@@ -150,6 +158,11 @@ impl TidyForm {
         cells.put("config_hash", started.config_hash.as_str().into());
         cells.put("language", record.language.as_str().into());
         cells.put("consent_version", record.consent_version.as_deref().into());
+        if let Some(page) = record.finished.iter().find(|step| step.id == "sound") {
+            for (name, answer) in &page.answers {
+                cells.put(name, plain(Some(answer)));
+            }
+        }
         if let Some(page) = record.finished.iter().find(|step| step.id == "demographics") {
             for question in self.study.demographics.iter().flat_map(|page| &page.questions) {
                 let answer = page.answers.get(&question.id).unwrap_or(&Value::Null);

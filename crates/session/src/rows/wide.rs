@@ -13,7 +13,7 @@ use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
 use mimique_study::{ClipSource, KindOfQuestion as _, Study};
 
 /// Columns of the tidy form that are the same in all rows of a participant.
-const PERSONAL: [&str; 10] = [
+const PERSONAL: [&str; 13] = [
     "participant_id",
     "participant",
     "slot",
@@ -22,6 +22,9 @@ const PERSONAL: [&str; 10] = [
     "status",
     "language",
     "consent_version",
+    "sound_check",
+    "sound_check_correct",
+    "sound_check_attempts",
     "seed",
     "config_hash",
 ];

@@ -10,7 +10,7 @@ use mimique_session::flow::{
     Effect, Input, Phase, Plan, QuestionKindView, State, View, update, view,
 };
 use mimique_session::wire::{Event, Receipt, SessionStarted};
-use mimique_session::{Client, PlayLog, Record, StageFailure};
+use mimique_session::{Client, PlayLog, Record, SOUND_HEARD, StageFailure};
 use mimique_study::{Display, Study, config_hash};
 pub use mimique_test_support::{study_folder, study_text};
 use serde_json::{Value, json};
@@ -45,6 +45,8 @@ pub struct Page {
     pub completed: Option<u64>,
     /// What the browser reports about itself.
     pub display: Display,
+    /// What its stage says of the sound of a play.
+    pub sound: Value,
 }
 
 impl Page {
@@ -67,6 +69,7 @@ impl Page {
             played: Vec::new(),
             completed: None,
             display: display(),
+            sound: Value::Null,
         };
         page.send(Input::Opened(client()));
         page
@@ -106,7 +109,8 @@ impl Page {
                 self.played.push(clip);
                 let onset_ms = self.now_ms + 20.0;
                 self.now_ms += 2_000.0;
-                self.send(Input::Played(whole_play(onset_ms)));
+                let sound = self.sound.clone();
+                self.send(Input::Played(PlayLog { sound, ..whole_play(onset_ms) }));
             }
             Effect::Complete { events } => {
                 self.completed = Some(events);
@@ -158,6 +162,12 @@ impl Page {
                     self.send(Input::Distance(Some(60.0)));
                 }
                 self.send(Input::Next);
+            }
+            View::Sound(_) => {
+                let answers =
+                    [("sound_check", json!(SOUND_HEARD)), ("sound_check_correct", json!(3))];
+                let answers = answers.map(|(name, value)| (name.to_owned(), value));
+                self.send(Input::SoundChecked(answers.into_iter().collect()));
             }
             View::Feedback(_) => self.send(Input::Next),
             View::Trial(trial) => match trial.phase {

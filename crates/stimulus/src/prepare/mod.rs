@@ -11,6 +11,7 @@ mod cache;
 mod exertion;
 mod known;
 mod solved_clip;
+mod sound;
 mod source_files;
 mod sources;
 
@@ -27,6 +28,7 @@ pub use self::advice::{AdvisedMethod, advised_methods};
 pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
 use self::solved_clip::{Wanted, to_solve};
+pub use self::sound::{StudySound, study_sounds};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
 use self::sources::Sources;
 use crate::provenance::Provenance;
@@ -129,6 +131,7 @@ pub fn prepare(
     for (done, clip) in clips.iter().enumerate() {
         progress(Progress { done, total: clips.len(), what: &clip.id });
         let source = prepare_clip(study, clip, &sources, &cache, &mut remarks)?;
+        let source = sound::with_sound(study, clip, &sources, &cache, source)?;
         ready.insert(clip.id.clone(), source);
     }
     progress(Progress { done: clips.len(), total: clips.len(), what: "packs" });
@@ -221,6 +224,7 @@ fn prepare_clip(
         weights_hash: solved.weights_hash,
         look: study.stimuli.avatars[&clip.avatar].look.word().to_owned(),
         video: None,
+        sound: None,
     })
 }
 
@@ -312,6 +316,7 @@ fn prepare_video(
         weights_hash: String::new(),
         look: AvatarLook::Stimulus.word().to_owned(),
         video: Some(video.media_type.to_owned()),
+        sound: None,
     })
 }
 

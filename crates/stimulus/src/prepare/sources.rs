@@ -8,6 +8,7 @@ use std::rc::Rc;
 use mimique_avatar::GazeAngles;
 use mimique_clip::sha256_hex;
 use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
+use mimique_solver::Method;
 use mimique_study::{
     AvatarSource, CaptureSource, Clip, ExertionCapture, GazeSource, HeldGaze, Segment, Span, Study,
     resolve_path, video_type,
@@ -386,6 +387,30 @@ impl<'a> Sources<'a> {
         })
     }
 
+    /// When a segment begins in its capture, and how long it lasts, seconds, as a clip of this method shows it.
+    pub fn segment_time(&self, id: &str, clip: &Clip) -> Result<(f64, f64), PrepareError> {
+        let method = self.study.stimuli.methods.get(&clip.method);
+        let is_recorded = method.is_some_and(|entry| entry.spec.method == Method::Recorded);
+        let (segment, at) = self.segment(id)?;
+        let (frames, rate_hz) = if is_recorded {
+            let avatar = self.avatar(&clip.avatar)?;
+            let recording = self.recording(id, avatar.avatar.face_shapes())?;
+            let rate_hz = recording.table.rate_hz();
+            (recording.frames, rate_hz)
+        } else {
+            let file = self.capture(segment, &at)?;
+            let frames = match segment.span() {
+                Some(Span::Frames { first, end }) => file.frames.shown(first..end),
+                _ => Ok(0..file.capture.frames()),
+            };
+            (frames.map_err(|e| PrepareError::new(&at, e))?, Some(file.capture.rate_hz))
+        };
+        let rate_hz = rate_hz.ok_or_else(|| {
+            PrepareError::new(&at, "nothing says when it begins; name a sound of its own")
+        })?;
+        Ok((frames.start as f64 / rate_hz, frames.len() as f64 / rate_hz))
+    }
+
     fn segment(&self, id: &str) -> Result<(&'a Segment, String), PrepareError> {
         let segments = &self.study.stimuli.segments;
         let index = segments.iter().position(|s| s.id == id).ok_or_else(|| {
@@ -479,7 +504,7 @@ impl<'a> Sources<'a> {
     }
 
     /// The file that a path of the study names.
-    fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
+    pub fn read(&self, file: &str, at: &str) -> Result<(PathBuf, Vec<u8>), PrepareError> {
         let path = self.path(file, at)?;
         let bytes = std::fs::read(&path).map_err(|e| unread(&path, &e, at))?;
         Ok((path, bytes))

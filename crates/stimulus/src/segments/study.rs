@@ -27,6 +27,7 @@ pub fn study_segments(segments: &[TakeSegment], capture: &str) -> Vec<Segment> {
             first: Some(segment.clip.start),
             end: Some(segment.clip.end),
             performance: None,
+            sound: None,
             factors: Factors::from([("expression".to_owned(), expression)]),
         }
     });

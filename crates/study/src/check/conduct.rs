@@ -7,7 +7,7 @@ use super::problem::Problem;
 use super::values::Nearest;
 use crate::practice::right_answers;
 use crate::question::Question;
-use crate::study_file::{Component, TimeLimit, Training};
+use crate::study_file::{Component, Hearing, TimeLimit, Training};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     device(subject, issues);
@@ -233,6 +233,7 @@ fn codes(subject: &Subject<'_>, issues: &mut Issues) {
     }
     let screens = study.device.is_some()
         || !study.screening.is_empty()
+        || study.sound.as_ref().is_some_and(|it| it.check.hearing == Hearing::Required)
         || study.training.as_ref().and_then(|it| it.criterion.as_ref()).is_some();
     if screens && recruitment.screened_out_code.is_none() {
         issues.warning("/recruitment", Problem::NoScreenedOutCode);

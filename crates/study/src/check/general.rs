@@ -61,7 +61,7 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
         }
     }
     for (language, own) in &subject.study.translations {
-        translation(language, own, languages, issues);
+        translation(language, own, subject, issues);
     }
     for pointer in texts {
         let Some(value) = subject.value.pointer(pointer) else { continue };
@@ -73,9 +73,10 @@ fn languages(subject: &Subject<'_>, texts: &[String], issues: &mut Issues) {
 fn translation(
     language: &str,
     own: &BTreeMap<String, String>,
-    languages: &[String],
+    subject: &Subject<'_>,
     issues: &mut Issues,
 ) {
+    let languages = &subject.study.languages;
     let pointer = below("/translations", language);
     if !languages.iter().any(|known| known == language) {
         issues.warning(
@@ -89,7 +90,7 @@ fn translation(
     for (name, _) in own.iter().filter(|(_, text)| text.trim().is_empty()) {
         issues.error(below(&pointer, name), Problem::EmptyText);
     }
-    for fault in text::faults(language, own) {
+    for fault in text::faults(language, own, subject.study.has_sound()) {
         match fault {
             text::Fault::Unknown { name } => {
                 issues.error(
@@ -289,13 +290,22 @@ fn exclusions(subject: &Subject<'_>, issues: &mut Issues) {
     if let Some(share) = rules.late_frame_share.filter(|share| !(0.0..=1.0).contains(share)) {
         issues.error("/exclusions/lateFrameShare", Problem::NotAShare { share });
     }
-    for (key, value) in
-        [("longestFrameMs", rules.longest_frame_ms), ("shortestRtMs", rules.shortest_rt_ms)]
-    {
+    for (key, value) in [
+        ("longestFrameMs", rules.longest_frame_ms),
+        ("shortestRtMs", rules.shortest_rt_ms),
+        ("soundOffsetMs", rules.sound_offset_ms),
+    ] {
         if let Some(value) = value.filter(|value| *value <= 0.0) {
             let place = format!("/exclusions/{key}");
             issues.error(place, Problem::ExcludesNothing { ms: value });
         }
+    }
+    let of_sound = [
+        ("soundOffsetMs", rules.sound_offset_ms.is_some()),
+        ("soundNotHeard", rules.sound_not_heard),
+    ];
+    for (key, _) in of_sound.iter().filter(|(_, given)| *given && !subject.study.has_sound()) {
+        issues.error(format!("/exclusions/{key}"), Problem::NoSound);
     }
     if let Some(rule) = &rules.straight_lining {
         straight_lining(subject, rule, issues);

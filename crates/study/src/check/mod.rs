@@ -24,6 +24,7 @@ mod readable;
 mod responses;
 mod schema;
 mod sequence;
+mod sound;
 mod stimuli;
 mod structure;
 mod tables;
@@ -147,6 +148,7 @@ fn examine_study(
     conduct::examine(&subject, issues);
     media::examine(&subject, lookup, issues);
     stimuli::examine(&subject, lookup, issues);
+    sound::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);
     tables::examine(&subject, issues);

@@ -328,6 +328,42 @@ GazeAngle { degrees: f64, least: f64, most: f64 }: "out-of-range",
     "eyes do not turn by {degrees} degrees", "write degrees from {least} to {most}";
 GazeTarget: "bad-gaze", "only a capture of a file has a marker that the eyes look at",
     "give the gaze by held or file";
+NoSound: "no-sound", "no clip of this study has sound",
+    "name the sound of a segment, \"sound\": {{ \"file\": \"joy.wav\" }}, or remove this";
+NoSoundFile: "bad-sound", "neither the segment nor its capture names a file of sound",
+    "add \"file\": \"joy.wav\", or the sound of the capture";
+SoundFromOfCapture: "bad-sound", "fromS belongs to a file, and the segment names none",
+    "add \"file\", or write fromS in the sound of the capture";
+SoundOfActor: "bad-sound", "a built-in actor performs every segment anew: no file goes with all of them",
+    "name the sound of each segment";
+SoundTime { seconds: f64 }: "out-of-range", "{seconds} s is no time in a file", "write seconds from 0 on";
+CaptionTimes { from_s: f64, to_s: f64 }: "bad-range", "a caption from {from_s} to {to_s} s is never shown",
+    "write when it begins and, later, when it ends, in seconds";
+CaptionOverlaps { from_s: f64, before_s: f64 }: "bad-range",
+    "the caption begins at {from_s} s, and the one before ends at {before_s} s",
+    "write captions in the order of their times, one after the other";
+NoCaptions: "no-captions", "captions are to be shown, and no sound has any",
+    "add \"captions\" to the sound of a segment, or take \"off\"";
+CaptionsNotShown: "captions-not-shown", "the segment has captions, which the study does not show",
+    "add \"sound\": {{ \"captions\": \"offered\" }} to the study";
+SilentAndMore: "bad-sound", "silence has no other segment and no delay",
+    "remove silent, or from and delayMs";
+SoundWithoutFile { segment: String }: "bad-sound", "segment \"{segment}\" has no sound",
+    "name a segment that has one, or give it one";
+HeardAsSilent { segment: String, sound: String }: "silent-segment",
+    "segment \"{segment}\" has no sound: its clips of the sound \"{sound}\" are silent",
+    "give the segment a sound, or leave these clips out in /stimuli/clips";
+SoundNotNamed: "bad-sound", "the study names sounds, and the clip none of them", "add \"sound\": \"...\"";
+// Of files of sound, which only those who open them know.
+SoundUnknown { path: String }: "bad-file", "{path}: neither WAV, MP3 nor Ogg Opus",
+    "export the sound anew as one of them";
+SoundDamaged { path: String, what: String }: "bad-file", "{path}: cannot be read ({what})",
+    "see that the file is whole, or export the sound anew";
+SoundBeginsLate { path: String, from_s: f64, duration_s: f64 }: "bad-sound",
+    "{path}: the sound begins at {from_s:.3} s, and the file lasts {duration_s:.3} s", "correct fromS";
+SoundEndsEarly { clip: String, audible_s: f64, clip_s: f64 }: "sound-ends-early",
+    "the sound of \"{clip}\" ends after {audible_s:.3} s, the clip lasts {clip_s:.3} s",
+    "see that fromS is right and the file whole; what is missing is silence";
 GazePerformed: "bad-gaze", "only a built-in actor performs a gaze", "give the gaze by held, file or target";
 NoMarkers: "no-markers", "no marker map: nothing says where the markers sit on the avatar",
     "add \"markers\": \"map.json\"";

@@ -47,7 +47,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     unused(subject, issues);
 }
 
-fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
+pub(super) fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
     if name.is_empty() || !name.chars().all(plain) {
         issues.error(pointer, Problem::PartOfClipId { name: name.to_owned() });
@@ -280,6 +280,7 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
     let used = factors_used(subject);
     let avatars = stimuli.avatars.iter();
     let methods = stimuli.methods.iter();
+    let sounds = stimuli.sounds.iter();
     let groups = [
         ("avatar", avatars.map(|(k, v)| (below("/stimuli/avatars", k), &v.factors)).collect()),
         (
@@ -292,6 +293,7 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
                 .collect::<Vec<_>>(),
         ),
         ("method", methods.map(|(k, v)| (below("/stimuli/methods", k), &v.factors)).collect()),
+        ("sound", sounds.map(|(k, v)| (below("/stimuli/sounds", k), &v.factors)).collect()),
     ];
     let mut complained: BTreeSet<&str> = BTreeSet::new();
     for (number, (what, group)) in groups.iter().enumerate() {
@@ -302,7 +304,8 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
                     *other != number && group.iter().any(|(_, each)| each.contains_key(factor))
                 });
                 let taken = is_reserved_column(factor)
-                    || ["clip", "segment", "avatar", "truth"].contains(&factor.as_str());
+                    || ["clip", "segment", "avatar", "truth"].contains(&factor.as_str())
+                    || (factor == "sound" && !stimuli.sounds.is_empty());
                 if taken {
                     issues.error(place, Problem::FactorIsColumn { factor: factor.clone() });
                 } else if let Some((_, (other, _))) = elsewhere {
@@ -329,7 +332,7 @@ fn factors_used<'a>(subject: &Subject<'a>) -> BTreeSet<&'a str> {
         }
     }
     let study = subject.study;
-    let mut used = BTreeSet::from(["method", "alpha", "expression", "intensity"]);
+    let mut used = BTreeSet::from(["method", "alpha", "expression", "intensity", "sound"]);
     for hypothesis in &study.hypotheses {
         used.extend(hypothesis.factors.iter().map(String::as_str));
     }
@@ -388,7 +391,9 @@ fn unused(subject: &Subject<'_>, issues: &mut Issues) {
         complain(name, "method", used, below("/stimuli/methods", name));
     }
     for (index, segment) in stimuli.segments.iter().enumerate() {
-        let used = subject.clips.iter().any(|clip| clip.segment == segment.id);
+        let heard =
+            stimuli.sounds.values().any(|rule| rule.from.values().any(|id| *id == segment.id));
+        let used = heard || subject.clips.iter().any(|clip| clip.segment == segment.id);
         complain(&segment.id, "segment", used, below("/stimuli/segments", index));
     }
     for name in stimuli.captures.keys() {

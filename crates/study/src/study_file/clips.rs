@@ -88,7 +88,7 @@ impl BuiltinExpression {
 /// One stimulus: an avatar, a segment, a method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Clip {
-    /// `joy2.lsts30`; with several avatars `joy2.lsts30.ada`.
+    /// `joy2.lsts30`; with several avatars `joy2.lsts30.ada`; where the study names sounds, the sound at the end.
     pub id: String,
     /// Key of `stimuli.avatars`.
     pub avatar: String,
@@ -96,7 +96,10 @@ pub struct Clip {
     pub segment: String,
     /// Key of `stimuli.methods`.
     pub method: String,
-    /// Factors of avatar, segment and method together.
+    /// Key of `stimuli.sounds`, where there are any; the page knows it by the factor `sound`.
+    #[serde(skip)]
+    pub sound: Option<String>,
+    /// Factors of avatar, segment, method and sound together.
     pub factors: Factors,
 }
 
@@ -115,7 +118,7 @@ impl Clip {
 
 impl Study {
     /// Every clip, in the order of the file: the cross product (segment by segment, method by
-    /// method, avatar by avatar), then the list. Combinations whose parts do not exist are left out
+    /// method, avatar by avatar, sound by sound), then the list. Combinations whose parts do not exist are left out
     /// (the check reports them), and so is the second of two that are alike.
     pub fn clips(&self) -> Vec<Clip> {
         let stimuli = &self.stimuli;
@@ -131,14 +134,20 @@ impl Study {
             let segments =
                 or_all(&cross.segments, stimuli.segments.iter().map(|each| &each.id).collect());
             let methods = or_all(&cross.methods, stimuli.methods.keys().collect());
+            let sounds = or_all(&cross.sounds, stimuli.sounds.keys().collect());
+            let mut sounds: Vec<Option<String>> = sounds.into_iter().map(Some).collect();
+            if sounds.is_empty() {
+                sounds.push(None);
+            }
             for segment in &segments {
                 for method in &methods {
                     for avatar in &avatars {
-                        entries.push(ClipEntry {
+                        entries.extend(sounds.iter().map(|sound| ClipEntry {
                             avatar: avatar.clone(),
                             segment: segment.clone(),
                             method: method.clone(),
-                        });
+                            sound: sound.clone(),
+                        }));
                     }
                 }
             }
@@ -169,18 +178,32 @@ impl Study {
         if let Some(alpha) = method.spec.alpha {
             factors.insert("alpha".to_owned(), FactorValue::Number(alpha));
         }
-        for given in [&avatar.factors, &segment.factors, &method.factors] {
+        let sound = match &entry.sound {
+            Some(name) => Some(self.stimuli.sounds.get_key_value(name)?),
+            None => None,
+        };
+        if let Some((name, _)) = sound {
+            factors.insert("sound".to_owned(), FactorValue::Text(name.clone()));
+        }
+        let of_sound = sound.map(|(_, rule)| &rule.factors);
+        for given in
+            [&avatar.factors, &segment.factors, &method.factors].into_iter().chain(of_sound)
+        {
             factors.extend(given.iter().map(|(key, value)| (key.clone(), value.clone())));
         }
         let mut id = format!("{}.{}", entry.segment, entry.method);
         if several_avatars {
             id = format!("{id}.{}", entry.avatar);
         }
+        if let Some(sound) = &entry.sound {
+            id = format!("{id}.{sound}");
+        }
         Some(Clip {
             id,
             avatar: entry.avatar.clone(),
             segment: entry.segment.clone(),
             method: entry.method.clone(),
+            sound: entry.sound.clone(),
             factors,
         })
     }

@@ -104,6 +104,13 @@ pub struct Exclusions {
     /// Leave out a trial answered sooner than this after answers could first be given, milliseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shortest_rt_ms: Option<f64>,
+    /// Leave out a trial whose sound was not played, or was heard more than this, milliseconds, beside the time
+    /// that the study asks for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound_offset_ms: Option<f64>,
+    /// Leave out a participant who did not hear the tones of the sound check.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub sound_not_heard: bool,
     /// Leave out a participant who gave the same answer in too many trials in a row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_lining: Option<StraightLining>,

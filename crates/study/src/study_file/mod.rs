@@ -17,6 +17,7 @@ mod media;
 mod method;
 mod paths;
 mod sequence;
+mod sound;
 mod stimuli;
 mod tables;
 
@@ -48,6 +49,10 @@ pub use paths::{PathError, WrongVariable, resolve_path};
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
+};
+pub use sound::{
+    Caption, CaptionRule, CaptureSound, HeardSound, Hearing, SegmentSound, SoundCheck, SoundPages,
+    SoundPlace, SoundRule, SoundSection,
 };
 pub use stimuli::{
     Avatar, AvatarLook, AvatarSource, BuiltinAvatar, BuiltinCapture, Capture, CaptureGaze,
@@ -104,6 +109,9 @@ pub struct Study {
     /// How large a CSS pixel is, and how far away the eyes are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// How participants meet the sound of clips: captions, and the page on which the volume is set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<SoundSection>,
     /// Trials for practice; their answers are marked `training`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training: Option<Training>,

@@ -254,6 +254,7 @@ impl Beside {
             each.segment == clip.segment
                 && each.method == self.method
                 && each.avatar == *avatar
+                && each.factors.get("sound") == clip.factors.get("sound")
                 && each.id != clip.id
         })
     }

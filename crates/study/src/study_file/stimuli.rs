@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{BuiltinExpression, ExertionCapture, Factors, LocalText, MethodEntry};
+use super::{
+    BuiltinExpression, CaptureSound, ExertionCapture, Factors, LocalText, MethodEntry,
+    SegmentSound, SoundRule,
+};
 
 /// A path that starts with this is resolved by the native loader in the folder that the
 /// environment variable `MIMIQUE_DATA` names; unset, the loader refuses the study and says so.
@@ -24,6 +27,10 @@ pub struct Stimuli {
     pub segments: Vec<Segment>,
     /// Methods with parameters, by identifier.
     pub methods: BTreeMap<String, MethodEntry>,
+    /// Which sounds clips are played with, by identifier: a factor. Each clip has its segment's own sound, if it
+    /// has one, where none is given.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sounds: BTreeMap<String, SoundRule>,
     /// Which avatar performs which segment by which method; every combination if not given.
     #[serde(default)]
     pub clips: ClipRules,
@@ -170,6 +177,9 @@ pub struct Capture {
     /// Where the eyes look in every clip of this capture; they rest if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<CaptureGaze>,
+    /// What was recorded with the whole capture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<CaptureSound>,
     /// Frames a second that are solved and shown, the capture's own if not given. Fewer than the
     /// capture has: low-passed below what they can hold, then brought to the rate. At 60 Hz a
     /// participant loads and solves a third of a capture of 200 Hz. Segments and `neutral` still
@@ -295,6 +305,9 @@ pub struct Segment {
     /// What a built-in actor performs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub performance: Option<Performance>,
+    /// What is heard with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<SegmentSound>,
     /// Factors of its clips. A performance's `expression` and `intensity` are always there.
     #[serde(default, skip_serializing_if = "Factors::is_empty")]
     pub factors: Factors,
@@ -360,6 +373,9 @@ pub struct ClipCross {
     /// Methods; all if not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub methods: Vec<String>,
+    /// Sounds; all if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sounds: Vec<String>,
 }
 
 /// One clip of a list.
@@ -372,6 +388,9 @@ pub struct ClipEntry {
     pub segment: String,
     /// Which method.
     pub method: String,
+    /// Which of `sounds`, where there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<String>,
 }
 
 /// The same look for every clip.

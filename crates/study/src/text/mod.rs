@@ -2,6 +2,7 @@
 //! here; a study file brings others (`translations`).
 
 mod sentences;
+mod sound;
 mod table;
 mod translation;
 mod typography;
@@ -10,6 +11,7 @@ use std::collections::BTreeMap;
 
 use std::borrow::Cow;
 
+pub use sound::sound_words;
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
 pub use translation::{Fault, faults, names, template};
 pub use typography::typeset;

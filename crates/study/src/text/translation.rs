@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::sound::SOUND;
 use super::table::{ENGLISH, NAMES};
 use super::{primary_language, words};
 
@@ -25,25 +26,33 @@ pub enum Fault {
 }
 
 /// Everything that is wrong with a translation, texts by name. English and French may be changed in
-/// part: nothing is missing there.
-pub fn faults(language: &str, texts: &BTreeMap<String, String>) -> Vec<Fault> {
+/// part: nothing is missing there; nor are the texts on sound where the study has none.
+pub fn faults(language: &str, texts: &BTreeMap<String, String>, has_sound: bool) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (name, text) in texts {
-        match NAMES.iter().position(|known| known == name) {
+        match built_in().find(|(known, _)| known == name) {
             None => faults.push(Fault::Unknown { name: name.clone() }),
-            Some(place) if placeholders(text) != placeholders(ENGLISH[place]) => {
-                faults.push(Fault::Placeholders { name: name.clone(), english: ENGLISH[place] });
+            Some((_, english)) if placeholders(text) != placeholders(english) => {
+                faults.push(Fault::Placeholders { name: name.clone(), english });
             }
             Some(_) => {}
         }
     }
-    let missing = NAMES.iter().copied().filter(|name| !texts.contains_key(*name));
+    let needed = NAMES.len() + if has_sound { SOUND.len() } else { 0 };
+    let needed = built_in().map(|(name, _)| name).take(needed);
+    let missing = needed.filter(|name| !texts.contains_key(*name));
     let missing: Vec<&str> = missing.collect();
     let complete = words(language).language() == primary_language(language);
     if !missing.is_empty() && !complete {
         faults.push(Fault::Missing(missing));
     }
     faults
+}
+
+/// Every text's name and what it is in English, those on sound at the end.
+fn built_in() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let sound = SOUND.iter().map(|[name, english, _]| (*name, *english));
+    NAMES.iter().copied().zip(ENGLISH.iter().copied()).chain(sound)
 }
 
 /// The words in braces, in alphabetical order, each once.
@@ -61,12 +70,14 @@ fn placeholders(text: &str) -> Vec<&str> {
 /// Every text by its name, in the order of the pages, as a beginning for a translation: in the built-in
 /// language nearest to it.
 pub fn template(language: &str) -> Vec<(&'static str, &'static str)> {
-    NAMES.iter().copied().zip(words(language).built_in.iter().copied()).collect()
+    let place = if primary_language(language) == "fr" { 2 } else { 1 };
+    let sound = SOUND.iter().map(|row| (row[0], row[place]));
+    NAMES.iter().copied().zip(words(language).built_in.iter().copied()).chain(sound).collect()
 }
 
 /// The names of the texts.
-pub fn names() -> &'static [&'static str] {
-    &NAMES
+pub fn names() -> impl Iterator<Item = &'static str> {
+    built_in().map(|(name, _)| name)
 }
 
 #[cfg(test)]
@@ -88,13 +99,17 @@ mod tests {
         let texts = |pairs: &[(&str, &str)]| -> BTreeMap<String, String> {
             pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
+        for [name, english, french] in SOUND {
+            assert_eq!(placeholders(english), placeholders(french), "{name}");
+            assert!(!NAMES.contains(&name), "{name}");
+        }
         let whole: BTreeMap<String, String> = template("de")
             .into_iter()
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect();
-        assert_eq!(faults("de", &whole), []);
-        let found =
-            faults("de", &texts(&[("trial_of", "Clip {nummer} von {of}"), ("nxt", "Weiter")]));
+        assert_eq!(faults("de", &whole, true), []);
+        let texts_of = texts(&[("trial_of", "Clip {nummer} von {of}"), ("nxt", "Weiter")]);
+        let found = faults("de", &texts_of, false);
         let [Fault::Unknown { name }, Fault::Placeholders { name: other, english }, rest] =
             found.as_slice()
         else {
@@ -104,7 +119,11 @@ mod tests {
         assert_eq!(*english, "Clip {number} of {of}");
         let Fault::Missing(missing) = rest else { panic!("{rest:?}") };
         assert_eq!(missing.len(), NAMES.len() - 1);
+        // What is said of sound is needed where there is sound.
+        let found = faults("de", &texts_of, true);
+        let Some(Fault::Missing(with_sound)) = found.last() else { panic!("{found:?}") };
+        assert_eq!(with_sound.len(), missing.len() + SOUND.len());
         // A word of English or French may be changed alone.
-        assert_eq!(faults("fr-CA", &texts(&[("play", "Jouer l’extrait")])), []);
+        assert_eq!(faults("fr-CA", &texts(&[("play", "Jouer l’extrait")]), true), []);
     }
 }

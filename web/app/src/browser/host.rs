@@ -72,6 +72,10 @@ extern "C" {
     #[wasm_bindgen(js_name = download)]
     pub fn download(name: &str, text: &str);
 
+    /// Gives the sound check (an input), or the captions below a clip, their place.
+    #[wasm_bindgen(js_name = attachSound)]
+    pub fn attach_sound(node: &Node);
+
     /// Aborts the play in progress.
     #[wasm_bindgen(js_name = stopClip)]
     pub fn stop_clip();

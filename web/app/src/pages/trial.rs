@@ -37,6 +37,7 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         .with(heading(&trial.heading))
         .option(trial.instruction.as_ref().map(|text| words("p", "", text).key("instruction")))
         .with(frame(engine, trial, seen))
+        .option(trial.captions.as_ref().map(captions))
         .with(words("p", "trial-message", &trial.message).key("message").set("role", "status"));
     if let Some((reason, retry)) = failed {
         card = card
@@ -58,6 +59,15 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         .set("data-phase", phase_word(&trial.phase))
         .with(progress_line(trial.progress))
         .with(el("div", "trial").key("trial").with(card).with(answers))
+}
+
+/// The place of the captions, which a script fills (`static/sound/sound.js`).
+fn captions([rule, label]: &[String; 2]) -> Element {
+    el("div", "captions")
+        .key("captions")
+        .set("data-captions", rule)
+        .set("data-label", label)
+        .mounted(host::attach_sound, || ())
 }
 
 /// The button that plays, on the picture. It stays while the clip is loaded and played: the keyboard's place

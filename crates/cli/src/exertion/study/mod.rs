@@ -210,6 +210,7 @@ fn add(
         first: Some(frame(seconds - clip)),
         end: Some(frame(seconds)),
         performance: None,
+        sound: None,
         factors,
     });
     let capture = Capture { exertion: Some(own), ..Capture::default() };
