@@ -25,8 +25,7 @@ const study = small("sound", {
   exclusions: { soundOffsetMs: 45, soundNotHeard: true },
   stimuli: {
     avatars: { head: { builtin: { seed: 1, vertices: 2000 } } },
-    // Recorded weights have no markers; the check asks every file of a capture for a map.
-    captures: { take: { file: "take.csv", markers: "map.json", neutral: [0, 1], head: ["A", "B", "C"] } },
+    captures: { take: { file: "take.csv" } },
     methods: { real: { method: "recorded" } },
     look: { width: 240, height: 240 },
     segments: [
@@ -44,7 +43,6 @@ function written() {
   // Four seconds of a mouth that opens and shuts, 50 frames per second.
   const rows = Array.from({ length: 200 }, (_, frame) => `${frame},${(frame / 50).toFixed(2)},${Math.abs(Math.sin(frame / 8)).toFixed(3)}`);
   writeFileSync(join(folder, "take.csv"), ["frame,time,jawOpen", ...rows, ""].join("\n"));
-  writeFileSync(join(folder, "map.json"), "{}");
   writeFileSync(join(folder, "joy.wav"), wav(2.5, 440));
   writeFileSync(join(folder, "fear.wav"), wav(2.5, 220));
   return join(folder, "sound.json");

@@ -170,3 +170,22 @@ fn conditions_that_cannot_be_read_are_not_missed() {
     let codes: Vec<&str> = found(&file).into_iter().map(|(_, code)| code).collect();
     assert_eq!(codes, ["wrong-type", "wrong-type"]);
 }
+
+#[test]
+fn recorded_weights_that_are_only_played_need_no_marker_map() {
+    let codes = |methods: Value| -> Vec<&'static str> {
+        let mut file = parse(&study_text("demo.json")).unwrap();
+        file["stimuli"]["captures"] = json!({"take": {"file": "weights.csv"}});
+        file["stimuli"]["segments"] =
+            json!([{"id": "one", "capture": "take", "first": 0, "end": 90}]);
+        file["stimuli"]["methods"] = methods;
+        let markers = ["no-markers", "no-neutral", "no-head"];
+        let of_capture = found(&file).into_iter().filter(|(place, code)| {
+            place.starts_with("/stimuli/captures/take") && markers.contains(code)
+        });
+        of_capture.map(|(_, code)| code).collect()
+    };
+    assert_eq!(codes(json!({"real": {"method": "recorded"}})), [""; 0]);
+    let solved = codes(json!({"real": {"method": "recorded"}, "lsts": {"method": "lsts"}}));
+    assert_eq!(solved, ["no-markers", "no-neutral", "no-head"]);
+}

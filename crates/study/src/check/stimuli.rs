@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use mimique_solver::Method;
+
 use super::exertion::SLOWEST_HZ;
 use super::issue::{Issues, below};
 use super::problem::Problem;
@@ -21,13 +23,14 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         avatars::examine(avatar, &pointer, lookup, issues);
     }
     avatars::videos(subject, issues);
+    let only_played = only_played(subject);
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
         identifier(name, &pointer, issues);
         one_source(capture, &pointer, issues);
         file(capture.file.as_deref(), &below(&pointer, "file"), lookup, issues);
         file(capture.markers.as_deref(), &below(&pointer, "markers"), lookup, issues);
-        recorded(capture, &pointer, issues);
+        recorded(capture, only_played.contains(name.as_str()), &pointer, issues);
         gaze(capture, &below(&pointer, "gaze"), lookup, issues);
         if let Some(own) = &capture.exertion {
             exertion::examine(capture, own, &pointer, lookup, issues);
@@ -73,7 +76,27 @@ pub(super) fn file(
     }
 }
 
-fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
+/// The captures that clips play as they were recorded, and no method solves or learns from.
+fn only_played<'s>(subject: &Subject<'s>) -> BTreeSet<&'s str> {
+    let stimuli = &subject.study.stimuli;
+    let (mut played, mut solved) = (BTreeSet::new(), BTreeSet::new());
+    for clip in subject.study.clips() {
+        let method = stimuli.methods.get(&clip.method);
+        let capture = stimuli.segments.iter().find(|segment| segment.id == clip.segment);
+        if let (Some(method), Some(segment)) = (method, capture) {
+            let recorded = method.spec.method == Method::Recorded;
+            let of = if recorded { &mut played } else { &mut solved };
+            of.insert(segment.capture.as_str());
+        }
+    }
+    solved.extend(
+        stimuli.methods.values().filter_map(|m| Some(m.training.as_ref()?.capture.as_str())),
+    );
+    played.into_iter().filter(|capture| !solved.contains(capture)).collect()
+}
+
+/// What a file of markers needs beside it; recorded weights that are only played need none of it.
+fn recorded(capture: &Capture, only_played: bool, pointer: &str, issues: &mut Issues) {
     if let Some(unit) = capture.unit.as_deref().filter(|unit| !["m", "cm", "mm"].contains(unit)) {
         issues.error(below(pointer, "unit"), Problem::Unit { unit: unit.to_owned() });
     }
@@ -90,7 +113,7 @@ fn recorded(capture: &Capture, pointer: &str, issues: &mut Issues) {
     if let Some(hertz) = capture.rate_hz.filter(|hertz| !RATES_HZ.contains(hertz)) {
         issues.error(below(pointer, "rateHz"), Problem::FrameRate { hertz });
     }
-    if let Some(CaptureSource::File(_)) = capture.source() {
+    if let Some(CaptureSource::File(_)) = capture.source().filter(|_| !only_played) {
         if capture.markers.is_none() {
             issues.error(pointer, Problem::NoMarkers);
         }
