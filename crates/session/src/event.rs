@@ -103,7 +103,7 @@ pub enum EventKind {
         /// Identifier of the step.
         step: String,
         /// What the stage measured.
-        log: PlayLog,
+        log: Box<PlayLog>,
     },
     /// The questions of a trial were sent.
     TrialFinished {
@@ -211,7 +211,7 @@ impl EventKind {
             return serde_json::from_str(body).ok();
         }
         let Played { step, log } = serde_json::from_str(body).ok()?;
-        Some(Self::TrialPlayed { step, log })
+        Some(Self::TrialPlayed { step, log: Box::new(log) })
     }
 
     /// The body of a [`crate::wire::Event`].

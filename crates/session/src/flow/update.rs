@@ -321,7 +321,7 @@ impl<'a> Transition<'a> {
         }
         self.state.live.play = Play::Still;
         let log = self.judged(log.clone());
-        self.record(EventKind::TrialPlayed { step: step.id.clone(), log });
+        self.record(EventKind::TrialPlayed { step: step.id.clone(), log: Box::new(log) });
         self.end_slow();
         true
     }

@@ -61,7 +61,7 @@ impl Record {
                 }
                 fits
             }
-            EventKind::TrialPlayed { step, log } => self.played(plan, &step, log, at_ms),
+            EventKind::TrialPlayed { step, log } => self.played(plan, &step, *log, at_ms),
             EventKind::PageFinished { step, answers, timed_out } => {
                 let done = FinishedStep { id: step, answers, timed_out, ..Default::default() };
                 self.page_finished(plan, done, at_ms)
