@@ -107,7 +107,7 @@ fn a_simulated_export_is_the_same_on_any_number_of_threads_and_can_be_analysed()
     let ratio = times.as_f64().expect("a time") / planted.as_f64().expect("a time");
     assert!((0.7..1.4).contains(&ratio), "{times} for {planted}");
 
-    for (format, count) in [("wide", 2), ("json", 2), ("events", 2), ("psych-ds", 5)] {
+    for (format, count) in [("wide", 2), ("json", 2), ("events", 2), ("psych-ds", 6)] {
         let out = folder.path().join(format);
         let out = out.to_str().expect("UTF-8");
         ok(&["simulate", &study, "-n", "3", "--format", format, "--out", out]);

@@ -87,7 +87,7 @@ impl<'d> Data<'d> {
             trials: 0,
             failed_checks: 0,
             longest_run: 0,
-            heard: true,
+            heard: self.design.study.has_sound(),
             excluded: None,
         };
         let mut has_rows = !person.about.is_empty() || self.design.study.training.is_some();

@@ -41,6 +41,9 @@ impl SoundFormat {
     }
 }
 
+/// A packet of Opus, of one byte at least, lasts this long at most, seconds (RFC 6716, section 3.2.5).
+const LONGEST_PACKET_S: f64 = 0.12;
+
 /// What a file of sound holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoundFacts {
@@ -116,6 +119,9 @@ pub fn read_sound(bytes: &[u8]) -> Result<SoundFacts, SoundError> {
         Some(FileType::Opus) => {
             let opus = OpusFile::read_from(&mut file, options).map_err(SoundError::damaged)?;
             let facts = opus.properties();
+            if facts.duration().as_secs_f64() > LONGEST_PACKET_S * bytes.len() as f64 {
+                return Err(SoundError::damaged("it would last longer than its bytes can"));
+            }
             // Opus is decoded at 48 kHz, whatever it was made of (RFC 7845, section 5.1).
             (SoundFormat::OggOpus, facts.duration(), 48_000, facts.channels())
         }

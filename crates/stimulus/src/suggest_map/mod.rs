@@ -21,7 +21,7 @@ use mimique_solver::SkinMesh;
 use serde::Serialize;
 
 use self::anchors::Anchors;
-use self::label_words::{Region, place_of};
+use self::label_words::{Region, Side, place_of};
 use self::motion::{marker_motion, ranks_agree, rigid_to};
 use self::named_places::NamedPlaces;
 use self::registration::register;
@@ -219,8 +219,8 @@ fn suggested<'l>(
 
 /// Whether a label names a part of the face that moves against the skull.
 fn moves_by_name(label: &str) -> bool {
-    let still = [Region::Nose];
-    place_of(label).is_some_and(|(region, _)| !still.contains(&region))
+    // The wings of the nostrils move, the root and the tip of the nose hardly do.
+    place_of(label).is_some_and(|place| place != (Region::Nose, Side::Middle))
 }
 
 /// What should be looked at in a suggestion.
