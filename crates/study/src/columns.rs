@@ -75,6 +75,10 @@ pub const SOUND_COLUMNS: [(&str, ColumnKind, &str, &str); 11] = {
     ]
 };
 
+/// Columns of the table of stimuli that are no measures; the factors of the clips stand behind them.
+pub const STIMULI_COLUMNS: [&str; 7] =
+    ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
+
 /// Whether a column of exports is called so: nothing of a study may be.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION

@@ -5,12 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_stats::Table;
 use mimique_study::Study;
+use mimique_study::columns::STIMULI_COLUMNS;
 
 use crate::trials::error::StimuliError;
-
-/// Columns of the table that are no measures, with the factors of the study.
-const NO_MEASURES: [&str; 7] =
-    ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
 /// Measures of stimuli.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +25,7 @@ impl StimulusMeasures {
         let Ok(place) = table.position("stimulus") else { return Err(StimuliError::NoStimulus) };
         let factors = study.factor_names();
         let is_measure =
-            |name: &String| !NO_MEASURES.contains(&name.as_str()) && !factors.contains(name);
+            |name: &String| !STIMULI_COLUMNS.contains(&name.as_str()) && !factors.contains(name);
         let mut found = Self { measures: Vec::new(), ambiguous: BTreeSet::new() };
         for name in table.names().iter().filter(|name| is_measure(name)) {
             let cells: Vec<Option<&str>> = table.column(name).into_iter().flatten().collect();

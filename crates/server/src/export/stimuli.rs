@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use mimique_storage::Storage;
+use mimique_study::columns::STIMULI_COLUMNS;
 use serde_json::Value;
 
 use super::choose;
@@ -25,7 +26,7 @@ pub async fn stimuli(
 
 /// The table of the versions of a study.
 pub(super) fn table(sources: &Sources) -> Result<Vec<u8>, ExportError> {
-    let mut names: Vec<String> = FIXED.map(str::to_owned).to_vec();
+    let mut names: Vec<String> = STIMULI_COLUMNS.map(str::to_owned).to_vec();
     let mut rows: Vec<Vec<(String, Value)>> = Vec::new();
     let mut told = BTreeSet::new();
     for version in &sources.versions {
@@ -47,10 +48,10 @@ pub(super) fn table(sources: &Sources) -> Result<Vec<u8>, ExportError> {
                 drawn.map(|source| source.weights_hash.clone()).into(),
             ]
             .into_iter()
-            .zip(FIXED)
+            .zip(STIMULI_COLUMNS)
             .map(|(value, name)| (name.to_owned(), value))
             .collect();
-            let own = |(name, _): &(&String, _)| !FIXED.contains(&name.as_str());
+            let own = |(name, _): &(&String, _)| !STIMULI_COLUMNS.contains(&name.as_str());
             let factors = clip.factors.iter().filter(own);
             row.extend(factors.map(|(name, value)| (name.clone(), value.to_value())));
             let measured = version.measures.iter().find(|measures| measures.clip == clip.id);
@@ -73,7 +74,3 @@ pub(super) fn table(sources: &Sources) -> Result<Vec<u8>, ExportError> {
     bytes.extend(csv::lines(&cells, Cells::AsTheyAre)?);
     Ok(bytes)
 }
-
-/// Columns that every study has.
-const FIXED: [&str; 7] =
-    ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
