@@ -3,7 +3,7 @@
 //! Camera and light are the stage's and one for all clips, and no clip carries motion of the head: what can differ is
 //! how long clips are, when their frames are shown, where the eyes look, and when they blink.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use mimique_avatar::pack::{PackError, decode_pack};
 use mimique_avatar::{EyeAngles, GazeShapes, blinks};
@@ -175,12 +175,12 @@ pub fn compare_clips(
     read: ReadPack<'_>,
 ) -> Result<StudyComparison, ComparisonError> {
     // Clips that differ by their sound alone show the same face.
-    let mut faces_shown = BTreeSet::new();
-    let mut clips = study.clips();
-    clips.retain(|clip| {
-        let Clip { avatar, segment, method, .. } = clip.clone();
-        faces_shown.insert((avatar, segment, method))
-    });
+    let mut clips: Vec<Clip> = Vec::new();
+    for clip in study.clips() {
+        if !clips.iter().any(|own| shows_the_same(own, &clip)) {
+            clips.push(clip);
+        }
+    }
     let mut faces = Faces { read, skins: BTreeMap::new(), faces: BTreeMap::new() };
     let mut comparison = StudyComparison::default();
     // Surfaces last: the other clips of an avatar tell its landmarks.
@@ -205,7 +205,20 @@ pub fn compare_clips(
         }
         comparison.measures.extend(shown.iter().map(|own| measured(own, &shown, &faces)));
     }
+    // With another sound the face moves as it does.
+    for clip in study.clips() {
+        let twin = clips.iter().find(|own| shows_the_same(own, &clip) && own.id != clip.id);
+        let measured = |twin: &Clip| comparison.measures.iter().find(|own| own.clip == twin.id);
+        if let Some(measures) = twin.and_then(measured).cloned() {
+            comparison.measures.push(ClipMeasures { clip: clip.id, ..measures });
+        }
+    }
     Ok(comparison)
+}
+
+/// Whether two clips show the same face: they may differ by their sound.
+fn shows_the_same(a: &Clip, b: &Clip) -> bool {
+    [&a.avatar, &a.segment, &a.method] == [&b.avatar, &b.segment, &b.method]
 }
 
 /// A clip as it is shown.
@@ -213,7 +226,7 @@ struct Shown<'c> {
     clip: &'c Clip,
     method: Method,
     solved: SolvedTake,
-    /// Median correlation of the skin with the markers; none of recorded weights and moved surfaces.
+    /// Median correlation of the skin with the markers; none of recorded weights.
     marker_correlation: Option<f64>,
     motion: FaceMotion,
     eyes: Vec<EyeAngles>,

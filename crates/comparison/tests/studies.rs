@@ -97,3 +97,13 @@ fn eyes_that_look_elsewhere_in_the_performance_itself_are_found_until_a_gaze_is_
     assert_eq!(value(&told, "joy2.real", "residual_mm"), None);
     assert!(value(&told, "joy2.real", "range_mm_face").unwrap() > 0.1);
 }
+
+#[test]
+fn clips_that_differ_by_their_sound_alone_have_the_same_measures() {
+    let mut told = stimuli(Value::Null, json!({"box": {"method": "box"}}));
+    told["sounds"] = json!({"silent": {"silent": true}, "mute": {"silent": true}});
+    let told = compared(told);
+    assert!(told.differences.is_empty(), "{:?}", told.differences);
+    let [a, b] = &told.measures[..] else { panic!("{:?}", told.measures) };
+    assert!(a.clip != b.clip && a.values == b.values && !a.values.is_empty(), "{a:?} {b:?}");
+}
