@@ -38,16 +38,19 @@ export class ShownComparison {
   }
 }
 
-function lips({ clips: [first, second], lipVertexErrorMm: error, lipClosureMisses: misses }) {
+function lips({ clips: [first, second], lipVertexErrorMm: error, upperFaceDeviationMm2: upper, lipGapErrorMm: gap, lipClosures: closures }) {
   const said = [];
   if (error !== undefined) said.push(`Lip vertex error ${error.toFixed(2)} mm.`);
-  if (misses !== undefined) said.push(`Where the lips of ${first} are shut, those of ${second} are open in ${(100 * misses).toFixed(1)} % of the frames.`);
+  if (gap !== undefined) said.push(`Error of the lips’ gap ${gap.toFixed(2)} mm.`);
+  if (upper !== undefined) said.push(`Upper-face dynamics deviation ${upper.toFixed(2)} mm².`);
+  if (closures?.shut > 0) said.push(`Of ${closures.shut} ${closures.shut === 1 ? "frame" : "frames"} in which the lips of ${first} are shut, those of ${second} are shut in ${closures.kept}.`);
   return said.join(" ");
 }
 
 function words({ what, milliseconds, ratesHz, degrees, shut, frame }) {
   if (what === "duration") return `They last ${milliseconds.map((ms) => ms.toFixed(0)).join(" and ")} ms: cut both to the same frames.`;
   if (what === "frameTimes") return `They show ${ratesHz.join(" and ")} frames per second: give the capture one "rateHz".`;
+  if (what === "headPose") return `Their heads are turned ${degrees.toFixed(1)} degrees from each other in frame ${frame}: give all captures of the segment the same "headMotion".`;
   if (what === "gaze") return `Their eyes look ${degrees.toFixed(1)} degrees aside from each other in frame ${frame}: give the capture a "gaze".`;
   return `Their eyes are shut by ${shut.map((part) => part.toFixed(2)).join(" and ")} in frame ${frame}: one blinks and the other does not.`;
 }

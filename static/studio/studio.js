@@ -9,6 +9,7 @@ import { Layouts } from "./layouts.js";
 import { Matching } from "./matching.js";
 import { MethodPanel } from "./panel.js";
 import { Timeline } from "./timeline.js";
+import { GivenGaze } from "./gaze.js";
 import { TrainingFiles } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
@@ -71,6 +72,9 @@ const page = {
       panel.solveSoon();
     }
   },
+  gazeChanged() {
+    for (const panel of here.panels) panel.solveSoon();
+  },
   trainingChanged(state) {
     here.training = state;
     for (const panel of here.panels) panel.trainingChanged();
@@ -119,6 +123,7 @@ const timeline = new Timeline({
 const labels = new Labels({ ...page, expressions: (segments) => timeline.take(segments) });
 wireExports({ ...page, panels: () => player.panels });
 new TrainingFiles(page);
+const gaze = new GivenGaze(page);
 
 // What can be played: all, a segment, and, where a take is longer, the window of the exertion.
 function fillRange() {
@@ -163,6 +168,7 @@ async function avatarHere(facts) {
 async function takeHere(facts) {
   if (!facts) return;
   here.take = facts;
+  await gaze.takeChanged();
   if (facts.kind === "weights") {
     $("take-facts").textContent = `${facts.file}: recorded weights, ${facts.frames} frames, ${facts.columns.length} columns`;
     timeline.reset(facts.frames, facts.rate_hz ?? 1);

@@ -6,6 +6,7 @@ const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
   "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
   "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
+  "restGaze", "holdGaze", "gazeAtMarker", "gazeFile",
   "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",
   "labelsFromExpressions", "labelsToExpressions",
   "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",

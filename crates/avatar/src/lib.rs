@@ -33,6 +33,7 @@
 
 mod avatar;
 mod gaze;
+mod head_pose;
 mod image;
 pub mod pack;
 mod shape_names;
@@ -44,8 +45,10 @@ pub use avatar::{
 pub use gaze::{
     EyeAngles, GazeAngles, GazeShapes, LOOK_DEGREES, VERGENCE_DEGREES, VERTICAL_DISPARITY_DEGREES,
 };
+pub use head_pose::{HEAD_POSE_DEGREES, HEAD_POSE_SHAPES, HeadAngles};
 pub use image::{Image, MOST_TEXTURE_SIDE};
 pub use shape_names::{
-    ARKIT_SHAPES, BODY_SHAPES, ShapeMap, arkit_shapes, blinks, map_shapes, shows_body, turns_eyes,
+    ARKIT_SHAPES, BODY_SHAPES, BREATH, ShapeMap, arkit_shapes, blinks, map_shapes, shows_body,
+    turns_eyes,
 };
 pub use texture::TextureError;

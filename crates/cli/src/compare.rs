@@ -114,7 +114,7 @@ fn weights_on(
     path: &Path,
     rate_hz: Option<f64>,
 ) -> anyhow::Result<(Vec<f64>, f64)> {
-    let options = WeightOptions { rate_hz, shape_names: &skin.shape_names };
+    let options = WeightOptions { rate_hz, shape_names: &skin.shape_names, animation: None };
     let recorded = read_performance(path, &options).map_err(|e| blame(path, e))?.table;
     let RecordedWeights { table, names } =
         RecordedWeights::of(&recorded, &skin.shape_names).map_err(|e| blame(path, e))?;
@@ -187,7 +187,11 @@ fn csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
         "largest_mm",
         "largest_frame",
         "lip_vertex_error_mm",
-        "lip_closure_misses",
+        "lip_vertex_error_mm2",
+        "upper_face_deviation_mm2",
+        "lip_gap_error_mm",
+        "lips_shut_frames",
+        "lips_kept_shut_frames",
         "jerk_m_per_s3",
         "marker_correlation",
     ])?;
@@ -198,6 +202,7 @@ fn csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
             let whole = *part == "Face";
             let of_face = |value: Option<f64>| text(value.filter(|_| whole));
             let difference = row.difference.as_ref();
+            let closures = difference.and_then(|d| d.lip_closures);
             out.write_record([
                 row.file.display().to_string(),
                 (*part).to_owned(),
@@ -206,7 +211,11 @@ fn csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
                 text(own.map(|part| part.largest_mm)),
                 own.map_or(String::new(), |part| part.largest_frame.to_string()),
                 of_face(difference.and_then(|d| d.lip_vertex_error_mm)),
-                of_face(difference.and_then(|d| d.lip_closure_misses)),
+                of_face(difference.and_then(|d| d.lip_vertex_error_mm2)),
+                of_face(difference.and_then(|d| d.upper_face_deviation_mm2)),
+                of_face(difference.and_then(|d| d.lip_gap_error_mm)),
+                of_face(closures.map(|own| own.shut as f64)),
+                of_face(closures.map(|own| own.kept as f64)),
                 of_face(Some(row.measures.jerk)),
                 of_face(row.marker_correlation),
             ])?;
@@ -232,15 +241,8 @@ fn tell(out: &mut impl std::io::Write, row: &Row) -> std::io::Result<()> {
         }
         writeln!(out)?;
     }
-    if let Some(error) = difference.as_ref().and_then(|d| d.lip_vertex_error_mm) {
-        writeln!(out, "  lip vertex error {error:.3} mm")?;
-    }
-    if let Some(share) = difference.as_ref().and_then(|d| d.lip_closure_misses) {
-        writeln!(
-            out,
-            "  lips not shut in {:.1} % of the frames in which they should be",
-            100.0 * share
-        )?;
+    if let Some(difference) = difference {
+        tell_difference(out, difference)?;
     }
     writeln!(out, "  jerk {:.2} m/s^3", measures.jerk)?;
     if let Some(r) = marker_correlation {
@@ -251,4 +253,26 @@ fn tell(out: &mut impl std::io::Write, row: &Row) -> std::io::Result<()> {
 
 fn blame(file: &Path, error: impl std::fmt::Display) -> anyhow::Error {
     anyhow!("{}: {error}", file.display())
+}
+
+/// What is told of the lips and the upper face.
+fn tell_difference(out: &mut impl std::io::Write, difference: &Difference) -> std::io::Result<()> {
+    if let (Some(error), Some(squared)) =
+        (difference.lip_vertex_error_mm, difference.lip_vertex_error_mm2)
+    {
+        writeln!(out, "  lip vertex error {error:.3} mm ({squared:.3} mm^2)")?;
+    }
+    if let Some(deviation) = difference.upper_face_deviation_mm2 {
+        writeln!(out, "  upper-face dynamics deviation {deviation:.3} mm^2")?;
+    }
+    if let Some(error) = difference.lip_gap_error_mm {
+        writeln!(out, "  error of the lips' gap {error:.3} mm")?;
+    }
+    match difference.lip_closures {
+        Some(own) if own.shut > 0 => {
+            let frames = if own.shut == 1 { "frame" } else { "frames" };
+            writeln!(out, "  lips kept shut in {} of {} {frames}", own.kept, own.shut)
+        }
+        _ => Ok(()),
+    }
 }

@@ -121,6 +121,8 @@ fn read(args: &Args, markers: &Path, spec: &mut MethodSpec) -> anyhow::Result<In
         },
         depth: args.depth,
         gaze: gaze::given(args)?,
+        // Weights on file are of the face alone.
+        head_motion: 0.0,
         training: training(args, &avatar.avatar.shape_names)?.map(Box::new),
         repair: sidecar.as_ref().map(RepairSidecar::hash),
     };
@@ -154,7 +156,7 @@ fn training(args: &Args, shape_names: &[String]) -> anyhow::Result<Option<Traini
         capture: capture(args, take)?.capture,
         weights: read_performance(
             weights,
-            &WeightOptions { rate_hz: args.mocap_rate, shape_names },
+            &WeightOptions { rate_hz: args.mocap_rate, shape_names, animation: None },
         )
         .map_err(|e| blame(weights, e))?
         .table,

@@ -36,7 +36,7 @@ fn places(map: &Value) -> Vec<(String, Point)> {
 
 /// Rows of weights in the order of the avatar's shapes: a second of rest, then every 20th frame of a file.
 fn performed(skin: &AvatarSkin, file: &Path) -> Vec<Vec<f64>> {
-    let options = WeightOptions { rate_hz: None, shape_names: &skin.shape_names };
+    let options = WeightOptions { rate_hz: None, shape_names: &skin.shape_names, animation: None };
     let table = read_weights_file(file, &options).expect("weights");
     let of = |row: &[f64], name: &String| {
         let column = table.shape_names.iter().position(|own| own == name);
@@ -117,7 +117,8 @@ fn solve_reads_a_layout_as_it_is() {
         "--out",
         &solved,
     ]);
-    let options = WeightOptions { rate_hz: Some(20.0), shape_names: &skin.shape_names };
+    let options =
+        WeightOptions { rate_hz: Some(20.0), shape_names: &skin.shape_names, animation: None };
     let table = read_weights_file(&at("solved.csv"), &options).expect("weights");
     let (mut square, mut motion) = (0.0, 0.0);
     let rows = table.weights.chunks_exact(table.shape_names.len());

@@ -1,20 +1,21 @@
 //! The solve of one clip from its two packs: the same function natively and in the browser, so
 //! that the server knows the weights that every browser will compute.
 
+use mimique_avatar::HEAD_POSE_SHAPES;
 use mimique_avatar::pack::PackError;
 use mimique_solver::{FitError, MethodSpec, Operators};
 
 use crate::frame_statistics::FrameStatistics;
 use crate::hashes::weights_hash;
 use crate::packs::{
-    TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
+    SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
 };
 use crate::pipeline::{MarkerTake, PipelineError, solve_markers};
 
 /// The weights of a clip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolvedTake {
-    /// The N shapes, in the avatar's order.
+    /// The N shapes, in the avatar's order; behind those of the face perhaps those that turn the head.
     pub shape_names: Vec<String>,
     /// Frames per second.
     pub rate_hz: f64,
@@ -116,14 +117,41 @@ pub fn solve_segment(
     let marker_take = MarkerTake { markers, rate_hz: take.rate_hz, played: take.played.clone() };
     let solution = solve_markers(operators, &marker_take, spec, &mut || 0.0)?;
     let statistics = FrameStatistics::of(&solution.reports);
+    let (shape_names, weights) =
+        with_head_pose(&operators.parts().shape_names, solution.weights, &marker_take);
     Ok(SolvedTake {
-        shape_names: operators.parts().shape_names.clone(),
+        shape_names,
         rate_hz: take.rate_hz,
-        weights_hash: weights_hash(&solution.weights),
-        weights: solution.weights,
+        weights_hash: weights_hash(&weights),
+        weights,
         head_lowpass_hz: solution.motion.head_lowpass_hz,
         gaze_at_rest: solution.gaze_at_rest,
         warnings: statistics.warnings(take.first_frame),
         statistics: Some(statistics),
     })
+}
+
+/// Weights with those of the shapes that turn the head behind them, where the take carries any: avatars have these
+/// shapes right behind those of the face, and no method solves for them.
+fn with_head_pose(
+    shape_names: &[String],
+    weights: Vec<f64>,
+    take: &MarkerTake<'_>,
+) -> (Vec<String>, Vec<f64>) {
+    let SegmentMarkers { driven_shapes, driven_weights, .. } = take.markers;
+    let place = |name: &&str| driven_shapes.iter().position(|driven| driven == name);
+    let places: Vec<usize> = HEAD_POSE_SHAPES.iter().filter_map(place).collect();
+    let known = shape_names.iter().any(|name| HEAD_POSE_SHAPES.contains(&name.as_str()));
+    if places.len() < HEAD_POSE_SHAPES.len() || known {
+        return (shape_names.to_vec(), weights);
+    }
+    let rows = weights.chunks_exact(shape_names.len());
+    let frames = driven_weights.chunks_exact(driven_shapes.len()).skip(take.played.start);
+    let beside = |(row, driven): (&[f64], &[f64])| {
+        let head = places.iter().map(|&k| driven[k]);
+        row.iter().copied().chain(head).collect::<Vec<f64>>()
+    };
+    let weights = rows.zip(frames).flat_map(beside).collect();
+    let names = shape_names.iter().cloned().chain(HEAD_POSE_SHAPES.map(str::to_owned));
+    (names.collect(), weights)
 }

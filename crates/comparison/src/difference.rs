@@ -15,10 +15,48 @@ pub struct Difference {
     /// (Richard et al., MeshTalk, ICCV 2021); none of an avatar without lips.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lip_vertex_error_mm: Option<f64>,
-    /// Of the frames in which the lips of the first are shut, the share in which those of the second are not; none
-    /// where the first never shuts them.
+    /// The same of the square of that distance, square millimetres: what published code computes under the name of lip
+    /// vertex error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lip_closure_misses: Option<f64>,
+    pub lip_vertex_error_mm2: Option<f64>,
+    /// Upper-face dynamics deviation, square millimetres: the standard deviation over the frames of a vertex's squared
+    /// distance from its place at rest, that of the first less that of the second, its mean over forehead, brows and
+    /// eyes (Xing et al., CodeTalker, CVPR 2023). Above 0 where the second moves less; none of an avatar without parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_face_deviation_mm2: Option<f64>,
+    /// By how much the distance of the lips is another, its mean over the frames, millimetres; none without lips.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lip_gap_error_mm: Option<f64>,
+    /// Frames in which the lips of the first are shut, and in how many of them those of the second are; none without
+    /// lips.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lip_closures: Option<LipClosures>,
+}
+
+/// Frames in which lips are shut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LipClosures {
+    /// Those in which the lips of the reference are.
+    pub shut: usize,
+    /// Those among them in which the other's are, too.
+    pub kept: usize,
+}
+
+impl LipClosures {
+    /// Lips that come nearer than `below_m` beyond their distance at rest are shut, metres; none without lips.
+    pub fn of(reference: &FaceMotion, other: &FaceMotion, below_m: f64) -> Option<Self> {
+        let closed = |gap: &f64| *gap < below_m;
+        let kept = reference.gaps.iter().zip(&other.gaps).filter(|(a, b)| closed(a) && closed(b));
+        (!reference.gaps.is_empty()).then(|| Self {
+            shut: reference.gaps.iter().filter(|gap| closed(gap)).count(),
+            kept: kept.count(),
+        })
+    }
+
+    /// The share of the closures that is kept, 0 to 1; none where there is none.
+    pub fn share_kept(&self) -> Option<f64> {
+        (self.shut > 0).then(|| self.kept as f64 / self.shut as f64)
+    }
 }
 
 /// How far apart a part of the face is in two motions.
@@ -51,8 +89,6 @@ pub enum NotComparable {
 
 /// Lips whose distance is below this beyond that at rest are shut, metres.
 const SHUT_M: f64 = 1e-3;
-/// Lips whose distance is above this are not, metres: between the two nobody could say.
-const OPEN_M: f64 = 2e-3;
 
 /// How far `other` is from `reference`, both on the same face.
 ///
@@ -92,20 +128,33 @@ pub fn difference(
         let apart = |&v: &usize| length(reference.place(frame, v), other.place(frame, v));
         face.lips.iter().map(apart).fold(0.0, f64::max)
     };
-    let lips = (!face.lips.is_empty() && frames > 0)
-        .then(|| 1e3 * (0..frames).map(worst_lip).sum::<f64>() / frames as f64);
+    let lips = !face.lips.is_empty() && frames > 0;
+    let mean_over_frames =
+        |of: &dyn Fn(usize) -> f64| (0..frames).map(of).sum::<f64>() / frames as f64;
+    let gap = |frame: usize| (reference.gaps[frame] - other.gaps[frame]).abs();
+    let gaps = !face.lip_pairs.is_empty() && frames > 0;
+    let upper = !face.upper.is_empty() && frames > 0;
+    let deviation = |&v: &usize| spread_mm2(reference, v) - spread_mm2(other, v);
     Ok(Difference {
         parts,
-        lip_vertex_error_mm: lips,
-        lip_closure_misses: lip_closure_misses(&reference.gaps, &other.gaps),
+        lip_vertex_error_mm: lips.then(|| 1e3 * mean_over_frames(&worst_lip)),
+        lip_vertex_error_mm2: lips
+            .then(|| 1e6 * mean_over_frames(&|frame| worst_lip(frame).powi(2))),
+        upper_face_deviation_mm2: upper
+            .then(|| face.upper.iter().map(deviation).sum::<f64>() / face.upper.len() as f64),
+        lip_gap_error_mm: gaps.then(|| 1e3 * mean_over_frames(&gap)),
+        lip_closures: LipClosures::of(reference, other, SHUT_M),
     })
 }
 
-/// Of the frames in which the lips are shut, the share in which the other's are open.
-fn lip_closure_misses(reference: &[f64], other: &[f64]) -> Option<f64> {
-    let shut: Vec<usize> = (0..reference.len()).filter(|&f| reference[f] < SHUT_M).collect();
-    let missed = shut.iter().filter(|&&f| other[f] > OPEN_M).count();
-    (!shut.is_empty()).then(|| missed as f64 / shut.len() as f64)
+/// Standard deviation over the frames of a vertex's squared distance from its place at rest, square millimetres; the
+/// divisor is the number of frames.
+fn spread_mm2(motion: &FaceMotion, vertex: usize) -> f64 {
+    let squares: Vec<f64> =
+        (0..motion.frames()).map(|f| 1e6 * motion.displacement(f, vertex).powi(2)).collect();
+    let count = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / count;
+    (squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 fn comparable(a: &FaceMotion, b: &FaceMotion) -> Result<(), NotComparable> {

@@ -17,8 +17,10 @@ pub struct ComparedFace {
     pub parts: Vec<FacePart>,
     /// Places in `vertices` of the lips: within 10 mm of the border of the mouth.
     pub lips: Vec<usize>,
+    /// Places in `vertices` of the upper face: forehead, brows and eyes.
+    pub upper: Vec<usize>,
     /// Pairs of vertices that lie on each other while the mouth is shut.
-    pub(crate) pairs: Vec<LipPair>,
+    pub lip_pairs: Vec<LipPair>,
 }
 
 impl ComparedFace {
@@ -33,10 +35,13 @@ impl ComparedFace {
         if vertices.is_empty() {
             return Self::without_landmarks(skin);
         }
+        let parts: Vec<FacePart> = vertices.iter().map(|&v| face.part(v)).collect();
+        let above = |part| matches!(part, FacePart::Forehead | FacePart::Brow | FacePart::Eye);
         Self {
-            parts: vertices.iter().map(|&v| face.part(v)).collect(),
             lips: lip_vertices(&face, &vertices),
-            pairs: lip_pairs(&face),
+            upper: (0..parts.len()).filter(|&i| above(parts[i])).collect(),
+            lip_pairs: lip_pairs(&face, &vertices),
+            parts,
             vertices,
         }
     }
@@ -49,7 +54,13 @@ impl ComparedFace {
             }
         }
         let vertices = (0..moved.len()).filter(|&v| moved[v]).collect();
-        Self { vertices, parts: Vec::new(), lips: Vec::new(), pairs: Vec::new() }
+        Self {
+            vertices,
+            parts: Vec::new(),
+            lips: Vec::new(),
+            upper: Vec::new(),
+            lip_pairs: Vec::new(),
+        }
     }
 
     /// The parts that there are, from above to below, each with its places in `vertices`.

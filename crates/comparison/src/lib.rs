@@ -32,8 +32,9 @@ mod motion;
 mod same_but_method;
 
 pub use clip_measures::ClipMeasures;
-pub use difference::{Difference, NotComparable, PartDifference, difference};
+pub use difference::{Difference, LipClosures, NotComparable, PartDifference, difference};
 pub use face::ComparedFace;
+pub use lips::LipPair;
 pub use markers::{MarkerCorrelation, marker_correlation, median_correlation};
 pub use measures::{Measures, measures};
 pub use motion::FaceMotion;

@@ -8,12 +8,14 @@ const LIPS_M: f64 = 0.010;
 /// The share of the mouth's width about its middle in which lips are held against each other.
 const MIDDLE: f64 = 0.5;
 
-/// A vertex of the upper lip and the one of the lower lip that it meets, with their distance at rest, metres.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LipPair {
+/// A vertex of the upper lip and the one of the lower lip that it meets, by their places in the vertices that are
+/// compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LipPair {
+    /// Of the upper lip.
     pub upper: usize,
+    /// Of the lower lip.
     pub lower: usize,
-    pub rest_m: f64,
 }
 
 /// Places in `vertices` of those within 10 mm of the border of the mouth.
@@ -25,8 +27,8 @@ pub(crate) fn lip_vertices(face: &Face<'_>, vertices: &[usize]) -> Vec<usize> {
 }
 
 /// Pairs of the mouth's border about its middle: each vertex that opening the jaw leaves, with the nearest that it
-/// takes along. None of an avatar without a shape that opens the jaw.
-pub(crate) fn lip_pairs(face: &Face<'_>) -> Vec<LipPair> {
+/// takes along, both of them among `vertices`. None of an avatar without a shape that opens the jaw.
+pub(crate) fn lip_pairs(face: &Face<'_>, vertices: &[usize]) -> Vec<LipPair> {
     let mesh = &face.skin.mesh;
     let jaw = face.skin.shape_names.iter().position(|name| arkit_shapes(name) == ["jawOpen"]);
     let Some(jaw) = jaw.map(|k| &mesh.shapes[k]) else { return Vec::new() };
@@ -41,14 +43,11 @@ pub(crate) fn lip_pairs(face: &Face<'_>) -> Vec<LipPair> {
     let (lower, upper): (Vec<usize>, Vec<usize>) =
         mouth.iter().filter(central).partition(|&&v| falls(v) > 0.5 * most);
     let distance = |a: usize, b: usize| (face.place(a) - face.place(b)).length();
-    upper
-        .into_iter()
-        .filter_map(|upper| {
-            let nearest = lower
-                .iter()
-                .copied()
-                .min_by(|&a, &b| distance(upper, a).total_cmp(&distance(upper, b)));
-            nearest.map(|lower| LipPair { upper, lower, rest_m: distance(upper, lower) })
-        })
-        .collect()
+    let place = |v: usize| vertices.binary_search(&v).ok();
+    let pair = |upper: usize| {
+        let nearest = (lower.iter().copied())
+            .min_by(|&a, &b| distance(upper, a).total_cmp(&distance(upper, b)))?;
+        Some(LipPair { upper: place(upper)?, lower: place(nearest)? })
+    };
+    upper.into_iter().filter_map(pair).collect()
 }

@@ -9,7 +9,8 @@ use crate::{ComparedFace, FaceMotion};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Measures {
-    /// Root mean square distance of each part's vertices from the neutral face, millimetres: the dynamic range.
+    /// Largest less smallest distance of a vertex from its place at rest, its mean over each part's vertices, millimetres:
+    /// the dynamic range.
     pub range_mm: Vec<(&'static str, f64)>,
     /// Root mean square of the third derivative of the vertices' places, m/s^3: what trembles is large.
     pub jerk: f64,
@@ -22,9 +23,15 @@ pub struct Measures {
 pub fn measures(face: &ComparedFace, motion: &FaceMotion) -> Measures {
     let frames = motion.frames();
     let range = |places: &[usize]| {
-        let squares = (0..frames).flat_map(|f| places.iter().map(move |&v| (f, v)));
-        let sum: f64 = squares.map(|(f, v)| motion.displacement(f, v).powi(2)).sum();
-        1e3 * (sum / (frames * places.len()).max(1) as f64).sqrt()
+        let of_vertex = |&v: &usize| {
+            let distances = (0..frames).map(|frame| motion.displacement(frame, v));
+            let ends = distances.fold(None, |ends: Option<[f64; 2]>, distance| {
+                let [least, most] = ends.unwrap_or([distance; 2]);
+                Some([least.min(distance), most.max(distance)])
+            });
+            ends.map_or(0.0, |[least, most]| most - least)
+        };
+        1e3 * places.iter().map(of_vertex).sum::<f64>() / places.len().max(1) as f64
     };
     let mut range_mm: Vec<(&'static str, f64)> =
         face.by_part().iter().map(|(part, places)| (part.name(), range(places))).collect();

@@ -11,9 +11,9 @@ pub struct FaceMotion {
     /// Frames per second.
     pub rate_hz: f64,
     /// Frames x vertices x 3, metres, in the order of [`ComparedFace::vertices`].
-    places: Vec<f32>,
+    places: Vec<f64>,
     /// The same at rest.
-    rest: Vec<f32>,
+    rest: Vec<f64>,
     /// How far the lips are apart in each frame beyond their distance at rest, metres; empty without lips.
     pub(crate) gaps: Vec<f64>,
 }
@@ -29,20 +29,33 @@ impl FaceMotion {
         let width = synthesis.coordinates();
         let mut posed = vec![0.0; Synthesis::FRAMES * width];
         let mut places = Vec::with_capacity(weights.len() / n.max(1) * 3 * face.vertices.len());
-        let mut gaps = Vec::new();
-        let take = |from: &[f32], out: &mut Vec<f32>| {
-            face.vertices.iter().for_each(|&v| out.extend_from_slice(&from[3 * v..3 * v + 3]));
+        let take = |from: &[f32], out: &mut Vec<f64>| {
+            for &v in &face.vertices {
+                out.extend(from[3 * v..3 * v + 3].iter().copied().map(f64::from));
+            }
         };
         for rows in weights.chunks(Synthesis::FRAMES * n.max(1)) {
             synthesis.pose(rows, &mut posed);
             for frame in posed.chunks_exact(width).take(rows.len() / n) {
                 take(frame, &mut places);
-                gaps.extend(gap(face, frame));
             }
         }
         let mut rest = Vec::with_capacity(3 * face.vertices.len());
         synthesis.pose(&vec![0.0; n], &mut posed);
         take(&posed, &mut rest);
+        Self::of_places(face, places, rest, rate_hz)
+    }
+
+    /// Of vertices' places, frames x vertices x 3, and those at rest, vertices x 3, metres.
+    ///
+    /// # Panics
+    /// If they are not of the face's vertices.
+    pub fn of_places(face: &ComparedFace, places: Vec<f64>, rest: Vec<f64>, rate_hz: f64) -> Self {
+        assert_eq!(rest.len(), 3 * face.vertices.len(), "a place for each vertex");
+        assert!(places.len().is_multiple_of(rest.len().max(1)), "whole frames");
+        let at_rest = lip_distance(face, &rest).unwrap_or_default();
+        let frames = places.chunks_exact(rest.len().max(1));
+        let gaps = frames.filter_map(|frame| Some(lip_distance(face, frame)? - at_rest)).collect();
         Self { rate_hz, places, rest, gaps }
     }
 
@@ -58,15 +71,17 @@ impl FaceMotion {
 
     /// The place of a vertex in a frame, metres.
     pub(crate) fn place(&self, frame: usize, vertex: usize) -> [f64; 3] {
-        let at = frame * self.rest.len() + 3 * vertex;
-        [0, 1, 2].map(|a| f64::from(self.places[at + a]))
+        of_vertex(&self.places[frame * self.rest.len()..], vertex)
     }
 
     /// How far a vertex is from its place at rest, metres.
     pub(crate) fn displacement(&self, frame: usize, vertex: usize) -> f64 {
-        let rest = [0, 1, 2].map(|a| f64::from(self.rest[3 * vertex + a]));
-        length(self.place(frame, vertex), rest)
+        length(self.place(frame, vertex), of_vertex(&self.rest, vertex))
     }
+}
+
+fn of_vertex(frame: &[f64], vertex: usize) -> [f64; 3] {
+    [0, 1, 2].map(|axis| frame[3 * vertex + axis])
 }
 
 /// Distance of two places.
@@ -74,10 +89,9 @@ pub(crate) fn length(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
 }
 
-/// Mean distance of the lips in a posed skin beyond that at rest, metres; none without lips.
-fn gap(face: &ComparedFace, posed: &[f32]) -> Option<f64> {
-    let place = |v: usize| [0, 1, 2].map(|a| f64::from(posed[3 * v + a]));
-    let apart =
-        face.pairs.iter().map(|pair| length(place(pair.upper), place(pair.lower)) - pair.rest_m);
-    (!face.pairs.is_empty()).then(|| apart.sum::<f64>() / face.pairs.len() as f64)
+/// Mean distance of the lips in a frame, metres; none without lips.
+fn lip_distance(face: &ComparedFace, frame: &[f64]) -> Option<f64> {
+    let apart = (face.lip_pairs.iter())
+        .map(|pair| length(of_vertex(frame, pair.upper), of_vertex(frame, pair.lower)));
+    (!face.lip_pairs.is_empty()).then(|| apart.sum::<f64>() / face.lip_pairs.len() as f64)
 }

@@ -1,12 +1,12 @@
 //! Whether the clips of one segment are the same but for the method, and in which millimetres the methods differ.
 //!
-//! Camera and light are the stage's and one for all clips, and no clip carries motion of the head: what can differ is
-//! how long clips are, when their frames are shown, where the eyes look, and when they blink.
+//! Camera and light are the stage's and one for all clips: what can differ is how long clips are, when their frames are
+//! shown, where head and eyes are turned to, and when they blink.
 
 use std::collections::BTreeMap;
 
 use mimique_avatar::pack::{PackError, decode_pack};
-use mimique_avatar::{EyeAngles, GazeShapes, blinks};
+use mimique_avatar::{EyeAngles, GazeShapes, HEAD_POSE_SHAPES, HeadAngles, blinks};
 use mimique_clip::{
     MarkerTake, SolvePacksError, SolvedTake, TakeContent, decode_operators, decode_take,
     marker_motion, solve_packs,
@@ -20,6 +20,8 @@ use crate::difference::{Difference, difference};
 use crate::markers::{correlations, median_correlation};
 use crate::{ClipMeasures, ComparedFace, FaceMotion, measures};
 
+/// Heads that are turned this many degrees from each other are seen to.
+const HEAD_DEG: f64 = 1.0;
 /// Eyes that look this many degrees aside from each other are seen to.
 const GAZE_DEG: f64 = 1.0;
 /// Shapes that shut the eyes by more show a blink, and by less than the second do not.
@@ -66,6 +68,13 @@ pub enum Disagreement {
         /// Frames per second of both.
         rates_hz: [f64; 2],
     },
+    /// Their heads are turned elsewhere.
+    HeadPose {
+        /// By how many degrees, in the worst frame.
+        degrees: f64,
+        /// That frame.
+        frame: usize,
+    },
     /// Their eyes look elsewhere.
     Gaze {
         /// By how many degrees an eye is turned aside, in the worst frame.
@@ -94,6 +103,10 @@ impl Unlike {
             Disagreement::FrameTimes { rates_hz: [first, second] } => (
                 format!("show {first} and {second} frames per second"),
                 "give the capture one \"rateHz\"",
+            ),
+            Disagreement::HeadPose { degrees, frame } => (
+                format!("turn their heads {degrees:.1} degrees from each other in frame {frame}"),
+                "give all captures of the segment the same \"headMotion\"; 0 holds every head still",
             ),
             Disagreement::Gaze { degrees, frame } => (
                 format!("look {degrees:.1} degrees aside from each other in frame {frame}"),
@@ -229,6 +242,7 @@ struct Shown<'c> {
     /// Median correlation of the skin with the markers; none of recorded weights.
     marker_correlation: Option<f64>,
     motion: FaceMotion,
+    head: Vec<HeadAngles>,
     eyes: Vec<EyeAngles>,
     /// By how much the eyes are shut in each frame; empty where no shape shuts them.
     shut: Vec<f64>,
@@ -239,8 +253,8 @@ fn measured(own: &Shown<'_>, all: &[Shown<'_>], faces: &Faces<'_>) -> ClipMeasur
     let face = &faces.faces[&own.clip.avatar];
     let mut found = ClipMeasures::of_motion(&own.clip.id, &measures(face, &own.motion));
     let residual = own.solved.statistics.as_ref().map(|statistics| statistics.residual_rms_mm);
-    found.add("residual_mm", residual);
-    found.add("marker_correlation", own.marker_correlation);
+    found.add("obj_residual_mm", residual);
+    found.add("obj_marker_correlation", own.marker_correlation);
     let recorded = |other: &&Shown<'_>| {
         other.method == Method::Recorded
             && other.clip.avatar == own.clip.avatar
@@ -270,6 +284,7 @@ fn hold(a: &Shown<'_>, b: &Shown<'_>, faces: &Faces<'_>, comparison: &mut StudyC
     if (rates_hz[0] - rates_hz[1]).abs() > 1e-3 * rates_hz[0] {
         unlike.push(Disagreement::FrameTimes { rates_hz });
     } else {
+        unlike.extend(head_apart(&a.head, &b.head));
         unlike.extend(gaze_apart(&a.eyes, &b.eyes));
         unlike.extend(blink_apart(&a.shut, &b.shut));
     }
@@ -289,6 +304,13 @@ fn hold(a: &Shown<'_>, b: &Shown<'_>, faces: &Faces<'_>, comparison: &mut StudyC
             difference,
         });
     }
+}
+
+/// Where the heads of two clips are farthest from being turned alike; none where nobody sees it.
+fn head_apart(a: &[HeadAngles], b: &[HeadAngles]) -> Option<Disagreement> {
+    let both = a.iter().zip(b).map(|(a, b)| a.apart(b));
+    let (frame, degrees) = both.enumerate().max_by(|x, y| x.1.total_cmp(&y.1))?;
+    (degrees > HEAD_DEG).then_some(Disagreement::HeadPose { degrees, frame })
 }
 
 /// Where the eyes of two clips are farthest from looking alike; none where nobody sees it.
@@ -323,13 +345,16 @@ fn with_markers(
     let TakeContent::Markers(markers) = &take.content else { return Ok(None) };
     let operators = decode_operators(operators)?;
     let parts = operators.parts();
-    if parts.shape_names.len() != solved.shape_names.len() {
+    let (n, own) = (parts.shape_names.len(), solved.shape_names.len());
+    if n > own {
         return Ok(None);
     }
     let marker_take = MarkerTake { markers, rate_hz: take.rate_hz, played: take.played.clone() };
     let motion = marker_motion(&operators, &marker_take, &source.method)?;
-    let of =
-        |rows| correlations(&parts.marker_labels, rows, &motion.displacements, &solved.weights);
+    // Shapes that turn the head stand behind those that are solved for.
+    let weights: Vec<f64> =
+        solved.weights.chunks_exact(own).flat_map(|row| row[..n].iter().copied()).collect();
+    let of = |rows| correlations(&parts.marker_labels, rows, &motion.displacements, &weights);
     Ok(median_correlation(&of(&parts.marker_deltas)))
 }
 
@@ -366,12 +391,18 @@ impl Faces<'_> {
         let shutting: Vec<usize> = (0..own).filter(|&k| blinks(&solved.shape_names[k])).collect();
         let frames = || solved.weights.chunks_exact(own.max(1));
         let eyes = frames().map(|row| gaze.eyes(row)).collect();
+        let turning =
+            HEAD_POSE_SHAPES.map(|name| solved.shape_names.iter().position(|own| own == name));
+        let angles = |row: &[f64]| {
+            HeadAngles::of_weights(turning.map(|shape| shape.map_or(0.0, |k| row[k])))
+        };
+        let head = frames().map(angles).collect();
         let mean = |row: &[f64]| {
             shutting.iter().map(|&k| row[k]).sum::<f64>() / shutting.len().max(1) as f64
         };
         let shut = if shutting.is_empty() { Vec::new() } else { frames().map(mean).collect() };
         let method = source.method.method;
-        Ok(Shown { clip, method, motion, eyes, shut, solved, marker_correlation })
+        Ok(Shown { clip, method, motion, head, eyes, shut, solved, marker_correlation })
     }
 
     /// The skin of a clip's pack, and the face of its avatar: a moved surface has the avatar's vertices and none of
@@ -409,6 +440,14 @@ mod tests {
         let found = blink_apart(&lids, &[0.0, 0.1, 0.1, 0.05, 0.1]);
         assert_eq!(found, Some(Disagreement::Blink { shut: [0.95, 0.05], frame: 3 }));
         assert_eq!(blink_apart(&[], &lids), None);
+    }
+
+    #[test]
+    fn heads_that_are_turned_apart_are_found_in_their_frame() {
+        let head = |nod: f64| HeadAngles { nod, ..HeadAngles::default() };
+        assert_eq!(head_apart(&[head(3.0)], &[head(3.9)]), None);
+        let found = head_apart(&[head(0.0), head(3.0)], &[head(0.5), head(-1.0)]);
+        assert_eq!(found, Some(Disagreement::HeadPose { degrees: 4.0, frame: 1 }));
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use mimique_actor::{Clip, Density, Emotion, HeadSpec, build_head, marker_sites, synthetic_take};
 use mimique_comparison::{
-    ComparedFace, Difference, FaceMotion, NotComparable, difference, marker_correlation, measures,
+    ComparedFace, Difference, FaceMotion, LipClosures, NotComparable, difference,
+    marker_correlation, measures,
 };
 use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
@@ -71,10 +72,12 @@ fn lips_that_should_be_shut_and_are_not_are_counted() {
     let slack =
         weights(&skin, 30, |f| vec![("jawOpen", if (15..20).contains(&f) { 0.0 } else { 0.5 })]);
     let apart = difference(&face, &of(&speech), &of(&slack)).unwrap();
-    assert_eq!(apart.lip_closure_misses, Some(0.5));
-    assert!(apart.lip_vertex_error_mm.unwrap() > 1.0);
+    assert_eq!(apart.lip_closures, Some(LipClosures { shut: 10, kept: 5 }));
+    assert_eq!(apart.lip_closures.unwrap().share_kept(), Some(0.5));
+    assert!(apart.lip_vertex_error_mm.unwrap() > 1.0 && apart.lip_gap_error_mm.unwrap() > 1.0);
     let open = weights(&skin, 30, |_| vec![("jawOpen", 0.5)]);
-    assert_eq!(difference(&face, &of(&open), &of(&speech)).unwrap().lip_closure_misses, None);
+    let never = difference(&face, &of(&open), &of(&speech)).unwrap().lip_closures.unwrap();
+    assert_eq!((never, never.share_kept()), (LipClosures { shut: 0, kept: 0 }, None));
     assert!(measures(&face, &of(&open)).widest_mouth_mm.unwrap() > 5.0);
 }
 
@@ -126,7 +129,7 @@ fn an_avatar_without_landmarks_is_compared_as_a_whole() {
     let motion = FaceMotion::of(&skin, &face, &vec![0.0; 3 * skin.shape_names.len()], 60.0);
     let apart = difference(&face, &motion, &motion).unwrap();
     assert_eq!(apart.parts.iter().map(|p| p.part.as_str()).collect::<Vec<_>>(), ["Face"]);
-    assert_eq!((apart.lip_vertex_error_mm, apart.lip_closure_misses), (None, None));
+    assert_eq!((apart.lip_vertex_error_mm, apart.lip_closures), (None, None));
 }
 
 #[test]

@@ -52,17 +52,17 @@ fn methods_are_compared_in_millimetres_and_are_else_the_same() {
         assert!(whole.rms_mm > 0.01 && whole.rms_mm < 5.0 && whole.largest_mm > whole.rms_mm);
     }
     // A moved surface goes through the markers.
-    let surface = value(&told, "joy2.surface", "marker_correlation").unwrap();
+    let surface = value(&told, "joy2.surface", "obj_marker_correlation").unwrap();
     assert!(surface > 0.9999, "{surface}");
     let [lsts, plain] = ["joy2.lsts", "joy2.box"].map(|clip| {
-        ["residual_mm", "marker_correlation"].map(|name| value(&told, clip, name).unwrap())
+        ["obj_residual_mm", "obj_marker_correlation"].map(|name| value(&told, clip, name).unwrap())
     });
     // The box comes nearest to the markers: nothing else draws it.
     assert!(
         plain[0] < lsts[0] && plain[1] >= lsts[1] - 1e-6 && plain[1] > 0.9,
         "{plain:?} {lsts:?}"
     );
-    assert_eq!(value(&told, "joy2.box", "recorded_rms_mm"), None, "nothing was recorded");
+    assert_eq!(value(&told, "joy2.box", "obj_recorded_rmse_mm"), None, "nothing was recorded");
 }
 
 /// What is measured of a clip.
@@ -92,10 +92,10 @@ fn eyes_that_look_elsewhere_in_the_performance_itself_are_found_until_a_gaze_is_
     // What is told of the clip is what is told of the two.
     let apart = &told.differences[0];
     let whole = apart.difference.parts.last().unwrap();
-    assert_eq!(value(&told, "joy2.lsts", "recorded_rms_mm"), Some(whole.rms_mm));
-    assert_eq!(value(&told, "joy2.real", "recorded_rms_mm"), None);
-    assert_eq!(value(&told, "joy2.real", "residual_mm"), None);
-    assert!(value(&told, "joy2.real", "range_mm_face").unwrap() > 0.1);
+    assert_eq!(value(&told, "joy2.lsts", "obj_recorded_rmse_mm"), Some(whole.rms_mm));
+    assert_eq!(value(&told, "joy2.real", "obj_recorded_rmse_mm"), None);
+    assert_eq!(value(&told, "joy2.real", "obj_residual_mm"), None);
+    assert!(value(&told, "joy2.real", "obj_range_mm_face").unwrap() > 0.1);
 }
 
 #[test]

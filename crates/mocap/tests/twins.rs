@@ -38,7 +38,7 @@ fn told(bytes: &[u8], weights: bool) -> Result<Told, ReadError> {
     let mut file = CaptureFile::of_bytes(bytes)?;
     if weights {
         let names: Vec<String> = (0..4).map(|k| format!("shape{k}")).collect();
-        let options = WeightOptions { rate_hz: Some(60.0), shape_names: &names };
+        let options = WeightOptions { rate_hz: Some(60.0), shape_names: &names, animation: None };
         let table = file.weights(&options)?;
         let rate = table.rate_hz().map(|rate| format!("{rate:.6}"));
         return Ok(Told {

@@ -10,6 +10,7 @@ use wgpu::{
 use crate::framing::Landmarks;
 use crate::geometry::{Draw, Eye, Geometry};
 use crate::layouts::{EyeballPose, Gaze, LIST_TABLE_WIDTH, Pose, Scene, VERTEX_TABLE_WIDTH};
+use crate::neck::Neck;
 use crate::pipelines::{Layouts, OCCLUSION_FORMAT, Pipelines, STRAIN_FORMAT};
 use crate::tables;
 use crate::textures::Textures;
@@ -20,6 +21,7 @@ pub struct Head {
     pub(crate) landmarks: Landmarks,
     pub(crate) shape_count: usize,
     pub(crate) eyes: Vec<Eye>,
+    neck: Neck,
     /// Places of the shapes `flush` and `sweat`, where the avatar has them.
     body_shapes: [Option<usize>; 2],
     pub(crate) draws: Vec<Draw>,
@@ -189,6 +191,7 @@ impl Head {
         let picture_groups = geometry.draws.iter().map(picture).collect();
         let Tables { positions, surfaces, softened, strains, occlusions, .. } = tables;
         Ok(Self {
+            neck: Neck::of(avatar, &landmarks),
             landmarks,
             picture_groups,
             shape_count: geometry.shape_count,
@@ -213,16 +216,20 @@ impl Head {
         })
     }
 
-    /// Weights and the eyeballs' turns, as `deform.wgsl` reads them. Missing weights are 0, so are
+    /// Weights and the turns of head and eyeballs, as `deform.wgsl` reads them. Missing weights are 0, so are
     /// weights that are no number; surplus ones are not read.
     pub(crate) fn pose(&self, weights: &[f32]) -> Pose {
         let mut pose: Pose = bytemuck::Zeroable::zeroed();
         for (k, &w) in weights.iter().take(self.shape_count).enumerate() {
             pose.weights[k / 4][k % 4] = if w.is_finite() { w } else { 0.0 };
         }
+        let column = |c: Vec3| [c.x, c.y, c.z, 0.0];
+        let head = self.neck.rotation(weights);
+        pose.head = [head.x_axis, head.y_axis, head.z_axis].map(column);
+        pose.pivot = column(self.neck.pivot);
+        [pose.head[0][3], pose.pivot[3]] = self.neck.heights;
         for (slot, eye) in pose.eyeballs.iter_mut().zip(&self.eyes) {
             let turn = turn(eye, weights);
-            let column = |c: Vec3| [c.x, c.y, c.z, 0.0];
             *slot = EyeballPose {
                 rotation: [column(turn.x_axis), column(turn.y_axis), column(turn.z_axis)],
                 centre: [eye.centre.x, eye.centre.y, eye.centre.z, 0.0],
@@ -244,14 +251,16 @@ impl Head {
     /// that came without a colour, and all where nothing is painted.
     pub(crate) fn gaze(&self, weights: &[f32], look: &Look) -> [Gaze; MOST_EYEBALLS] {
         let mut out: [Gaze; MOST_EYEBALLS] = bytemuck::Zeroable::zeroed();
+        let head = self.neck.rotation(weights);
         for (slot, eye) in out.iter_mut().zip(&self.eyes) {
             let [r, g, b] = eye.iris.filter(|_| look.paint).unwrap_or(look.iris);
             slot.iris = [r, g, b, 0.0];
-            let head_from_eye = turn(eye, weights) * frame(eye.forward);
+            let world_from_eye = head * turn(eye, weights) * frame(eye.forward);
+            let centre = self.neck.turned(head, eye.centre);
             for (row, (axis, c)) in
-                [head_from_eye.x_axis, head_from_eye.y_axis, head_from_eye.z_axis]
+                [world_from_eye.x_axis, world_from_eye.y_axis, world_from_eye.z_axis]
                     .into_iter()
-                    .zip(eye.centre.to_array())
+                    .zip(centre.to_array())
                     .enumerate()
             {
                 let scaled = axis / eye.radius;

@@ -15,6 +15,10 @@ pub(crate) const SHADOW_SIZE: u32 = 512;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct Pose {
+    /// Columns of the head's rotation; the fourth number of the first is the height from which it turns whole.
+    pub head: [[f32; 4]; 3],
+    /// What it turns about; the height below which it does not.
+    pub pivot: [f32; 4],
     pub eyeballs: [EyeballPose; MOST_EYEBALLS],
     /// Four weights a row.
     pub weights: [[f32; 4]; MOST_SHAPES / 4],
@@ -28,7 +32,7 @@ impl Pose {
     /// The bytes that `shapes` weights take from the start; what is behind them stays 0.
     pub fn bytes(&self, shapes: usize) -> &[u8] {
         let rows = shapes.div_ceil(4).min(self.weights.len());
-        let end = size_of_val(&self.eyeballs) + rows * size_of_val(&self.weights[0]);
+        let end = std::mem::offset_of!(Self, weights) + rows * size_of_val(&self.weights[0]);
         &bytemuck::bytes_of(self)[..end]
     }
 }

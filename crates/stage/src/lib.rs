@@ -42,6 +42,7 @@ mod geometry;
 mod head;
 mod layouts;
 mod look;
+mod neck;
 #[cfg(feature = "native")]
 pub mod offscreen;
 mod pipelines;

@@ -39,6 +39,7 @@ pub use distributions::tail::{
 };
 pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
+pub use estimate::resampled::resampled_interval;
 pub use numerics::dot;
 pub use numerics::minimise::{Minimum, Stop, minimise};
 pub use numerics::random::Stream;

@@ -58,7 +58,8 @@ fn played(prepared: &Prepared, packs: &Path, clip: &str) -> f64 {
     } else {
         avatar.face_shapes()
     };
-    assert_eq!(solved.shape_names, shapes);
+    assert!(avatar.shape_names.starts_with(&solved.shape_names));
+    assert!(solved.shape_names.starts_with(shapes));
     let duration = solved.frames() as f64 / solved.rate_hz * 1e3;
     assert!((duration - source.duration_ms).abs() < 1e-6);
     let n = solved.shape_names.len();

@@ -110,6 +110,35 @@ impl Studio {
         text(self.workspace.training_state())
     }
 
+    /// [`Workspace::rest_gaze`].
+    #[wasm_bindgen(js_name = restGaze)]
+    pub fn rest_gaze(&mut self) -> String {
+        text(self.workspace.rest_gaze())
+    }
+
+    /// [`Workspace::hold_gaze`].
+    #[wasm_bindgen(js_name = holdGaze)]
+    pub fn hold_gaze(
+        &mut self,
+        azimuth: f64,
+        elevation: f64,
+        vergence: f64,
+    ) -> Result<String, JsError> {
+        self.workspace.hold_gaze(azimuth, elevation, vergence).map(text).map_err(error)
+    }
+
+    /// [`Workspace::gaze_at_marker`].
+    #[wasm_bindgen(js_name = gazeAtMarker)]
+    pub fn gaze_at_marker(&mut self, label: &str) -> Result<String, JsError> {
+        self.workspace.gaze_at_marker(label).map(text).map_err(error)
+    }
+
+    /// [`Workspace::gaze_file`].
+    #[wasm_bindgen(js_name = gazeFile)]
+    pub fn gaze_file(&mut self, file: &str, bytes: &[u8]) -> Result<String, JsError> {
+        self.workspace.gaze_file(file, bytes).map(text).map_err(error)
+    }
+
     /// [`Workspace::map_file`].
     #[wasm_bindgen(js_name = mapFile)]
     pub fn map_file(&mut self, file: &str, map: &str) -> Result<String, JsError> {

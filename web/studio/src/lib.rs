@@ -17,6 +17,7 @@ mod bindings;
 mod difference;
 mod exertion;
 mod expressions;
+mod gaze;
 mod labels;
 mod layout;
 mod markers;

@@ -97,7 +97,7 @@ impl Workspace {
             Needs::Training => Some(Box::new(self.training()?)),
             _ => None,
         };
-        let options = TakeOptions { training, ..TakeOptions::default() };
+        let options = TakeOptions { training, gaze: self.gaze.clone(), ..TakeOptions::default() };
         let done = solve_take(&face.skin, capture, &self.map, spec, &options, &mut || 0.0)
             .map_err(|e| Problem::of("solve", e))?;
         let SolvedCapture { table, surface, report, sites, displacements } = done;

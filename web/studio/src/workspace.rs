@@ -11,7 +11,7 @@ use mimique_mocap::{
     read_weights,
 };
 use mimique_stimulus::{
-    AvatarSkin, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, built_in_capture,
+    AvatarSkin, GivenGaze, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, built_in_capture,
 };
 use serde_json::{Value, json};
 
@@ -49,6 +49,8 @@ pub struct Workspace {
     pub(crate) segments: Vec<TakeSegment>,
     pub(crate) labels: Labelling,
     pub(crate) training: TrainingFiles,
+    /// Where the eyes look; they rest where it is not given.
+    pub(crate) gaze: Option<GivenGaze>,
     pub(crate) layout: LayoutDesk,
     pub(crate) exertion: ExertionDesk,
 }
@@ -166,7 +168,7 @@ impl Workspace {
     ) -> Result<Value, Problem> {
         if mimique_mocap::recognise(bytes).is_some_and(Format::holds_weights) {
             let shape_names = self.face().map_or(&[][..], |face| &face.read.avatar.shape_names);
-            let options = WeightOptions { rate_hz, shape_names };
+            let options = WeightOptions { rate_hz, shape_names, animation: None };
             let table = read_weights(bytes, &options).map_err(|e| Problem::of(file, e))?;
             return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
         }
@@ -215,6 +217,7 @@ impl Workspace {
             }),
         };
         self.take = Some(take);
+        self.gaze = None;
         self.map_built_in();
         facts
     }

@@ -286,3 +286,40 @@ fn a_real_capture_is_matched_and_solved_without_help() {
     let facts = workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
     assert!(number(&facts["summary"]["residual_rms_mm"]) < 3.0, "{}", facts["summary"]);
 }
+
+#[test]
+fn the_eyes_look_where_they_are_told_to() {
+    let mut workspace = built_in();
+    let method = r#"{"method": "box"}"#;
+    let solve = |workspace: &mut Workspace| workspace.solve("a", method).unwrap();
+    let looks_left = |workspace: &Workspace| -> f64 {
+        let names: Vec<String> = mimique_actor::SHAPE_NAMES.map(str::to_owned).to_vec();
+        let weights = workspace.weights("a").unwrap();
+        let row: Vec<f64> = weights[..names.len()].iter().map(|w| f64::from(*w)).collect();
+        mimique_avatar::GazeShapes::of(&names).eyes(&row).gaze().unwrap().azimuth
+    };
+    solve(&mut workspace);
+    assert_eq!(looks_left(&workspace), 0.0);
+    assert_eq!(workspace.hold_gaze(12.0, 0.0, 0.0).unwrap()["kind"], "held");
+    let facts = solve(&mut workspace);
+    assert!((looks_left(&workspace) - 12.0).abs() < 1e-4);
+    assert_eq!(facts["gaze_at_rest"], serde_json::json!([]));
+    let track = b"time,azimuth,elevation,vergence\n0,-8,0,0\n10,-8,0,0\n";
+    assert_eq!(workspace.gaze_file("gaze.csv", track).unwrap()["kind"], "file");
+    solve(&mut workspace);
+    assert!((looks_left(&workspace) + 8.0).abs() < 1e-4);
+    // A marker of the capture; what is none is refused with its name, and so are angles that eyes do not turn by.
+    let marker = workspace.gaze_state()["markers"][0].as_str().unwrap().to_owned();
+    assert_eq!(workspace.gaze_at_marker(&marker).unwrap()["kind"], "marker");
+    let refused = workspace.gaze_at_marker("moon").unwrap_err().to_string();
+    assert_eq!(refused, "gaze: no marker moon; choose one of the capture");
+    let refused = workspace.hold_gaze(0.0, 60.0, 0.0).unwrap_err().to_string();
+    assert_eq!(refused, "gaze, elevation: 60 degrees; write -45 to 45");
+    let refused = workspace.gaze_file("x.csv", b"a,b\n1,2\n").unwrap_err().to_string();
+    assert!(refused.starts_with("x.csv: "), "{refused}");
+    // The eyes rest again, and with another take.
+    assert_eq!(workspace.rest_gaze()["kind"], "rest");
+    workspace.hold_gaze(12.0, 0.0, 0.0).unwrap();
+    workspace.built_in_take(2);
+    assert_eq!(workspace.gaze_state()["kind"], "rest");
+}

@@ -26,6 +26,8 @@ pub struct SyntheticTake {
     pub truth: Vec<f64>,
     /// The N shapes of `truth`.
     pub shape_names: Vec<String>,
+    /// Where the head is, a pose per frame.
+    pub head: Vec<HeadPose>,
 }
 
 /// Where a clip lies in a take.
@@ -155,6 +157,7 @@ impl Session {
             segments: Vec::new(),
             truth: Vec::new(),
             shape_names: actor.face_shapes().to_vec(),
+            head: Vec::new(),
         };
         Session { rng: Rng::new(seed ^ 0x7461_6b65_5f6e_6f69), noise_mm, markers, take }
     }
@@ -166,6 +169,7 @@ impl Session {
             self.take.positions.push([p.x, p.y, p.z]);
         }
         self.take.truth.extend_from_slice(weights);
+        self.take.head.push(*pose);
     }
 }
 

@@ -64,7 +64,7 @@ fn a_measure_that_goes_with_the_answers_is_told_from_one_that_does_not() {
 #[test]
 fn the_table_stands_in_the_report_in_both_languages_and_only_where_it_is_given() {
     let study = demo_study();
-    let stimuli = planted(&study).replace("follows", "marker_correlation");
+    let stimuli = planted(&study).replace("follows", "obj_marker_correlation");
     for (language, heading, words) in [
         (Language::English, "Answers and measures of the stimuli", "Correlation with the markers"),
         (Language::French, "Réponses et mesures des stimuli", "Corrélation avec les marqueurs"),

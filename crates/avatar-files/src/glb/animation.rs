@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use gltf_json::Animation;
 use gltf_json::animation::{Interpolation, Property};
 use gltf_json::validation::Checked;
 
@@ -38,16 +39,19 @@ struct Track {
     interpolation: Interpolation,
 }
 
-/// Reads the first animation of a glTF file that moves morph targets; none where there is none.
+/// Reads an animation of a glTF file: the one that is `wanted`, by its name or its number counted from 1, else the first
+/// that moves morph targets; none where none does.
 ///
 /// `folder` is where a `.gltf` file's buffers are looked for. Keys are sampled at their own rate where they are
 /// evenly spaced, else at 60 Hz, as the file interpolates them (LINEAR, STEP, CUBICSPLINE).
 ///
 /// # Errors
-/// [`ReadError`] with the place in the file; weights that KHR_animation_pointer animates.
+/// [`ReadError`] with the place in the file; weights that KHR_animation_pointer animates; a wanted animation that is not
+/// there, or moves no morph target.
 pub fn read_weight_animation(
     bytes: &[u8],
     folder: Option<&Path>,
+    wanted: Option<&str>,
 ) -> Result<Option<WeightAnimation>, ReadError> {
     let container = container::open(bytes, folder)?;
     if let Some((place, pointer)) = container.weight_pointers.first() {
@@ -59,7 +63,10 @@ pub fn read_weight_animation(
             "export the animation as channels of weights of a node",
         ));
     }
-    for (number, animation) in container.root.animations.iter().enumerate() {
+    let animations = &container.root.animations;
+    let wanted = wanted.map(|wanted| chosen(animations, wanted)).transpose()?;
+    let is_wanted = |number: usize| wanted.is_none_or(|wanted| wanted == number);
+    for (number, animation) in animations.iter().enumerate().filter(|(k, _)| is_wanted(*k)) {
         let mut tracks = Vec::new();
         for (c, channel) in animation.channels.iter().enumerate() {
             if channel.target.path == Checked::Valid(Property::MorphTargetWeights) {
@@ -73,21 +80,49 @@ pub fn read_weight_animation(
             }
         }
         if !tracks.is_empty() {
-            let animations = &container.root.animations;
             let mut read = sampled(&tracks, &format!("animations[{number}]"))?;
-            if animations.len() > 1 {
-                let name =
-                    animation.name.as_ref().map_or(String::new(), |name| format!(" {name:?}"));
+            if animations.len() > 1 && wanted.is_none() {
                 read.notes.push(format!(
-                    "animation {}{name} of {} is read: the first that moves shapes",
-                    number + 1,
-                    animations.len()
+                    "animation {} is read, the first that moves shapes, of {}",
+                    named(animations, number),
+                    all_named(animations)
                 ));
             }
             return Ok(Some(read));
         }
     }
-    Ok(None)
+    match wanted {
+        None => Ok(None),
+        Some(number) => Err(ReadError::broken(
+            format!("animations[{number}]"),
+            "it moves no morph target",
+            "name another animation",
+        )),
+    }
+}
+
+/// An animation's number, counted from 1, and its name.
+fn named(animations: &[Animation], place: usize) -> String {
+    let name = animations[place].name.as_ref();
+    name.map_or_else(|| (place + 1).to_string(), |name| format!("{} {name:?}", place + 1))
+}
+
+fn all_named(animations: &[Animation]) -> String {
+    (0..animations.len()).map(|place| named(animations, place)).collect::<Vec<_>>().join(", ")
+}
+
+/// The place of the animation of that name, else of that number.
+fn chosen(animations: &[Animation], wanted: &str) -> Result<usize, ReadError> {
+    let by_name = animations.iter().position(|own| own.name.as_deref() == Some(wanted));
+    let number = wanted.parse::<usize>().ok();
+    let by_number = number.and_then(|number| number.checked_sub(1));
+    by_name.or(by_number.filter(|place| *place < animations.len())).ok_or_else(|| {
+        let remedy = match animations.len() {
+            0 => "the file has no animation; leave the choice out".to_owned(),
+            _ => format!("choose one of {}", all_named(animations)),
+        };
+        ReadError::broken("animations", format!("none is called {wanted:?}"), remedy)
+    })
 }
 
 fn track(
@@ -220,7 +255,7 @@ mod tests {
         let weights: Vec<f64> = (0..7 * n).map(|i| f64::from((i % 13) as u8) / 16.0).collect();
         let single: Vec<f32> = weights.iter().map(|w| *w as f32).collect();
         let bytes = write_glb(&head, &single, 50.0).unwrap();
-        let read = read_weight_animation(&bytes, None).unwrap().unwrap();
+        let read = read_weight_animation(&bytes, None, None).unwrap().unwrap();
         assert!((read.rate_hz - 50.0).abs() < 1e-3, "{}", read.rate_hz);
         assert_eq!(read.weights.len(), 7 * read.shape_names.len());
         for (frame, row) in read.weights.chunks_exact(read.shape_names.len()).enumerate() {
@@ -230,7 +265,7 @@ mod tests {
             }
         }
         let still = write_glb(&head, &[], 50.0).unwrap();
-        assert_eq!(read_weight_animation(&still, None).unwrap(), None);
+        assert_eq!(read_weight_animation(&still, None, None).unwrap(), None);
     }
 
     #[test]
@@ -287,7 +322,7 @@ mod tests {
         let keys = [0.0, 0.25, 0.5, 0.75, 1.0, 0.0];
         let read = |interpolation: &str, outputs: &[f32]| {
             let text = document(interpolation, outputs, node);
-            read_weight_animation(text.as_bytes(), None).unwrap().unwrap()
+            read_weight_animation(text.as_bytes(), None, None).unwrap().unwrap()
         };
         for interpolation in ["LINEAR", "STEP"] {
             let read = read(interpolation, &keys);
@@ -303,7 +338,7 @@ mod tests {
             keys.chunks(2).flat_map(|v| [0.0, 0.0, v[0], v[1], 0.0, 0.0]).collect();
         assert_eq!(read("CUBICSPLINE", &cubic).weights, keys.map(f64::from));
         let short = document("LINEAR", &keys[..4], node);
-        let error = read_weight_animation(short.as_bytes(), None).unwrap_err().to_string();
+        let error = read_weight_animation(short.as_bytes(), None, None).unwrap_err().to_string();
         assert!(
             error.starts_with("animations[0].channels[0]: 4 weights for 3 keys of 2"),
             "{error}"
@@ -311,10 +346,47 @@ mod tests {
     }
 
     #[test]
+    fn one_of_several_animations_is_chosen_by_name_or_number() {
+        let node = r#"{"node": 0, "path": "weights"}"#;
+        let text = document("LINEAR", &[0.0, 0.25, 0.5, 0.75, 1.0, 0.0], node);
+        let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let moves = file["animations"][0].clone();
+        let named = |name: &str, channels: bool| {
+            let mut own = moves.clone();
+            own["name"] = name.into();
+            if !channels {
+                own["channels"] = serde_json::json!([]);
+            }
+            own
+        };
+        file["animations"] =
+            serde_json::json!([named("walk", false), named("joy", true), named("fear", true)]);
+        let bytes = file.to_string();
+        let read = |wanted| read_weight_animation(bytes.as_bytes(), None, wanted);
+        let first = read(None).unwrap().unwrap();
+        assert_eq!(
+            first.notes,
+            [
+                "animation 2 \"joy\" is read, the first that moves shapes, of 1 \"walk\", 2 \"joy\", 3 \"fear\""
+            ]
+        );
+        for wanted in ["fear", "3"] {
+            assert!(read(Some(wanted)).unwrap().unwrap().notes.is_empty(), "{wanted}");
+        }
+        let refused = |wanted| read(Some(wanted)).unwrap_err().to_string();
+        assert_eq!(
+            refused("anger"),
+            "animations: none is called \"anger\"; choose one of 1 \"walk\", 2 \"joy\", 3 \"fear\""
+        );
+        assert_eq!(refused("1"), "animations[0]: it moves no morph target; name another animation");
+        assert!(refused("0").starts_with("animations: none is called"));
+    }
+
+    #[test]
     fn weights_behind_a_pointer_are_refused_by_name_and_the_mesh_is_read() {
         let pointer = r#"{"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/meshes/0/weights/1"}}}"#;
         let text = document("LINEAR", &[0.0, 0.5, 1.0], pointer);
-        let error = read_weight_animation(text.as_bytes(), None).unwrap_err().to_string();
+        let error = read_weight_animation(text.as_bytes(), None, None).unwrap_err().to_string();
         assert_eq!(
             error,
             "animations[0].channels[0]: weights by the extension KHR_animation_pointer \
@@ -322,6 +394,6 @@ mod tests {
              export the animation as channels of weights of a node"
         );
         let other = text.replace("/meshes/0/weights/1", "/materials/0/alphaCutoff");
-        assert_eq!(read_weight_animation(other.as_bytes(), None).unwrap(), None);
+        assert_eq!(read_weight_animation(other.as_bytes(), None, None).unwrap(), None);
     }
 }

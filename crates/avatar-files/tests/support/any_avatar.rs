@@ -25,7 +25,7 @@ pub fn consume(kind: Kind, bytes: &[u8]) {
         Kind::Gltf => {
             read(bytes, AvatarSettings::default());
             template(bytes);
-            match read_weight_animation(bytes, None) {
+            match read_weight_animation(bytes, None, None) {
                 Ok(None) => {}
                 Ok(Some(read)) => {
                     assert!(read.rate_hz.is_finite() && read.rate_hz > 0.0);

@@ -6,6 +6,8 @@
 //! rigs have as `browInnerUp_L` and `browInnerUp_R`. FACS numbers after Ekman, Friesen and Hager
 //! (2002); what is called otherwise stands in `vocabularies`.
 
+use crate::head_pose::HEAD_POSE_SHAPES;
+
 mod vocabularies;
 
 use vocabularies::{Meaning, meaning};
@@ -28,10 +30,17 @@ pub const ARKIT_SHAPES: [&str; 52] = [
     "mouthUpperUpLeft", "mouthUpperUpRight", "noseSneerLeft", "noseSneerRight", "tongueOut",
 ];
 
-/// Shapes that show the body and no expression: how far the chest is filled, how red the skin is, how wet.
-/// The first moves neck and chest; the others move nothing, the stage shades the skin by them. No marker
-/// tells them: they rest unless recorded weights have columns of these names.
-pub const BODY_SHAPES: [&str; 3] = ["breath", "flush", "sweat"];
+/// Shapes that show the body and no expression: where the head is turned to ([`crate::HEAD_POSE_SHAPES`]), how far the
+/// chest is filled, how red the skin is, how wet. `breath` moves neck and chest; the others move nothing, the stage
+/// turns the head and shades the skin by them. No method solves for them: they rest unless the head's own motion is
+/// shown, or recorded weights have columns of these names.
+pub const BODY_SHAPES: [&str; 6] = {
+    let [nod, turn, tilt] = HEAD_POSE_SHAPES;
+    [nod, turn, tilt, BREATH, "flush", "sweat"]
+};
+
+/// The chest's shape.
+pub const BREATH: &str = "breath";
 
 /// FACS numbers and the features that they are. AU 23, 25 and others have none of their own in
 /// ARKit: shapes of those names stay what they are called.

@@ -19,7 +19,7 @@ pub(super) fn avatar_file(file: &Path, bytes: &[u8]) -> anyhow::Result<Value> {
     facts["notes"] = json!(read.notes);
     // Of a folder or an archive there are no animations.
     if bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{") {
-        match mimique_avatar_files::read_weight_animation(bytes, file.parent()) {
+        match mimique_avatar_files::read_weight_animation(bytes, file.parent(), None) {
             Ok(None) => {}
             Ok(Some(animation)) => {
                 let shapes = animation.shape_names.len();

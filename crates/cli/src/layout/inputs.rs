@@ -64,7 +64,7 @@ pub(super) fn takes(
 
 /// The weights of a file, or of the animation of a GLB.
 fn weights(skin: &AvatarSkin, file: &Path, rate_hz: Option<f64>) -> anyhow::Result<WeightsTable> {
-    let options = WeightOptions { rate_hz, shape_names: &skin.shape_names };
+    let options = WeightOptions { rate_hz, shape_names: &skin.shape_names, animation: None };
     read_performance(file, &options).map(|read| read.table).map_err(|e| blame(file, e))
 }
 

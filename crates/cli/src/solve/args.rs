@@ -95,6 +95,9 @@ pub struct Args {
     /// Frames a second of the capture where its file does not say
     #[arg(long, help_heading = CAPTURE, value_name = "HZ")]
     pub(super) mocap_rate: Option<f64>,
+    /// Which animation of a GLB or glTF file of weights, by its name or its number counted from 1 (method recorded)
+    #[arg(long, help_heading = CAPTURE, value_name = "NAME")]
+    pub(super) animation: Option<String>,
     /// The parameters of the method
     #[command(flatten)]
     pub(super) parameters: ParameterOptions,

@@ -9,7 +9,7 @@ use super::blame;
 /// The gaze of the options; none where the eyes rest.
 pub(super) fn given(args: &Args) -> anyhow::Result<Option<GivenGaze>> {
     if let Some(path) = &args.gaze_track {
-        let options = WeightOptions { rate_hz: args.mocap_rate, shape_names: &[] };
+        let options = WeightOptions { rate_hz: args.mocap_rate, ..WeightOptions::default() };
         let table = read_performance(path, &options).map_err(|e| blame(path, e))?.table;
         let later = args.gaze_later.unwrap_or_default();
         return Ok(Some(GivenGaze::Track(

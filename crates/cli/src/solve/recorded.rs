@@ -20,8 +20,11 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     }
     let avatar =
         mimique_avatar_files::read_avatar(&args.avatar).map_err(|e| blame(&args.avatar, e))?;
-    let options =
-        WeightOptions { rate_hz: args.mocap_rate, shape_names: avatar.avatar.face_shapes() };
+    let options = WeightOptions {
+        rate_hz: args.mocap_rate,
+        shape_names: avatar.avatar.face_shapes(),
+        animation: args.animation.as_deref(),
+    };
     let Performance { table: recorded, format } =
         read_performance(&args.mocap, &options).map_err(|e| blame(&args.mocap, e))?;
     let mut notes = vec![format!("read as {format}")];

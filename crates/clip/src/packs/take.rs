@@ -70,7 +70,7 @@ pub struct SegmentMarkers {
     pub depth: Option<SurfaceDepth>,
     /// Frames x 3C, metres, NaN where a marker is not seen.
     pub positions: Vec<f64>,
-    /// Shapes whose weights do not come from the solve: those of the lids.
+    /// Shapes whose weights do not come from the solve: those of the lids, of a given gaze, of the head's pose.
     pub driven_shapes: Vec<String>,
     /// Their weights, frames x driven shapes.
     pub driven_weights: Vec<f64>,

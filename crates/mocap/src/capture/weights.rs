@@ -39,6 +39,9 @@ pub struct WeightOptions<'a> {
     pub rate_hz: Option<f64>,
     /// Names of the columns, for a file without names: the shapes of an avatar's face in their order.
     pub shape_names: &'a [String],
+    /// Which of a file's animations, by its name or its number counted from 1; the first that has weights where it is
+    /// not given. Only files of animations (glTF) have any.
+    pub animation: Option<&'a str>,
 }
 
 impl WeightsTable {

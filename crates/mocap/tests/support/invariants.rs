@@ -11,9 +11,10 @@ use std::io::{BufReader, Cursor};
 /// is whole and not larger than its file allows.
 pub fn read_anyhow(bytes: &[u8]) {
     let names: Vec<String> = (0..4).map(|k| format!("shape{k}")).collect();
-    for options in
-        [WeightOptions::default(), WeightOptions { rate_hz: Some(60.0), shape_names: &names }]
-    {
+    for options in [
+        WeightOptions::default(),
+        WeightOptions { rate_hz: Some(60.0), shape_names: &names, animation: None },
+    ] {
         weights_are_whole(bytes, &read_weights(bytes, &options));
     }
     for rate_hz in [None, Some(100.0)] {

@@ -159,7 +159,8 @@ pub async fn a_psych_ds_folder_explains_every_column(server: &TestServer) {
     let clip = study::demo().study().clips()[0].id.clone();
     let mut versions = server.storage.study_versions().await.unwrap();
     versions.retain(|version| version.study_id == "demo");
-    versions[0].measures = json!([{"clip": clip, "values": [["jerk_m_per_s3", 2.5]]}]).to_string();
+    versions[0].measures =
+        json!([{"clip": clip, "values": [["obj_jerk_m_per_s3", 2.5]]}]).to_string();
     server.storage.register_study(&versions[0], 0).await.unwrap();
     let exported = exported(server, Format::PsychDs).await;
     let file = |name: &str| {
@@ -198,7 +199,7 @@ pub async fn a_psych_ds_folder_explains_every_column(server: &TestServer) {
         assert_eq!((&row["segment"], &row["method"]), (&own.segment, &own.method));
         assert_eq!(row["expression"], own.factors["expression"].to_string());
         let jerk = if row["stimulus"] == clip { "2.5" } else { "" };
-        assert_eq!(row["jerk_m_per_s3"], jerk, "{row:?}");
+        assert_eq!(row["obj_jerk_m_per_s3"], jerk, "{row:?}");
     }
 
     // The archive holds the same files.

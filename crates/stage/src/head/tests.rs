@@ -212,3 +212,32 @@ fn strains_are_those_of_the_planted_stretch() {
         assert!(off < 5e-3, "vertex {v}, pressed: {}", pressed[v]);
     }
 }
+
+#[test]
+fn a_head_turns_about_its_neck_and_its_shoulders_do_not() {
+    let mut avatar = planted().with_head_pose_shapes();
+    let mut body = sphere(Vec3::new(0.0, -0.25, 0.0), 0.08);
+    body.part = Part::Other;
+    body.shapes = vec![SparseShape::default(); avatar.shape_names.len()];
+    avatar.meshes.push(body);
+    let mut weights = vec![0.0; avatar.shape_names.len()];
+    let name = "a_head_turns_about_its_neck_and_its_shoulders_do_not";
+    let rest = computed(name, &avatar, &weights);
+    // 10 degrees to the person's left.
+    weights[avatar.shape_index("headTurn").unwrap()] = 1.0;
+    let (Some((rest, _)), Some((turned, _))) = (rest, computed(name, &avatar, &weights)) else {
+        return;
+    };
+    let skin = avatar.meshes[0].positions.len();
+    // A turn keeps heights, and all above the chin turn by one angle about one vertical line.
+    let foremost = (0..skin).max_by(|&a, &b| rest[a].z.total_cmp(&rest[b].z)).unwrap();
+    assert!(turned[foremost].x > rest[foremost].x + 0.01, "to the person's left");
+    let body: Vec<usize> = (0..rest.len()).filter(|&k| rest[k].y < -0.16).collect();
+    assert!(body.len() == avatar.meshes[2].positions.len());
+    assert!(body.iter().all(|&k| turned[k].distance(rest[k]) < 1e-6), "shoulders stay");
+    for k in (0..skin).filter(|&k| rest[k].y > 0.02) {
+        assert!((turned[k].y - rest[k].y).abs() < 1e-6);
+        let apart = |of: &[Vec3]| of[k].distance(of[foremost]);
+        assert!((apart(&turned) - apart(&rest)).abs() < 2e-6, "rigid: {k}");
+    }
+}

@@ -1,11 +1,14 @@
 // Pass 1: one fragment a vertex. Position = neutral + sum of weight * delta over the blendshapes
-// that move this vertex, then the rigid turn of its eyeball.
+// that move this vertex, then the rigid turn of its eyeball, then that of the head.
 struct EyeballPose {
     rotation: array<vec4f, 3>,
     centre: vec4f,
 }
 
 struct Pose {
+    // Columns of the head's rotation; where it is turned about, and below which height it is not.
+    head: array<vec4f, 3>,
+    pivot: vec4f,
     eyeballs: array<EyeballPose, 16>,
     weights: array<vec4f, 512>,
 }
@@ -38,5 +41,10 @@ fn deform(@builtin(position) at: vec4f) -> @location(0) vec4f {
         position = ball.centre.xyz + ball.rotation[0].xyz * arm.x + ball.rotation[1].xyz * arm.y
             + ball.rotation[2].xyz * arm.z;
     }
-    return vec4f(position, 1.0);
+    // The neck bends: what lies lower turns less.
+    let share = smoothstep(pose.pivot.w, pose.head[0].w, textureLoad(neutral, texel, 0).y);
+    let arm = position - pose.pivot.xyz;
+    let turned = pose.pivot.xyz + pose.head[0].xyz * arm.x + pose.head[1].xyz * arm.y
+        + pose.head[2].xyz * arm.z;
+    return vec4f(mix(position, turned, share), 1.0);
 }

@@ -3,3 +3,4 @@
 pub(crate) mod hodges_lehmann;
 mod pairs;
 pub(crate) mod proportion;
+pub(crate) mod resampled;

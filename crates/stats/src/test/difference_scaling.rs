@@ -10,6 +10,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 use crate::distributions::tail::normal_upper;
+use crate::estimate::resampled::percentiles;
 use crate::numerics::random::Stream;
 use crate::numerics::recession::{Recession, rank, recession};
 use crate::outcome::Outcome;
@@ -17,7 +18,6 @@ use crate::procedure::arguments::{Arguments, DEFAULT_ROUNDS, ProcedureOption, RO
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::{Refusal, Unfit};
-use crate::summary::describe::quantile_sorted;
 use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
@@ -92,11 +92,7 @@ pub fn difference_scaling(
     let participants = judgements.iter().map(|own| own.participant + 1).max().unwrap_or(0);
     let draws = resampled(judgements, &rows, levels.len(), participants, rounds, seed);
     let kept: Vec<&Vec<f64>> = draws.iter().flatten().collect();
-    let interval = |level: usize| {
-        let mut values: Vec<f64> = kept.iter().map(|draw| draw[level]).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        [0.025, 0.975].map(|p| quantile_sorted(&values, p))
-    };
+    let interval = |level: usize| percentiles(kept.iter().map(|draw| draw[level]).collect());
     let last = found.scale[levels.len() - 1];
     Ok(Outcome::Ok(DifferenceScale {
         test: "difference-scaling",
@@ -105,7 +101,7 @@ pub fn difference_scaling(
         dropped: 0,
         sigma_if_scale_ends_at_1: (last > 0.0).then(|| 1.0 / last),
         scale_to_1: (last > 0.0).then(|| found.scale.iter().map(|psi| psi / last).collect()),
-        interval: (!kept.is_empty()).then(|| (0..levels.len()).map(interval).collect()),
+        interval: (0..levels.len()).map(interval).collect(),
         rounds: draws.len(),
         without_scale: draws.iter().filter(|draw| draw.is_none()).count(),
         seed,

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::numerics::random::Stream;
+use crate::estimate::resampled::resampled_interval;
 use crate::outcome::{Labelled, Outcome};
 use crate::procedure::arguments::{
     Arguments, Choice, DEFAULT_ROUNDS, ProcedureOption, ROUNDS, SEED,
@@ -13,7 +13,6 @@ use crate::procedure::arguments::{
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::{Refusal, Unfit};
-use crate::summary::describe::quantile_sorted;
 use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::number::parse_number;
@@ -165,20 +164,11 @@ pub fn krippendorff(
     }
     let pairable: Vec<&Vec<usize>> = values.units.iter().filter(|unit| unit.len() > 1).collect();
     let all: Vec<usize> = (0..pairable.len()).collect();
-    let draws: Vec<Vec<usize>> = (0..rounds)
-        .map(|round| {
-            let mut stream = Stream::new(seed, round as u64);
-            all.iter().map(|_| stream.below(pairable.len())).collect()
-        })
-        .collect();
     let of = |level: MeasurementLevel| match alpha(values, &pairable, &all, level) {
         None => Outcome::undefined(NoEstimate::NoDisagreementPossible),
         Some(found) => {
-            let drawn = draws.iter().filter_map(|draw| alpha(values, &pairable, draw, level));
-            let mut drawn: Vec<f64> = drawn.collect();
-            drawn.sort_unstable_by(f64::total_cmp);
-            let ends = [0.025, 0.975].map(|p| quantile_sorted(&drawn, p));
-            let interval = (!drawn.is_empty()).then_some(ends);
+            let drawn = |draw: &[usize]| alpha(values, &pairable, draw, level);
+            let interval = resampled_interval(pairable.len(), rounds, seed, drawn);
             Outcome::Ok(AlphaEstimate { alpha: found, interval })
         }
     };

@@ -10,7 +10,7 @@
 //! | teeth, gums, tongue | their own blendshapes at the weights of `thin-shell-only`, which are linear in the markers |
 //! | eyeballs | rest: no marker tells the gaze |
 
-use mimique_avatar::{Avatar, Mesh, Part, SparseShape};
+use mimique_avatar::{Avatar, HEAD_POSE_SHAPES, Mesh, Part, SparseShape};
 use mimique_geometry::{DVec3, Point};
 use mimique_solver::{
     Fit, FitError, METRES_PER_WEIGHT, Method, MethodSpec, Operators, SurfaceResponse,
@@ -71,12 +71,14 @@ pub fn surface_avatar(
         .collect();
     let mut eyeballs = avatar.eyeballs.clone();
     eyeballs.iter_mut().for_each(|eye| eye.looks.clear());
-    Ok(Avatar {
+    let turns = avatar.shape_names.iter().any(|name| HEAD_POSE_SHAPES.contains(&name.as_str()));
+    let surface = Avatar {
         meshes,
         eyeballs,
         shape_names: surface_shape_names(labels.iter().map(String::as_str)),
         ..avatar.clone()
-    })
+    };
+    Ok(if turns { surface.with_head_pose_shapes() } else { surface })
 }
 
 /// The 3P shapes of a mesh whose vertex v follows the markers by the P numbers of `row(v)`.

@@ -4,9 +4,10 @@
 use std::ops::Range;
 
 use mimique_actor::{
-    Density, Emotion, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites, synthetic_take,
+    Density, Emotion, HeadPose, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites,
+    synthetic_take,
 };
-use mimique_avatar::Avatar;
+use mimique_avatar::{Avatar, HEAD_POSE_SHAPES, HeadAngles};
 use mimique_geometry::coordinates;
 use mimique_mocap::{Capture, WeightsTable};
 use mimique_study::{BuiltinAvatar, BuiltinCapture, BuiltinExpression};
@@ -47,14 +48,33 @@ pub(super) fn take(actor: &BuiltinCapture, what: mimique_study::Performance) -> 
     }
 }
 
-/// The weights of an actor's performance as the actor made them, and the frames played.
+/// The weights of an actor's performance as the actor made them, with a share of the head's motion beside them (none
+/// where it is 0), and the frames played.
 pub(super) fn performed(
     actor: &BuiltinCapture,
     what: mimique_study::Performance,
+    head_motion: f64,
 ) -> (WeightsTable, Range<usize>) {
     let take = synthetic(actor, what);
     let played = played(&take);
-    (built_in_weights(&take), played)
+    let weights = built_in_weights(&take);
+    if head_motion == 0.0 {
+        return (weights, played);
+    }
+    let rows = weights.weights.chunks_exact(weights.shape_names.len());
+    let beside = |(row, pose): (&[f64], &HeadPose)| {
+        let [nod, turn, tilt] = pose.rotation.map(f64::to_degrees);
+        let angles = HeadAngles { nod, turn, tilt: -tilt };
+        let head = angles.weights().map(|weight| head_motion * weight);
+        row.iter().copied().chain(head).collect::<Vec<f64>>()
+    };
+    let names = weights.shape_names.iter().cloned().chain(HEAD_POSE_SHAPES.map(str::to_owned));
+    let with_head = WeightsTable {
+        shape_names: names.collect(),
+        weights: rows.zip(&take.head).flat_map(beside).collect(),
+        ..weights.clone()
+    };
+    (with_head, played)
 }
 
 fn played(take: &SyntheticTake) -> Range<usize> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use mimique_avatar::GazeAngles;
+use mimique_avatar::{Avatar, GazeAngles, MOST_SHAPES};
 use mimique_clip::sha256_hex;
 use mimique_mocap::{Capture, LengthUnit, ReadOptions, WeightOptions, WeightsTable};
 use mimique_solver::Method;
@@ -83,6 +83,12 @@ impl<'a> Sources<'a> {
                 split_shapes(&avatar, split).map_err(|e| PrepareError::new(at("split"), e))?;
             (avatar_key(&avatar), avatar)
         };
+        let (key, avatar) = if self.study.shows_head_motion() {
+            let avatar = with_head_pose(avatar).map_err(|e| PrepareError::new(at("file"), e))?;
+            (avatar_key(&avatar), avatar)
+        } else {
+            (key, avatar)
+        };
         let file =
             Rc::new(AvatarFile { key, avatar, locked, sites, skin: OnceCell::new(), pointer });
         self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
@@ -131,6 +137,7 @@ impl<'a> Sources<'a> {
             head: (!head.is_empty()).then_some(head),
             repair: file.repair.clone(),
             gaze: self.gaze(segment)?,
+            head_motion: entry.head_motion_shown(),
             ..TakeOptions::default()
         };
         let frames = match (segment.span(), &file.known) {
@@ -151,6 +158,7 @@ impl<'a> Sources<'a> {
             .json("neutral", json!(options.neutral.as_ref().map(|n| [n.start, n.end])))
             .json("head", json!(options.head))
             .json("gaze", json!(options.gaze.as_ref().map(GivenGaze::key)))
+            .json("headMotion", options.head_motion)
             .hash();
         Ok(Performance {
             pointer: at,
@@ -224,7 +232,7 @@ impl<'a> Sources<'a> {
                         "only a built-in actor performs a gaze; give held, file or target";
                     return Err(PrepareError::new(at, message));
                 };
-                track(&builtin::performed(actor, what).0, 0.0, &at)
+                track(&builtin::performed(actor, what, 0.0).0, 0.0, &at)
             }
             None => {
                 let message = "give exactly one of held, file, target and performed";
@@ -303,7 +311,8 @@ impl<'a> Sources<'a> {
             (Some(CaptureSource::File(file)), _) => file,
             // The performance itself, as the actor's own face made it.
             (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
-                let (table, frames) = builtin::performed(actor, what);
+                let shown = entry.map_or(0.0, |capture| capture.head_motion_shown());
+                let (table, frames) = builtin::performed(actor, what, shown);
                 return Ok(Recording {
                     pointer: at,
                     table,
@@ -327,7 +336,8 @@ impl<'a> Sources<'a> {
         let path = self.path(file, &pointer)?;
         // An array has the avatar's shapes in their order.
         let rate_hz = entry.and_then(|capture| capture.file_rate_hz);
-        let table = read_performance(&path, &WeightOptions { rate_hz, shape_names })
+        let animation = entry.and_then(|capture| capture.animation.as_deref());
+        let table = read_performance(&path, &WeightOptions { rate_hz, shape_names, animation })
             .map_err(|e| PrepareError::new(&pointer, format!("{}: {e}", path.display())))?
             .table;
         match segment.span() {
@@ -537,4 +547,17 @@ pub(super) fn unit_of(unit: Option<&str>, at: &str) -> Result<Option<LengthUnit>
         Some("m") => Ok(Some(LengthUnit::Metre)),
         Some(other) => Err(PrepareError::new(at, format!("unit {other:?}; write m, cm or mm"))),
     }
+}
+
+/// An avatar with the shapes that turn its head.
+fn with_head_pose(avatar: Avatar) -> Result<Avatar, String> {
+    let shapes = avatar.shape_names.len();
+    let turned = avatar.with_head_pose_shapes();
+    if turned.shape_names.len() > MOST_SHAPES {
+        return Err(format!(
+            "{shapes} shapes, of which a clip shows {MOST_SHAPES} at most with those that turn the head; write \
+             \"headMotion\": 0 in the captures"
+        ));
+    }
+    Ok(turned)
 }

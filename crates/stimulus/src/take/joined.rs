@@ -50,6 +50,8 @@ pub struct JoinedTake<'a> {
     pub(crate) repair: Option<String>,
     pub(crate) lids: Vec<JoinedLid>,
     pub(crate) gaze: Option<JoinedGaze>,
+    /// Share of the head's own motion that is shown.
+    pub(crate) head_motion: f64,
     pub(crate) map_origin: MapOrigin,
     pub(crate) warnings: Vec<String>,
 }
@@ -102,6 +104,11 @@ impl<'a> JoinedTake<'a> {
         };
         let mut joined = Self::of_markers(skin, capture, from, head, neutral, warnings)?;
         joined.repair = options.repair.clone();
+        joined.head_motion = options.head_motion;
+        if options.head_motion > 0.0 && joined.columns.head.is_none() {
+            let said = "no head markers are named: the head is shown still";
+            joined.warnings.push(said.to_owned());
+        }
         joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
         if let Some(given) = &options.gaze {
@@ -190,6 +197,7 @@ impl<'a> JoinedTake<'a> {
             repair: None,
             lids: Vec::new(),
             gaze: None,
+            head_motion: 0.0,
             map_origin: MapOrigin::Unknown,
             warnings,
         })

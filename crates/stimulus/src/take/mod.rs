@@ -3,6 +3,7 @@
 mod adjustments;
 mod found_neutral;
 mod gaze;
+mod head_motion;
 mod joined;
 mod lid_opening;
 mod lids;

@@ -40,6 +40,9 @@ impl JoinedTake<'_> {
         if let Some(gaze) = &self.gaze {
             made = made.json("gaze", gaze.given().key());
         }
+        if self.head_motion != 0.0 {
+            made = made.json("headMotion", self.head_motion);
+        }
         self.adjustments(made)
     }
 

@@ -54,7 +54,9 @@ impl JoinedTake<'_> {
         let width = 3 * self.labels.len();
         let lids = self.lid_tracks(&front_end, &poses, frames.clone());
         let gaze = self.gaze_tracks(&front_end, &poses, frames.clone());
-        let (driven_shapes, driven_weights) = beside(lids, gaze, frames.len());
+        let head = self.head_tracks(&front_end, &poses, frames.clone());
+        let face = beside(lids, gaze, frames.len());
+        let (driven_shapes, driven_weights) = beside(face, head, frames.len());
         Ok(SegmentMarkers {
             driven_shapes,
             driven_weights,

@@ -31,6 +31,9 @@ pub struct TakeOptions {
     pub depth: Option<Depth>,
     /// Where the eyes look; they rest where it is not given, but for what the method asks of the markers.
     pub gaze: Option<GivenGaze>,
+    /// Share of the head's own motion that packs of segments carry, 0 to 1: 0, a head that is held still, where it is
+    /// not given.
+    pub head_motion: f64,
 }
 
 /// Weights and their report.

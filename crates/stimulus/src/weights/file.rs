@@ -37,6 +37,9 @@ pub enum PerformanceError {
         "animations: none moves morph targets; export the animation of the shapes with the file"
     )]
     NoAnimation,
+    /// An animation is asked for, of a file that is no glTF.
+    #[error("only a GLB or glTF file has animations to choose from; leave the choice out")]
+    NotAnimated,
 }
 
 /// Reads weights from a file of any format of `mimique_mocap` that holds them, or from the animation of a GLB
@@ -50,13 +53,16 @@ pub fn read_performance(
 ) -> Result<Performance, PerformanceError> {
     if is_gltf(path).map_err(PerformanceError::Open)? {
         let bytes = std::fs::read(path).map_err(PerformanceError::Open)?;
-        let read = read_weight_animation(&bytes, path.parent())?;
+        let read = read_weight_animation(&bytes, path.parent(), options.animation)?;
         let read = read.ok_or(PerformanceError::NoAnimation)?;
         let table = WeightsTable::at_rate(read.shape_names, read.weights, 0, read.rate_hz);
         let table = WeightsTable { notes: read.notes, ..table };
         return Ok(Performance { table, format: ANIMATION });
     }
     let mut file = CaptureFile::open(path)?;
+    if options.animation.is_some() {
+        return Err(PerformanceError::NotAnimated);
+    }
     let table = file.weights(options)?;
     Ok(Performance { table, format: file.format().map_or("", |format| format.name) })
 }

@@ -2,13 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use mimique_avatar::{BODY_SHAPES, shows_body};
+use mimique_avatar::{BREATH, shows_body};
 use mimique_mocap::WeightsTable;
 use mimique_solver::LARGEST_WEIGHT;
 use serde::Serialize;
-
-/// The chest's shape: few avatars have a chest, and a face is whole without it.
-const BREATH: &str = BODY_SHAPES[0];
 
 /// Recorded weights under an avatar's shapes.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,6 +107,7 @@ impl RecordedNames {
             );
         }
         let unused: Vec<&str> =
+            // Few avatars have a chest, and a face is whole without it.
             self.unused.iter().map(String::as_str).filter(|name| *name != BREATH).collect();
         if !unused.is_empty() {
             out.push(format!("the avatar has no shape {}: left out", unused.join(", ")));

@@ -42,6 +42,7 @@ pub(super) fn examine(
         || capture.unit.is_some()
         || capture.neutral.is_some()
         || capture.head_lowpass_hz.is_some()
+        || capture.head_motion.is_some()
         || !capture.head.is_empty()
     {
         issues.error(pointer, Problem::ExertionMarkers);

@@ -307,7 +307,7 @@ PastExertion { end: usize, frames: usize }: "bad-range",
 LengthOfExertion { seconds: f64 }: "out-of-range", "{seconds} seconds",
     "write how long the body goes on, above 0 and at most 86400";
 ExertionMarkers: "not-needed", "the face of an exertion is computed, without markers",
-    "remove markers, head, unit, neutral and headLowpassHz";
+    "remove markers, head, unit, neutral, headLowpassHz and headMotion";
 MethodOnExertion { method: String, capture: String }: "bad-exertion",
     "method \"{method}\" solves markers; the exertion \"{capture}\" has weights",
     "show it with a method {{\"method\": \"recorded\"}}: choose in /stimuli/clips";
@@ -364,6 +364,10 @@ SoundBeginsLate { path: String, from_s: f64, duration_s: f64 }: "bad-sound",
 SoundEndsEarly { clip: String, audible_s: f64, clip_s: f64 }: "sound-ends-early",
     "the sound of \"{clip}\" ends after {audible_s:.3} s, the clip lasts {clip_s:.3} s",
     "see that fromS is right and the file whole; what is missing is silence";
+HeadMotionShare { share: f64 }: "out-of-range", "{share} of the head's motion is no share of it",
+    "write a number from 0 (a head that is held still) to 1";
+HeadMotionUnknown: "bad-head-motion", "the capture names no head markers: its head is shown still, unless the marker map names them",
+    "add \"head\": [three labels or more], or write \"headMotion\": 0";
 GazePerformed: "bad-gaze", "only a built-in actor performs a gaze", "give the gaze by held, file or target";
 NoMarkers: "no-markers", "no marker map: nothing says where the markers sit on the avatar",
     "add \"markers\": \"map.json\"";

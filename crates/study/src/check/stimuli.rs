@@ -31,6 +31,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         file(capture.file.as_deref(), &below(&pointer, "file"), lookup, issues);
         file(capture.markers.as_deref(), &below(&pointer, "markers"), lookup, issues);
         recorded(capture, only_played.contains(name.as_str()), &pointer, issues);
+        head_motion(capture, &below(&pointer, "headMotion"), issues);
         gaze(capture, &below(&pointer, "gaze"), lookup, issues);
         if let Some(own) = &capture.exertion {
             exertion::examine(capture, own, &pointer, lookup, issues);
@@ -133,6 +134,16 @@ fn recorded(capture: &Capture, only_played: bool, pointer: &str, issues: &mut Is
         && (capture.markers.is_some() || capture.unit.is_some() || !capture.head.is_empty())
     {
         issues.error(pointer, Problem::BuiltinMarkers);
+    }
+}
+
+/// The head's motion: a share of it, from a capture that tells it.
+fn head_motion(capture: &Capture, pointer: &str, issues: &mut Issues) {
+    let Some(share) = capture.head_motion else { return };
+    if !(0.0..=1.0).contains(&share) {
+        issues.error(pointer, Problem::HeadMotionShare { share });
+    } else if share > 0.0 && capture.builtin.is_none() && capture.head.is_empty() {
+        issues.warning(pointer, Problem::HeadMotionUnknown);
     }
 }
 

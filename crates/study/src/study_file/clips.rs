@@ -117,6 +117,11 @@ impl Clip {
 }
 
 impl Study {
+    /// Whether any capture shows motion of the head.
+    pub fn shows_head_motion(&self) -> bool {
+        self.stimuli.captures.values().any(|capture| capture.head_motion_shown() > 0.0)
+    }
+
     /// Every clip, in the order of the file: the cross product (segment by segment, method by
     /// method, avatar by avatar, sound by sound), then the list. Combinations whose parts do not exist are left out
     /// (the check reports them), and so is the second of two that are alike.

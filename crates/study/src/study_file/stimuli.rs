@@ -162,6 +162,10 @@ pub struct Capture {
     /// Frames per second of the file where the file does not say: arrays of vertices or weights (`.npy`, `.npz`), tables without times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file_rate_hz: Option<f64>,
+    /// Which animation of a GLB or glTF file of recorded weights, by its name or its number counted from 1; the first that
+    /// moves shapes if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub animation: Option<String>,
     /// Marker map: a JSON or CSV file that says where each marker sits on the avatar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub markers: Option<String>,
@@ -174,6 +178,10 @@ pub struct Capture {
     /// Cut-off of the low-pass filter on the head's motion, Hz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_lowpass_hz: Option<f64>,
+    /// How much of the head's own motion every clip of this capture shows, 0 (a head that is held still) to 1: the turns
+    /// that the head markers tell, or that a built-in actor performs. 1 for built-in actors and 0 for files if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub head_motion: Option<f64>,
     /// Where the eyes look in every clip of this capture; they rest if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gaze: Option<CaptureGaze>,
@@ -285,6 +293,11 @@ impl Capture {
             (None, None, Some(exertion)) => Some(CaptureSource::Exertion(exertion)),
             _ => None,
         }
+    }
+
+    /// The share of the head's own motion that its clips show, 0 to 1.
+    pub fn head_motion_shown(&self) -> f64 {
+        self.head_motion.unwrap_or(if self.builtin.is_some() { 1.0 } else { 0.0 })
     }
 }
 

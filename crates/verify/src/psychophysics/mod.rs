@@ -3,6 +3,7 @@
 
 mod comparisons;
 mod levels;
+mod motion;
 mod ratings;
 mod tolerance;
 
@@ -24,7 +25,7 @@ const ENDING: &str = ".expected.json";
 type Compute = fn(&Given<'_>) -> Result<Value, Stop>;
 
 /// The kinds of cases and what computes them.
-const KINDS: [(&str, Compute); 14] = [
+const KINDS: [(&str, Compute); 15] = [
     ("bradley_terry", comparisons::bradley_terry),
     ("thurstone_v", comparisons::thurstone),
     ("consistency", comparisons::consistency),
@@ -39,6 +40,7 @@ const KINDS: [(&str, Compute); 14] = [
     ("cronbach_alpha", ratings::cronbach),
     ("krippendorff_alpha", ratings::krippendorff),
     ("multi_stimulus", ratings::panel),
+    ("motion_measures", motion::motion),
 ];
 
 /// What the computation of a case is given.

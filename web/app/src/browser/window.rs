@@ -1,5 +1,6 @@
 //! What happens to the window.
 
+use std::cell::Cell;
 use std::rc::Rc;
 
 use gloo_events::{EventListener, EventListenerOptions, EventListenerPhase};
@@ -64,9 +65,11 @@ pub fn watch(call: impl Fn(WindowEvent) + 'static) {
 
 /// Says when something is pressed, and when its click is over.
 fn watch_presses<F: Fn(WindowEvent) + 'static>(call: &Rc<F>) {
+    // Presses so far: what is let go ends those before it, not one that comes while its timer waits.
+    let presses = Rc::new(Cell::new(0_u64));
     // A finger's press comes as a mouse's again, right before the click.
     for name in ["pointerdown", "mousedown"] {
-        let call = Rc::clone(call);
+        let (call, presses) = (Rc::clone(call), Rc::clone(&presses));
         // Before the field that loses the focus says that it has changed.
         let options =
             EventListenerOptions { phase: EventListenerPhase::Capture, ..Default::default() };
@@ -74,6 +77,7 @@ fn watch_presses<F: Fn(WindowEvent) + 'static>(call: &Rc<F>) {
             let target = event.target().and_then(|target| target.dyn_into::<Element>().ok());
             let acts = |target: Element| target.closest(ACTS_ON_RELEASE).ok().flatten();
             if target.and_then(acts).is_some() {
+                presses.set(presses.get() + 1);
                 call(WindowEvent::Pressed);
             }
         })
@@ -81,11 +85,17 @@ fn watch_presses<F: Fn(WindowEvent) + 'static>(call: &Rc<F>) {
     }
     // The window's own loss of the focus; that of a field does not come up here.
     for name in ["pointerup", "pointercancel", "mouseup", "keydown", "blur"] {
-        let call = Rc::clone(call);
+        let (call, presses) = (Rc::clone(call), Rc::clone(&presses));
         EventListener::new(&window(), name, move |_| {
-            let call = Rc::clone(&call);
+            let (call, presses) = (Rc::clone(&call), Rc::clone(&presses));
+            let ended = presses.get();
+            let let_go = move || {
+                if presses.get() == ended {
+                    call(WindowEvent::LetGo);
+                }
+            };
             // The click comes with the release, before anything that waits.
-            Timeout::new(0, move || call(WindowEvent::LetGo)).forget();
+            Timeout::new(0, let_go).forget();
         })
         .forget();
     }

@@ -1,5 +1,5 @@
 //! The 51 blendshapes of the face, each a muscle's (or a few muscles') action on the control cage, and the
-//! three of the body.
+//! six of the body.
 //!
 //! | shapes | muscle | FACS unit |
 //! |---|---|---|
@@ -28,6 +28,7 @@
 //! | jawOpen | digastric, relaxed masseter | AU 26, 27 |
 //! | jawForward, jawLeft, jawRight | pterygoids | AD 29, 30 |
 //! | cheekPuff | buccinator against the breath | AD 33, 34 |
+//! | headNod, headTurn, headTilt | none: the stage turns head and neck | none |
 //! | breath | what lifts the ribs and widens the chest, scalenes | none |
 //! | flush, sweat | none: the stage shades the skin | none |
 

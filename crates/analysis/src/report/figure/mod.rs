@@ -9,6 +9,7 @@ pub(crate) mod flow_chart;
 mod likert;
 pub(crate) mod people;
 mod ranking;
+mod scatter;
 mod shares;
 pub(crate) mod svg;
 
@@ -19,6 +20,7 @@ pub use courses::{CoursePanel, time_courses};
 pub(crate) use differences::differences;
 pub(crate) use likert::likert;
 pub(crate) use ranking::ranking;
+pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;
 
 use crate::report::figure::svg::WIDTH;

@@ -2,18 +2,27 @@
 
 use std::collections::BTreeMap;
 
-use mimique_stats::{Numbers, Outcome, bonett_wright_interval, spearman};
+use mimique_stats::{Numbers, Outcome, resampled_interval, spearman};
 use mimique_study::Measure as What;
 use serde::Serialize;
 
 use crate::language::Language;
-use crate::report::document::{Block, DataTable, slug};
+use crate::report::document::{Block, DataTable, Figure, slug};
+use crate::report::figure::{ScatterPanel, scatter};
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::Measure;
 
 /// Fewest stimuli that a rank correlation is told of.
-const FEWEST: usize = 4;
+const FEWEST: usize = 6;
+/// Fewest performances that are drawn again for an interval: of fewer the ends are those of single performances.
+const FEWEST_PERFORMANCES: usize = 4;
+/// Draws of performances for an interval.
+const ROUNDS: usize = 2000;
+/// Seed of these draws.
+const SEED: u64 = 1;
+/// How the names of the ranges of the parts of a face begin.
+const RANGE: &str = "obj_range_mm_";
 
 /// How the mean answers about stimuli go with a measure of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,6 +31,9 @@ pub(crate) struct MeasureCorrelation {
     pub response: String,
     /// Column of the table of stimuli.
     pub measure: String,
+    /// What is held against each other, a stimulus each.
+    #[serde(skip)]
+    points: Vec<NamedPoint>,
     /// Over all stimuli.
     pub all: Correlation,
     /// Of the deviations from the mean of each performance (segment and avatar): whether of the clips of one performance
@@ -34,12 +46,16 @@ pub(crate) struct MeasureCorrelation {
 pub(crate) struct Correlation {
     /// Stimuli.
     pub stimuli: usize,
+    /// Performances (segment and avatar) that they belong to.
+    pub performances: usize,
     /// The correlation.
     pub rho: f64,
-    /// Bonett and Wright's interval (Psychometrika 65, 2000), 95 %; within performances with a degree of freedom less for each
-    /// performance but one.
+    /// The percentile interval at 95 % of performances drawn with replacement; none of fewer than four performances.
     pub ci95: Option<[f64; 2]>,
 }
+
+/// A stimulus by name, what was measured of it, its mean answer.
+type NamedPoint = (String, f64, f64);
 
 impl Writer<'_> {
     /// Answers against measures; nothing where no table of stimuli is given.
@@ -48,8 +64,8 @@ impl Writer<'_> {
         let language = self.language();
         self.heading(2, "Answers and measures of the stimuli", "Réponses et mesures des stimuli");
         self.paragraph(
-            "Each stimulus’s mean answer is held against what was measured of it: Spearman’s rank correlation over stimuli, with Bonett and Wright’s 95 % interval. Within performances both are taken as deviations from the mean of the performance, so that a performance that everybody rates higher tells nothing. These are descriptions of these stimuli; no hypothesis is decided by them.",
-            "La réponse moyenne de chaque stimulus est comparée à ce qui en a été mesuré : corrélation des rangs de Spearman sur les stimuli, avec l’intervalle à 95 % de Bonett et Wright. Au sein des performances, les deux sont pris comme écarts à la moyenne de la performance : une performance que tous notent plus haut ne dit rien. Ce sont des descriptions de ces stimuli ; aucune hypothèse n’en dépend.",
+            "Each stimulus’s mean answer is held against what was measured of it: Spearman’s rank correlation over stimuli, with the 95 % percentile interval of 2000 draws of performances. Within performances both are taken as deviations from the mean of the performance, so that a performance that everybody rates higher tells nothing. These are descriptions of these stimuli; no hypothesis is decided by them.",
+            "La réponse moyenne de chaque stimulus est comparée à ce qui en a été mesuré : corrélation des rangs de Spearman sur les stimuli, avec l’intervalle à 95 % (percentiles) de 2000 tirages de performances. Au sein des performances, les deux sont pris comme écarts à la moyenne de la performance : une performance que tous notent plus haut ne dit rien. Ce sont des descriptions de ces stimuli ; aucune hypothèse n’en dépend.",
         );
         if !table.ambiguous.is_empty() {
             let names: Vec<&str> = table.ambiguous.iter().map(String::as_str).collect();
@@ -67,14 +83,15 @@ impl Writer<'_> {
         }
         if found.is_empty() {
             self.paragraph(
-                "No question has mean answers of four stimuli that were measured and differ.",
-                "Aucune question n’a de réponses moyennes pour quatre stimuli mesurés et différents.",
+                "No question has mean answers of six stimuli that were measured and differ.",
+                "Aucune question n’a de réponses moyennes pour six stimuli mesurés et différents.",
             );
         }
         for (_, measure) in measures {
             let own: Vec<&MeasureCorrelation> =
                 found.iter().filter(|each| each.response == measure.id).collect();
             if !own.is_empty() {
+                self.figure(scattered(language, measure, &own));
                 self.blocks.push(Block::Table(correlation_table(language, measure, &own)));
             }
         }
@@ -94,15 +111,22 @@ impl Writer<'_> {
         let performance_of: BTreeMap<&str, [&str; 2]> =
             clips.iter().map(|clip| (&*clip.id, [&*clip.segment, &*clip.avatar])).collect();
         let of_measure = |(name, values): &(String, BTreeMap<String, f64>)| {
-            let points: Vec<StimulusPoint<'_>> = (sums.iter())
-                .filter_map(|(&stimulus, (sum, count))| {
-                    Some((*performance_of.get(stimulus)?, *values.get(stimulus)?, sum / count))
-                })
-                .collect();
+            let mut points: Vec<StimulusPoint<'_>> = Vec::new();
+            let mut named = Vec::new();
+            for (&stimulus, (sum, count)) in &sums {
+                let (Some(&performance), Some(&value)) =
+                    (performance_of.get(stimulus), values.get(stimulus))
+                else {
+                    continue;
+                };
+                points.push((performance, value, sum / count));
+                named.push((stimulus.to_owned(), value, sum / count));
+            }
             Some(MeasureCorrelation {
                 response: measure.id.clone(),
                 measure: name.clone(),
-                all: correlation(&points, 0)?,
+                points: named,
+                all: correlation(&points)?,
                 within_performances: within_performances(&points),
             })
         };
@@ -113,19 +137,39 @@ impl Writer<'_> {
 /// A stimulus: its performance, what was measured, its mean answer.
 type StimulusPoint<'a> = ([&'a str; 2], f64, f64);
 
-/// Spearman's correlation of some points that `lost` degrees of freedom were taken from; none of too few, or of a constant.
-fn correlation(points: &[StimulusPoint<'_>], lost: usize) -> Option<Correlation> {
-    if points.len() < FEWEST + lost {
+/// Spearman's correlation of some points; none of too few, or of a constant.
+fn correlation(points: &[StimulusPoint<'_>]) -> Option<Correlation> {
+    if points.len() < FEWEST {
         return None;
     }
+    let rho = rank_correlation(points)?;
+    let mut performances: BTreeMap<[&str; 2], Vec<StimulusPoint<'_>>> = BTreeMap::new();
+    for point in points {
+        performances.entry(point.0).or_default().push(*point);
+    }
+    let groups: Vec<Vec<StimulusPoint<'_>>> = performances.into_values().collect();
+    let of_drawn = |drawn: &[usize]| {
+        let points: Vec<StimulusPoint<'_>> =
+            drawn.iter().flat_map(|&group| groups[group].iter().copied()).collect();
+        rank_correlation(&points)
+    };
+    let ci95 = (groups.len() >= FEWEST_PERFORMANCES)
+        .then(|| resampled_interval(groups.len(), ROUNDS, SEED, of_drawn))
+        .flatten();
+    Some(Correlation { stimuli: points.len(), performances: groups.len(), rho, ci95 })
+}
+
+/// Spearman's correlation of measures and answers; none of a constant.
+fn rank_correlation(points: &[StimulusPoint<'_>]) -> Option<f64> {
     let numbers = |name: &str, of: fn(&StimulusPoint<'_>) -> f64| Numbers {
         name: name.to_owned(),
         values: points.iter().map(of).collect(),
     };
     let (x, y) = (numbers("measure", |point| point.1), numbers("answer", |point| point.2));
-    let Ok(Outcome::Ok(found)) = spearman(&x, &y) else { return None };
-    let ci95 = bonett_wright_interval(found.rho, points.len() - lost);
-    Some(Correlation { stimuli: points.len(), rho: found.rho, ci95 })
+    match spearman(&x, &y) {
+        Ok(Outcome::Ok(found)) => Some(found.rho),
+        _ => None,
+    }
 }
 
 /// The same of deviations from the means of performances with several clips.
@@ -141,7 +185,27 @@ fn within_performances(points: &[StimulusPoint<'_>]) -> Option<Correlation> {
         let (x, y) = (mean(|point| point.0), mean(|point| point.1));
         deviations.extend(own.iter().map(|point| (*performance, point.0 - x, point.1 - y)));
     }
-    correlation(&deviations, performances.len().saturating_sub(1))
+    correlation(&deviations)
+}
+
+/// A panel per measure: all but the ranges of single parts of the face, which the table has.
+fn scattered(
+    language: Language,
+    measure: &Measure,
+    correlations: &[&MeasureCorrelation],
+) -> Figure {
+    let whole = |each: &&&MeasureCorrelation| {
+        !each.measure.starts_with(RANGE) || each.measure == "obj_range_mm_face"
+    };
+    let panels: Vec<ScatterPanel<'_>> = (correlations.iter().filter(whole))
+        .map(|each| ScatterPanel { title: words_of(language, &each.measure), points: &each.points })
+        .collect();
+    let caption = language.pick(
+        format!("{}: mean answer against measures of the stimuli", measure.label),
+        format!("{} : réponse moyenne selon les mesures des stimuli", measure.label),
+    );
+    let id = format!("{}-against-measures", slug(&measure.id));
+    scatter(language, &id, &caption, &measure.label, &panels)
 }
 
 /// A row per measure.
@@ -200,31 +264,41 @@ fn words_of(language: Language, name: &str) -> String {
         ("jaw", "jaw", "mâchoire"),
         ("face", "face", "visage"),
     ];
-    let range = name.strip_prefix("range_mm_");
+    let range = name.strip_prefix(RANGE);
     if let Some((_, english, french)) = parts.iter().find(|(part, ..)| range == Some(part)) {
         return language
             .pick(format!("Range, {english} (mm)"), format!("Amplitude, {french} (mm)"));
     }
     let (english, french) = match name {
-        "jerk_m_per_s3" => ("Jerk (m/s³)", "Secousse (m/s³)"),
-        "widest_mouth_mm" => {
+        "obj_jerk_m_per_s3" => ("Jerk (m/s³)", "Secousse (m/s³)"),
+        "obj_widest_mouth_mm" => {
             ("Widest opening of the lips (mm)", "Plus grande ouverture des lèvres (mm)")
         }
-        "residual_mm" => ("Residual at the markers (mm)", "Résidu aux marqueurs (mm)"),
-        "marker_correlation" => ("Correlation with the markers", "Corrélation avec les marqueurs"),
-        "recorded_rms_mm" => (
-            "Distance from the recorded face (mm, rms)",
-            "Distance au visage enregistré (mm, efficace)",
-        ),
-        "recorded_largest_mm" => (
+        "obj_residual_mm" => ("Residual at the markers (mm)", "Résidu aux marqueurs (mm)"),
+        "obj_marker_correlation" => {
+            ("Correlation with the markers", "Corrélation avec les marqueurs")
+        }
+        "obj_recorded_rmse_mm" => {
+            ("RMSE from the recorded face (mm)", "Écart efficace au visage enregistré (mm)")
+        }
+        "obj_recorded_largest_mm" => (
             "Largest distance from the recorded face (mm)",
             "Plus grande distance au visage enregistré (mm)",
         ),
-        "recorded_lip_vertex_error_mm" => {
+        "obj_recorded_lip_vertex_error_mm" => {
             ("Lip vertex error (mm)", "Erreur des sommets des lèvres (mm)")
         }
-        "recorded_lip_closure_misses" => {
-            ("Missed closures of the lips (share)", "Fermetures des lèvres manquées (part)")
+        "obj_recorded_lip_vertex_error_mm2" => {
+            ("Lip vertex error, squared (mm²)", "Erreur des sommets des lèvres, au carré (mm²)")
+        }
+        "obj_recorded_upper_face_deviation_mm2" => {
+            ("Upper-face dynamics deviation (mm²)", "Écart de dynamique du haut du visage (mm²)")
+        }
+        "obj_recorded_lip_gap_error_mm" => {
+            ("Error of the lips’ gap (mm)", "Erreur de l’écart des lèvres (mm)")
+        }
+        "obj_recorded_lip_closures_kept" => {
+            ("Closures of the lips kept (share)", "Fermetures des lèvres conservées (part)")
         }
         other => (other, other),
     };

@@ -8,7 +8,7 @@ fn names() -> Vec<String> {
 }
 
 fn options(names: &[String]) -> WeightOptions<'_> {
-    WeightOptions { rate_hz: Some(60.0), shape_names: names }
+    WeightOptions { rate_hz: Some(60.0), shape_names: names, animation: None }
 }
 
 /// An array of 2 x 3 that holds 0.0, 0.5, 1.0, ...

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::fit_of_model::{Deviance, deviance};
 use super::model::{Model, Parameters};
+use crate::estimate::resampled::percentiles;
 use crate::numerics::random::Stream;
-use crate::summary::describe::quantile_sorted;
 use crate::table::comparisons::{PairedComparisons, Presentation, parts};
 
 /// How the participants were drawn again.
@@ -137,10 +137,7 @@ fn one_draw(model: Model, at: &Parameters, drawn: &[Presentation]) -> Draw {
 impl Resampled {
     /// The percentile interval at 95 % of a function of worths, side and tie; none without draws.
     pub fn interval(&self, of: impl Fn(&[f64]) -> f64) -> Option<[f64; 2]> {
-        let mut values: Vec<f64> = self.draws.iter().map(|draw| of(draw)).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        (!values.is_empty())
-            .then(|| [quantile_sorted(&values, 0.025), quantile_sorted(&values, 0.975)])
+        percentiles(self.draws.iter().map(|draw| of(draw)).collect())
     }
 
     /// The standard deviation over the draws of one of the worths; none with fewer than two draws.

@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use super::likelihood::{Likelihood, Summit};
 use super::{LevelCount, PsychometricOptions, checked, without_bound};
+use crate::estimate::resampled::percentiles;
 use crate::numerics::random::Stream;
 use crate::refusal::Refusal;
-use crate::summary::describe::quantile_sorted;
 
 /// Half of the 95 % quantile of chi-square with one degree of freedom.
 const DROP: f64 = 1.920_729_410_347_062;
@@ -135,15 +135,11 @@ fn drawn(
         .collect();
     let unbounded = fits.iter().filter(|fit| fit.is_none_or(|(_, unbounded)| unbounded)).count();
     let found: Vec<[f64; 3]> = fits.into_iter().flatten().map(|(found, _)| found).collect();
-    let ends = |which: usize| {
-        let mut values: Vec<f64> = found.iter().map(|own| own[which]).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        [0.025, 0.975].map(|p| quantile_sorted(&values, p))
-    };
-    (!found.is_empty()).then(|| BootstrapInterval {
-        level_at_half: ends(0),
-        location: ends(1),
-        scale_or_shape: ends(2),
+    let ends = |which: usize| percentiles(found.iter().map(|own| own[which]).collect());
+    Some(BootstrapInterval {
+        level_at_half: ends(0)?,
+        location: ends(1)?,
+        scale_or_shape: ends(2)?,
         rounds,
         unbounded,
     })
