@@ -156,7 +156,8 @@ fn name_shapes(avatar: &mut Avatar, settings: &AvatarSettings) -> Result<(), Rea
         mesh.shapes = shapes.filter(|(_, stay)| **stay).map(|(shape, _)| shape).collect();
     }
     avatar.shape_names.retain(stays);
-    for name in &mut avatar.shape_names {
+    let shares = avatar.expressions.iter_mut().flat_map(|own| &mut own.shares).map(|(s, _)| s);
+    for name in avatar.shape_names.iter_mut().chain(shares) {
         if let Some((_, new)) = settings.shapes.iter().find(|(old, _)| old == name) {
             name.clone_from(new);
         }

@@ -27,6 +27,18 @@ pub struct Avatar {
     pub eyeballs: Vec<Eyeball>,
     /// Pictures on the meshes' surfaces.
     pub textures: Vec<Texture>,
+    /// Expressions that the file defines as shares of shapes, whose names recorded weights may have in the place of those of
+    /// shapes. Packs do not carry them.
+    pub expressions: Vec<Expression>,
+}
+
+/// A named expression of an avatar.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    /// Its name: `happy`, `aa`.
+    pub name: String,
+    /// Shapes, each with the weight that it has where the expression is whole.
+    pub shares: Vec<(String, f64)>,
 }
 
 /// One mesh of an avatar.

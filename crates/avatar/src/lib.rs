@@ -40,7 +40,8 @@ mod shape_names;
 mod texture;
 
 pub use avatar::{
-    Avatar, Eyeball, Look, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, SparseShape, Texture, Textured,
+    Avatar, Expression, Eyeball, Look, MOST_EYEBALLS, MOST_SHAPES, Mesh, Part, SparseShape,
+    Texture, Textured,
 };
 pub use gaze::{
     EyeAngles, GazeAngles, GazeShapes, LOOK_DEGREES, VERGENCE_DEGREES, VERTICAL_DISPARITY_DEGREES,

@@ -64,6 +64,7 @@ fn avatar(width: u32, height: u32, n: usize, size: f32) -> Avatar {
             Texture { jpeg: vec![1, 2, 3], mask_jpeg: vec![] },
             Texture { jpeg: vec![4; 300], mask_jpeg: vec![5] },
         ],
+        expressions: Vec::new(),
     }
 }
 

@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
+use mimique_avatar::Expression;
 use mimique_comparison::{
     ComparedFace, Difference, FaceMotion, MarkerCorrelation, Measures, difference,
     marker_correlation, measures, median_correlation,
@@ -71,7 +72,7 @@ pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
     let mut reference: Option<FaceMotion> = None;
     let mut rows = Vec::new();
     for path in &args.weights {
-        let (weights, rate_hz) = weights_on(&skin, path, args.rate)?;
+        let (weights, rate_hz) = weights_on(&skin, &avatar.avatar.expressions, path, args.rate)?;
         let motion = FaceMotion::of(&skin, &face, &weights, rate_hz);
         let difference = match &reference {
             Some(first) => Some(difference(&face, first, &motion).map_err(|e| blame(path, e))?),
@@ -111,13 +112,15 @@ pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
 /// Weights of a file in the order of the skin's shapes, and their frames per second.
 fn weights_on(
     skin: &AvatarSkin,
+    expressions: &[Expression],
     path: &Path,
     rate_hz: Option<f64>,
 ) -> anyhow::Result<(Vec<f64>, f64)> {
     let options = WeightOptions { rate_hz, shape_names: &skin.shape_names, animation: None };
     let recorded = read_performance(path, &options).map_err(|e| blame(path, e))?.table;
     let RecordedWeights { table, names } =
-        RecordedWeights::of(&recorded, &skin.shape_names).map_err(|e| blame(path, e))?;
+        RecordedWeights::with_expressions(&recorded, &skin.shape_names, expressions)
+            .map_err(|e| blame(path, e))?;
     if names.driven.is_empty() {
         let first: Vec<&str> = recorded.shape_names.iter().take(4).map(String::as_str).collect();
         return Err(blame(

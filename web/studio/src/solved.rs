@@ -282,8 +282,9 @@ impl Workspace {
 
 /// Recorded weights under the avatar's own names.
 fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Value), Problem> {
+    let avatar = &face.read.avatar;
     let RecordedWeights { table, names } =
-        RecordedWeights::of(table, &face.read.avatar.shape_names)
+        RecordedWeights::with_expressions(table, &avatar.shape_names, &avatar.expressions)
             .map_err(|e| Problem::of(name, e))?;
     let rate_hz = table
         .rate_hz()

@@ -3,8 +3,8 @@
 //! Read: every mesh of the scene with its morph targets (sparse accessors, normalised integers),
 //! node transforms, skeletons at the pose that the file has them in, base colours and their
 //! textures, `extras.targetNames`; KHR_mesh_quantization, KHR_texture_transform and, in native
-//! builds, EXT_meshopt_compression; by itself, the animation of the morph targets. Not read: other textures; other compressions are
-//! refused by name.
+//! builds, EXT_meshopt_compression; the expressions of VRM 1.0; by itself, the animation of the morph targets. Not read: other
+//! textures; other compressions are refused by name.
 
 mod accessor;
 mod animation;
@@ -14,6 +14,7 @@ mod meshopt;
 mod primitive;
 mod skeleton;
 mod transform;
+mod vrm;
 mod write;
 
 pub use animation::{WeightAnimation, read_weight_animation};
@@ -91,7 +92,8 @@ pub(crate) fn as_in_the_file(
     let (shape_names, meshes) = joined(surfaces, &mut pictures, settings)?;
     notes.append(&mut pictures.notes);
     let (name, textures) = (name.to_owned(), pictures.textures);
-    Ok((Avatar { name, shape_names, meshes, eyeballs: vec![], textures }, notes))
+    let expressions = vrm::expressions(&container)?;
+    Ok((Avatar { name, shape_names, meshes, eyeballs: vec![], textures, expressions }, notes))
 }
 
 /// Every node of the scene with its world-from-node transform, parents first.

@@ -134,7 +134,7 @@ pub fn decode_pack(bytes: &[u8]) -> Result<Avatar, PackError> {
         return r.refuse(format!("texture {used} of {}", textures.len()));
     }
     r.finish()?;
-    Ok(Avatar { name, shape_names, meshes, eyeballs, textures })
+    Ok(Avatar { name, shape_names, meshes, eyeballs, textures, expressions: Vec::new() })
 }
 
 /// What is before the pictures, and the pictures.

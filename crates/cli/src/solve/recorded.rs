@@ -29,9 +29,12 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         read_performance(&args.mocap, &options).map_err(|e| blame(&args.mocap, e))?;
     let mut notes = vec![format!("read as {format}")];
     notes.extend(recorded.notes.iter().cloned());
-    let RecordedWeights { table, names } =
-        RecordedWeights::of(&recorded, &avatar.avatar.shape_names)
-            .map_err(|e| blame(&args.mocap, e))?;
+    let RecordedWeights { table, names } = RecordedWeights::with_expressions(
+        &recorded,
+        &avatar.avatar.shape_names,
+        &avatar.avatar.expressions,
+    )
+    .map_err(|e| blame(&args.mocap, e))?;
     let hash = weights_hash(&table.weights);
     let provenance = Provenance::new()
         .json("avatar", avatar_key(&avatar.avatar))

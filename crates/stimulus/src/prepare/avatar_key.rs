@@ -92,6 +92,7 @@ mod tests {
                 looks: vec![Look { shape: 0, axis: [1.0, 0.0, 0.0], radians: 0.5 }],
             }],
             textures: vec![Texture { jpeg: vec![1, 2], mask_jpeg: vec![] }],
+            expressions: Vec::new(),
         }
     }
 

@@ -328,7 +328,7 @@ fn recorded(
 ) -> Result<Vec<u8>, PrepareError> {
     let shape_names = &avatar.shape_names;
     let RecordedWeights { mut table, names } =
-        RecordedWeights::of(&recording.table, shape_names)
+        RecordedWeights::with_expressions(&recording.table, shape_names, &avatar.expressions)
             .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
     warnings.extend(recording.warnings.iter().cloned());
     warnings.extend(

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use mimique_avatar::{BREATH, shows_body};
+use mimique_avatar::{BREATH, Expression, shows_body};
 use mimique_mocap::WeightsTable;
 use mimique_solver::LARGEST_WEIGHT;
 use serde::Serialize;
@@ -60,7 +60,31 @@ impl RecordedWeights {
     /// # Errors
     /// [`WeightBeyondSense`] for the first weight over [`LARGEST_WEIGHT`] in a column that drives a shape.
     pub fn of(recorded: &WeightsTable, shape_names: &[String]) -> Result<Self, WeightBeyondSense> {
-        let map = mimique_avatar::map_shapes(shape_names, &recorded.shape_names);
+        Self::with_expressions(recorded, shape_names, &[])
+    }
+
+    /// The same where columns may also be called as expressions that the avatar's file defines (VRM's `happy`): such a
+    /// column drives the expression's shapes by their shares. A column that means a shape drives that one.
+    ///
+    /// # Errors
+    /// As [`RecordedWeights::of`].
+    pub fn with_expressions(
+        recorded: &WeightsTable,
+        shape_names: &[String],
+        expressions: &[Expression],
+    ) -> Result<Self, WeightBeyondSense> {
+        let mut map = mimique_avatar::map_shapes(shape_names, &recorded.shape_names);
+        map.unused.retain(|&column| {
+            let called =
+                |own: &&Expression| own.name.eq_ignore_ascii_case(&recorded.shape_names[column]);
+            let Some(expression) = expressions.iter().find(called) else { return true };
+            for (shape, share) in &expression.shares {
+                if let Some(k) = shape_names.iter().position(|name| name == shape) {
+                    map.terms[k].push((column, *share));
+                }
+            }
+            false
+        });
         let name = |c: usize| recorded.shape_names[c].clone();
         let driving: BTreeSet<usize> = map.terms.iter().flatten().map(|&(c, _)| c).collect();
         for (row, &frame) in recorded.frames.iter().enumerate() {
@@ -173,6 +197,28 @@ mod tests {
         assert!(back.names.held.is_empty());
         let nothing = RecordedWeights::of(&phone, &texts(&["smirk"])).unwrap();
         assert!(nothing.names.warnings(true)[0].contains("stays neutral"));
+    }
+
+    #[test]
+    fn expressions_of_a_file_drive_their_shapes_by_shares() {
+        let columns = texts(&["happy", "Blink", "jawOpen", "wink"]);
+        let weights = WeightsTable::at_rate(columns, vec![0.5, 1.0, 0.25, 1.0], 0, 60.0);
+        let shares = |shares: &[(&str, f64)]| {
+            shares.iter().map(|(shape, share)| ((*shape).to_owned(), *share)).collect()
+        };
+        let expressions = [
+            Expression {
+                name: "happy".into(),
+                shares: shares(&[("Fcl_MTH_Joy", 1.0), ("jawOpen", 0.4)]),
+            },
+            Expression { name: "blink".into(), shares: shares(&[("Fcl_EYE_Close", 1.0)]) },
+        ];
+        let shapes = texts(&["Fcl_MTH_Joy", "Fcl_EYE_Close", "jawOpen"]);
+        let found = RecordedWeights::with_expressions(&weights, &shapes, &expressions).unwrap();
+        assert_eq!(found.table.row(0), [0.5, 1.0, 0.25 + 0.4 * 0.5]);
+        assert_eq!(found.names.unused, ["wink"]);
+        // Without them nobody knows what the columns are.
+        assert_eq!(RecordedWeights::of(&weights, &shapes).unwrap().names.unused.len(), 3);
     }
 
     #[test]
