@@ -25,6 +25,20 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
     assert.ok((await fact(page, "A", "Residual")) < 3);
     assert.equal(await page.locator("#problem").isVisible(), false);
 
+    // Eyes that are held turn in the panel; at rest the weights are what they were.
+    const resting = await weightsHash(page, "A");
+    await page.selectOption("#gaze-kind", "held");
+    await page.fill("#gaze-azimuth", "12");
+    await page.press("#gaze-azimuth", "Enter");
+    await weightsHash(page, "A", resting);
+    await page.locator("main").first().screenshot({ path: join(shots, "gaze.png") });
+    await page.fill("#gaze-elevation", "80");
+    await page.press("#gaze-elevation", "Enter");
+    await page.waitForFunction(() => document.getElementById("problem").textContent.includes("elevation: 80 degrees"));
+    const held = await weightsHash(page, "A");
+    await page.selectOption("#gaze-kind", "rest");
+    assert.equal(await weightsHash(page, "A", held), resting);
+
     // A parameter changes the weights; a second method stands beside.
     const before = await weightsHash(page, "A");
     await page.locator('section[aria-label="Method A"] summary', { hasText: "Parameters" }).click();

@@ -94,6 +94,8 @@ async function takePart(server, { backend, hands, locale, colorScheme, viewport 
     assert.equal(trials, 12);
     const elsewhere = browser.requests.filter((url) => !url.startsWith(server.url) && !/^(data|blob):/.test(url));
     assert.deepEqual(elsewhere, [], "no request leaves the study's own server");
+    const unused = browser.requests.filter((url) => /\/(sound|adaptive)\//.test(url));
+    assert.deepEqual(unused, [], "nothing of sound, nor of levels that follow the answers: the study has neither");
     assert.deepEqual(browser.errors, [], "the console is clean");
     return given;
   } finally {
