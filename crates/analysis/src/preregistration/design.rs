@@ -236,6 +236,9 @@ fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Opti
                 let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
                 chosen * block.repetitions as usize
             }
+            Some(Component::Adaptive(_)) => {
+                study.adaptive().find(|(own, _)| own == name).map_or(0, |(_, block)| block.steps)
+            }
             _ => 0,
         },
     };
