@@ -36,6 +36,7 @@ mod power;
 mod preregistration;
 mod report;
 mod simulate;
+mod thresholds;
 mod trials;
 
 /// What reports are made of: blocks of a document, tables, figures. Reports of other things than a

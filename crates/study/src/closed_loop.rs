@@ -193,6 +193,11 @@ impl ClosedLoop {
         clips
     }
 
+    /// The tracks, in their state.
+    pub fn tracks(&self) -> &[Track] {
+        &self.tracks
+    }
+
     /// Mean and standard deviation of a track's threshold (from 1) under the answers so far; none of a staircase.
     pub fn threshold(&self, track: usize) -> Option<[f64; 2]> {
         match self.tracks.get(track.checked_sub(1)?)?.rule() {
