@@ -40,10 +40,8 @@ const study = small("levels", {
   ),
 });
 
-const chosen = async (page, server) => {
-  const events = await storedEvents(page, server, "levels");
-  return new Map(events.filter(({ type }) => type === "level_chosen").map((event) => [event.step, event]));
-};
+// The levels that were chosen so far, one a trial.
+const chosen = async (page, server) => (await storedEvents(page, server, "levels")).filter(({ type }) => type === "level_chosen");
 
 test("adaptive: levels follow the answers, and a reload goes on at the same level", { skip: unable, timeout: 600_000 }, async () => {
   const folder = mkdtempSync(join(tmpdir(), "mimique-levels-"));
@@ -66,8 +64,8 @@ test("adaptive: levels follow the answers, and a reload goes on at the same leve
       if (here.view === "trial") {
         trials += 1;
         await phase(page, "ready", 120_000);
-        await until("the level is stored", async () => (await chosen(page, server)).has(here.step));
-        const { level, left } = (await chosen(page, server)).get(here.step);
+        await until("the level is stored", async () => (await chosen(page, server)).length >= trials);
+        const { level, left } = (await chosen(page, server))[trials - 1];
         assert.equal(await page.locator(".stage-frame.pair figure").count(), 2);
         await go(page, "mouse");
         if (trials === RELOADED_AT) {
@@ -76,8 +74,7 @@ test("adaptive: levels follow the answers, and a reload goes on at the same leve
           await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
           assert.equal((await place(page)).step, here.step, "the same trial");
           await phase(page, "ready", 120_000);
-          const again = (await storedEvents(page, server, "levels")).filter(({ type, step }) => type === "level_chosen" && step === here.step);
-          assert.deepEqual(again.map((event) => event.level), [level], "its level is chosen once");
+          assert.equal((await chosen(page, server)).length, trials, "its level is chosen once");
           await go(page, "mouse");
         }
         await phase(page, "answering", 120_000);

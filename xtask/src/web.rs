@@ -5,7 +5,7 @@
 //! | `app` | `web/app` | `web` | the participant's pages |
 //! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
-//! | `adaptive` | `web/adaptive` | `web` | the levels of adaptive blocks; studies with one alone load it |
+//! | `adaptive` | `web/adaptive` | `web-solver` | the levels of adaptive blocks; studies with one alone load it |
 //! | `studio` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
@@ -65,8 +65,8 @@ const MODULES: [Module; 9] = [
         library: "mimique_web_adaptive",
         example: false,
         features: None,
-        profile: "web",
-        opt_level: "-Oz",
+        profile: "web-solver",
+        opt_level: "-O3",
     },
     Module {
         name: "orders",

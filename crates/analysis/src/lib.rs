@@ -58,8 +58,8 @@ pub use power::{
 pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
-    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters,
-    ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
+    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
+    Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
 };
 pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

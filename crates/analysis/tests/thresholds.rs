@@ -70,7 +70,9 @@ fn a_threshold_above_the_levels_is_told_and_in_no_mean() {
     let (found, results) = report(&study, &csv, Language::English);
     let people = results["thresholds"][0]["people"].as_array().unwrap();
     let above = people.iter().filter(|person| person["threshold"]["above"] == 1.0).count();
-    assert!(above > 0 && people.iter().all(|person| person["threshold"]["at"].as_f64() != Some(30.0)));
+    assert!(
+        above > 0 && people.iter().all(|person| person["threshold"]["at"].as_f64() != Some(30.0))
+    );
     assert!(text(&found, "report.md").contains("above 1"));
     let (found, _) = report(&study, &csv, Language::French);
     assert!(text(&found, "report.md").contains("au-dessus de 1"));
@@ -88,8 +90,7 @@ fn levels_that_answers_do_not_give_are_an_error_that_is_named() {
     let mut cells: Vec<&str> = line.split(',').collect();
     assert_eq!(cells[place], "true");
     cells[place] = "false";
-    let (found, results) =
-        report(&study, &csv.replace(line, &cells.join(",")), Language::English);
+    let (found, results) = report(&study, &csv.replace(line, &cells.join(",")), Language::English);
     let people = results["thresholds"][0]["people"].as_array().unwrap();
     let wrong: Vec<&Value> =
         people.iter().filter(|person| person["threshold"] == "notReplayed").collect();

@@ -99,7 +99,24 @@ pub enum EventKind {
         beside: Option<ShownBeside>,
     },
     /// A trial of an adaptive block has its level, by the answers before it.
-    LevelChosen(Box<LevelShown>),
+    LevelChosen {
+        /// Identifier of the step.
+        step: String,
+        /// Track, from 1.
+        track: f64,
+        /// The level.
+        level: f64,
+        /// The entropy expected after the answer, in nats; none of a staircase and of catch trials.
+        entropy: Option<f64>,
+        /// Whether it is a catch trial.
+        catch: bool,
+        /// Clip of the level.
+        clip: String,
+        /// Clip that it is held against.
+        against: String,
+        /// Whether that one stands left.
+        left: bool,
+    },
     /// Every track of an adaptive block has ended before its last trial: the rest is left out.
     LevelsOver {
         /// Identifier of the step.
@@ -186,10 +203,10 @@ impl EventKind {
             | Self::TimeExtended { step }
             | Self::PageFinished { step, .. }
             | Self::TrialStarted { step, .. }
+            | Self::LevelChosen { step, .. }
             | Self::LevelsOver { step }
             | Self::TrialPlayed { step, .. }
             | Self::TrialFinished { step, .. } => Some(step),
-            Self::LevelChosen(chosen) => Some(&chosen.step),
             _ => None,
         }
     }
@@ -249,9 +266,9 @@ pub struct ShownBeside {
     pub left: bool,
 }
 
-/// What was chosen for a trial of an adaptive block ([`mimique_study::ChosenLevel`]).
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+/// What was chosen for a trial of an adaptive block ([`mimique_study::ChosenLevel`]), as its event says. It has no
+/// reader of its own, which would weigh on every page.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct LevelShown {
     /// Identifier of the step.
     pub step: String,

@@ -6,9 +6,10 @@ use crate::event::LevelShown;
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
-    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw, KindOfQuestion as _,
-    LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem, Question, Questionnaire,
-    Section, Sides, StudyProjection, TimeLimit, Training, option_order, order, right_answers,
+    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw,
+    KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
+    Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training, option_order,
+    order, right_answers,
 };
 use serde::Deserialize as _;
 

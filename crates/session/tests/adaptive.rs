@@ -107,7 +107,7 @@ impl Page {
 
     fn levels(&self) -> Vec<f64> {
         let of = |event: &Event| match EventKind::from_body(&event.body)? {
-            EventKind::LevelChosen(chosen) => Some(chosen.level),
+            EventKind::LevelChosen { level, .. } => Some(level),
             _ => None,
         };
         self.events.iter().filter_map(of).collect()
@@ -137,7 +137,8 @@ fn chosen(request: &Value) -> Input {
         }
         None => json!({ "type": "levels_over", "step": request["step"] }),
     };
-    Input::LevelChosen { event, ahead: closed_loop.ahead() }
+    let after = ["left", "right"].map(|side| closed_loop.after(side).clips());
+    Input::LevelChosen { event, ahead: after.concat() }
 }
 
 fn run(study: &Study, sees_from: f64) -> Page {
@@ -219,7 +220,7 @@ fn both_clips_that_may_come_next_are_made_ready_while_one_is_shown() {
     let mut page = Page::open(&study);
     for _ in 0..8 {
         page.prepared.clear();
-        let sees_from = if page.events.len() % 2 == 0 { 0.0 } else { 2.0 };
+        let sees_from = if page.events.len().is_multiple_of(2) { 0.0 } else { 2.0 };
         page.state.live.prepared.clear();
         page.send(Input::Online);
         page.send(Input::Begun);

@@ -177,20 +177,16 @@ impl ClosedLoop {
         }
     }
 
-    /// The clips that may come after the trial that is shown: both of a pair, of either answer.
-    pub fn ahead(&self) -> Vec<String> {
-        let mut clips = Vec::new();
-        for side in ["left", "right"] {
-            let mut after = self.clone();
-            after.answer(Some(side));
-            let next = after.next().into_iter();
-            for clip in next.flat_map(|next| [next.clip, next.against]) {
-                if !clips.contains(&clip) {
-                    clips.push(clip);
-                }
-            }
-        }
-        clips
+    /// The block as it would be after an answer.
+    pub fn after(&self, side: &str) -> Self {
+        let mut after = self.clone();
+        after.answer(Some(side));
+        after
+    }
+
+    /// The clips that are shown next: both of a pair.
+    pub fn clips(&self) -> Vec<String> {
+        self.next().map_or_else(Vec::new, |next| vec![next.clip, next.against])
     }
 
     /// The tracks, in their state.

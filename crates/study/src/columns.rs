@@ -114,11 +114,11 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
 pub const STIMULI_COLUMNS: [&str; 7] =
     ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
-/// Whether a column of exports is called so: nothing of a study may be.
+/// Whether a column of exports is called so: nothing of a study may be. [`LEVEL_COLUMNS`] are only taken where there are
+/// adaptive blocks.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION
         || EXCLUSION_COLUMNS.contains(&name)
-        || LEVEL_COLUMNS.iter().any(|(column, ..)| *column == name)
         || SOUND_COLUMNS.iter().any(|(column, ..)| *column == name)
         || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }

@@ -8,9 +8,9 @@ use serde_json::Value;
 
 use crate::question::Question;
 use crate::study_file::{
-    AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText,
-    Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section,
-    Sequence, SoundPages, Study, Training, Translations, questions_among,
+    AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
+    DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
+    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the

@@ -40,7 +40,13 @@ struct Request {
 #[derive(Debug)]
 pub struct Levels {
     closed_loop: ClosedLoop,
+    /// The block after `left` and after `right`, once they were looked at: the next level is known when it is asked
+    /// for.
+    after: Option<[ClosedLoop; 2]>,
 }
+
+/// The answers.
+const SIDES: [&str; 2] = ["left", "right"];
 
 #[wasm_bindgen]
 impl Levels {
@@ -52,16 +58,20 @@ impl Levels {
     pub fn new(request: &str) -> Result<Levels, JsError> {
         let Request { component, block, seed, config_hash, slot } = serde_json::from_str(request)?;
         let draw = Draw { seed, config_hash: &config_hash, participant: slot, condition: None };
-        Ok(Self { closed_loop: ClosedLoop::new(block, &component, draw)? })
+        Ok(Self { closed_loop: ClosedLoop::new(block, &component, draw)?, after: None })
     }
 
     /// Takes in the answer of the next trial: `left`, `right`, or nothing.
     pub fn answer(&mut self, side: Option<String>) {
-        self.closed_loop.answer(side.as_deref());
+        let place = SIDES.iter().position(|own| side.as_deref() == Some(own));
+        match (place, self.after.take()) {
+            (Some(place), Some(after)) => self.closed_loop = after[place].clone(),
+            _ => self.closed_loop.answer(side.as_deref()),
+        }
     }
 
     /// The event of the trial of a step, and the clips that may come after either answer, as JSON.
-    pub fn next(&self, step: &str) -> String {
+    pub fn next(&mut self, step: &str) -> String {
         let Some(chosen) = self.closed_loop.next() else {
             let event = json!({ "type": "levels_over", "step": step });
             return json!({ "event": event, "ahead": [] }).to_string();
@@ -69,6 +79,9 @@ impl Levels {
         let mut event = serde_json::to_value(chosen).unwrap_or_default();
         event["type"] = Value::from("level_chosen");
         event["step"] = Value::from(step);
-        json!({ "event": event, "ahead": self.closed_loop.ahead() }).to_string()
+        let closed_loop = &self.closed_loop;
+        let after = self.after.get_or_insert_with(|| SIDES.map(|side| closed_loop.after(side)));
+        let ahead: Vec<String> = after.iter().flat_map(ClosedLoop::clips).collect();
+        json!({ "event": event, "ahead": ahead }).to_string()
     }
 }

@@ -26,8 +26,8 @@ use mimique_study::{OrderError, Study};
 pub(crate) use latent::ClipEffects;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
-    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
-    Recognition, Times,
+    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
+    Parameters, Rating, Recognition, Times,
 };
 pub(crate) use person::{BEFORE_REPLAY_MS, Companion, Person, Raw, as_json};
 pub(crate) use random::Draws;

@@ -40,7 +40,9 @@ impl Parameters {
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")
         })?;
-        for part in ["ratings", "recognition", "comparisons", "discrimination", "choices", "numbers"] {
+        for part in
+            ["ratings", "recognition", "comparisons", "discrimination", "choices", "numbers"]
+        {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);

@@ -25,6 +25,8 @@ pub(crate) struct BlockThresholds {
     pub block: String,
     /// The varied parameter.
     pub parameter: String,
+    /// Its lowest and highest level.
+    pub levels: [f64; 2],
     pub people: Vec<PersonThreshold>,
     /// Mean of the thresholds that lie within the levels, with its t interval.
     pub mean: Outcome<Description>,
@@ -97,7 +99,8 @@ pub(crate) fn thresholds(export: &Export, study: &Study) -> Vec<BlockThresholds>
         });
         let mean = describe(&found.collect::<Vec<f64>>());
         let parameter = block.vary.parameter.clone();
-        BlockThresholds { block: name.to_owned(), parameter, people, mean }
+        let levels = [block.vary.from, block.vary.to];
+        BlockThresholds { block: name.to_owned(), parameter, levels, people, mean }
     };
     let all = study.adaptive().map(of);
     all.filter(|block| !block.people.is_empty()).collect()
@@ -190,7 +193,8 @@ fn without_fit(counts: &[LevelCount], block: &AdaptiveComponent) -> Threshold {
     let share = |own: &LevelCount| own.correct as f64 / own.n as f64;
     let half = 0.5 * (1.0 + GUESS);
     let right = |own: &&LevelCount| share(own) > half;
-    let all: (u64, u64) = counts.iter().fold((0, 0), |(n, right), own| (n + own.n, right + own.correct));
+    let all: (u64, u64) =
+        counts.iter().fold((0, 0), |(n, right), own| (n + own.n, right + own.correct));
     let first = counts.iter().position(|own| right(&own));
     match first {
         None => Threshold::Above(block.vary.to),

@@ -19,7 +19,7 @@ impl Writer<'_> {
 
     fn block_thresholds(&mut self, block: &BlockThresholds) {
         let language = self.language();
-        let BlockThresholds { block: name, parameter, people, mean } = block;
+        let BlockThresholds { block: name, parameter, people, mean, .. } = block;
         self.blocks.push(Block::Heading(
             2,
             language.pick(format!("Threshold: {name}"), format!("Seuil : {name}")),
@@ -28,7 +28,6 @@ impl Writer<'_> {
             format!("The threshold is the level of {parameter} at which half of the way from chance to the best share of right answers is reached: 75 % are right without lapses. Each person's function is fitted by maximum likelihood, its lapse from 0 to 0.2 with the prior Beta(1, 10); the interval runs the rule that chose the levels 1000 times with answers of the fitted function. Slopes from levels that follow the answers are biased upwards, and no test of them stands here."),
             format!("Le seuil est le niveau de {parameter} auquel est atteinte la moitié du chemin entre le hasard et la meilleure proportion de bonnes réponses : 75 % sans inattention. La fonction de chaque personne est ajustée par maximum de vraisemblance, l’inattention de 0 à 0,2 avec la loi a priori Bêta(1, 10) ; l’intervalle rejoue 1000 fois la règle qui choisit les niveaux, avec des réponses de la fonction ajustée. Les pentes tirées de niveaux qui suivent les réponses sont biaisées vers le haut ; aucun test n’en figure ici."),
         )));
-        let outside = people.iter().filter(|own| !matches!(own.threshold, Threshold::At(_))).count();
         let summary = match mean.clone().ok() {
             Some(found) => {
                 let interval = found.mean_ci_t.map_or_else(String::new, |[low, high]| {
@@ -40,8 +39,8 @@ impl Writer<'_> {
                 });
                 let mean = language.fixed(found.mean, 3);
                 language.pick(
-                    format!("The mean threshold of {} people is {mean}{interval}. {outside} people are not in this mean, since their threshold lies outside the levels or is not known; where there are some, the mean is biased towards the levels.", found.n),
-                    format!("Le seuil moyen de {} personnes est {mean}{interval}. {outside} personnes ne sont pas dans cette moyenne, leur seuil étant hors des niveaux ou inconnu ; s’il y en a, la moyenne est biaisée vers les niveaux.", found.n),
+                    format!("The mean threshold is {mean}{interval}, of the {} of {} people whose threshold lies within the levels. Where some are left out, the mean is biased towards the levels.", found.n, people.len()),
+                    format!("Le seuil moyen est {mean}{interval}, sur les {} personnes (de {}) dont le seuil est dans les niveaux. Si d’autres sont écartées, la moyenne est biaisée vers les niveaux.", found.n, people.len()),
                 )
             }
             None => language.pick(
@@ -62,27 +61,43 @@ impl Writer<'_> {
                 format!("Erreur : la graine et les réponses ne donnent pas les niveaux enregistrés pour {who}. Leurs seuils sont écartés ; voyez la colonne level_replayed."),
             )));
         }
-        let table = self.threshold_table(name, people);
+        let table = self.threshold_table(block);
         self.blocks.push(Block::Table(table));
         for person in people.iter().take(MOST_DRAWN) {
             self.threshold_figure(block, person);
         }
     }
 
-    fn threshold_table(&self, name: &str, people: &[PersonThreshold]) -> DataTable {
+    fn threshold_table(&self, block: &BlockThresholds) -> DataTable {
+        let BlockThresholds { block: name, people, levels, .. } = block;
         let language = self.language();
         let columns = language.pick(
             ["person", "threshold", "95 %", "spread", "lapse", "answers", "catch trials right"],
-            ["personne", "seuil", "95 %", "étendue", "inattention", "réponses", "essais pièges réussis"],
+            [
+                "personne",
+                "seuil",
+                "95 %",
+                "étendue",
+                "inattention",
+                "réponses",
+                "essais pièges réussis",
+            ],
         );
-        let caption = language
-            .pick(format!("Thresholds of {name}"), format!("Seuils de {name}"));
+        let caption = language.pick(format!("Thresholds of {name}"), format!("Seuils de {name}"));
         let mut table = DataTable::new(format!("{}-thresholds", slug(name)), caption, columns);
         for own in people {
             let number = |value: f64| language.fixed(value, 3);
-            let interval = own.interval.map_or_else(String::new, |[low, high]| {
-                format!("{} – {}", number(low), number(high))
-            });
+            // Beyond the levels the function is not seen.
+            let end = |end: f64| {
+                self.threshold_words(match (end < levels[0], end > levels[1]) {
+                    (true, _) => Threshold::Below(levels[0]),
+                    (_, true) => Threshold::Above(levels[1]),
+                    _ => Threshold::At(end),
+                })
+            };
+            let interval = own
+                .interval
+                .map_or_else(String::new, |[low, high]| format!("{} – {}", end(low), end(high)));
             table.row([
                 own.participant.clone(),
                 self.threshold_words(own.threshold),
@@ -101,10 +116,14 @@ impl Writer<'_> {
         let number = |value: f64| language.number(value);
         match threshold {
             Threshold::At(level) => language.fixed(level, 3),
-            Threshold::Above(level) => language
-                .pick(format!("above {}", number(level)), format!("au-dessus de {}", number(level))),
-            Threshold::Below(level) => language
-                .pick(format!("below {}", number(level)), format!("au-dessous de {}", number(level))),
+            Threshold::Above(level) => language.pick(
+                format!("above {}", number(level)),
+                format!("au-dessus de {}", number(level)),
+            ),
+            Threshold::Below(level) => language.pick(
+                format!("below {}", number(level)),
+                format!("au-dessous de {}", number(level)),
+            ),
             Threshold::Between([low, high]) => language.pick(
                 format!("between {} and {}", number(low), number(high)),
                 format!("entre {} et {}", number(low), number(high)),

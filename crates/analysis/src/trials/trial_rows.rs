@@ -207,9 +207,9 @@ impl<'t> TrialReader<'t> {
         row: usize,
         texts: &mut Texts<'t>,
     ) -> Result<Option<ShownLevel>, ExportError> {
-        let (Some(track), Some(level)) = (self.track.number(row)?, self.level.number(row)?) else {
-            return Ok(None);
-        };
+        // Without a track "level" may be a factor of the study's own.
+        let Some(track) = self.track.number(row)? else { return Ok(None) };
+        let Some(level) = self.level.number(row)? else { return Ok(None) };
         let component = self.trial_id.text(row).map_or("", component_of);
         Ok(Some(ShownLevel {
             block: texts.shared(component),

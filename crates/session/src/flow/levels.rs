@@ -16,6 +16,10 @@ impl Transition<'_> {
         let Some(Component::Adaptive(block)) = self.plan.study.components.get(component) else {
             return;
         };
+        // Before the session nobody's draw is known.
+        if self.plan.started.config_hash.is_empty() {
+            return;
+        }
         let record = &self.state.record;
         let own = record.finished.iter().filter(|done| component_of(&done.id) == component);
         let answers: Vec<Option<&Value>> =
@@ -44,8 +48,8 @@ impl Transition<'_> {
                 self.arrive();
                 return true;
             }
-            EventKind::LevelChosen(chosen) => {
-                let mut clips = vec![chosen.clip.clone(), chosen.against.clone()];
+            EventKind::LevelChosen { clip, against, .. } => {
+                let mut clips = vec![clip.clone(), against.clone()];
                 clips.extend_from_slice(ahead);
                 // After a reload the level is known: only what may come next is new.
                 if self.state.record.attempt.level.is_none() {

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::Record;
 use super::step::{Attempt, EarlyEnd, EndReason, FinishedStep};
-use crate::event::{Client, EventKind, PlayLog};
+use crate::event::{Client, EventKind, LevelShown, PlayLog};
 use crate::flow::unmet;
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::standing::Standing;
@@ -61,10 +61,12 @@ impl Record {
                 }
                 fits
             }
-            EventKind::LevelChosen(level) => {
-                let fits = self.is_at(plan, &level.step);
+            EventKind::LevelChosen { step, track, level, entropy, catch, clip, against, left } => {
+                let fits = self.is_at(plan, &step);
                 if fits {
-                    self.attempt.level = Some(level);
+                    let shown =
+                        LevelShown { step, track, level, entropy, catch, clip, against, left };
+                    self.attempt.level = Some(Box::new(shown));
                 }
                 fits
             }

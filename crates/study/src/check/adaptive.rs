@@ -7,6 +7,7 @@ use super::Subject;
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use crate::closed_loop::{grid, staircase};
+use crate::columns::LEVEL_COLUMNS;
 use crate::question::QuestionKind;
 use crate::study_file::{AdaptiveBlock, AdaptiveComponent, Varied};
 
@@ -102,6 +103,13 @@ fn names(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues
             }
         }
     }
+    let factors = subject.study.factor_names();
+    let about = subject.study.demographics.iter().flat_map(|page| &page.questions);
+    for name in factors.iter().chain(about.map(|question| &question.id)) {
+        if LEVEL_COLUMNS.iter().any(|(column, ..)| column == name) {
+            issues.error(pointer, Problem::LevelColumn { name: name.clone() });
+        }
+    }
     if !stimuli.sounds.is_empty() {
         issues.error(pointer, Problem::LevelsWithSound);
     }
@@ -125,9 +133,8 @@ fn question(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, iss
         return;
     };
     let tells = matches!(&question.kind, QuestionKind::Comparison(kind) if !kind.allow_same);
-    let is_plain = question.required
-        && question.show_if.is_none()
-        && question.attention_check.is_none();
+    let is_plain =
+        question.required && question.show_if.is_none() && question.attention_check.is_none();
     if !tells || !is_plain {
         issues.error(place, Problem::NotTwoSides { question: block.question.clone() });
     }
@@ -176,9 +183,11 @@ fn clips(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues
         let mut spec = serde_json::to_value(&entry.spec).unwrap_or_default();
         spec[&block.vary.parameter] = level.into();
         if let Err(faults) = mimique_solver::MethodSpec::checked(&spec) {
-            let what = faults.first().map_or_else(String::new, |fault| fault.message());
+            let what = faults.first().map_or_else(String::new, |fault| {
+                format!("\"{}\" {}", fault.field, fault.message())
+            });
             let remedy = faults.first().map_or_else(String::new, |fault| fault.remedy());
-            issues.error(below(pointer, "vary"), Problem::LevelNotSolved { level, what, remedy });
+            issues.error(below(pointer, "vary"), Problem::LevelNotSolved { what, remedy });
             return;
         }
     }

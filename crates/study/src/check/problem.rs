@@ -415,6 +415,8 @@ StopOfStaircase: "adaptive", "a staircase has no posterior whose standard deviat
 StopNotPositive { stop: f64 }: "out-of-range", "a standard deviation of {stop}", "write a number above 0";
 LevelsOfVideos: "adaptive", "the avatar is shown by videos, of which no level can be solved",
     "name an avatar that is drawn";
+LevelColumn { name: String }: "adaptive",
+    "\"{name}\" is the name of a column that exports of adaptive blocks have", "give the factor or the question another name";
 LevelsWithSound: "adaptive", "the study has sounds, with which levels are not combined",
     "remove /stimuli/sounds, or this block";
 NotVaried { parameter: String }: "adaptive", "\"{parameter}\" cannot be varied by answers",
@@ -427,7 +429,7 @@ OneRule: "adaptive", "a block follows one rule", "write either \"questPlus\" or 
 BetweenLevels { length: f64, apart: f64 }: "adaptive",
     "a way of {length} ends between two levels, which are {apart} apart",
     "let steps and start be multiples of that, or take other \"levels\"";
-LevelNotSolved { level: f64, what: String, remedy: String }: "adaptive", "at {level}: {what}", "{remedy}";
+LevelNotSolved { what: String, remedy: String }: "adaptive", "{what}", "{remedy}";
 NothingAgainst { against: String }: "adaptive",
     "a segment has no clip by \"{against}\" of this avatar", "add it to /stimuli/clips, or name other \"segments\"";
 TooManyLevels { clips: usize, most: usize }: "adaptive",

@@ -238,8 +238,8 @@ impl Study {
         let Some(avatar) = block.avatar.as_ref().or_else(only) else { return Vec::new() };
         let several = clips.iter().any(|clip| clip.avatar != clips[0].avatar);
         let taken = self.stimuli.segments.iter();
-        let taken = taken
-            .filter(|each| block.segments.is_empty() || block.segments.contains(&each.id));
+        let taken =
+            taken.filter(|each| block.segments.is_empty() || block.segments.contains(&each.id));
         let of = |segment: &super::Segment| {
             let entry = ClipEntry {
                 avatar: avatar.clone(),

@@ -29,8 +29,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use adaptive::{
-    AdaptiveBlock, AdaptiveComponent, LevelClip, LevelRule, PsychometricFunction, QuestPlusRule, ShownSegment,
-    StaircaseRule, Varied,
+    AdaptiveBlock, AdaptiveComponent, LevelClip, LevelRule, PsychometricFunction, QuestPlusRule,
+    ShownSegment, StaircaseRule, Varied,
 };
 pub use between::UnknownCondition;
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};

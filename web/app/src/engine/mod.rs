@@ -199,8 +199,7 @@ impl Engine {
         let engine = Rc::clone(self);
         let rules = self.plan.study.device.as_ref();
         let trials = self.plan.steps.iter().filter_map(|step| step.trial());
-        let mut clips =
-            trials.map(|trial| trial.clip.as_str()).filter(|clip| !clip.is_empty());
+        let mut clips = trials.map(|trial| trial.clip.as_str()).filter(|clip| !clip.is_empty());
         let loads = rules.is_some_and(DeviceRules::measures_load);
         let clip = clips.next().filter(|_| loads).map(str::to_owned);
         let source = clip.as_ref().and_then(|clip| self.clips.get(clip)).map(Value::to_string);
