@@ -231,6 +231,15 @@ export function attachSound(node) {
   );
 }
 
+/** The next level of an adaptive block: scripts of studies with such a block alone. What did not arrive is asked for
+    again. */
+export function nextLevel(request) {
+  return import("../adaptive/levels.js").then(
+    ({ nextLevel }) => nextLevel(request),
+    () => new Promise((again) => setTimeout(() => again(nextLevel(request)), 2000)),
+  );
+}
+
 /** Aborts the play in progress. */
 export function stopClip() {
   places.get("clip")?.opening?.then((stage) => stage.stop(), () => {});

@@ -5,6 +5,7 @@
 //! | `app` | `web/app` | `web` | the participant's pages |
 //! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
+//! | `adaptive` | `web/adaptive` | `web-solver` | the levels of adaptive blocks; studies with one alone load it |
 //! | `studio` | `web/studio` | `web-solver` | the studio's worker |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
@@ -28,7 +29,7 @@ use crate::process::{cargo, locked, root, run as run_program, say, target};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (app, exertion_bits, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
+    /// Build only these modules (adaptive, app, exertion_bits, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
     /// static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
@@ -48,7 +49,7 @@ struct Module {
     opt_level: &'static str,
 }
 
-const MODULES: [Module; 8] = [
+const MODULES: [Module; 9] = [
     Module {
         name: "app",
         package: "mimique-app",
@@ -57,6 +58,15 @@ const MODULES: [Module; 8] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
+    },
+    Module {
+        name: "adaptive",
+        package: "mimique-web-adaptive",
+        library: "mimique_web_adaptive",
+        example: false,
+        features: None,
+        profile: "web-solver",
+        opt_level: "-O3",
     },
     Module {
         name: "orders",

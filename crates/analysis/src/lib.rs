@@ -36,6 +36,7 @@ mod power;
 mod preregistration;
 mod report;
 mod simulate;
+mod thresholds;
 mod trials;
 
 /// What reports are made of: blocks of a document, tables, figures. Reports of other things than a
@@ -57,8 +58,8 @@ pub use power::{
 pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
-    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters,
-    ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
+    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
+    Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
 };
 pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

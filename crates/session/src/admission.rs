@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use mimique_study::{Answers, Question};
+use mimique_study::{Answers, Component, Question};
 use serde_json::Value;
 
 use crate::event::EventKind;
@@ -92,6 +92,22 @@ struct Allowed {
     is_sound_check: bool,
 }
 
+/// Whether a trial is one that an adaptive block may end before.
+fn may_be_left_out(plan: &Plan, step: &Step) -> bool {
+    let Some((component, number)) = step.id.split_once('/') else { return false };
+    match plan.study.components.get(component) {
+        Some(Component::Adaptive(block)) => {
+            let stops = !block.0["stopSd"].is_null();
+            let number: usize = number.parse().unwrap_or_default();
+            stops && number > FEWEST_TRIALS
+        }
+        _ => false,
+    }
+}
+
+/// No track of an adaptive block ends before so many trials but by their number.
+const FEWEST_TRIALS: usize = 20;
+
 impl Admission {
     /// What this plan allows.
     pub fn of(plan: &Plan) -> Self {
@@ -117,7 +133,9 @@ impl Admission {
             StepKind::Questions { .. } | StepKind::Sound => true,
             _ => false,
         };
-        let required = plan.steps.iter().filter(is_required).map(|step| step.id.clone()).collect();
+        let may_be_left_out = |step: &&Step| may_be_left_out(plan, step);
+        let required = plan.steps.iter().filter(is_required).filter(|step| !may_be_left_out(step));
+        let required = required.map(|step| step.id.clone()).collect();
         Self { steps, asked, required }
     }
 
@@ -181,7 +199,8 @@ impl Admission {
         let step = self.step(id)?;
         match &step.clip {
             None => Err(Misfit::OtherKind),
-            Some(own) if own != clip => Err(Misfit::OtherClip),
+            // The clip of an adaptive trial follows from answers: the replay of its levels says what fits.
+            Some(own) if own != clip && !own.is_empty() => Err(Misfit::OtherClip),
             Some(_) => Ok(step),
         }
     }

@@ -98,6 +98,30 @@ pub enum EventKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         beside: Option<ShownBeside>,
     },
+    /// A trial of an adaptive block has its level, by the answers before it.
+    LevelChosen {
+        /// Identifier of the step.
+        step: String,
+        /// Track, from 1.
+        track: f64,
+        /// The level.
+        level: f64,
+        /// The entropy expected after the answer, in nats; none of a staircase and of catch trials.
+        entropy: Option<f64>,
+        /// Whether it is a catch trial.
+        catch: bool,
+        /// Clip of the level.
+        clip: String,
+        /// Clip that it is held against.
+        against: String,
+        /// Whether that one stands left.
+        left: bool,
+    },
+    /// Every track of an adaptive block has ended before its last trial: the rest is left out.
+    LevelsOver {
+        /// Identifier of the step.
+        step: String,
+    },
     /// The clip was played, wholly or not.
     TrialPlayed {
         /// Identifier of the step.
@@ -179,6 +203,8 @@ impl EventKind {
             | Self::TimeExtended { step }
             | Self::PageFinished { step, .. }
             | Self::TrialStarted { step, .. }
+            | Self::LevelChosen { step, .. }
+            | Self::LevelsOver { step }
             | Self::TrialPlayed { step, .. }
             | Self::TrialFinished { step, .. } => Some(step),
             _ => None,
@@ -237,6 +263,28 @@ pub struct ShownBeside {
     /// Which clip.
     pub clip: String,
     /// Whether it stands left of the trial's own clip.
+    pub left: bool,
+}
+
+/// What was chosen for a trial of an adaptive block ([`mimique_study::ChosenLevel`]), as its event says. It has no
+/// reader of its own, which would weigh on every page.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LevelShown {
+    /// Identifier of the step.
+    pub step: String,
+    /// Track, from 1.
+    pub track: f64,
+    /// The level.
+    pub level: f64,
+    /// The entropy expected after the answer, in nats; none of a staircase and of catch trials.
+    pub entropy: Option<f64>,
+    /// Whether it is a catch trial.
+    pub catch: bool,
+    /// Clip of the level.
+    pub clip: String,
+    /// Clip that it is held against.
+    pub against: String,
+    /// Whether that one stands left.
     pub left: bool,
 }
 

@@ -13,7 +13,9 @@ mod standing;
 pub mod wire;
 
 pub use admission::{Admission, Misfit, SessionLimits};
-pub use event::{Calibrated, Client, EventKind, PlayLog, ShownBeside, SoundLog, StageFailure};
+pub use event::{
+    Calibrated, Client, EventKind, LevelShown, PlayLog, ShownBeside, SoundLog, StageFailure,
+};
 pub use flow::SOUND_HEARD;
 pub use record::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep, Record};
 pub use session_file::{SessionFile, SessionFileError, WrongLine};

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use crate::event::LevelShown;
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
-    Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw, KindOfQuestion as _,
-    LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem, Question, Questionnaire,
-    Section, Sides, StudyProjection, TimeLimit, Training, option_order, order, right_answers,
+    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw,
+    KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
+    Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training, option_order,
+    order, right_answers,
 };
+use serde::Deserialize as _;
 
 /// What one participant goes through.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +76,8 @@ pub enum StepKind {
 /// A clip and its questions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialStep {
-    /// Identifier of the clip.
+    /// Identifier of the clip; empty in an adaptive block, where it follows from answers
+    /// ([`TrialStep::pair`]).
     pub clip: String,
     /// The questions, in the order they are asked.
     pub questions: Vec<Question>,
@@ -167,9 +171,20 @@ impl Plan {
 }
 
 impl TrialStep {
-    /// Its clip, and the one beside it.
-    pub fn clips(&self) -> impl Iterator<Item = &str> {
-        std::iter::once(self.clip.as_str()).chain(self.beside.iter().map(|each| each.clip.as_str()))
+    /// Whether its clips follow from answers.
+    pub fn is_adaptive(&self) -> bool {
+        self.clip.is_empty()
+    }
+
+    /// Its clip; the one beside it, and whether that one stands left. `level` is what was chosen for the trial, of an
+    /// adaptive block: empty names before.
+    pub fn pair<'a>(&'a self, level: Option<&'a LevelShown>) -> (&'a str, Option<(&'a str, bool)>) {
+        if self.is_adaptive() {
+            return level
+                .map_or(("", Some(("", false))), |it| (&it.clip, Some((&it.against, it.left))));
+        }
+        let beside = self.beside.as_ref();
+        (&self.clip, beside.map(|beside| (beside.clip.as_str(), beside.left)))
     }
 }
 
@@ -207,8 +222,16 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     for item in items {
         steps.extend(match item {
             OrderedItem::Trial { trial, component, clip, condition } => {
-                let Some(Component::Trials(block)) = study.components.get(component) else {
-                    continue;
+                let block = match study.components.get(component) {
+                    Some(Component::Trials(block)) => block,
+                    Some(Component::Adaptive(block)) => {
+                        trials += 1;
+                        let step = adaptive_trial(study, block, trials, condition);
+                        let kind = StepKind::Trial(step);
+                        steps.push(Step { id: trial.clone(), kind, time_limit: None });
+                        continue;
+                    }
+                    _ => continue,
                 };
                 trials += 1;
                 let step = TrialStep {
@@ -241,6 +264,26 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     steps
 }
 
+/// A trial whose clips follow from answers.
+fn adaptive_trial(
+    study: &StudyProjection,
+    block: &AdaptiveBlock,
+    number: usize,
+    condition: &str,
+) -> TrialStep {
+    TrialStep {
+        clip: String::new(),
+        questions: questions(study, &[block.question().to_owned()]),
+        instruction: LocalText::deserialize(&block.0["instruction"]).ok(),
+        maximum_replays: block.0["maximumReplays"].as_u64().map(|most| most as u32),
+        training: false,
+        number,
+        condition: condition.to_owned(),
+        beside: None,
+        right: Answers::new(),
+    }
+}
+
 /// The step of a component that is no block of trials.
 fn component_step(id: String, component: &Component) -> Option<Step> {
     let (kind, time_limit) = match component {
@@ -253,7 +296,7 @@ fn component_step(id: String, component: &Component) -> Option<Step> {
             (StepKind::Page(section), page.time_limit.clone())
         }
         Component::Break(rest) => (StepKind::Break(rest.clone()), None),
-        Component::Trials(_) => return None,
+        Component::Trials(_) | Component::Adaptive(_) => return None,
     };
     Some(Step { id, kind, time_limit })
 }

@@ -95,7 +95,7 @@ fn every_signed_video_is_asked_for_and_missed() {
 fn every_signed_video_is_loaded_before_its_page() {
     let mut page = Page::open(&study(), 1);
     let needs = |step: &Step| -> Vec<String> {
-        let needs = step.needs("fr");
+        let needs = step.needs("fr", None);
         needs.iter().filter_map(|need| Some(need.strip_prefix("media:")?.to_owned())).collect()
     };
     let questions = page.plan.steps.iter().find(|step| step.questions().len() == 7).unwrap();

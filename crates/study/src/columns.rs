@@ -75,11 +75,47 @@ pub const SOUND_COLUMNS: [(&str, ColumnKind, &str, &str); 11] = {
     ]
 };
 
+/// Of trials of adaptive blocks, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
+/// it means.
+pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
+    use ColumnKind::{Boolean, Integer, Number};
+    [
+        ("track", Integer, "", "Of a trial of an adaptive block: its track, from 1"),
+        ("level", Number, "", "The level that was shown, in the unit of the varied parameter"),
+        (
+            "level_catch",
+            Boolean,
+            "",
+            "Whether it is a catch trial: at the highest level, and no track counts it",
+        ),
+        (
+            "posterior_mean",
+            Number,
+            "",
+            "QUEST+: mean of the track's threshold after this answer, in the unit of the level",
+        ),
+        ("posterior_sd", Number, "", "QUEST+: its standard deviation"),
+        (
+            "level_replayed",
+            Boolean,
+            "",
+            "Whether seed and answers give this level again; false is an error of the session",
+        ),
+        (
+            "weights_expected",
+            Boolean,
+            "",
+            "Whether the weights that the browser solved are those that were solved beforehand",
+        ),
+    ]
+};
+
 /// Columns of the table of stimuli that are no measures; the factors of the clips stand behind them.
 pub const STIMULI_COLUMNS: [&str; 7] =
     ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
-/// Whether a column of exports is called so: nothing of a study may be.
+/// Whether a column of exports is called so: nothing of a study may be. [`LEVEL_COLUMNS`] are only taken where there are
+/// adaptive blocks.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION
         || EXCLUSION_COLUMNS.contains(&name)

@@ -4,6 +4,7 @@ mod answer;
 mod canonical;
 mod check;
 mod clip_source;
+mod closed_loop;
 pub mod columns;
 mod device;
 mod instant;
@@ -22,6 +23,7 @@ pub use check::{
     Report, SCHEMA_ADDRESS, Severity, Shown, Wanted, check, json_schema,
 };
 pub use clip_source::{ClipSound, ClipSource};
+pub use closed_loop::{ChosenLevel, ClosedLoop, NoLevels, grid, staircase};
 pub use device::{Display, Unmet};
 pub use instant::{instant_ms, iso_time};
 pub use order::{

@@ -8,9 +8,9 @@ use serde_json::Value;
 
 use crate::question::Question;
 use crate::study_file::{
-    AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, LocalText,
-    Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule, Section,
-    Sequence, SoundPages, Study, Training, Translations, questions_among,
+    AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
+    DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
+    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -106,7 +106,7 @@ impl Study {
             sound: serde_json::to_value(self.sound_pages()).unwrap_or_default(),
             training: self.training.clone(),
             questions: self.questions.clone(),
-            components: self.components.clone(),
+            components: self.projected_components(),
             sequence: self.sequence.clone(),
             debriefing: self.debriefing.clone(),
             clips: self.clips(),
@@ -116,6 +116,16 @@ impl Study {
 }
 
 impl Study {
+    /// The components, adaptive blocks with the clips that they show.
+    fn projected_components(&self) -> BTreeMap<String, Component> {
+        let mut components = self.components.clone();
+        for (name, block) in self.adaptive() {
+            let block = serde_json::to_value(block).unwrap_or_default();
+            components.insert(name.to_owned(), Component::Adaptive(AdaptiveBlock(block)));
+        }
+        components
+    }
+
     /// Whether a clip is drawn by the browser: not every one is a video.
     fn draws_clips(&self) -> bool {
         let is_drawn = |avatar: &Avatar| avatar.videos.is_empty();

@@ -208,6 +208,7 @@ impl<'d> Data<'d> {
             stimulus: self.model.clips[clip].id.as_str().into(),
             // The order of trials has no part in the study's tests.
             order: None,
+            level: None,
             beside: beside.map(|beside| Beside {
                 clip: self.model.clips[beside.clip].id.as_str().into(),
                 left: beside.left,

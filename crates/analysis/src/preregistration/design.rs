@@ -6,7 +6,7 @@ use mimique_study::{
     Study,
 };
 
-use super::{Preregistration, Text};
+use super::{Preregistration, Text, levels};
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::simulate::factor_levels;
@@ -172,10 +172,12 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         );
         text.line("");
     }
+    levels::design(text, study, language);
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
     let asked: Vec<&String> = blocks(study).flat_map(|block| &block.questions).collect();
-    for question in study.questions.iter().filter(|question| asked.contains(&&question.id)) {
+    let is_asked = |id: &String| asked.contains(&id) || study.is_asked_of_levels(id);
+    for question in study.questions.iter().filter(|question| is_asked(&question.id)) {
         measured(text, language, question);
     }
     text.line("");
@@ -235,6 +237,9 @@ fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Opti
             Some(Component::Trials(block)) => {
                 let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
                 chosen * block.repetitions as usize
+            }
+            Some(Component::Adaptive(_)) => {
+                study.adaptive().find(|(own, _)| own == name).map_or(0, |(_, block)| block.steps)
             }
             _ => 0,
         },

@@ -5,6 +5,7 @@
 
 mod analysis;
 mod design;
+mod levels;
 
 use std::fmt::Write;
 

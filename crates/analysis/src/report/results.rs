@@ -14,6 +14,7 @@ use crate::report::section::choices::Choices;
 use crate::report::section::course::Course;
 use crate::report::section::layouts::LayoutCell;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
+use crate::thresholds::BlockThresholds;
 use crate::trials::export::{Flow, Person};
 
 /// Everything that was computed, for `results.json`.
@@ -34,6 +35,9 @@ pub(crate) struct Results<'a> {
     pub course: Vec<Course>,
     pub layouts: Vec<LayoutCell>,
     pub late_frames: Vec<LateFrames>,
+    /// Of adaptive blocks.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub thresholds: Vec<BlockThresholds>,
     /// Where a table of stimuli was given.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stimulus_measures: Vec<MeasureCorrelation>,
@@ -52,6 +56,7 @@ impl Results<'_> {
         self.course.extend(part.course);
         self.layouts.extend(part.layouts);
         self.late_frames.extend(part.late_frames);
+        self.thresholds.extend(part.thresholds);
         self.stimulus_measures.extend(part.stimulus_measures);
     }
 }

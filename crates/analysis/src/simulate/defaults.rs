@@ -154,6 +154,7 @@ impl Parameters {
             ratings,
             recognition,
             comparisons,
+            discrimination: super::levels::defaults(study),
             choices,
             numbers,
             times: times(study, &levels),

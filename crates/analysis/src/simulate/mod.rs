@@ -9,6 +9,7 @@ mod defaults;
 mod draws;
 mod fit;
 mod latent;
+mod levels;
 mod model;
 mod null;
 mod parameters;
@@ -25,8 +26,8 @@ use mimique_study::{OrderError, Study};
 pub(crate) use latent::ClipEffects;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
-    ByLevel, Careless, Compared, Display, Dropout, Interaction, NumberAnswer, Parameters, Rating,
-    Recognition, Times,
+    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
+    Parameters, Rating, Recognition, Times,
 };
 pub(crate) use person::{BEFORE_REPLAY_MS, Companion, Person, Raw, as_json};
 pub(crate) use random::Draws;

@@ -5,6 +5,7 @@
 //! | `ratings` | a scale each: mean, spreads of people, clips and noise, thresholds, effects |
 //! | `recognition` | a question with a right answer each: confusion matrix, spreads, effects |
 //! | `comparisons` | a question that chooses between two clips each: worths, spreads, side, ties |
+//! | `discrimination` | an adaptive block each: threshold and its spread over people, spread, lapse |
 //! | `choices`, `numbers` | how other questions are answered, those about the participant too |
 //! | `times` | log-normal answering times |
 //! | `careless`, `attentionPass`, `dropout` | who does not take part as asked |
@@ -32,6 +33,9 @@ pub struct Parameters {
     /// Questions that choose between two clips.
     #[serde(default)]
     pub comparisons: BTreeMap<String, Compared>,
+    /// Adaptive blocks: how people tell levels.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub discrimination: BTreeMap<String, Discrimination>,
     /// Other choices: share of each option.
     pub choices: BTreeMap<String, ByLevel>,
     /// Numbers that are typed.
@@ -134,6 +138,20 @@ pub struct Compared {
     /// t: the logarithm of Davidson's nu. Of two equal clips exp(t) / (2 + exp(t)) of answers see no difference.
     pub tie: f64,
     /// Share of answers without looking.
+    pub lapse: f64,
+}
+
+/// How people tell the levels of an adaptive block: P(right) = 1/2 + (1/2 - lapse) Φ((level - threshold) / spread).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Discrimination {
+    /// Mean threshold of people, in the unit of the level.
+    pub threshold: f64,
+    /// Standard deviation of thresholds from person to person.
+    pub person_sd: f64,
+    /// Spread of the function, above 0.
+    pub spread: f64,
+    /// Share of wrong answers where all is seen.
     pub lapse: f64,
 }
 

@@ -242,6 +242,11 @@ impl<'m> Person<'m> {
         Showing { reload, cut_short, replays, focus_loss, frames }
     }
 
+    /// Whether the person answers without looking.
+    pub(crate) fn is_careless(&self) -> bool {
+        self.mind.careless
+    }
+
     /// A draw for what decides nothing: window, browser, reading times.
     pub(crate) fn chance(&mut self) -> &mut Draws {
         &mut self.chance

@@ -40,7 +40,9 @@ impl Parameters {
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")
         })?;
-        for part in ["ratings", "recognition", "comparisons", "choices", "numbers"] {
+        for part in
+            ["ratings", "recognition", "comparisons", "discrimination", "choices", "numbers"]
+        {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);
@@ -72,6 +74,19 @@ impl Parameters {
         }
         for (question, compared) in &self.comparisons {
             check_compared(&format!("/comparisons/{question}"), compared, &levels)?;
+        }
+        for (block, given) in &self.discrimination {
+            let at = |key: &str| format!("/discrimination/{block}/{key}");
+            finite(&at("threshold"), given.threshold)?;
+            deviation(&at("personSd"), given.person_sd)?;
+            if !(given.spread > 0.0 && given.spread.is_finite()) {
+                let problem = format!("{} is no spread", given.spread);
+                return Err(problem_at(&at("spread"), problem, "give a number above 0"));
+            }
+            if !(0.0..=0.5).contains(&given.lapse) {
+                let problem = format!("{} is no share of lapses", given.lapse);
+                return Err(problem_at(&at("lapse"), problem, "give 0 to 0.5"));
+            }
         }
         for (question, shares_given) in &self.choices {
             let Some(asked) = study.all_questions().find(|each| each.id == *question) else {

@@ -2,10 +2,11 @@
 
 use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_session::{Client, PlayLog, SOUND_HEARD, SoundLog};
+use mimique_session::{Client, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{Answers, Calibration, Display, Multilingual as _, OrderError};
 
 use super::latent::ClipEffects;
+use super::levels::{Levels, Observer};
 use super::model::Model;
 use super::person::{BEFORE_REPLAY_MS, Companion, Person, Showing, as_json};
 
@@ -45,8 +46,10 @@ pub(crate) fn events(
     // Practice is not part of the answers' stream.
     let (person, practice) = (person(seed), person(seed ^ PRACTICE));
     let state = State::new(&plan, model.study.default_language());
-    let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0 };
-    let mut walk = Walk { model, person, practice, page, trial: 0 };
+    let levels = Levels::default();
+    let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
+    let observer = Observer::new(model.parameters, seed, started.participant);
+    let mut walk = Walk { model, person, practice, observer, page, trial: 0 };
     walk.go();
     Ok(walk.page.events)
 }
@@ -60,6 +63,7 @@ struct Page<'p> {
     state: State,
     events: Vec<Event>,
     now_ms: f64,
+    levels: Levels,
 }
 
 impl Page<'_> {
@@ -80,6 +84,7 @@ impl Page<'_> {
                     Effect::PrepareClips(clips) => {
                         inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
                     }
+                    Effect::ChooseLevel(request) => inputs.extend(self.levels.choose(&request)),
                     Effect::Flush => {
                         inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
                     }
@@ -99,6 +104,7 @@ struct Walk<'w, 'm> {
     model: &'m Model<'m>,
     person: Person<'m>,
     practice: Person<'m>,
+    observer: Observer,
     page: Page<'w>,
     /// Trials finished.
     trial: usize,
@@ -329,6 +335,10 @@ impl Walk<'_, '_> {
 
     fn answer_trial(&mut self, clip: &str, training: bool) {
         let here = self.page.state.record.step;
+        if let Some(shown) = self.page.state.record.attempt.level.clone() {
+            self.answer_level(&shown);
+            return;
+        }
         let Some(clip) = self.model.clip(clip) else { return };
         let trial = self.page.plan.steps[here].trial();
         let beside = trial.and_then(|trial| trial.beside.as_ref()).and_then(|beside| {
@@ -345,6 +355,20 @@ impl Walk<'_, '_> {
             let Some(raw) = person.trial_answer(place, clip, beside, self.trial) else { continue };
             let value = as_json(&self.model.questions[place], raw);
             self.page.wait(ms);
+            self.page.send(Input::Answer { question: question.id.clone(), value });
+        }
+        self.read(500.0);
+    }
+
+    /// Which of two clips is the varied one.
+    fn answer_level(&mut self, shown: &LevelShown) {
+        let here = self.page.state.record.step;
+        let ms = self.person.answering_ms(None);
+        self.page.wait(ms);
+        let careless = self.person.is_careless();
+        let Some(side) = self.observer.answer(shown, careless) else { return };
+        for question in self.page.plan.steps[here].questions() {
+            let value = side.into();
             self.page.send(Input::Answer { question: question.id.clone(), value });
         }
         self.read(500.0);

@@ -62,6 +62,8 @@ pub(crate) struct Trial {
     pub stimulus: Arc<str>,
     /// What was played in step beside it.
     pub beside: Option<Beside>,
+    /// The level, of a trial of an adaptive block.
+    pub level: Option<ShownLevel>,
     /// Place among the person's trials, from 1.
     pub order: Option<usize>,
     /// Value of each of [`Export::factors`].
@@ -71,6 +73,19 @@ pub(crate) struct Trial {
     pub longest_ms: Option<f64>,
     /// How far its sound was from its time; infinitely where it was not played.
     pub sound_off_ms: Option<f64>,
+}
+
+/// The level of a trial of an adaptive block.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShownLevel {
+    /// Name of the component.
+    pub block: Arc<str>,
+    pub track: usize,
+    pub level: f64,
+    /// Whether no track counts it.
+    pub catch: bool,
+    /// Whether seed and answers give the level again.
+    pub replayed: bool,
 }
 
 /// A clip that was played beside the trial's own.

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use mimique_stats::Table;
-use mimique_study::{Clip, Exclusions, Study};
+use mimique_study::{Clip, Exclusions, Study, component_of};
 
 use crate::trials::column::Column;
 use crate::trials::error::ExportError;
-use crate::trials::export::{Answer, Beside, Export, Person, Trial, why_left_out};
+use crate::trials::export::{Answer, Beside, Export, Person, ShownLevel, Trial, why_left_out};
 use crate::trials::reason::Reason;
 
 /// Stretches that a file is cut into: more than there are cores, so that none waits long.
@@ -28,6 +28,10 @@ pub(crate) struct TrialReader<'t> {
     stimulus: Column<'t>,
     beside: Column<'t>,
     beside_side: Column<'t>,
+    track: Column<'t>,
+    level: Column<'t>,
+    level_catch: Column<'t>,
+    level_replayed: Column<'t>,
     order: Column<'t>,
     frames: Column<'t>,
     late: Column<'t>,
@@ -101,6 +105,10 @@ impl<'t> TrialReader<'t> {
             stimulus: column("stimulus"),
             beside: column("beside"),
             beside_side: column("beside_side"),
+            track: column("track"),
+            level: column("level"),
+            level_catch: column("level_catch"),
+            level_replayed: column("level_replayed"),
             order: column("trial_order"),
             frames: column("frames"),
             late: column("frames_late"),
@@ -193,7 +201,27 @@ impl<'t> TrialReader<'t> {
         Ok(Some(offset.map_or(f64::INFINITY, |offset| (offset - asked).abs())))
     }
 
+    /// The level of a trial of an adaptive block.
+    fn shown_level(
+        &self,
+        row: usize,
+        texts: &mut Texts<'t>,
+    ) -> Result<Option<ShownLevel>, ExportError> {
+        // Without a track "level" may be a factor of the study's own.
+        let Some(track) = self.track.number(row)? else { return Ok(None) };
+        let Some(level) = self.level.number(row)? else { return Ok(None) };
+        let component = self.trial_id.text(row).map_or("", component_of);
+        Ok(Some(ShownLevel {
+            block: texts.shared(component),
+            track: track as usize,
+            level,
+            catch: self.level_catch.text(row) == Some("true"),
+            replayed: self.level_replayed.text(row) != Some("false"),
+        }))
+    }
+
     fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
+        let shown = self.shown_level(row, texts)?;
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
         let left = self.beside_side.text(row) == Some("left");
         Ok(Trial {
@@ -204,6 +232,7 @@ impl<'t> TrialReader<'t> {
                 left,
             }),
             stimulus: texts.shared(self.stimulus.text(row).unwrap_or_default()),
+            level: shown,
             order: self.order.number(row)?.map(|order| order as usize),
             frames: self.frames.number(row)?,
             late: self.late.number(row)?,

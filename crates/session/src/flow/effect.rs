@@ -1,6 +1,7 @@
 //! What the page has to do.
 
 use crate::wire;
+use serde_json::Value;
 
 /// What the page has to do; each is carried out once, in the order given.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +14,10 @@ pub enum Effect {
     /// picture or a signed video, which is loaded. Report by `ClipProgress`, `ClipPrepared`,
     /// `ClipFailed`. What is prepared already may be named again.
     PrepareClips(Vec<String>),
+    /// Choose the level of a trial of an adaptive block, by `mimique_study::ClosedLoop`; report by `LevelChosen`. Holds
+    /// `step`, `component`, `block`, whose draw it is (`seed`, `configHash`, `slot`), and `answers` so far: the side or
+    /// null.
+    ChooseLevel(Value),
     /// Play this clip once from its start, the one beside it in step; report by `Played`.
     PlayClip {
         /// The trial's own clip.

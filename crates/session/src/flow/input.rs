@@ -92,6 +92,13 @@ pub enum Input {
     Distance(Option<f64>),
     /// The sound check was gone through: its outcome is the answer `sound_check`, and what was counted stands beside it.
     SoundChecked(Answers),
+    /// The level of the trial on the screen: its event, and the clips that may come next.
+    LevelChosen {
+        /// Body of [`crate::EventKind::LevelChosen`] or [`crate::EventKind::LevelsOver`].
+        event: Value,
+        /// Clips that may come after either answer.
+        ahead: Vec<String>,
+    },
     /// The button that gives more time.
     ExtendTime,
     /// Time has passed (a break and a time limit wait for it). About once a second is enough.
@@ -144,6 +151,7 @@ impl Input {
             Self::NoCard => "no_card",
             Self::Distance(_) => "distance",
             Self::SoundChecked(_) => "sound_checked",
+            Self::LevelChosen { .. } => "level_chosen",
             Self::ExtendTime => "extend_time",
             Self::Tick => "tick",
             Self::Withdraw => "withdraw",

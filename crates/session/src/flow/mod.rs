@@ -20,6 +20,7 @@ mod effect;
 mod ending;
 mod gate;
 mod input;
+mod levels;
 mod needs;
 mod render;
 mod render_gate;

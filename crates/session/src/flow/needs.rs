@@ -2,7 +2,7 @@
 //! questions. All of them are prepared before it, and none of them is missing when a trial starts.
 
 use super::state::{Live, State};
-use crate::event::StageFailure;
+use crate::event::{LevelShown, StageFailure};
 use crate::plan::{Plan, Step, TrialStep};
 use mimique_study::MEDIA_PREFIX;
 
@@ -11,10 +11,12 @@ use mimique_study::MEDIA_PREFIX;
 const STEPS_AHEAD: usize = 3;
 
 impl Step {
-    /// The clips of a trial, then the media of the questions (`media:` and the path), each once.
-    pub fn needs(&self, language: &str) -> Vec<String> {
+    /// The clips of a trial (in an adaptive block those of its level), then the media of the questions (`media:` and the path), each once.
+    pub fn needs(&self, language: &str, level: Option<&LevelShown>) -> Vec<String> {
         let mut needs: Vec<String> = Vec::new();
-        let clips = self.trial().into_iter().flat_map(TrialStep::clips).map(str::to_owned);
+        let pair = self.trial().map(|trial| trial.pair(level));
+        let clips = pair.into_iter().flat_map(|(clip, beside)| [Some(clip), beside.map(|it| it.0)]);
+        let clips = clips.flatten().filter(|clip| !clip.is_empty()).map(str::to_owned);
         let media = self.questions().iter().flat_map(|question| question.media(language));
         for need in clips.chain(media.map(|path| [MEDIA_PREFIX, path].concat())) {
             if !needs.contains(&need) {
@@ -27,8 +29,9 @@ impl Step {
 
 /// What the step on the screen and the next ones need, the most urgent first, each once.
 pub(super) fn needs_ahead(plan: &Plan, state: &State) -> Vec<String> {
-    let steps = plan.steps.iter().skip(state.record.step);
-    let needs = steps.map(|step| step.needs(&state.record.language));
+    let steps = plan.steps.iter().enumerate().skip(state.record.step);
+    let level = |at| state.record.attempt.level.as_deref().filter(|_| at == state.record.step);
+    let needs = steps.map(|(at, step)| step.needs(&state.record.language, level(at)));
     let mut all: Vec<String> = Vec::new();
     for need in needs.filter(|needs| !needs.is_empty()).take(STEPS_AHEAD).flatten() {
         if !all.contains(&need) {
@@ -50,7 +53,11 @@ pub(super) enum Needs {
 
 /// How far the needs of a step are.
 pub(super) fn needs_of(step: &Step, state: &State) -> Needs {
-    let needs = step.needs(&state.record.language);
+    let level = state.record.attempt.level.as_deref();
+    if level.is_none() && step.trial().is_some_and(TrialStep::is_adaptive) {
+        return Needs::Loading(0.0);
+    }
+    let needs = step.needs(&state.record.language, level);
     let Live { prepared, progress, failed, .. } = &state.live;
     if let Some(need) = needs.iter().find(|need| failed.contains_key(*need)) {
         return Needs::Failed(need.clone(), failed.get(need).cloned().unwrap_or_default());

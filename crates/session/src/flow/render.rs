@@ -196,6 +196,7 @@ impl Screen<'_> {
             words.trial_of(trial.number, of)
         };
         let can_play = can_play(self.plan, state);
+        let (clip, beside) = trial.pair(progress.level.as_deref());
         let can_answer = progress.plays > 0 && !playing;
         let mut button = self.button(words.submit());
         button.hint = (!can_answer).then(|| words.watch_first().to_owned());
@@ -206,12 +207,17 @@ impl Screen<'_> {
         };
         TrialView {
             step: step.id.clone(),
-            clip: trial.clip.clone(),
-            beside: trial.beside.as_ref().map(|beside| BesideView {
-                clip: beside.clip.clone(),
-                left: beside.left,
-                caption: beside.caption.as_ref().map(|text| self.text(text)),
-                clip_caption: beside.clip_caption.as_ref().map(|text| self.text(text)),
+            clip: clip.to_owned(),
+            beside: beside.map(|(clip, left)| {
+                let below = trial.beside.as_ref();
+                let caption = below.and_then(|it| it.caption.as_ref());
+                let clip_caption = below.and_then(|it| it.clip_caption.as_ref());
+                BesideView {
+                    clip: clip.to_owned(),
+                    left,
+                    caption: caption.map(|text| self.text(text)),
+                    clip_caption: clip_caption.map(|text| self.text(text)),
+                }
             }),
             heading,
             instruction: trial.instruction.as_ref().map(|text| self.text(text)),

@@ -105,6 +105,7 @@ impl<'a> Transition<'a> {
             Input::NoCard => self.no_card(),
             Input::Distance(centimetres) => self.distance(*centimetres),
             Input::SoundChecked(answers) => self.sound_checked(answers),
+            Input::LevelChosen { event, ahead } => self.level_chosen(event, ahead),
             Input::ExtendTime => self.extend_time(),
         }
     }
@@ -173,6 +174,7 @@ impl<'a> Transition<'a> {
     /// Asks for what this step and the next ones need. What could not be had before is on its way again,
     /// and shown so: until it fails anew, nobody has to press anything.
     fn prepare(&mut self) {
+        self.choose_level();
         let needs = needs_ahead(self.plan, &self.state);
         needs.iter().for_each(|need| drop(self.state.live.failed.remove(need)));
         if !needs.is_empty() {
@@ -281,7 +283,7 @@ impl<'a> Transition<'a> {
         let replays = progress.plays.saturating_sub(1);
         self.record(EventKind::TrialFinished {
             step: step.id.clone(),
-            clip: trial.clip.clone(),
+            clip: trial.pair(progress.level.as_deref()).0.to_owned(),
             answers,
             rt_ms: self.now_ms - onset_ms,
             replays,
@@ -300,17 +302,15 @@ impl<'a> Transition<'a> {
             self.effects.push(Effect::RequestFullscreen);
             return true;
         }
+        let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
+        let (clip, beside) = (clip.to_owned(), beside.map(|(clip, left)| (clip.to_owned(), left)));
         if !self.state.record.attempt.is_started() {
-            let (step, clip) = (step.id.clone(), trial.clip.clone());
-            let beside = trial.beside.as_ref();
-            let beside = beside.map(|it| ShownBeside { clip: it.clip.clone(), left: it.left });
+            let (step, clip) = (step.id.clone(), clip.clone());
+            let beside = beside.clone().map(|(clip, left)| ShownBeside { clip, left });
             self.record(EventKind::TrialStarted { step, clip, beside });
         }
         self.state.live.play = Play::Running;
-        self.effects.push(Effect::PlayClip {
-            clip: trial.clip.clone(),
-            beside: trial.beside.as_ref().map(|beside| beside.clip.clone()),
-        });
+        self.effects.push(Effect::PlayClip { clip, beside: beside.map(|it| it.0) });
         true
     }
 
@@ -330,7 +330,11 @@ impl<'a> Transition<'a> {
         self.state.live.prepared.remove(clip);
         self.state.live.progress.remove(clip);
         self.state.live.failed.insert(clip.to_owned(), failure.clone());
-        if self.trial().is_some_and(|(_, trial)| trial.clips().any(|each| each == clip)) {
+        let is_shown = self.trial().is_some_and(|(_, trial)| {
+            let (own, beside) = trial.pair(self.state.record.attempt.level.as_deref());
+            own == clip || beside.is_some_and(|it| it.0 == clip)
+        });
+        if is_shown {
             self.state.live.play = Play::Still;
         }
         let StageFailure { code, message, .. } = failure.clone();
@@ -348,7 +352,8 @@ impl<'a> Transition<'a> {
 
     fn retry(&mut self) -> bool {
         let Some(step) = self.step() else { return false };
-        let needs = step.needs(&self.state.record.language);
+        let level = self.state.record.attempt.level.as_deref();
+        let needs = step.needs(&self.state.record.language, level);
         if !needs.iter().any(|need| self.state.live.failed.contains_key(need)) {
             return false;
         }

@@ -1,11 +1,11 @@
 //! The fold: one event after the other.
 
-use mimique_study::{Answers, Multilingual as _, alike};
+use mimique_study::{Answers, Multilingual as _, alike, component_of};
 use serde_json::Value;
 
 use super::Record;
 use super::step::{Attempt, EarlyEnd, EndReason, FinishedStep};
-use crate::event::{Client, EventKind, PlayLog};
+use crate::event::{Client, EventKind, LevelShown, PlayLog};
 use crate::flow::unmet;
 use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::standing::Standing;
@@ -58,6 +58,22 @@ impl Record {
                 if fits {
                     self.attempt.started_ms = Some(at_ms);
                     self.attempt.beside = beside;
+                }
+                fits
+            }
+            EventKind::LevelChosen { step, track, level, entropy, catch, clip, against, left } => {
+                let fits = self.is_at(plan, &step);
+                if fits {
+                    let shown =
+                        LevelShown { step, track, level, entropy, catch, clip, against, left };
+                    self.attempt.level = Some(Box::new(shown));
+                }
+                fits
+            }
+            EventKind::LevelsOver { step } => {
+                let fits = self.is_at(plan, &step);
+                if let Some(plan) = plan.filter(|_| fits) {
+                    self.enter(after_block(plan, self.step), at_ms);
                 }
                 fits
             }
@@ -318,6 +334,13 @@ impl Record {
         plan.is_none()
             || self.standing.is_open() && self.here(plan).is_some_and(|here| here.id == step)
     }
+}
+
+/// The first step behind the trials of an adaptive block; what interrupts them is left out with them.
+fn after_block(plan: &Plan, from: usize) -> usize {
+    let component = |step: &Step| component_of(&step.id).to_owned();
+    let Some(own) = plan.step(from).map(component) else { return from };
+    plan.steps.iter().rposition(|step| component(step) == own).map_or(from, |last| last + 1)
 }
 
 /// Whether every answer to a practice clip is the right one.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mimique_study::Answers;
 
-use crate::event::{Calibrated, Client, PlayLog, ShownBeside};
+use crate::event::{Calibrated, Client, LevelShown, PlayLog, ShownBeside};
 
 /// The page or trial on the screen.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,6 +15,8 @@ pub struct Attempt {
     pub started_ms: Option<f64>,
     /// What is played beside the trial's own clip.
     pub beside: Option<ShownBeside>,
+    /// The level of a trial of an adaptive block.
+    pub level: Option<Box<LevelShown>>,
     /// Whole plays.
     pub plays: u32,
     /// Whole plays before the page was opened again, by which the trial began anew.
@@ -84,6 +86,8 @@ impl Attempt {
         if self.is_started() {
             *self = Self {
                 shown_ms: self.shown_ms,
+                // The same level again: it follows from the answers before.
+                level: self.level.take(),
                 earlier_plays: self.earlier_plays + self.plays,
                 slow_plays: self.slow_plays,
                 mute_plays: self.mute_plays,

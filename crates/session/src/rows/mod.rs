@@ -12,6 +12,7 @@
 
 mod cells;
 mod column;
+mod levels;
 mod psych_ds;
 mod step_cells;
 mod study_columns;

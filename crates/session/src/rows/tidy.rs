@@ -7,11 +7,12 @@ use serde_json::Value;
 use super::SessionRecord;
 use super::cells::{answer_cells, milliseconds, plain};
 use super::column::{Column, Table};
+use super::levels::{Blocks, level_cells, replay};
 use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
-use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS, SOUND_COLUMNS};
+use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, SOUND_COLUMNS};
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
     iso_time,
@@ -39,6 +40,10 @@ pub struct TidyForm {
     /// Provenance of each clip as it is served.
     pub(super) served: BTreeMap<String, String>,
     pub(super) clips: BTreeMap<String, Clip>,
+    /// Adaptive blocks.
+    blocks: Blocks,
+    /// Hash of the weights of each clip as they were solved beforehand.
+    weights: BTreeMap<String, String>,
     /// Of a participant's condition (none: everybody's) and a component.
     pub(super) conditions: BTreeMap<(Option<String>, String), String>,
     columns: Vec<Column>,
@@ -57,11 +62,16 @@ impl TidyForm {
             column
         };
         let has_sound = study.has_sound();
+        let blocks: Blocks =
+            study.adaptive().map(|(name, block)| (name.to_owned(), block)).collect();
         for fixed in FIXED_COLUMNS {
             let name = fixed.0;
             columns.push(column(fixed));
             if name == "beside_drift_ms" && has_sound {
                 columns.extend(SOUND_COLUMNS.map(column));
+            }
+            if name == "chosen" && !blocks.is_empty() {
+                columns.extend(LEVEL_COLUMNS.map(column));
             }
             if name == "condition" {
                 columns.extend(assigned_column(study));
@@ -79,11 +89,19 @@ impl TidyForm {
         }
         let mut conditions = BTreeMap::new();
         conditions_of(&study.sequence, (None, None), &mut conditions);
+        let weights = clips.iter().map(|(id, source)| (id.clone(), source.weights_hash.clone()));
         let served = clips.iter().map(|(id, source)| (id.clone(), source.provenance.clone()));
         Self {
             study: study.clone(),
             served: served.collect(),
-            clips: study.clips().into_iter().map(|clip| (clip.id.clone(), clip)).collect(),
+            clips: study
+                .clips()
+                .into_iter()
+                .chain(study.level_clips().into_iter().map(|level| level.clip))
+                .map(|clip| (clip.id.clone(), clip))
+                .collect(),
+            blocks,
+            weights: weights.collect(),
             conditions,
             columns,
             places,
@@ -105,6 +123,7 @@ impl TidyForm {
         let mut rows = Vec::new();
         let common = self.personal_cells(started, record);
         let (mut trials, mut trainings) = (0_u64, 0_u64);
+        let levels = replay(&self.blocks, started, record);
         let mut earlier = Answers::new();
         for (index, step) in record.finished.iter().enumerate() {
             let kind = StepType::of(step);
@@ -115,6 +134,9 @@ impl TidyForm {
             };
             let mut cells = common.clone();
             self.step_cells(record, step, kind, &mut cells);
+            if let Some(replayed) = levels.get(&index) {
+                level_cells(step, replayed, &self.weights, &mut cells);
+            }
             cells.put("trial_index", index.into());
             cells.put("trial_order", order);
             self.each_response(step, &earlier, |response| {

@@ -56,9 +56,16 @@ pub(super) fn key(study: &Study, places: &Places) -> Option<Provenance> {
             .json("prepared", "study")
             .json("program", program)
             .json("stimuli", serde_json::to_value(&study.stimuli).ok()?)
+            .json("levels", level_clips(study))
             .json("folder", folder(&places.study).ok()?)
             .json("data", json!(places.data.as_deref().map(folder).transpose().ok()?)),
     )
+}
+
+/// The clips of adaptive blocks: they are prepared beside those of the stimuli.
+fn level_clips(study: &Study) -> serde_json::Value {
+    let clips = study.level_clips();
+    json!(clips.iter().map(|level| (&level.clip.id, &level.method.spec)).collect::<Vec<_>>())
 }
 
 /// What was prepared under this key, if all of its files are what they were and all packs are there.

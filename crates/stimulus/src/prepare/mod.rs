@@ -126,15 +126,24 @@ pub fn prepare(
     }
     let sources = Sources::new(study, places);
     let clips = study.clips();
+    let levels = study.level_clips();
+    let total = clips.len() + levels.len();
     let mut ready = BTreeMap::new();
     let mut remarks = Remarks::default();
     for (done, clip) in clips.iter().enumerate() {
-        progress(Progress { done, total: clips.len(), what: &clip.id });
-        let source = prepare_clip(study, clip, &sources, &cache, &mut remarks)?;
+        progress(Progress { done, total, what: &clip.id });
+        let source = prepare_clip(study, clip, None, &sources, &cache, &mut remarks)?;
         let source = sound::with_sound(study, clip, &sources, &cache, source)?;
         ready.insert(clip.id.clone(), source);
     }
-    progress(Progress { done: clips.len(), total: clips.len(), what: "packs" });
+    // Browsers solve a level when its answers ask for it; what they must find is known beforehand.
+    for (done, level) in levels.iter().enumerate() {
+        progress(Progress { done: clips.len() + done, total, what: &level.clip.id });
+        let spec = Some(&level.method.spec);
+        let source = prepare_clip(study, &level.clip, spec, &sources, &cache, &mut remarks)?;
+        ready.insert(level.clip.id.clone(), source);
+    }
+    progress(Progress { done: total, total, what: "packs" });
     let mut warnings = remarks.warnings;
     let mut said = BTreeSet::new();
     warnings.retain(|warning| said.insert(warning.clone()));
@@ -179,9 +188,11 @@ struct Ingredients {
     repair: Option<String>,
 }
 
+/// Prepares a clip by its method, or by `spec` where that differs from the study's.
 fn prepare_clip(
     study: &Study,
     clip: &Clip,
+    spec: Option<&MethodSpec>,
     sources: &Sources<'_>,
     cache: &Cache,
     remarks: &mut Remarks,
@@ -192,10 +203,10 @@ fn prepare_clip(
     let entry = study.stimuli.methods.get(&clip.method).ok_or_else(|| {
         PrepareError::new("/stimuli/methods", format!("no method {:?}; add it", clip.method))
     })?;
-    let Ingredients { spec, avatar, operators, take, pointer: at, repair } = match entry.spec.method
-    {
-        Method::Recorded => recorded_clip(clip, &entry.spec, sources, cache, remarks)?,
-        _ => marker_clip(clip, &entry.spec, sources, cache, remarks)?,
+    let written = spec.unwrap_or(&entry.spec);
+    let Ingredients { spec, avatar, operators, take, pointer: at, repair } = match written.method {
+        Method::Recorded => recorded_clip(clip, written, sources, cache, remarks)?,
+        _ => marker_clip(clip, written, sources, cache, remarks)?,
     };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(method_pointer(clip), e))?;

@@ -97,7 +97,7 @@ fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
             Component::Trials(block) => block.time_limit.as_ref(),
             Component::Questionnaire(page) => page.time_limit.as_ref(),
             Component::Page(page) => page.time_limit.as_ref(),
-            Component::Break(_) => None,
+            Component::Adaptive(_) | Component::Break(_) => None,
         };
         limits.push((below("/components", name), limit));
     }

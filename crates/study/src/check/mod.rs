@@ -5,6 +5,7 @@
 //! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
 //! later stages run on what can be read of the file ([`readable`]).
 
+mod adaptive;
 mod assigned;
 mod attention;
 mod avatars;

@@ -412,6 +412,32 @@ ComponentName { name: String }: "bad-id", "\"{name}\" cannot be the name of a co
 BreakSeconds { seconds: f64 }: "out-of-range", "a break of {seconds} s", "take 0 to 3600";
 NeverShown { component: String }: "unused",
     "component \"{component}\" is never shown", "name it in /sequence, or remove it";
+LevelsFall { from: f64, to: f64 }: "bad-range", "levels from {from} to {to}",
+    "write the lower level first: the higher a level, the more easily it must be told from the other clip";
+StopOfStaircase: "adaptive", "a staircase has no posterior whose standard deviation could stop it",
+    "remove it, or take \"questPlus\"";
+StopNotPositive { stop: f64 }: "out-of-range", "a standard deviation of {stop}", "write a number above 0";
+LevelsOfVideos: "adaptive", "the avatar is shown by videos, of which no level can be solved",
+    "name an avatar that is drawn";
+LevelColumn { name: String }: "adaptive",
+    "\"{name}\" is the name of a column that exports of adaptive blocks have", "give the factor or the question another name";
+LevelsWithSound: "adaptive", "the study has sounds, with which levels are not combined",
+    "remove /stimuli/sounds, or this block";
+NotVaried { parameter: String }: "adaptive", "\"{parameter}\" cannot be varied by answers",
+    "vary a number among the method's parameters, such as \"alpha\" or \"gain\"";
+NotTwoSides { question: String }: "adaptive",
+    "\"{question}\" does not say left or right in every trial",
+    "name a question of type \"comparison\", required, without \"allowSame\", \"showIf\" and \"attentionCheck\"";
+LevelGrid { what: String }: "adaptive", "{what}", "correct the rule";
+OneRule: "adaptive", "a block follows one rule", "write either \"questPlus\" or \"staircase\"";
+BetweenLevels { length: f64, apart: f64 }: "adaptive",
+    "a way of {length} ends between two levels, which are {apart} apart",
+    "let steps and start be multiples of that, or take other \"levels\"";
+LevelNotSolved { what: String, remedy: String }: "adaptive", "{what}", "{remedy}";
+NothingAgainst { against: String }: "adaptive",
+    "a segment has no clip by \"{against}\" of this avatar", "add it to /stimuli/clips, or name other \"segments\"";
+TooManyLevels { clips: usize, most: usize }: "adaptive",
+    "{clips} clips of levels would be solved beforehand, at most {most} are", "take fewer levels or segments";
 NoTrials: "empty", "no trial is shown", "name a component of type \"trials\"";
 NoTrialsIn { condition: String }: "empty",
     "no trial is shown in the condition \"{condition}\"", "name a component of type \"trials\"";
@@ -525,6 +551,9 @@ NoneTaken { found: usize, key: &'static str, layout: &'static str }: "wrong-leng
 TakenCount { found: usize, key: &'static str, layout: &'static str, wanted: Count }: "wrong-length",
     "{found} {key} in the layout \"{layout}\"", "name {wanted}";
 NoHypotheses: "unknown-reference", "the study has no hypotheses", "state hypotheses";
+LevelsFollowAnswers { question: String }: "adaptive",
+    "\"{question}\" is asked in an adaptive block, whose levels follow its answers: they are of no level alone",
+    "leave it out here; the report has the threshold of each person and their mean";
 NoTruthInTable { response: String }: "no-truth",
     "\"{response}\" has no right answer", "give the question \"truth\"";
 }

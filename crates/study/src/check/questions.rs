@@ -43,7 +43,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let blocks: Vec<&TrialsComponent> = blocks_asking(subject, &question.id).collect();
         let in_training =
             study.training.iter().any(|training| training.questions.contains(&question.id));
-        if blocks.is_empty() && !in_training {
+        if blocks.is_empty() && !in_training && !subject.study.is_asked_of_levels(&question.id) {
             issues.warning(
                 below("/questions", index),
                 Problem::NeverAsked { id: question.id.clone() },

@@ -37,6 +37,10 @@ pub(super) fn tested<'s>(
         issues.error(place, Problem::unknown("question", response, known));
         return None;
     };
+    if study.is_asked_of_levels(&question.id) {
+        issues.error(place, Problem::LevelsFollowAnswers { question: question.id.clone() });
+        return None;
+    }
     if !of_conditions && is_asked_in_no_trial(study, &question.id) {
         issues.error(place, Problem::AskedInNoTrial { question: question.id.clone() });
         return None;

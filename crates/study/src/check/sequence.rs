@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Subject;
+use super::adaptive;
 use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::problem::Problem;
@@ -28,6 +29,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         }
         match component {
             Component::Trials(block) => trials(subject, block, &questions, &pointer, issues),
+            Component::Adaptive(block) => adaptive::examine(subject, block, &pointer, issues),
             Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
                 let place = below(&pointer, "minimumSeconds");
                 issues.error(place, Problem::BreakSeconds { seconds: rest.minimum_seconds });
@@ -236,7 +238,7 @@ fn interruptions<'a>(
                 let problem = Problem::unknown("component", name, known);
                 issues.error(below(&place, "component"), problem);
             }
-            Some(Component::Trials(_)) => {
+            Some(Component::Trials(_) | Component::Adaptive(_)) => {
                 let problem = Problem::InterruptedByTrials { component: name.clone() };
                 issues.error(below(&place, "component"), problem);
             }
@@ -323,6 +325,10 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
             Some(Component::Trials(block)) => {
                 let chosen = subject.clips.iter().filter(|clip| block.clips.takes(clip)).count();
                 chosen.saturating_mul(block.repetitions as usize)
+            }
+            Some(Component::Adaptive(_)) => {
+                let of = subject.study.adaptive().find(|(own, _)| own == name);
+                of.map_or(0, |(_, block)| block.steps)
             }
             _ => 0,
         },

@@ -421,7 +421,8 @@ fn unused(subject: &Subject<'_>, issues: &mut Issues) {
         complain(name, "avatar", used, below("/stimuli/avatars", name));
     }
     for name in stimuli.methods.keys() {
-        let used = subject.clips.iter().any(|clip| clip.method == *name);
+        let varied = || subject.study.adaptive().any(|(_, block)| block.method == *name);
+        let used = subject.clips.iter().any(|clip| clip.method == *name) || varied();
         complain(name, "method", used, below("/stimuli/methods", name));
     }
     for (index, segment) in stimuli.segments.iter().enumerate() {

@@ -42,7 +42,7 @@ pub enum OrderedItem {
         trial: String,
         /// Name of its component.
         component: String,
-        /// Its clip.
+        /// Its clip; empty where it follows from answers.
         clip: String,
         /// Identifier of the nearest sequence that has one, else the component's name.
         condition: String,
@@ -207,6 +207,16 @@ impl<'a> Context<'a> {
             let why = NoOrder::UnknownComponent { name: name.to_owned() };
             return Err(OrderError { pointer: pointer.to_owned(), why });
         };
+        if let Component::Adaptive(block) = component {
+            // Their order is the loop's: they stay together, with room for interruptions between them.
+            let trial = |number| OrderedItem::Trial {
+                trial: format!("{name}/{number}"),
+                component: name.to_owned(),
+                clip: String::new(),
+                condition: condition.unwrap_or(name).to_owned(),
+            };
+            return Ok(vec![(1..=block.steps()).map(trial).collect()]);
+        }
         let Component::Trials(trials) = component else {
             return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);
         };

@@ -168,7 +168,7 @@ impl Study {
             .collect()
     }
 
-    fn clip(&self, entry: &ClipEntry, several_avatars: bool) -> Option<Clip> {
+    pub(super) fn clip(&self, entry: &ClipEntry, several_avatars: bool) -> Option<Clip> {
         let avatar = self.stimuli.avatars.get(&entry.avatar)?;
         let segment = self.stimuli.segments.iter().find(|each| each.id == entry.segment)?;
         let method = self.stimuli.methods.get(&entry.method)?;

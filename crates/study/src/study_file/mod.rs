@@ -5,6 +5,7 @@
 //! `interruptions`, `likert` with `numItems`). Derived things, such as the clips that a rule makes,
 //! are methods.
 
+mod adaptive;
 mod between;
 mod clips;
 mod conduct;
@@ -27,6 +28,10 @@ use crate::question::Question;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use adaptive::{
+    AdaptiveBlock, AdaptiveComponent, LevelClip, LevelRule, PsychometricFunction, QuestPlusRule,
+    ShownSegment, StaircaseRule, Varied,
+};
 pub use between::UnknownCondition;
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
 pub use conduct::{
@@ -279,6 +284,7 @@ impl Study {
             }
             name => match self.components.get(name) {
                 Some(Component::Trials(block)) => shared(&block.questions),
+                Some(Component::Adaptive(block)) => shared(&[block.question().to_owned()]),
                 Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
                 _ => Vec::new(),
             },

@@ -13,6 +13,8 @@ use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimi
 pub enum Component {
     /// A block: one trial a clip.
     Trials(TrialsComponent),
+    /// A block whose levels follow the answers.
+    Adaptive(#[schemars(with = "super::AdaptiveComponent")] super::AdaptiveBlock),
     /// A page of questions.
     Questionnaire(Questionnaire),
     /// A page to read.

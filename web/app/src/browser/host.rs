@@ -76,6 +76,11 @@ extern "C" {
     #[wasm_bindgen(js_name = attachSound)]
     pub fn attach_sound(node: &Node);
 
+    /// The next level of an adaptive block: what `Effect::ChooseLevel` holds as JSON in, its event and the clips that
+    /// may come next as JSON out.
+    #[wasm_bindgen(js_name = nextLevel, catch)]
+    pub async fn next_level(request: &str) -> Result<JsValue, JsValue>;
+
     /// Aborts the play in progress.
     #[wasm_bindgen(js_name = stopClip)]
     pub fn stop_clip();

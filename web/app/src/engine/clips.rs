@@ -91,6 +91,21 @@ impl Engine {
         Ok(())
     }
 
+    /// Chooses the level of a trial of an adaptive block. A module that breaks is asked no more: the page says that
+    /// the trial's clip cannot be had.
+    pub(super) fn choose_level(self: &Rc<Self>, request: Value) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let chosen = host::next_level(&request.to_string()).await;
+            let chosen = chosen.ok().and_then(|text| text.as_string());
+            let mut chosen: Value =
+                chosen.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+            let ahead = chosen["ahead"].as_array().into_iter().flatten();
+            let ahead = ahead.filter_map(|clip| Some(clip.as_str()?.to_owned())).collect();
+            engine.dispatch(Input::LevelChosen { event: chosen["event"].take(), ahead });
+        });
+    }
+
     /// Shows the first frame of a clip that is prepared, and of the one beside it.
     pub fn show(self: &Rc<Self>, clip: String, beside: Option<String>) {
         let engine = Rc::clone(self);

@@ -158,6 +158,7 @@ impl Engine {
             Effect::Store(event) => self.keep(vec![event]),
             Effect::Flush => self.flush(),
             Effect::PrepareClips(clips) => self.prepare_clips(clips),
+            Effect::ChooseLevel(request) => self.choose_level(request),
             Effect::PlayClip { clip, beside } => self.play(clip, beside),
             Effect::StopClip => host::stop_clip(),
             Effect::MeasureDevice => self.measure(),
@@ -198,7 +199,7 @@ impl Engine {
         let engine = Rc::clone(self);
         let rules = self.plan.study.device.as_ref();
         let trials = self.plan.steps.iter().filter_map(|step| step.trial());
-        let mut clips = trials.map(|trial| trial.clip.as_str());
+        let mut clips = trials.map(|trial| trial.clip.as_str()).filter(|clip| !clip.is_empty());
         let loads = rules.is_some_and(DeviceRules::measures_load);
         let clip = clips.next().filter(|_| loads).map(str::to_owned);
         let source = clip.as_ref().and_then(|clip| self.clips.get(clip)).map(Value::to_string);

@@ -134,6 +134,8 @@ fn of_measures<'a>(
         .questions(study)
         .into_iter()
         .filter(|asked| asked.question.is_some_and(|question| question.kind.compares_clips()))
+        // What was shown followed the answers: counts of them say nothing of the clips.
+        .filter(|asked| !study.is_asked_of_levels(&asked.id))
         .collect();
     let mut parts: Vec<Part<'_, 'a>> = Vec::new();
     for (asked, measure) in recognised {
@@ -142,6 +144,7 @@ fn of_measures<'a>(
     for (asked, measure) in rated {
         parts.push(Box::new(|part| part.rating(asked, measure)));
     }
+    parts.push(Box::new(|part| part.thresholds()));
     for asked in &choices {
         parts.push(Box::new(|part| part.choices(asked)));
     }

@@ -1,0 +1,109 @@
+//! How simulated people answer adaptive blocks: a cumulative normal of the level around each person's threshold. The
+//! levels are chosen as the page has them chosen.
+
+use std::collections::HashMap;
+
+use mimique_adaptive::{Psychometric, Shape};
+use mimique_session::LevelShown;
+use mimique_session::flow::Input;
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study, component_of};
+use serde::Deserialize as _;
+use serde_json::{Value, json};
+
+use super::parameters::{Discrimination, Parameters};
+use super::random::Draws;
+
+/// Share of right answers by chance: one of two clips.
+const GUESS: f64 = 0.5;
+
+/// The thresholds of a study's adaptive blocks, if nothing else is said: in the middle of the levels.
+pub(super) fn defaults(study: &Study) -> std::collections::BTreeMap<String, Discrimination> {
+    let of = |(name, block): (&str, AdaptiveComponent)| {
+        let width = block.vary.to - block.vary.from;
+        let discrimination = Discrimination {
+            threshold: block.vary.from + 0.5 * width,
+            person_sd: 0.12 * width,
+            spread: 0.15 * width,
+            lapse: 0.02,
+        };
+        (name.to_owned(), discrimination)
+    };
+    study.adaptive().map(of).collect()
+}
+
+/// The adaptive blocks of one session.
+#[derive(Default)]
+pub(super) struct Levels {
+    /// Of each block: its state, and how many answers it has taken in.
+    loops: HashMap<String, (ClosedLoop, usize)>,
+}
+
+impl Levels {
+    /// Answers the effect `ChooseLevel` as the page's module does.
+    pub(super) fn choose(&mut self, request: &Value) -> Option<Input> {
+        let component = request["component"].as_str()?;
+        let answers = request["answers"].as_array()?;
+        if !self.loops.contains_key(component) {
+            let block = AdaptiveComponent::deserialize(&request["block"]).ok()?;
+            let draw = Draw {
+                seed: request["seed"].as_u64()?,
+                config_hash: request["configHash"].as_str()?,
+                participant: request["slot"].as_u64()?,
+                condition: None,
+            };
+            let closed_loop = ClosedLoop::new(block, component, draw).ok()?;
+            self.loops.insert(component.to_owned(), (closed_loop, 0));
+        }
+        let (closed_loop, taken) = self.loops.get_mut(component)?;
+        for answer in &answers[*taken..] {
+            closed_loop.answer(answer.as_str());
+        }
+        *taken = answers.len();
+        let step = &request["step"];
+        let event = match closed_loop.next() {
+            Some(chosen) => {
+                let mut event = serde_json::to_value(chosen).ok()?;
+                event["type"] = "level_chosen".into();
+                event["step"] = step.clone();
+                event
+            }
+            None => json!({ "type": "levels_over", "step": step }),
+        };
+        Some(Input::LevelChosen { event, ahead: Vec::new() })
+    }
+}
+
+/// How one person tells the levels of each block.
+pub(super) struct Observer {
+    functions: HashMap<String, Psychometric>,
+    draws: Draws,
+}
+
+impl Observer {
+    /// The person of a number.
+    pub(super) fn new(parameters: &Parameters, seed: u64, number: u64) -> Self {
+        let of = |(name, given): (&String, &Discrimination)| {
+            let purpose = format!("threshold/{name}");
+            let own = Draws::new(seed, Some(number), &purpose).normal();
+            let function = Psychometric {
+                shape: Shape::Normal,
+                location: given.threshold + given.person_sd * own,
+                spread: given.spread,
+                guess: GUESS,
+                lapse: given.lapse,
+            };
+            (name.clone(), function)
+        };
+        let functions = parameters.discrimination.iter().map(of).collect();
+        Self { functions, draws: Draws::new(seed, Some(number), "levels") }
+    }
+
+    /// The side that is answered; none for a block that the parameters do not know.
+    pub(super) fn answer(&mut self, shown: &LevelShown, careless: bool) -> Option<&'static str> {
+        let function = self.functions.get(component_of(&shown.step))?;
+        let right = if careless { GUESS } else { function.right(shown.level) };
+        let is_right = self.draws.happens(right);
+        // The varied clip stands where the other one does not.
+        Some(if is_right == shown.left { "right" } else { "left" })
+    }
+}

@@ -1,0 +1,114 @@
+//! Thresholds of adaptive blocks: planted ones are found again, those outside the levels are told as such, and levels
+//! that answers do not give are an error that is named.
+
+#[path = "support/simulated.rs"]
+mod simulated;
+
+use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
+use mimique_stats::Table;
+use mimique_study::Study;
+use serde_json::Value;
+use simulated::simulated_export;
+
+const PEOPLE: u64 = 8;
+
+fn study() -> Study {
+    let file = include_str!("../../../study-config/jnd-alpha.json");
+    Study::from_value(&mimique_study::parse(file).unwrap()).unwrap()
+}
+
+/// People whose thresholds lie here, who answer with care and all come to the end.
+fn export(study: &Study, threshold: f64) -> String {
+    let mut parameters = Parameters::for_study(study);
+    let own = parameters.discrimination.get_mut("limit").unwrap();
+    (own.threshold, own.person_sd, own.spread) = (threshold, 0.0, 0.08);
+    parameters.careless.share = 0.0;
+    parameters.dropout.declined = 0.0;
+    parameters.dropout.per_trial = 0.0;
+    simulated_export(&Simulation::new(study, "hash", &parameters, 5).unwrap(), study, PEOPLE)
+}
+
+fn report(study: &Study, csv: &str, language: Language) -> (Report, Value) {
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    let report = analyze(&table, study, language).unwrap();
+    let file = report.files.iter().find(|file| file.path == "results.json").unwrap();
+    let results = serde_json::from_str(&file.text).unwrap();
+    (report, results)
+}
+
+fn text(report: &Report, path: &str) -> String {
+    let file = report.files.iter().find(|file| file.path == path);
+    file.unwrap_or_else(|| panic!("{path} is written")).text.clone()
+}
+
+#[test]
+fn planted_thresholds_are_found_again() {
+    let study = study();
+    for planted in [0.3, 0.65] {
+        let (_, results) = report(&study, &export(&study, planted), Language::English);
+        let block = &results["thresholds"][0];
+        assert_eq!((&block["block"], &block["parameter"]), (&"limit".into(), &"alpha".into()));
+        let people = block["people"].as_array().unwrap();
+        assert_eq!(people.len() as u64, PEOPLE);
+        let mut covered = 0;
+        for person in people {
+            assert_eq!((&person["answers"], &person["catches"][0]), (&30.into(), &3.into()));
+            if let [Some(low), Some(high)] = [0, 1].map(|end| person["interval"][end].as_f64()) {
+                covered += u64::from((low..=high).contains(&planted));
+            }
+        }
+        assert!(covered + 2 >= PEOPLE, "{covered} of {PEOPLE} intervals have {planted}");
+        let mean = block["mean"]["mean"].as_f64().unwrap();
+        assert!((mean - planted).abs() < 0.06, "{mean} of {planted}");
+    }
+}
+
+#[test]
+fn a_threshold_above_the_levels_is_told_and_in_no_mean() {
+    let study = study();
+    let csv = export(&study, 30.0);
+    let (found, results) = report(&study, &csv, Language::English);
+    let people = results["thresholds"][0]["people"].as_array().unwrap();
+    let above = people.iter().filter(|person| person["threshold"]["above"] == 1.0).count();
+    assert!(
+        above > 0 && people.iter().all(|person| person["threshold"]["at"].as_f64() != Some(30.0))
+    );
+    assert!(text(&found, "report.md").contains("above 1"));
+    let (found, _) = report(&study, &csv, Language::French);
+    assert!(text(&found, "report.md").contains("au-dessus de 1"));
+}
+
+#[test]
+fn levels_that_answers_do_not_give_are_an_error_that_is_named() {
+    let study = study();
+    let csv = export(&study, 0.5);
+    let mut lines = csv.lines();
+    let header = lines.next().unwrap();
+    let place = header.split(',').position(|name| name == "level_replayed").unwrap();
+    let is_sixth_trial = |line: &&str| line.contains("\"p0003\"") && line.contains("\"limit/6\"");
+    let line = csv.lines().find(is_sixth_trial).unwrap();
+    let mut cells: Vec<&str> = line.split(',').collect();
+    assert_eq!(cells[place], "true");
+    cells[place] = "false";
+    let (found, results) = report(&study, &csv.replace(line, &cells.join(",")), Language::English);
+    let people = results["thresholds"][0]["people"].as_array().unwrap();
+    let wrong: Vec<&Value> =
+        people.iter().filter(|person| person["threshold"] == "notReplayed").collect();
+    assert_eq!(wrong.len(), 1);
+    assert_eq!(wrong[0]["participant"], "p0003");
+    assert!(text(&found, "report.md").contains("Error: seed and answers do not give the levels"));
+}
+
+#[test]
+fn choices_of_an_adaptive_block_are_not_counted_by_level() {
+    let study = study();
+    let (found, results) = report(&study, &export(&study, 0.5), Language::English);
+    assert_eq!(results["choices"], serde_json::json!([]));
+    let figures: Vec<&str> = found
+        .files
+        .iter()
+        .map(|file| file.path.as_str())
+        .filter(|path| path.contains("limit-track"))
+        .collect();
+    assert!(!figures.is_empty(), "tracks and curves are drawn");
+}

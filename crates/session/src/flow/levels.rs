@@ -1,0 +1,64 @@
+//! Adaptive blocks: the level of a trial is asked for when the trial is reached, and once more after a reload that
+//! came before the answer. What chooses it is a module of its own, which studies with such a block alone load.
+
+use serde_json::{Value, json};
+
+use super::effect::Effect;
+use super::update::Transition;
+use crate::event::EventKind;
+use mimique_study::{Component, component_of};
+
+impl Transition<'_> {
+    /// Asks for the level of the trial on the screen, if it has none yet.
+    pub(super) fn choose_level(&mut self) {
+        let Some(step) = self.step() else { return };
+        let component = component_of(&step.id);
+        let Some(Component::Adaptive(block)) = self.plan.study.components.get(component) else {
+            return;
+        };
+        // Before the session nobody's draw is known.
+        if self.plan.started.config_hash.is_empty() {
+            return;
+        }
+        let record = &self.state.record;
+        let own = record.finished.iter().filter(|done| component_of(&done.id) == component);
+        let answers: Vec<Option<&Value>> =
+            own.map(|done| done.answers.get(block.question())).collect();
+        let started = &self.plan.started;
+        self.effects.push(Effect::ChooseLevel(json!({
+            "step": step.id,
+            "component": component,
+            "block": block.0,
+            "seed": started.seed,
+            "configHash": started.config_hash,
+            "slot": started.slot(),
+            "answers": answers,
+        })));
+    }
+
+    /// The level of the trial on the screen, or word that none is left.
+    pub(super) fn level_chosen(&mut self, event: &Value, ahead: &[String]) -> bool {
+        let Some(event) = EventKind::from_body(event) else { return false };
+        if self.step().is_none_or(|here| event.step() != Some(&here.id)) {
+            return false;
+        }
+        match &event {
+            EventKind::LevelsOver { .. } => {
+                self.record(event);
+                self.arrive();
+                return true;
+            }
+            EventKind::LevelChosen { clip, against, .. } => {
+                let mut clips = vec![clip.clone(), against.clone()];
+                clips.extend_from_slice(ahead);
+                // After a reload the level is known: only what may come next is new.
+                if self.state.record.attempt.level.is_none() {
+                    self.record(event);
+                }
+                self.effects.push(Effect::PrepareClips(clips));
+            }
+            _ => return false,
+        }
+        true
+    }
+}

@@ -1,0 +1,292 @@
+//! Adaptive blocks from the page to the export: levels follow the answers, a reload goes on at the same level, and
+//! what was recorded is replayed from seed and answers alone.
+
+use std::collections::BTreeMap;
+
+use mimique_session::flow::{Effect, Input, Plan, State, update};
+use mimique_session::rows::{SessionRecord, tidy};
+use mimique_session::wire::{Event, SessionStarted};
+use mimique_session::{Client, EventKind, PlayLog};
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study};
+use serde::Deserialize as _;
+use serde_json::{Value, json};
+
+const SEED: u64 = 20_261_125;
+
+fn study(change: impl FnOnce(&mut Value)) -> Study {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/jnd-alpha.json");
+    let text = std::fs::read_to_string(path).expect("the study");
+    let mut value = mimique_study::parse(&text).expect("JSON");
+    value.as_object_mut().unwrap().remove("consent");
+    change(&mut value);
+    Study::from_value(&value).expect("a study")
+}
+
+fn started() -> SessionStarted {
+    SessionStarted {
+        session: "s".to_owned(),
+        participant_id: "p0001".to_owned(),
+        participant: 3,
+        slot: 3,
+        condition: None,
+        seed: SEED,
+        stage: "live".to_owned(),
+        config_hash: "abc".to_owned(),
+        withdrawal_code: String::new(),
+    }
+}
+
+/// A page whose module of levels is called as a browser calls it.
+struct Page {
+    plan: Plan,
+    state: State,
+    events: Vec<Event>,
+    prepared: Vec<String>,
+    now_ms: f64,
+}
+
+impl Page {
+    fn open(study: &Study) -> Self {
+        let plan = Plan::new(study.projection(), started()).expect("an order");
+        let state = State::new(&plan, "en");
+        let mut page = Self { plan, state, events: vec![], prepared: vec![], now_ms: 0.0 };
+        page.send(Input::Opened(Client::default()));
+        page.send(Input::Measured(mimique_study::Display {
+            viewport: [1600, 900],
+            device_pixel_ratio: 1.0,
+            refresh_hz: Some(60.0),
+            backend: Some("webgpu".to_owned()),
+            desktop: true,
+            fullscreen: true,
+        }));
+        page
+    }
+
+    fn send(&mut self, input: Input) {
+        let mut inputs = vec![input];
+        while let Some(input) = inputs.pop() {
+            self.now_ms += 10.0;
+            let state = std::mem::take(&mut self.state);
+            let (state, effects) = update(&self.plan, state, input, self.now_ms);
+            self.state = state;
+            for effect in effects {
+                match effect {
+                    Effect::Store(event) => self.events.push(event),
+                    Effect::PrepareClips(clips) => {
+                        self.prepared.extend(clips.clone());
+                        let ready = |clip| Input::ClipPrepared { clip };
+                        inputs.extend(clips.into_iter().map(ready));
+                    }
+                    Effect::ChooseLevel(request) => inputs.push(chosen(&request)),
+                    Effect::Flush => {
+                        inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    fn step(&self) -> Option<String> {
+        self.plan.step(self.state.record.step).map(|step| step.id.clone())
+    }
+
+    /// Plays the clips and answers a trial; goes on from a break.
+    fn trial(&mut self, sees_from: f64) {
+        let Some(level) = self.state.record.attempt.level.clone() else {
+            self.send(Input::Next);
+            return;
+        };
+        self.send(Input::Play);
+        self.send(Input::Played(PlayLog { backend: "webgpu".to_owned(), ..PlayLog::default() }));
+        let right = level.level >= sees_from;
+        let side = if right == level.left { "right" } else { "left" };
+        self.send(Input::Answer { question: "smoother".to_owned(), value: side.into() });
+        self.send(Input::Next);
+    }
+
+    fn levels(&self) -> Vec<f64> {
+        let of = |event: &Event| match EventKind::from_body(&event.body)? {
+            EventKind::LevelChosen { level, .. } => Some(level),
+            _ => None,
+        };
+        self.events.iter().filter_map(of).collect()
+    }
+}
+
+/// What the module of the page does, without anything kept between its calls.
+fn chosen(request: &Value) -> Input {
+    let block = AdaptiveComponent::deserialize(&request["block"]).expect("a block");
+    let draw = Draw {
+        seed: request["seed"].as_u64().unwrap(),
+        config_hash: request["configHash"].as_str().unwrap(),
+        participant: request["slot"].as_u64().unwrap(),
+        condition: None,
+    };
+    let component = request["component"].as_str().unwrap();
+    let mut closed_loop = ClosedLoop::new(block, component, draw).expect("levels");
+    for answer in request["answers"].as_array().unwrap() {
+        closed_loop.answer(answer.as_str());
+    }
+    let event = match closed_loop.next() {
+        Some(level) => {
+            let mut event = serde_json::to_value(level).unwrap();
+            event["type"] = "level_chosen".into();
+            event["step"] = request["step"].clone();
+            event
+        }
+        None => json!({ "type": "levels_over", "step": request["step"] }),
+    };
+    let after = ["left", "right"].map(|side| closed_loop.after(side).clips());
+    Input::LevelChosen { event, ahead: after.concat() }
+}
+
+fn run(study: &Study, sees_from: f64) -> Page {
+    let mut page = Page::open(study);
+    for _ in 0..60 {
+        if page.step().is_none() {
+            break;
+        }
+        page.trial(sees_from);
+    }
+    assert_eq!(page.step(), None, "the study comes to its end");
+    page
+}
+
+fn rows(study: &Study, events: &[Event]) -> Vec<BTreeMap<String, Value>> {
+    let started = started();
+    let record = SessionRecord { started: &started, events };
+    let table = tidy(study, &BTreeMap::new(), [record]);
+    let names: Vec<String> = table.columns.iter().map(|column| column.name.clone()).collect();
+    let rows = table.rows.into_iter();
+    rows.map(|row| names.iter().cloned().zip(row).collect::<BTreeMap<_, _>>())
+        .filter(|row: &BTreeMap<String, Value>| row["trial_type"] == "trial")
+        .collect()
+}
+
+#[test]
+fn levels_follow_the_answers_and_the_export_replays_them() {
+    let study = study(|_| {});
+    let (keen, dull) = (run(&study, 0.22), run(&study, 0.78));
+    let last = |page: &Page| page.levels()[26..].iter().sum::<f64>() / 7.0;
+    assert_eq!(keen.levels().len(), 33, "30 trials and 3 catch trials");
+    assert!(last(&keen) + 0.3 < last(&dull), "{} {}", last(&keen), last(&dull));
+    let rows = rows(&study, &keen.events);
+    assert_eq!(rows.len(), 33);
+    assert!(rows.iter().all(|row| row["level_replayed"] == true), "the same seed and answers");
+    let right = |row: &BTreeMap<String, Value>| row["level"].as_f64().unwrap() >= 0.22;
+    assert!(rows.iter().all(|row| row["correct"] == right(row)));
+    let catches: Vec<_> = rows.iter().filter(|row| row["level_catch"] == true).collect();
+    assert!(catches.len() == 3 && catches.iter().all(|row| row["level"] == 1));
+    let end = &rows[32];
+    let mean = end["posterior_mean"].as_f64().unwrap();
+    assert!(mean < 0.4 && end["posterior_sd"].as_f64().unwrap() < 0.2, "{mean}");
+    let clip = |row: &BTreeMap<String, Value>| {
+        format!("joy3.lsts@alpha={}", row["level"].as_f64().unwrap())
+    };
+    assert!(rows.iter().all(|row| row["stimulus"] == clip(row)));
+    assert!(rows.iter().all(|row| row["beside"] == "joy3.reference"));
+    let left = rows.iter().filter(|row| row["beside_side"] == "left").count();
+    assert_eq!(left, 17, "each side in half of the trials");
+}
+
+#[test]
+fn a_level_that_answers_do_not_give_is_told() {
+    let study = study(|_| {});
+    let page = run(&study, 0.4);
+    let mut events = page.events.clone();
+    let at = events.iter().position(|event| event.body["step"] == "limit/9").unwrap();
+    let chosen = &mut events[at];
+    assert_eq!(chosen.body["type"], "level_chosen");
+    chosen.body["level"] = 0.05.into();
+    let wrong: Vec<Value> = rows(&study, &events)
+        .into_iter()
+        .filter(|row| row["level_replayed"] == false)
+        .map(|row| row["trial_id"].clone())
+        .collect();
+    assert_eq!(wrong, ["limit/9"]);
+    // Another seed draws other sides and catch trials.
+    let mut other = started();
+    other.seed += 1;
+    let record = SessionRecord { started: &other, events: &page.events };
+    let table = tidy(&study, &BTreeMap::new(), [record]);
+    let place = table.columns.iter().position(|column| column.name == "level_replayed").unwrap();
+    assert!(table.rows.iter().any(|row| row[place] == false));
+}
+
+#[test]
+fn both_clips_that_may_come_next_are_made_ready_while_one_is_shown() {
+    let study = study(|_| {});
+    let mut page = Page::open(&study);
+    for _ in 0..8 {
+        page.prepared.clear();
+        let sees_from = if page.events.len().is_multiple_of(2) { 0.0 } else { 2.0 };
+        page.state.live.prepared.clear();
+        page.send(Input::Online);
+        page.send(Input::Begun);
+        let ready = page.prepared.clone();
+        page.trial(sees_from);
+        if let Some(level) = &page.state.record.attempt.level {
+            assert!(ready.contains(&level.clip), "{} of {ready:?}", level.clip);
+        }
+    }
+}
+
+#[test]
+fn a_reload_goes_on_at_the_same_level_of_the_same_track() {
+    let study = study(|_| {});
+    let whole = run(&study, 0.5);
+    let mut page = Page::open(&study);
+    for _ in 0..7 {
+        page.trial(0.5);
+    }
+    page.send(Input::Play);
+    let before = page.state.record.attempt.level.clone().expect("a level");
+    // The page is opened anew from what is stored.
+    page.state = State::replay(&page.plan, &page.events);
+    page.send(Input::Resumed(Client::default()));
+    assert_eq!(page.state.record.attempt.level.as_ref(), Some(&before));
+    while page.step().is_some() {
+        page.trial(0.5);
+    }
+    assert_eq!(page.levels(), whole.levels(), "each level is chosen once");
+    assert!(rows(&study, &page.events).iter().all(|row| row["level_replayed"] == true));
+}
+
+#[test]
+fn a_block_that_is_sure_ends_before_its_last_trial() {
+    let study = study(|study| {
+        study["components"]["limit"]["stopSd"] = 0.2.into();
+        study["components"]["limit"]["catch"] = 0.into();
+    });
+    let page = run(&study, 0.5);
+    assert_eq!(page.levels().len(), 20, "not before 20");
+    let over = page.events.iter().filter(|event| event.body["type"] == "levels_over").count();
+    assert_eq!(over, 1);
+    assert_eq!(rows(&study, &page.events).len(), 20);
+    let admission = mimique_session::Admission::of(&page.plan);
+    assert!(admission.is_done(&page.state.record), "who was sure early has finished");
+    assert!(page.events.iter().all(|event| admission.misfit(&event.body).is_none()));
+}
+
+#[test]
+fn two_tracks_by_a_staircase_each_go_their_own_way() {
+    let study = study(|study| {
+        let block = &mut study["components"]["limit"];
+        block["rule"] = json!({ "staircase": { "down": 2, "steps": [0.2, 0.1], "start": 0.8 } });
+        block["tracks"] = 2.into();
+        block["trials"] = 15.into();
+    });
+    let page = run(&study, 0.45);
+    let rows = rows(&study, &page.events);
+    assert_eq!(rows.len(), 33);
+    for track in [1, 2] {
+        let own = rows.iter().filter(|row| row["track"] == track && row["level_catch"] == false);
+        let levels: Vec<f64> = own.map(|row| row["level"].as_f64().unwrap()).collect();
+        assert_eq!(levels.len(), 15);
+        // Two right answers down by 0.2 from 0.8, until the first that is not seen turns it.
+        assert_eq!(levels[..7], [0.8, 0.8, 0.6, 0.6, 0.4, 0.5, 0.5]);
+        assert!(levels[7..].iter().all(|level| (0.35..=0.55).contains(level)), "{levels:?}");
+    }
+    assert!(rows.iter().all(|row| row["posterior_mean"].is_null()));
+}

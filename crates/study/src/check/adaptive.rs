@@ -1,0 +1,211 @@
+//! Adaptive blocks: what is varied, between which levels, by which rule, and which question tells right from wrong.
+
+use mimique_adaptive::{QuestPlus, Staircase};
+use mimique_solver::{Kind, PARAMETERS};
+
+use super::Subject;
+use super::issue::{Issues, below};
+use super::problem::Problem;
+use crate::closed_loop::{grid, staircase};
+use crate::columns::LEVEL_COLUMNS;
+use crate::question::QuestionKind;
+use crate::study_file::{AdaptiveBlock, AdaptiveComponent, Varied};
+
+/// Most levels of a block: each is solved before the study is served.
+const MOST_LEVELS: f64 = 201.0;
+/// Most clips of levels of a block: levels times segments.
+const MOST_CLIPS: usize = 1000;
+/// Most trials of a track, and most tracks.
+const MOST_TRIALS: f64 = 1000.0;
+const MOST_TRACKS: f64 = 8.0;
+
+/// What PSYCHOPHYSICS names beside the method's own numbers, and no clip of this program has.
+const NOT_VARIED: [&str; 2] = ["delayMs", "lowpassHz"];
+
+pub(super) fn examine(
+    subject: &Subject<'_>,
+    block: &AdaptiveBlock,
+    pointer: &str,
+    issues: &mut Issues,
+) {
+    let block = match block.read() {
+        Ok(block) => block,
+        Err(error) => {
+            issues.error(pointer, Problem::Shape { what: error.to_string() });
+            return;
+        }
+    };
+    let before = issues.count();
+    ranges(&block, pointer, issues);
+    names(subject, &block, pointer, issues);
+    question(subject, &block, pointer, issues);
+    if issues.count() > before {
+        return;
+    }
+    rule(&block, pointer, issues);
+    clips(subject, &block, pointer, issues);
+}
+
+fn ranges(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
+    let mut range = |key: &str, value: f64, unit, least: f64, most: f64| {
+        if !(least..=most).contains(&value) {
+            let place = format!("{pointer}/{key}");
+            issues.error(place, Problem::OutOfRange { value, unit, least, most });
+        }
+    };
+    range("trials", f64::from(block.trials), "trials", 1.0, MOST_TRIALS);
+    range("tracks", f64::from(block.tracks), "tracks", 1.0, MOST_TRACKS);
+    range("catch", block.catch, "of the trials", 0.0, 0.5);
+    range("vary/levels", f64::from(block.vary.levels), "levels", 3.0, MOST_LEVELS);
+    let Varied { from, to, .. } = block.vary;
+    if from >= to {
+        issues.error(below(pointer, "vary"), Problem::LevelsFall { from, to });
+    }
+    if let Some(stop) = block.stop_sd {
+        if block.rule.staircase.is_some() {
+            issues.error(below(pointer, "stopSd"), Problem::StopOfStaircase);
+        } else if stop <= 0.0 || !stop.is_finite() {
+            issues.error(below(pointer, "stopSd"), Problem::StopNotPositive { stop });
+        }
+    }
+}
+
+fn names(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
+    let stimuli = &subject.study.stimuli;
+    for (key, name) in [("method", &block.method), ("against", &block.against)] {
+        if !stimuli.methods.contains_key(name) {
+            let problem = Problem::unknown("method", name, stimuli.methods.keys());
+            issues.error(below(pointer, key), problem);
+        }
+    }
+    for (index, segment) in block.segments.iter().enumerate() {
+        let place = below(&below(pointer, "segments"), index);
+        if !stimuli.segments.iter().any(|each| each.id == *segment) {
+            let known = stimuli.segments.iter().map(|each| &each.id);
+            issues.error(place, Problem::unknown("segment", segment, known));
+        } else if block.segments[..index].contains(segment) {
+            issues.error(place, Problem::NamedTwice { name: segment.clone() });
+        }
+    }
+    match &block.avatar {
+        Some(avatar) if !stimuli.avatars.contains_key(avatar) => {
+            let problem = Problem::unknown("avatar", avatar, stimuli.avatars.keys());
+            issues.error(below(pointer, "avatar"), problem);
+        }
+        None if stimuli.avatars.len() > 1 => {
+            issues.error(pointer, Problem::MissingKey { key: "avatar".to_owned() });
+        }
+        given => {
+            let avatar = given.as_ref().or_else(|| stimuli.avatars.keys().next());
+            let videos = avatar.and_then(|avatar| stimuli.avatars.get(avatar));
+            if videos.is_some_and(|avatar| !avatar.videos.is_empty()) {
+                issues.error(pointer, Problem::LevelsOfVideos);
+            }
+        }
+    }
+    let factors = subject.study.factor_names();
+    let about = subject.study.demographics.iter().flat_map(|page| &page.questions);
+    for name in factors.iter().chain(about.map(|question| &question.id)) {
+        if LEVEL_COLUMNS.iter().any(|(column, ..)| column == name) {
+            issues.error(pointer, Problem::LevelColumn { name: name.clone() });
+        }
+    }
+    if !stimuli.sounds.is_empty() {
+        issues.error(pointer, Problem::LevelsWithSound);
+    }
+    let parameter = block.vary.parameter.as_str();
+    let place = below(&below(pointer, "vary"), "parameter");
+    let numbers = || PARAMETERS.iter().filter(|each| each.kind == Kind::Number);
+    if NOT_VARIED.contains(&parameter) {
+        issues.error(place, Problem::NotVaried { parameter: parameter.to_owned() });
+    } else if !numbers().any(|each| each.key == parameter) {
+        let known = numbers().map(|each| each.key);
+        issues.error(place, Problem::unknown("parameter", parameter, known));
+    }
+}
+
+fn question(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
+    let place = below(pointer, "question");
+    let shared = &subject.study.questions;
+    let Some(question) = shared.iter().find(|each| each.id == block.question) else {
+        let known = shared.iter().map(|each| &each.id);
+        issues.error(place, Problem::unknown("question", &block.question, known));
+        return;
+    };
+    let tells = matches!(&question.kind, QuestionKind::Comparison(kind) if !kind.allow_same);
+    let is_plain =
+        question.required && question.show_if.is_none() && question.attention_check.is_none();
+    if !tells || !is_plain {
+        issues.error(place, Problem::NotTwoSides { question: block.question.clone() });
+    }
+}
+
+fn rule(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
+    let place = below(pointer, "rule");
+    match (&block.rule.quest_plus, &block.rule.staircase) {
+        (Some(rule), None) => {
+            let place = below(&place, "questPlus");
+            let [_, _, count] = rule.threshold;
+            if count.fract() != 0.0 || !(2.0..=1000.0).contains(&count) {
+                let place = below(&below(&place, "threshold"), 2);
+                let unit = "thresholds";
+                let problem = Problem::OutOfRange { value: count, unit, least: 2.0, most: 1000.0 };
+                issues.error(place, problem);
+            } else if let Err(error) = QuestPlus::new(grid(rule, &block.vary)) {
+                issues.error(place, Problem::LevelGrid { what: error.to_string() });
+            }
+        }
+        (None, Some(rule)) => {
+            let place = below(&place, "staircase");
+            if let Err(error) = Staircase::new(staircase(rule, &block.vary)) {
+                issues.error(place, Problem::LevelGrid { what: error.to_string() });
+                return;
+            }
+            let apart = (block.vary.to - block.vary.from) / f64::from(block.vary.levels - 1);
+            let is_between = |length: f64| {
+                let steps = length / apart;
+                (steps - steps.round()).abs() > 1e-6
+            };
+            let start = rule.start.unwrap_or(block.vary.to) - block.vary.from;
+            let lengths = rule.steps.iter().copied().chain([start]);
+            if let Some(length) = lengths.into_iter().find(|length| is_between(*length)) {
+                issues.error(place, Problem::BetweenLevels { length, apart });
+            }
+        }
+        _ => issues.error(place, Problem::OneRule),
+    }
+}
+
+fn clips(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
+    let study = subject.study;
+    for level in [block.vary.from, block.vary.to] {
+        let Some(entry) = study.stimuli.methods.get(&block.method) else { return };
+        let mut spec = serde_json::to_value(&entry.spec).unwrap_or_default();
+        spec[&block.vary.parameter] = level.into();
+        if let Err(faults) = mimique_solver::MethodSpec::checked(&spec) {
+            let what = faults.first().map_or_else(String::new, |fault| {
+                format!("\"{}\" {}", fault.field, fault.message())
+            });
+            let remedy = faults.first().map_or_else(String::new, |fault| fault.remedy());
+            issues.error(below(pointer, "vary"), Problem::LevelNotSolved { what, remedy });
+            return;
+        }
+    }
+    let segments = match block.segments.len() {
+        0 => study.stimuli.segments.len(),
+        named => named,
+    };
+    let has_both = study
+        .adaptive()
+        .find(|(name, _)| below("/components", name) == pointer)
+        .map_or(0, |(_, block)| block.shown.len());
+    if has_both < segments {
+        let against = block.against.clone();
+        issues.error(below(pointer, "against"), Problem::NothingAgainst { against });
+    }
+    let clips = segments * block.vary.levels as usize;
+    if clips > MOST_CLIPS {
+        let problem = Problem::TooManyLevels { clips, most: MOST_CLIPS };
+        issues.error(below(&below(pointer, "vary"), "levels"), problem);
+    }
+}

@@ -1,0 +1,87 @@
+//! The levels of adaptive blocks in the participant's browser: the answers so far in, the next level out. Studies
+//! with such a block alone load this module.
+//!
+//! ```js
+//! const levels = new Levels(JSON.stringify(request)); // what the session's effect ChooseLevel holds
+//! levels.answer("left");                              // one answer after the other; undefined where there was none
+//! JSON.parse(levels.next("limit/2"));                 // {event: {type: "level_chosen", ...}, ahead: [clip, ...]}
+//! ```
+//!
+//! It is the same [`mimique_study::ClosedLoop`] that exports replay, so that the levels have the same bits.
+
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::*;
+
+#[cfg(target_arch = "wasm32")]
+#[global_allocator]
+static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+
+/// The module's entry.
+#[wasm_bindgen(start)]
+pub fn start() {
+    mimique_web_panics::report_panics("adaptive", "");
+}
+
+/// A block and whose draw it is.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Request {
+    component: String,
+    block: AdaptiveComponent,
+    seed: u64,
+    config_hash: String,
+    slot: u64,
+}
+
+/// The levels of one block.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Levels {
+    closed_loop: ClosedLoop,
+    /// The block after `left` and after `right`, once they were looked at: the next level is known when it is asked
+    /// for.
+    after: Option<[ClosedLoop; 2]>,
+}
+
+/// The answers.
+const SIDES: [&str; 2] = ["left", "right"];
+
+#[wasm_bindgen]
+impl Levels {
+    /// A block before its first answer; `request` is what the session's effect `ChooseLevel` holds, as JSON.
+    ///
+    /// # Errors
+    /// Throws an `Error` whose message says what is wrong with the block; the check of a study refuses it.
+    #[wasm_bindgen(constructor)]
+    pub fn new(request: &str) -> Result<Levels, JsError> {
+        let Request { component, block, seed, config_hash, slot } = serde_json::from_str(request)?;
+        let draw = Draw { seed, config_hash: &config_hash, participant: slot, condition: None };
+        Ok(Self { closed_loop: ClosedLoop::new(block, &component, draw)?, after: None })
+    }
+
+    /// Takes in the answer of the next trial: `left`, `right`, or nothing.
+    pub fn answer(&mut self, side: Option<String>) {
+        let place = SIDES.iter().position(|own| side.as_deref() == Some(own));
+        match (place, self.after.take()) {
+            (Some(place), Some(after)) => self.closed_loop = after[place].clone(),
+            _ => self.closed_loop.answer(side.as_deref()),
+        }
+    }
+
+    /// The event of the trial of a step, and the clips that may come after either answer, as JSON.
+    pub fn next(&mut self, step: &str) -> String {
+        let Some(chosen) = self.closed_loop.next() else {
+            let event = json!({ "type": "levels_over", "step": step });
+            return json!({ "event": event, "ahead": [] }).to_string();
+        };
+        let mut event = serde_json::to_value(chosen).unwrap_or_default();
+        event["type"] = Value::from("level_chosen");
+        event["step"] = Value::from(step);
+        let closed_loop = &self.closed_loop;
+        let after = self.after.get_or_insert_with(|| SIDES.map(|side| closed_loop.after(side)));
+        let ahead: Vec<String> = after.iter().flat_map(ClosedLoop::clips).collect();
+        json!({ "event": event, "ahead": ahead }).to_string()
+    }
+}
