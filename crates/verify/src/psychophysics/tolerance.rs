@@ -95,6 +95,15 @@ impl Tolerances {
         Ok(Self(rules))
     }
 
+    /// Gives a field that has no name of its own the rule of another one.
+    pub(super) fn name_as(&mut self, field: &str, other: &str) {
+        let has = |name: &str| self.0.iter().find(|(own, _)| own == name).map(|(_, rule)| *rule);
+        if let (None, Some(rule)) = (has(field), has(other)) {
+            self.0.push((field.to_owned(), rule));
+            self.0.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+        }
+    }
+
     /// The rule of a field, by the names on the way to it.
     fn rule(&self, way: &[&str]) -> Option<Rule> {
         let covers = |name: &str| way.iter().any(|field| field.starts_with(name));
