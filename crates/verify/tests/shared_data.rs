@@ -153,13 +153,8 @@ fn exertion() {
 
 #[test]
 fn psychophysics() {
-    // Cumulative link mixed models, and measures of motion against a recording.
-    let not_yet = [
-        "open/clmm_interaction",
-        "open/clmm_segments_clips",
-        "open/clmm_three_methods",
-        "open/motion",
-    ];
+    // Measures of motion against a recording.
+    let not_yet = ["open/motion"];
     let Some(cases) = right_but("psychophysics", "psychophysics", &not_yet) else { return };
     let folder = real_file("psychophysics", "psychophysics/open").unwrap();
     let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name());

@@ -216,6 +216,21 @@ mod tests {
     }
 
     #[test]
+    fn a_field_without_a_name_takes_the_rule_of_another_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("t.json");
+        std::fs::write(&file, json!({"statistic": 0.01, "p": 1e-6}).to_string()).unwrap();
+        let document = Document::read(&file).unwrap();
+        let mut tolerances = Tolerances::read(&document.root()).unwrap();
+        tolerances.name_as("z", "statistic");
+        tolerances.name_as("p", "statistic");
+        let mut case = Case::new("c");
+        let (expected, got) = (json!({"z": 1.0, "p": 1.0}), json!({"z": 1.005, "p": 1.005}));
+        tolerances.compare(&mut case, &expected, &got);
+        assert_eq!(case.wrong().map(|value| value.field.as_str()).collect::<Vec<_>>(), ["p"]);
+    }
+
+    #[test]
     fn words_are_rules() {
         let one = |rule: &str, expected: f64, got: f64| {
             wrong(json!({"x": rule}), json!({"x": expected}), json!({"x": got})).is_empty()
