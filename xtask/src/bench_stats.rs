@@ -73,12 +73,54 @@ pub fn run(rounds: usize, recorded: bool) -> Result<()> {
     );
     drop((ours, theirs));
     let commands = commands(rounds, &folder, &file, peers)?;
+    let model = mixed_model(&folder)?;
+    let commands = format!("{commands}\n{model}");
     print(&format!("{table}\n{versions}\n\n{commands}"));
     if recorded {
         let document = "docs/measured/statistics-benchmarks.md";
         record(document, &format!("{table}\n{versions}\n\n{commands}"))?;
     }
     Ok(())
+}
+
+/// A cumulative link mixed model and R's `ordinal::clmm`, one after the other; or that R has no such package.
+fn mixed_model(folder: &Path) -> Result<String> {
+    let file = folder.join("mixed-model.csv");
+    let mut command = cargo();
+    command.args([
+        "bench",
+        "--quiet",
+        "--package",
+        "mimique-stats",
+        "--bench",
+        "mixed_model",
+        "--",
+    ]);
+    let own = seconds(command.arg(&file))?;
+    let script = root().join("crates/stats/benches/mixed_model.R");
+    let mut r = Command::new("Rscript");
+    let table = "| model | Mimique, s | R, s | times faster |\n|---|---|---|---|\n";
+    let what = "54 x 100 ratings, 4 random terms, likelihood ratio test";
+    Ok(match seconds(r.arg(script).arg(&file)) {
+        Ok(peer) => {
+            format!("{table}| {what} | {own:.2} | {peer:.1} (ordinal) | {:.0} |\n", peer / own)
+        }
+        Err(why) => {
+            format!(
+                "{table}| {what} | {own:.2} | - | - |\n\nNo R with the package ordinal: {why:#}\n"
+            )
+        }
+    })
+}
+
+/// The seconds that a command prints as JSON.
+fn seconds(command: &mut Command) -> Result<f64> {
+    let shown = show(command);
+    let output = command.output().with_context(|| format!("could not start: {shown}"))?;
+    if !output.status.success() {
+        bail!("failed: {shown}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    number(&String::from_utf8_lossy(&output.stdout), "\"seconds\":")
 }
 
 /// Names of measurements, and whom each is compared with.

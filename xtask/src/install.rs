@@ -117,6 +117,15 @@ pub const R: Package = Package {
     sign: Sign::Program("Rscript"),
     elsewhere: "R 4 or newer (Rscript on the path)",
 };
+/// The mixed models that ours are compared with.
+pub const ORDINAL: Package = Package {
+    name: "r-cran-ordinal",
+    sign: Sign::File(&[
+        "/usr/lib/R/site-library/ordinal/DESCRIPTION",
+        "/usr/local/lib/R/site-library/ordinal/DESCRIPTION",
+    ]),
+    elsewhere: "the R package ordinal (install.packages(\"ordinal\"))",
+};
 /// Python with environments of its own, for the peers of tests and benchmarks.
 pub const PYTHON: Package = Package {
     name: "python3 python3-venv",

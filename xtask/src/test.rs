@@ -53,6 +53,7 @@ fn needed() -> Result<Option<PathBuf>> {
         &install::POSTGRESQL,
         &install::NGINX,
         &install::R,
+        &install::ORDINAL,
     ] {
         need(package);
     }

@@ -21,6 +21,7 @@
 //!     seed: 1,
 //!     alpha: 0.05,
 //!     false_positives: false,
+//!     mixed: false,
 //! };
 //! let found = power(&study, "hash of the file", &Parameters::for_study(&study), &options, &|| {})?;
 //! let hypotheses = &found.points[0].hypotheses;

@@ -235,6 +235,7 @@ fn power_counts_choices_and_the_preregistration_says_the_test_that_decides() {
         seed: 5,
         alpha: 0.05,
         false_positives: true,
+        mixed: false,
     };
     let found = power(&study, "hash", &parameters, &options, &|| {}).unwrap();
     let own = &found.points[0].hypotheses[0];

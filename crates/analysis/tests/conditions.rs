@@ -204,6 +204,7 @@ fn options(participants: usize, runs: usize) -> PowerOptions {
         seed: 20_261_122,
         alpha: 0.05,
         false_positives: true,
+        mixed: false,
     }
 }
 

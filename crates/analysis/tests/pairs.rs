@@ -63,6 +63,7 @@ fn few_runs() -> PowerOptions {
         seed: 1,
         alpha: 0.05,
         false_positives: false,
+        mixed: false,
     }
 }
 

@@ -31,6 +31,7 @@ fn options(participants: &[usize], runs: usize) -> PowerOptions {
         seed: 20_261_121,
         alpha: 0.05,
         false_positives: false,
+        mixed: false,
     }
 }
 

@@ -27,9 +27,12 @@ pub struct Args {
     /// Numbers of clips: segments are repeated or left out, whole; the study's own if not given
     #[arg(long, value_delimiter = ',')]
     clips: Vec<usize>,
-    /// Simulated studies a point
-    #[arg(long, default_value_t = 500)]
-    runs: usize,
+    /// Simulated studies a point [default: 500, with --mixed 200]
+    #[arg(long)]
+    runs: Option<usize>,
+    /// Fit the mixed model of other clips too in each of them, which takes its time
+    #[arg(long)]
+    mixed: bool,
     /// Seed of all simulations
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -127,7 +130,8 @@ fn power_options(args: &Args) -> PowerOptions {
     PowerOptions {
         participants: ascending(&args.participants),
         clips: ascending(&args.clips),
-        runs: args.runs,
+        runs: args.runs.unwrap_or(if args.mixed { 200 } else { 500 }),
+        mixed: args.mixed,
         seed: args.seed,
         alpha: args.alpha,
         false_positives: !args.no_false_positives,
@@ -200,6 +204,45 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
             }
             writeln!(out)?;
         }
+        of_clips(out, power, place)?;
+    }
+    Ok(())
+}
+
+/// People x segments, of other clips too, where a hypothesis compares ratings within people.
+fn of_clips(out: &mut impl std::io::Write, power: &Power, place: usize) -> std::io::Result<()> {
+    let own = |point: &mimique_analysis::PowerPoint| point.hypotheses[place].power;
+    if power.points.iter().all(|point| own(point).min_f.is_none()) {
+        return Ok(());
+    }
+    let mixed = power.points.iter().any(|point| own(point).mixed.is_some());
+    let falsely =
+        power.points.iter().any(|point| point.hypotheses[place].false_positives.is_some());
+    let name = if mixed { "mixed model" } else { "" };
+    write!(
+        out,
+        "other clips too\n{:>7} {:>8}  {:<22} {name:<22}",
+        "people", "segments", "power, min F'"
+    )?;
+    writeln!(
+        out,
+        " {}",
+        if falsely { format!("false positives        {name}") } else { String::new() }
+    )?;
+    for point in &power.points {
+        write!(out, "{:>7} {:>8} ", point.participants, point.segments)?;
+        for columns in
+            [Some(own(point)), point.hypotheses[place].false_positives].into_iter().flatten()
+        {
+            for rate in [columns.min_f, columns.mixed] {
+                let text = rate.map_or_else(String::new, |rate| {
+                    let [low, high] = rate.interval.map(|share| 100.0 * share);
+                    format!("{:5.1} % [{low:.1}, {high:.1}]", 100.0 * rate.share)
+                });
+                write!(out, " {text:<22}")?;
+            }
+        }
+        writeln!(out)?;
     }
     Ok(())
 }

@@ -3,6 +3,8 @@
 /// One argument.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Argument {
+    /// A number that is not computed again.
+    Given(f64),
     Text(String),
     List(Vec<String>),
     Number(usize),
@@ -41,6 +43,10 @@ pub(crate) enum Design {
     NetChoices,
     /// How often each person chose each level.
     Wins,
+    /// Ratings by levels, people and segments.
+    PeopleAndSegments,
+    /// A p that a model gives, which only the script in R fits, and only nearly.
+    Given,
 }
 
 impl Design {
@@ -62,6 +68,8 @@ impl Design {
             Self::Choices => "of_choices",
             Self::NetChoices => "of_net_choices",
             Self::Wins => "of_wins",
+            Self::PeopleAndSegments => "of_people_and_segments",
+            Self::Given => "given",
         }
     }
 }
@@ -87,6 +95,11 @@ impl Call {
 
     pub(crate) fn list(mut self, items: &[String]) -> Self {
         self.arguments.push(Argument::List(items.to_vec()));
+        self
+    }
+
+    pub(crate) fn given(mut self, number: f64) -> Self {
+        self.arguments.push(Argument::Given(number));
         self
     }
 

@@ -4,6 +4,7 @@ pub(crate) mod call;
 pub(crate) mod comparison;
 pub(crate) mod conditions;
 pub(crate) mod not_tested;
+pub(crate) mod other_clips;
 pub(crate) mod person_level;
 pub(crate) mod reading;
 pub(crate) mod test_line;
@@ -20,6 +21,7 @@ use crate::choices::{self, answers, tested};
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
 use crate::hypothesis::not_tested::NotTested;
+use crate::hypothesis::other_clips::{OtherClips, OtherClipsTests};
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
@@ -40,13 +42,18 @@ pub(crate) struct HypothesisResult {
     pub kind: MeasureKind,
     pub factors: Vec<String>,
     pub as_in_the_thesis: TrialLevel,
+    /// The same of the clips as they are, each person counting once.
     pub recommended: PersonLevel,
+    /// Of other clips too, where ratings are compared within people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_clips: Option<OtherClips>,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
     /// The people of each condition compared, where the assigned condition is a factor.
     #[serde(skip_serializing_if = "Labelled::is_empty")]
     pub people_by_condition: Labelled<InCondition>,
-    /// p of the recommended test that decides.
+    /// p of the test that decides: the recommended one, or the mixed model where the hypothesis generalises to other
+    /// clips.
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
     pub p_holm_over_hypotheses: Option<f64>,
@@ -63,12 +70,13 @@ struct Read {
     reading: String,
 }
 
-/// Tests one hypothesis.
+/// Tests one hypothesis, and whether it holds for other clips by these tests.
 pub(crate) fn test_hypothesis(
     naming: &Naming<'_>,
     export: &Export,
     study: &Study,
     hypothesis: &Hypothesis,
+    clips: OtherClipsTests,
 ) -> HypothesisResult {
     let language = naming.language;
     if hypothesis.test.is_of_choices() {
@@ -100,6 +108,19 @@ pub(crate) fn test_hypothesis(
             format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
         );
     }
+    let other_clips =
+        measure.as_ref().and_then(|measure| of_clips(export, hypothesis, measure, clips));
+    if let Some(found) = &other_clips {
+        let factor = hypothesis.factors.first().map_or("", String::as_str);
+        reading.push(' ');
+        reading += &reading::other_clips(naming, found, factor);
+    }
+    let decided = match &other_clips {
+        Some(found) if found.decides => found.p(),
+        // Nothing else stands in for the test that the study file names.
+        None if hypothesis.generalise.is_some() => None,
+        _ => deciding_p(&people),
+    };
     let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
         conditions::people(export, study, hypothesis, measure)
     });
@@ -115,11 +136,31 @@ pub(crate) fn test_hypothesis(
         trials_without_level,
         people_by_condition,
         as_in_the_thesis: TrialLevel::new(trials),
-        p: deciding_p(&people),
+        p: decided,
         p_holm_over_hypotheses: None,
         recommended: people,
+        other_clips,
         reading,
     }
+}
+
+/// Whether what is found holds for other clips too, where the hypothesis is of a kind that this can be asked of.
+fn of_clips(
+    export: &Export,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    tests: OtherClipsTests,
+) -> Option<OtherClips> {
+    let name = hypothesis.factors.first().filter(|name| export.factors.contains(name))?;
+    if !other_clips::is_asked(hypothesis, measure) {
+        return None;
+    }
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let factor = measure.factor(export, name, &levels);
+    if factor.levels.len() < 2 {
+        return None;
+    }
+    other_clips::tested(export, measure, &factor, hypothesis.generalise.is_some(), tests)
 }
 
 /// Tests a hypothesis about choices between two clips.
@@ -160,6 +201,7 @@ fn of_choices(
         as_in_the_thesis: TrialLevel::new(read.trials),
         p: deciding_p(&read.people),
         recommended: read.people,
+        other_clips: None,
         trials_without_level: 0,
         people_by_condition: Labelled::default(),
         p_holm_over_hypotheses: None,

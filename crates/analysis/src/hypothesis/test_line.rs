@@ -2,7 +2,7 @@
 
 use mimique_stats::{
     AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency, Factor,
-    Friedman, HodgesLehmann, KruskalWallis, MannWhitney, Numbers, Outcome, Refusal,
+    Friedman, HodgesLehmann, KruskalWallis, MannWhitney, MinFPrime, Numbers, Outcome, Refusal,
     ScheirerRayHare, Sign, Spearman, SumsOfSquares, Term, TestNames, TestResult, TestRow,
     WORTHS_RATIO, Wilcoxon, WilcoxonOptions, aligned_rank_transform, chi_square, friedman,
     kruskal_wallis, mann_whitney, scheirer_ray_hare, sign, spearman, wilcoxon,
@@ -31,6 +31,8 @@ pub(crate) enum Unit {
     WinsOfPeople,
     /// Answers, those of one participant together.
     ClusteredByPerson,
+    /// Ratings, people and segments both drawn.
+    PeopleAndSegments,
 }
 
 impl Unit {
@@ -45,6 +47,7 @@ impl Unit {
             Self::ChoicesOfPeople => "of each person's choices".to_owned(),
             Self::WinsOfPeople => "on each person's wins".to_owned(),
             Self::ClusteredByPerson => "clustered by participant".to_owned(),
+            Self::PeopleAndSegments => "over people and segments".to_owned(),
         }
     }
 
@@ -277,6 +280,11 @@ impl TestLine {
     /// Friedman on how often each person chose each level.
     pub(crate) fn friedman_on_wins(wins: &Blocks, call: Call) -> TestOutcome {
         Self::one::<Friedman>(Ok(friedman(wins)), &Unit::WinsOfPeople, call)
+    }
+
+    /// Clark's min F'.
+    pub(crate) fn min_f(result: Result<Outcome<MinFPrime>, Refusal>, call: Call) -> TestOutcome {
+        Self::one::<MinFPrime>(result, &Unit::PeopleAndSegments, call)
     }
 
     /// The sign test.

@@ -206,6 +206,7 @@ impl<'d> Data<'d> {
     ) -> (Trial, f64) {
         let mut trial = Trial {
             stimulus: self.model.clips[clip].id.as_str().into(),
+            segment: Some(self.model.clips[clip].segment.as_str().into()),
             // The order of trials has no part in the study's tests.
             order: None,
             level: None,

@@ -18,6 +18,7 @@ use mimique_study::{Hypothesis, OrderError, Problem, Study};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::test_line::OutcomeP;
 use crate::hypothesis::undefined::TestOutcome;
 use crate::hypothesis::{is_two_way, of_pair, test_hypothesis};
@@ -44,6 +45,8 @@ pub struct PowerOptions {
     pub alpha: f64,
     /// Whether false positives are counted too, in as many runs again.
     pub false_positives: bool,
+    /// Whether the mixed model of other clips too is fitted in each run, which takes its time.
+    pub mixed: bool,
 }
 
 /// The power of a study.
@@ -68,6 +71,8 @@ pub struct PowerPoint {
     pub participants: usize,
     /// Clips of the study.
     pub clips: usize,
+    /// Segments that they are of.
+    pub segments: usize,
     /// People left after dropout and exclusions, on average.
     pub people_used: f64,
     /// The study's hypotheses.
@@ -97,6 +102,12 @@ pub struct Columns {
     pub recommended: Rate,
     /// The same with Holm's correction over the study's hypotheses.
     pub recommended_holm: Rate,
+    /// Min F', of other clips too, where ratings are compared within people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub min_f: Option<Rate>,
+    /// The mixed model, of other clips too, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mixed: Option<Rate>,
 }
 
 /// A share of positive tests.
@@ -157,6 +168,9 @@ struct Found {
     thesis: Option<f64>,
     recommended: Option<f64>,
     holm: Option<f64>,
+    /// Of other clips too: whether it was tested, and p.
+    min_f: Option<Option<f64>>,
+    mixed: Option<Option<f64>>,
 }
 
 /// Simulates and tests. `config_hash` is that of the study's file (with the study's seed it decides the
@@ -184,7 +198,9 @@ pub fn power(
             let all = |model: &Model<'_>, purpose: &str| -> Vec<Run> {
                 let run = |run: usize| {
                     let seed = run_seed(options.seed, purpose, run);
-                    let result = one_run(study, &design, model, seed, participants);
+                    let tests =
+                        if options.mixed { OtherClipsTests::Both } else { OtherClipsTests::MinF };
+                    let result = one_run(study, &design, model, seed, participants, tests);
                     progress();
                     result
                 };
@@ -208,6 +224,7 @@ pub fn power(
             points.push(PowerPoint {
                 participants,
                 clips: design.clips.clips.len(),
+                segments: segments(&design),
                 people_used: mean_people(&with),
                 hypotheses,
             });
@@ -229,6 +246,12 @@ fn clip_numbers(study: &Study, options: &PowerOptions) -> Vec<Option<usize>> {
         [] => vec![None],
         given => given.iter().map(|&clips| (clips != own).then_some(clips)).collect(),
     }
+}
+
+/// Segments of a design's clips.
+fn segments(design: &Design<'_>) -> usize {
+    let segments = design.clips.clips.iter().map(|clip| clip.segment.as_str());
+    segments.collect::<std::collections::BTreeSet<_>>().len()
 }
 
 fn mean_people(runs: &[Run]) -> f64 {
@@ -283,6 +306,7 @@ fn one_run(
     model: &Model<'_>,
     seed: u64,
     participants: usize,
+    tests: OtherClipsTests,
 ) -> Run {
     let export = design.answers(model, seed, participants);
     let naming = Naming { language: Language::English, study };
@@ -290,9 +314,16 @@ fn one_run(
         .hypotheses
         .iter()
         .map(|hypothesis| {
-            let result = test_hypothesis(&naming, &export, study, hypothesis);
+            let result = test_hypothesis(&naming, &export, study, hypothesis, tests);
             let thesis = thesis_p(hypothesis, &result.as_in_the_thesis.tests);
-            Found { thesis, recommended: result.p, holm: None }
+            let clips = result.other_clips.as_ref();
+            Found {
+                thesis,
+                recommended: result.p,
+                holm: None,
+                min_f: clips.map(|found| found.min_f.p()),
+                mixed: clips.and_then(|found| found.mixed_model.as_ref().map(|_| found.p())),
+            }
         })
         .collect();
     let p: Vec<Option<f64>> = found.iter().map(|found| found.recommended).collect();
@@ -312,6 +343,10 @@ fn thesis_p(hypothesis: &Hypothesis, tests: &[TestOutcome]) -> Option<f64> {
 }
 
 fn columns(runs: &[Run], place: usize, alpha: f64) -> Columns {
+    // A test of other clips that some run has is one of the hypothesis; a run without it is undefined.
+    let tested = |p: fn(&Found) -> Option<Option<f64>>| {
+        runs.iter().any(|run| p(&run.found[place]).is_some())
+    };
     let rate = |p: fn(&Found) -> Option<f64>| {
         let all = runs.iter().map(|run| p(&run.found[place]));
         let positive = all.clone().flatten().filter(|p| *p < alpha).count() as u64;
@@ -329,5 +364,7 @@ fn columns(runs: &[Run], place: usize, alpha: f64) -> Columns {
         as_in_the_thesis: rate(|found| found.thesis),
         recommended: rate(|found| found.recommended),
         recommended_holm: rate(|found| found.holm),
+        min_f: tested(|found| found.min_f).then(|| rate(|found| found.min_f.flatten())),
+        mixed: tested(|found| found.mixed).then(|| rate(|found| found.mixed.flatten())),
     }
 }

@@ -18,6 +18,13 @@ pub fn power_csv(power: &Power) -> String {
             heading.extend(ends.map(|end| format!("{kind}_{column}{end}")));
         }
     }
+    for kind in ["power", "false_positives"] {
+        for column in ["min_f", "mixed"] {
+            let ends = ["", "_low", "_high", "_undefined"];
+            heading.extend(ends.map(|end| format!("{kind}_{column}{end}")));
+        }
+    }
+    heading.push("segments".to_owned());
     let points = power.points.iter().flat_map(|point| {
         point.hypotheses.iter().map(move |hypothesis| row(power, point, hypothesis))
     });
@@ -33,18 +40,32 @@ fn row(power: &Power, point: &PowerPoint, hypothesis: &HypothesisPower) -> Vec<S
         power.runs.to_string(),
         power.alpha.to_string(),
     ];
-    for columns in [Some(&hypothesis.power), hypothesis.false_positives.as_ref()] {
-        for rate in columns.map(all).unwrap_or([None; 3]) {
-            row.extend(match rate {
-                Some(Rate { share, interval: [low, high], undefined, .. }) => {
-                    let [share, low, high] = [share, low, high].map(|share| format!("{share:.5}"));
-                    [share, low, high, undefined.to_string()]
-                }
-                None => [""; 4].map(str::to_owned),
-            });
-        }
+    let kinds = || [Some(&hypothesis.power), hypothesis.false_positives.as_ref()].into_iter();
+    for columns in kinds() {
+        columns
+            .map(all)
+            .unwrap_or([None; 3])
+            .into_iter()
+            .for_each(|rate| row.extend(rate_cells(rate)));
     }
+    // Behind them, so that older scripts find their columns where they were.
+    for columns in kinds() {
+        let of_clips = columns.map_or([None; 2], |columns| [columns.min_f, columns.mixed]);
+        of_clips.into_iter().for_each(|rate| row.extend(rate_cells(rate)));
+    }
+    row.push(point.segments.to_string());
     row
+}
+
+/// Share, interval and count of the undefined; blank where there is no rate.
+fn rate_cells(rate: Option<Rate>) -> [String; 4] {
+    match rate {
+        Some(Rate { share, interval: [low, high], undefined, .. }) => {
+            let [share, low, high] = [share, low, high].map(|share| format!("{share:.5}"));
+            [share, low, high, undefined.to_string()]
+        }
+        None => [""; 4].map(str::to_owned),
+    }
 }
 
 fn all(columns: &Columns) -> [Option<Rate>; 3] {
@@ -100,7 +121,46 @@ pub fn power_markdown(power: &Power, language: Language) -> String {
             let _ = writeln!(text, "| {} |", cells.join(" | "));
         }
         text.push('\n');
+        text += &of_clips(power, place, language);
     }
+    text
+}
+
+/// People x segments of a hypothesis of other clips too; nothing of another one.
+fn of_clips(power: &Power, place: usize, language: Language) -> String {
+    let mut text = String::new();
+    let own = |point: &PowerPoint| point.hypotheses[place].power;
+    if power.points.iter().all(|point| own(point).min_f.is_none()) {
+        return text;
+    }
+    let mixed = power.points.iter().any(|point| own(point).mixed.is_some());
+    let falsely =
+        power.points.iter().any(|point| point.hypotheses[place].false_positives.is_some());
+    let (names, false_names) = language.pick(
+        (["power, min F'", "mixed model"], ["false positives, min F'", "mixed model"]),
+        (["puissance, min F'", "modèle mixte"], ["faux positifs, min F'", "modèle mixte"]),
+    );
+    let count = if mixed { 2 } else { 1 };
+    let mut heading = language.pick(["people", "segments"], ["personnes", "segments"]).to_vec();
+    heading.extend(&names[..count]);
+    if falsely {
+        heading.extend(&false_names[..count]);
+    }
+    let caption = language.pick("Other clips too:", "D’autres extraits aussi\u{a0}:");
+    let _ = writeln!(text, "{caption}\n\n| {} |", heading.join(" | "));
+    let _ = writeln!(text, "|{}", "---:|".repeat(heading.len()));
+    for point in &power.points {
+        let mut cells = vec![point.participants.to_string(), point.segments.to_string()];
+        let false_positives = point.hypotheses[place].false_positives;
+        for columns in [Some(own(point)), false_positives.filter(|_| falsely)].into_iter().flatten()
+        {
+            for rate in &[columns.min_f, columns.mixed][..count] {
+                cells.push(rate.map_or_else(|| "–".to_owned(), |rate| cell(language, &rate)));
+            }
+        }
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
+    text.push('\n');
     text
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use mimique_stats::{
-    ChiSquare, Friedman, KruskalWallis, MannWhitney, ScheirerRayHare, Sign, Spearman, TestNames,
-    TestResult, WORTHS_RATIO, Wilcoxon,
+    ChiSquare, Friedman, KruskalWallis, MannWhitney, MixedModel, ScheirerRayHare, Sign, Spearman,
+    TestNames, TestResult, WORTHS_RATIO, Wilcoxon,
 };
 use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
@@ -57,8 +57,8 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     );
     text.heading(3, "Exploratory analysis", "Analyses exploratoires");
     text.both(
-        "Everything else in the report (confusion matrices, other factors, response times, order and fatigue, late frames) is exploratory and will be called so. With one clip for a combination of performance and method, results are about these clips: they do not generalise to other performances.",
-        "Tout le reste du rapport (matrices de confusion, autres facteurs, temps de réponse, ordre et fatigue, images en retard) est exploratoire et sera présenté comme tel. Avec un seul extrait par combinaison de performance et de méthode, les résultats portent sur ces extraits : ils ne se généralisent pas à d’autres performances.",
+        "Everything else in the report (confusion matrices, other factors, response times, order and fatigue, late frames) is exploratory and will be called so. With one clip for a combination of performance and method, tests of person means are about these clips: they do not generalise to other performances.",
+        "Tout le reste du rapport (matrices de confusion, autres facteurs, temps de réponse, ordre et fatigue, images en retard) est exploratoire et sera présenté comme tel. Avec un seul extrait par combinaison de performance et de méthode, les tests sur les moyennes des personnes portent sur ces extraits : ils ne se généralisent pas à d’autres performances.",
     );
 }
 
@@ -96,7 +96,15 @@ fn model(
         let words = language.pick("levels compared: ", "niveaux comparés : ");
         text.line(&format!("  - {words}{}", levels.join(", ")));
     }
-    text.line(&format!("  - {} {recommended}.", language.pick("decides:", "décide :")));
+    let decides = language.pick("decides:", "décide :");
+    if hypothesis.generalise.is_some() {
+        text.line(&format!("  - {decides} {}.", test_of_other_clips(language)));
+        let beside =
+            language.pick("beside it, of these clips alone:", "à côté, pour ces extraits seuls :");
+        text.line(&format!("  - {beside} {recommended}."));
+    } else {
+        text.line(&format!("  - {decides} {recommended}."));
+    }
     text.line(&format!(
         "  - {} {thesis}.",
         language.pick(
@@ -206,6 +214,15 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
     }
 }
 
+/// The test of a hypothesis about other clips too.
+fn test_of_other_clips(language: Language) -> String {
+    let name = name(language, MixedModel::NAMES);
+    language.pick(
+        format!("{name} (logit, Laplace) with independent random effects of people, of people with each level, of segments and of clips, against the same model without the factor, so that it holds for other people and other clips; Clark’s min F' is reported beside it; where the model does not converge there is no p, and the hypothesis counts as not shown"),
+        format!("{name} (logit, Laplace) à effets aléatoires indépendants des personnes, des personnes à chaque niveau, des segments et des extraits, contre le même modèle sans le facteur, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; le min F' de Clark est rapporté à côté ; si le modèle ne converge pas il n’y a pas de p, et l’hypothèse est tenue pour non montrée"),
+    )
+}
+
 /// The test of choices between two clips that decides.
 fn test_of_choices(language: Language, levels: usize) -> String {
     if levels == 2 {
@@ -234,8 +251,8 @@ fn interaction_test(language: Language, traits: usize) -> &'static str {
             "interaction du test de Scheirer-Ray-Hare sur une moyenne par personne",
         ),
         _ => language.pick(
-            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it)",
-            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté)",
+            "interaction of the aligned rank transform on the means of each person and combination (a balanced design; the transform is not fully reliable on ordinal data, so the cumulative-link mixed model of `analysis.R` is reported beside it; the clips are taken as they are)",
+            "interaction de la transformation des rangs alignés sur les moyennes de chaque personne et combinaison (plan équilibré ; la transformation n’étant pas pleinement fiable sur des données ordinales, le modèle mixte à liens cumulatifs de `analysis.R` est rapporté à côté ; les extraits sont pris tels qu’ils sont)",
         ),
     }
 }

@@ -1,9 +1,10 @@
 //! Tables of tests: as in the thesis beside recommended.
 
-use mimique_stats::{Labelled, Outcome, Proportion, Term};
+use mimique_stats::{Labelled, MixedModel, Outcome, Proportion, Term, TestResult as _};
 
 use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::other_clips::OtherClips;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::reading;
 use crate::hypothesis::trial_level::TrialLevel;
@@ -73,7 +74,10 @@ pub(crate) fn thesis_heading(language: Language) -> &'static str {
 
 /// Over tests of people.
 pub(crate) fn recommended_heading(language: Language) -> &'static str {
-    language.pick("Recommended (one value a person)", "Recommandé (une valeur par personne)")
+    language.pick(
+        "Recommended, of these clips (one value a person)",
+        "Recommandé, pour ces extraits (une valeur par personne)",
+    )
 }
 
 /// Both kinds of test of one measure and factor, line by line beside each other.
@@ -173,6 +177,78 @@ fn drop_empty_differences(table: &mut DataTable) {
         table.rows.iter_mut().for_each(|row| drop(row.pop()));
         table.groups[2].1 -= 1;
     }
+}
+
+/// Tests of other clips too, as a table of their own below.
+pub(crate) fn other_clips(
+    naming: &Naming<'_>,
+    id: String,
+    caption: String,
+    factor: &str,
+    found: &OtherClips,
+) -> DataTable {
+    let language = naming.language;
+    let heading = language.pick(
+        ["Other clips too", "test", "p", "effect [95 %]", "higher of two"],
+        ["D’autres extraits aussi", "test", "p", "effet [95 %]", "plus haute de deux"],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    let whole = naming.factor(factor);
+    let names = MixedModel::NAMES;
+    let name = language.pick("mixed model", "modèle mixte");
+    match &found.mixed_model {
+        None => {}
+        Some(Outcome::Ok(model)) => {
+            let test = format!(
+                "{name} {}({}) = {}, n = {}",
+                names.statistic_symbol,
+                model.df,
+                language.number(model.likelihood_ratio),
+                model.observations
+            );
+            let p = language.p_cell(model.p, model.ln_p);
+            table.row([whole.clone(), test, p, String::new(), String::new()]);
+            for pair in &model.pairs {
+                let [odds, low, high] = [pair.odds_ratio, pair.interval_95[0], pair.interval_95[1]]
+                    .map(|value| language.fixed(value, 2));
+                table.row([
+                    // The odds are those at the second level.
+                    naming.pair(factor, &pair.b, &pair.a),
+                    format!("{name}, Holm"),
+                    language.p_cell(pair.p_corrected, pair.p_corrected.ln()),
+                    format!("{} = {odds} [{low}; {high}]", names.effect_symbol),
+                    language.percent(pair.higher),
+                ]);
+            }
+        }
+        Some(Outcome::Undefined { reason }) => {
+            let undefined = language.pick("no result: ", "sans résultat : ");
+            let test = format!("{name}, {undefined}{}", reason.words(language));
+            table.row([whole.clone(), test, String::new(), String::new(), String::new()]);
+        }
+    }
+    let [test, p, effect] = cells(language, &found.min_f, false);
+    table.row([whole, test, p, effect, String::new()]);
+    table
+}
+
+/// Standard deviations of the random effects of the mixed model.
+pub(crate) fn deviations(
+    language: Language,
+    id: String,
+    caption: String,
+    found: &OtherClips,
+) -> Option<DataTable> {
+    let Some(Outcome::Ok(model)) = &found.mixed_model else { return None };
+    let heading = language.pick(
+        ["random effects", "standard deviation (log odds)"],
+        ["effets aléatoires", "écart type (log des chances)"],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    for (name, sd) in model.sd.iter() {
+        table.row([name.to_owned(), language.fixed(*sd, 2)]);
+    }
+    Some(table)
 }
 
 /// More pairs than this stand in a table of their own, below.

@@ -60,6 +60,8 @@ pub(crate) struct Answer {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trial {
     pub stimulus: Arc<str>,
+    /// The segment of its clip; none of a clip that the study does not have.
+    pub segment: Option<Arc<str>>,
     /// What was played in step beside it.
     pub beside: Option<Beside>,
     /// The level, of a trial of an adaptive block.

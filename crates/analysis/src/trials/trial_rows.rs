@@ -46,6 +46,8 @@ pub(crate) struct TrialReader<'t> {
     levels: Vec<Column<'t>>,
     /// Levels of each clip of the study, by its identifier: the rows have those of the trial's own clip alone.
     of_clips: HashMap<String, Vec<Option<Arc<str>>>>,
+    /// Segment of each clip of the study.
+    segments: HashMap<String, Arc<str>>,
 }
 
 /// What a stretch of rows holds.
@@ -122,6 +124,7 @@ impl<'t> TrialReader<'t> {
             truth: column("truth"),
             levels: export.factors.iter().map(|factor| column(factor)).collect(),
             of_clips: levels_of_clips(study, &export.factors),
+            segments: segments_of_clips(study),
         }
     }
 
@@ -223,6 +226,7 @@ impl<'t> TrialReader<'t> {
     fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
         let shown = self.shown_level(row, texts)?;
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
+        let stimulus = self.stimulus.text(row).unwrap_or_default();
         let left = self.beside_side.text(row) == Some("left");
         Ok(Trial {
             levels: self.levels.iter().map(&mut level).collect(),
@@ -231,7 +235,8 @@ impl<'t> TrialReader<'t> {
                 clip,
                 left,
             }),
-            stimulus: texts.shared(self.stimulus.text(row).unwrap_or_default()),
+            stimulus: texts.shared(stimulus),
+            segment: self.segments.get(stimulus).cloned(),
             level: shown,
             order: self.order.number(row)?.map(|order| order as usize),
             frames: self.frames.number(row)?,
@@ -255,6 +260,17 @@ fn levels_of_clips(study: &Study, factors: &[String]) -> HashMap<String, Vec<Opt
     };
     let clips = study.clips().into_iter();
     clips.map(|clip| (clip.id.clone(), levels(&clip))).collect()
+}
+
+/// The segment of each clip, each kept once.
+fn segments_of_clips(study: &Study) -> HashMap<String, Arc<str>> {
+    let mut texts: HashMap<String, Arc<str>> = HashMap::new();
+    let clips = study.clips().into_iter();
+    let own = clips.map(|clip| {
+        let text = texts.entry(clip.segment.clone()).or_insert_with(|| clip.segment.into());
+        (clip.id, Arc::clone(text))
+    });
+    own.collect()
 }
 
 impl TrialRows {

@@ -16,8 +16,8 @@ use crate::table::Table;
 use crate::test::{
     aligned_rank_transform, bradley_terry, chi_square, consistency, cronbach, detection,
     difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
-    kruskal_wallis, mann_whitney, min_f, panel, psychometric, scheirer_ray_hare, sign, spearman,
-    thurstone, wilcoxon,
+    kruskal_wallis, mann_whitney, min_f, mixed_model, panel, psychometric, scheirer_ray_hare, sign,
+    spearman, thurstone, wilcoxon,
 };
 use crate::{adjust, summary};
 use arguments::{Arguments, ProcedureOption};
@@ -66,6 +66,8 @@ pub enum Sample {
     Tournaments,
     /// Ratings, methods, participants, segments.
     PeopleAndSegments,
+    /// The same, of a model that peers fit by a search.
+    MixedModel,
     /// Differences of pairs, lower and upper bound.
     Equivalence,
     /// A matrix of ratings: one row per clip, one column per rater.
@@ -81,7 +83,7 @@ pub enum Sample {
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 24] = [
+pub static PROCEDURES: [&Procedure; 25] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -92,6 +94,7 @@ pub static PROCEDURES: [&Procedure; 24] = [
     &friedman::PROCEDURE,
     &aligned_rank_transform::PROCEDURE,
     &min_f::PROCEDURE,
+    &mixed_model::PROCEDURE,
     &equivalence::PROCEDURE,
     &bradley_terry::PROCEDURE,
     &thurstone::PROCEDURE,

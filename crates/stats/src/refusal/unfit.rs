@@ -136,6 +136,15 @@ pub enum Unfit {
         /// The level.
         level: f64,
     },
+    /// More different ratings than a model has thresholds for.
+    TooManyRatings {
+        /// The column.
+        column: String,
+        /// Different ratings.
+        ratings: usize,
+        /// The most that are taken.
+        most: usize,
+    },
     /// Shares of guesses and lapses that leave nothing to be seen.
     GuessAndLapse {
         /// Share of right answers by chance.
@@ -204,6 +213,9 @@ impl Unfit {
             Self::LevelNotPositive { level } => format!(
                 "level {level} is below 0, where a Weibull function has no value; take --function normal"
             ),
+            Self::TooManyRatings { column, ratings, most } => format!(
+                "column \"{column}\": {ratings} different ratings, of which each has a threshold; at most {most} are taken: round them to fewer steps, or take min-f"
+            ),
             Self::GuessAndLapse { guess, lapse } => format!(
                 "guess {guess} and lapse {lapse}: give shares from 0 to 1 that add up to less than 1"
             ),
@@ -267,6 +279,9 @@ impl Unfit {
             ),
             Self::LevelNotPositive { level } => format!(
                 "le niveau {level} est inférieur à 0, où une fonction de Weibull n’a pas de valeur ; prenez --function normal"
+            ),
+            Self::TooManyRatings { column, ratings, most } => format!(
+                "colonne « {column} » : {ratings} notes différentes, chacune ayant son seuil ; {most} au plus sont prises : arrondissez-les à moins d’échelons, ou prenez min-f"
             ),
             Self::GuessAndLapse { guess, lapse } => format!(
                 "hasard {guess} et inattention {lapse} : donnez des parts de 0 à 1 dont la somme est inférieure à 1"

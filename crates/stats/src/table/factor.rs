@@ -62,6 +62,23 @@ impl Factor {
         Self { name: name.to_owned(), levels, codes }
     }
 
+    /// The combinations with another factor that occur, `a:b`; a level `x:y` each, the first factor's order first.
+    pub fn crossed(&self, other: &Self) -> Self {
+        let width = other.levels.len();
+        let code = |(one, two): (&u32, &u32)| match (*one, *two) {
+            (Self::MISSING, _) | (_, Self::MISSING) => Self::MISSING,
+            (one, two) => one * width as u32 + two,
+        };
+        let levels = self.levels.iter();
+        let levels = levels.flat_map(|a| other.levels.iter().map(move |b| format!("{a}:{b}")));
+        Self {
+            name: format!("{}:{}", self.name, other.name),
+            levels: levels.collect(),
+            codes: self.codes.iter().zip(&other.codes).map(code).collect(),
+        }
+        .used()
+    }
+
     /// Only these levels, in this order; rows of other levels become missing.
     pub fn restricted(&self, wanted: &[String]) -> Result<Self, Refusal> {
         let mut new_code = vec![Self::MISSING; self.levels.len()];

@@ -15,6 +15,7 @@ pub(crate) mod krippendorff;
 pub(crate) mod kruskal_wallis;
 pub(crate) mod mann_whitney;
 pub(crate) mod min_f;
+pub(crate) mod mixed_model;
 pub(crate) mod panel;
 pub(crate) mod psychometric;
 pub(crate) mod scheirer_ray_hare;

@@ -49,6 +49,16 @@ pub enum NoEstimate {
         /// The upper level.
         high: f64,
     },
+    /// The search for the maximum of the likelihood did not end at one.
+    NotConverged {
+        /// Largest element of the gradient where it ended.
+        gradient: f64,
+    },
+    /// A coefficient grows for ever with the likelihood: the answers at some level are all at one end.
+    NoFiniteCoefficient {
+        /// The coefficient.
+        name: String,
+    },
     /// The share of right answers does not rise over the levels.
     NoRise,
 }
@@ -96,6 +106,12 @@ impl NoEstimate {
             }
             Self::StepBetweenLevels { low, high } => format!(
                 "the answers step between levels {low} and {high}: the slope has no finite estimate"
+            ),
+            Self::NotConverged { gradient } => format!(
+                "the model did not converge: the largest slope of the likelihood is {gradient:.1e} where the search ended, and no p is given"
+            ),
+            Self::NoFiniteCoefficient { name } => format!(
+                "the coefficient {name} has no finite estimate: the answers there are all at one end"
             ),
             Self::NoRise => {
                 "right answers do not rise over the levels: the threshold has no finite estimate"
@@ -148,6 +164,12 @@ impl NoEstimate {
             }
             Self::StepBetweenLevels { low, high } => format!(
                 "les réponses changent d’un coup entre les niveaux {low} et {high} : la pente n’a pas d’estimation finie"
+            ),
+            Self::NotConverged { gradient } => format!(
+                "le modèle n’a pas convergé : la plus grande pente de la vraisemblance est {gradient:.1e} là où la recherche s’est arrêtée, et aucun p n’est donné"
+            ),
+            Self::NoFiniteCoefficient { name } => format!(
+                "le coefficient {name} n’a pas d’estimation finie : les réponses y sont toutes à une extrémité"
             ),
             Self::NoRise => {
                 "les réponses justes n’augmentent pas avec les niveaux : le seuil n’a pas d’estimation finie"

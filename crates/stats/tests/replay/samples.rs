@@ -62,6 +62,12 @@ pub fn special(sample: Sample, procedure: &str, random: &mut Random) -> Option<R
             "d$y, d$m, d$p, d$s",
             "d['y'], d['m'], d['p'], d['s']",
         ),
+        Sample::MixedModel => one(
+            rated_clips(random),
+            vec![("rating", "y"), ("factors", "m"), ("groups", "p,p:m,s,s:m")],
+            "d$y, d$m, d$p, d$s",
+            "d['y'], d['m'], d['p'], d['s']",
+        ),
         Sample::Equivalence => one(
             csv(["y"], (0..24).map(|_| cells([&((random.normal() * 10.0).round() / 10.0)]))),
             vec![("difference", "y"), ("bounds", "-0.75,0.9")],
@@ -127,6 +133,28 @@ fn people_and_segments(random: &mut Random) -> String {
         for segment in 0..5 {
             for method in 0..3 {
                 let y = rating(3.5 + 0.3 * f64::from(method), random);
+                rows.push(cells([&y, &method, &person, &segment]));
+            }
+        }
+    }
+    csv(["y", "m", "p", "s"], rows)
+}
+
+/// People and segments differ, and so do people's tastes and clips: no standard deviation is 0.
+fn rated_clips(random: &mut Random) -> String {
+    let mut draw = |count: usize| (0..count).map(|_| random.normal()).collect::<Vec<_>>();
+    let (people, tastes, segments, clips) = (draw(10), draw(20), draw(8), draw(16));
+    let mut rows = Vec::new();
+    for person in 0..10 {
+        for segment in 0..8 {
+            for method in 0..2 {
+                let mean = 2.8
+                    + 0.4 * method as f64
+                    + 0.7 * people[person]
+                    + 0.5 * tastes[2 * person + method]
+                    + 0.6 * segments[segment]
+                    + 0.5 * clips[2 * segment + method];
+                let y = (mean + random.normal()).round().clamp(1.0, 5.0);
                 rows.push(cells([&y, &method, &person, &segment]));
             }
         }

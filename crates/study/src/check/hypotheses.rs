@@ -24,6 +24,37 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         assigned::hypothesis(subject, hypothesis, &pointer, issues);
         factors(subject, hypothesis, &pointer, issues);
         levels(subject, hypothesis, &pointer, issues);
+        generalise(subject, hypothesis, &pointer, issues);
+    }
+}
+
+/// Segments that a mixed model needs: of fewer their spread is not estimated.
+const SEGMENTS: usize = 5;
+
+/// That a hypothesis about other clips too is of ratings by a factor of the clips, and has segments enough.
+fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
+    if hypothesis.generalise.is_none() {
+        return;
+    }
+    let place = below(pointer, "generalise");
+    let of_clips = hypothesis.factors.first();
+    let of_clips = of_clips.is_some_and(|name| subject.study.factor_names().contains(name));
+    let question = responses::question(subject.study, &hypothesis.response);
+    let rated = question
+        .is_none_or(|question| question.kind.is_numeric() && question.kind.truth().is_none());
+    if !hypothesis.test.compares_levels()
+        || !of_clips
+        || !rated
+        || hypothesis.measure != Measure::Answer
+    {
+        let id = hypothesis.id.clone();
+        issues.error(&place, Problem::NotOfOtherClips { hypothesis: id });
+        return;
+    }
+    let segments: BTreeSet<&str> = subject.clips.iter().map(|clip| clip.segment.as_str()).collect();
+    if segments.len() < SEGMENTS {
+        let found = segments.len();
+        issues.error(&place, Problem::TooFewSegments { segments: found, needed: SEGMENTS });
     }
 }
 

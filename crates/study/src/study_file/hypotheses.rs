@@ -27,6 +27,18 @@ pub struct Hypothesis {
     /// The levels of the first factor that are compared, in the order of signs; all if not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub levels: Vec<super::FactorValue>,
+    /// What else the hypothesis is about: with `clips` a mixed model with effects of people, of people with each level,
+    /// of segments and of clips decides, not the test of these clips. Of ratings compared within people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub generalise: Option<Generalise>,
+}
+
+/// What a hypothesis is about beyond the people and clips of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum Generalise {
+    /// Other people, and other clips of other segments.
+    Clips,
 }
 
 /// A test, by its name in `mimique test`.
@@ -59,6 +71,11 @@ impl TestName {
     /// Whether it is a test of answers that choose between two clips.
     pub fn is_of_choices(self) -> bool {
         matches!(self, Self::Sign | Self::BradleyTerry)
+    }
+
+    /// Whether it compares levels, and not two factors, a relation, choices or counts.
+    pub fn compares_levels(self) -> bool {
+        matches!(self, Self::KruskalWallis | Self::Wilcoxon | Self::MannWhitney | Self::Friedman)
     }
 
     /// As a study file writes it.

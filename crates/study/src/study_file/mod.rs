@@ -45,7 +45,7 @@ pub use exertion::{
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
-pub use hypotheses::{Exclusions, Hypothesis, Measure, StraightLining, TestName};
+pub use hypotheses::{Exclusions, Generalise, Hypothesis, Measure, StraightLining, TestName};
 pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};

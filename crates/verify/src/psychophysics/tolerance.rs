@@ -95,6 +95,15 @@ impl Tolerances {
         Ok(Self(rules))
     }
 
+    /// Gives a field that has no name of its own the rule of another one.
+    pub(super) fn name_as(&mut self, field: &str, other: &str) {
+        let has = |name: &str| self.0.iter().find(|(own, _)| own == name).map(|(_, rule)| *rule);
+        if let (None, Some(rule)) = (has(field), has(other)) {
+            self.0.push((field.to_owned(), rule));
+            self.0.sort_by_key(|(name, _)| std::cmp::Reverse(name.len()));
+        }
+    }
+
     /// The rule of a field, by the names on the way to it.
     fn rule(&self, way: &[&str]) -> Option<Rule> {
         let covers = |name: &str| way.iter().any(|field| field.starts_with(name));
@@ -204,6 +213,21 @@ mod tests {
         let expected = json!({"p_holm": 1.0, "pairs": [{"p": 1.0}], "q": 1.0, "n": 3});
         let got = json!({"p_holm": 1.05, "pairs": [{"p": 1.05}], "q": 1.0000005, "n": 3.0000001});
         assert_eq!(wrong(rules, expected, got), ["n", "pairs/0/p"]);
+    }
+
+    #[test]
+    fn a_field_without_a_name_takes_the_rule_of_another_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("t.json");
+        std::fs::write(&file, json!({"statistic": 0.01, "p": 1e-6}).to_string()).unwrap();
+        let document = Document::read(&file).unwrap();
+        let mut tolerances = Tolerances::read(&document.root()).unwrap();
+        tolerances.name_as("z", "statistic");
+        tolerances.name_as("p", "statistic");
+        let mut case = Case::new("c");
+        let (expected, got) = (json!({"z": 1.0, "p": 1.0}), json!({"z": 1.005, "p": 1.005}));
+        tolerances.compare(&mut case, &expected, &got);
+        assert_eq!(case.wrong().map(|value| value.field.as_str()).collect::<Vec<_>>(), ["p"]);
     }
 
     #[test]

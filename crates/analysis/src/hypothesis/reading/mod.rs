@@ -1,6 +1,7 @@
 //! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
 //! for more than a number.
 
+mod other_clips;
 mod pairs;
 
 use mimique_stats::{Outcome, Term};
@@ -13,6 +14,7 @@ use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::measure::MeasureKind;
+pub(crate) use other_clips::other_clips;
 use pairs::{each_pair, many_pairs};
 
 /// The level of a test.
@@ -102,8 +104,8 @@ fn overall_sentence(
     if significant {
         if interaction.is_some() {
             return language.pick(
-                format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it."),
-                format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier."),
+                format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it. The clips are taken as they are: where clips differ by chance, such a test finds an interaction that is none far more often than in 5 %."),
+                format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier. Les extraits sont pris tels qu’ils sont : là où des extraits diffèrent par hasard, un tel test trouve une interaction qui n’en est pas bien plus souvent que dans 5 % des cas."),
             );
         }
         return language.pick(
@@ -203,5 +205,13 @@ pub(crate) fn trial_level_caution(language: Language) -> &'static str {
     language.pick(
         "The columns “as in the thesis” treat every trial as if it came from another person, although each person answered many. Their p counts one opinion several times: it is printed for comparison with the thesis and supports no conclusion here.",
         "Les colonnes « comme dans la thèse » traitent chaque essai comme s’il venait d’une autre personne, alors que chacune en a fait plusieurs. Leur p compte une même opinion plusieurs fois : il est imprimé pour comparaison avec la thèse et n’autorise ici aucune conclusion.",
+    )
+}
+
+/// Said wherever tests of person means stand.
+pub(crate) fn these_clips_caution(language: Language) -> &'static str {
+    language.pick(
+        "The columns “recommended, of these clips” take the clips as they are. Where clips differ by chance beyond their method, such tests find differences that other clips would not show, the more people there are the more often: with 80 people an interaction that is none in about 21 % of studies. Whether other clips would show it too, min F' and the mixed model say, where they stand.",
+        "Les colonnes « recommandé, pour ces extraits » prennent les extraits tels qu’ils sont. Là où des extraits diffèrent par hasard au-delà de leur méthode, ces tests trouvent des différences que d’autres extraits ne montreraient pas, d’autant plus souvent qu’il y a de personnes : avec 80 personnes, une interaction qui n’en est pas dans environ 21 % des études. Si d’autres extraits la montreraient aussi, min F' et le modèle mixte le disent, là où ils figurent.",
     )
 }

@@ -1,6 +1,6 @@
 //! Every number of the results under a key, with the call that computes it again.
 
-use mimique_stats::Outcome;
+use mimique_stats::{MixedModel, Outcome, TestResult as _};
 
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::comparison::Comparison;
@@ -40,9 +40,17 @@ impl Collector {
             let key = format!("hypothesis:{}", result.id);
             all.trial_level(&key, &result.as_in_the_thesis);
             all.person_level(&key, &result.recommended);
-            if let (Some(p_holm), Some(deciding)) =
-                (result.p_holm_over_hypotheses, deciding_key(&key, &result.recommended))
-            {
+            let mut deciding = deciding_key(&key, &result.recommended);
+            if let Some(found) = &result.other_clips {
+                all.line(format!("{key}:min F'"), &found.min_f);
+                if let (true, Some(p)) = (found.decides, found.p()) {
+                    let key = format!("{key}:other clips");
+                    let call = Call::new(Design::Given, MixedModel::NAMES.function).given(p);
+                    all.checks.push(Check { key: key.clone(), call, values: vec![("p", p)] });
+                    deciding = Some(key);
+                }
+            }
+            if let (Some(p_holm), Some(deciding)) = (result.p_holm_over_hypotheses, deciding) {
                 decided.of.push(deciding);
                 decided.into.push(format!("{key}:over hypotheses"));
                 decided.p_holm.push(p_holm);

@@ -61,6 +61,7 @@ fn calls(checks: &[Check], families: &[Family], script: Script) -> String {
             Argument::Text(text) => quoted(text),
             Argument::List(items) => list(items),
             Argument::Number(number) => number.to_string(),
+            Argument::Given(number) => format!("{number:?}"),
         });
         let arguments: Vec<String> =
             std::iter::once(check.call.test.to_owned()).chain(columns).collect();

@@ -2,13 +2,20 @@
 
 use std::fmt::Write;
 
+use mimique_stats::Outcome;
+
 use super::quoted;
 use crate::language::Language;
 use crate::report::section::Writer;
 use crate::trials::measure::{Measure, MeasureKind};
 
-/// Mixed models of each rating and each recognition on the first two factors.
+/// All models.
 pub(super) fn models(writer: &Writer<'_>) -> String {
+    of_questions(writer) + &of_hypotheses(writer)
+}
+
+/// Mixed models of each rating and each recognition on the first two factors.
+fn of_questions(writer: &Writer<'_>) -> String {
     let mut text = String::new();
     let Some(first) = writer.factors.first() else { return text };
     let second = writer.factors.get(1);
@@ -47,6 +54,28 @@ pub(super) fn models(writer: &Writer<'_>) -> String {
         let _ = writeln!(
             text,
             "fit({title}, \"{package}\", function() {{\n  data <- {data}\n  {model}\n}})"
+        );
+    }
+    text
+}
+
+/// The mixed model of each hypothesis that other clips are asked about.
+fn of_hypotheses(writer: &Writer<'_>) -> String {
+    let mut text = String::new();
+    for result in &writer.results.hypotheses {
+        let (Some(found), Some(factor)) = (&result.other_clips, result.factors.first()) else {
+            continue;
+        };
+        if !matches!(found.mixed_model, Some(Outcome::Ok(_))) {
+            continue;
+        }
+        let title = quoted(&format!("Other clips too, hypothesis {} (a = {factor})", result.id));
+        let (measure, factor) = (quoted(&result.measure), quoted(factor));
+        let levels: Vec<String> = found.levels.iter().map(|level| quoted(level)).collect();
+        let levels = levels.join(", ");
+        let _ = writeln!(
+            text,
+            "fit({title}, \"ordinal\", function() {{\n  data <- data.frame(y = number({measure}), a = factor(trials[[{factor}]], c({levels})), person = factor(person), segment = factor(trials$segment), clip = factor(trials$stimulus))\n  ordinal::clmm(ordered(y) ~ a + (1 | person) + (1 | person:a) + (1 | segment) + (1 | clip), data)\n}})"
         );
     }
     text

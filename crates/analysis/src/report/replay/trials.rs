@@ -51,6 +51,11 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         columns
             .push((factor.clone(), Cells::Texts(levels.map(Option::unwrap_or_default).collect())));
     }
+    if !export.factors.iter().any(|factor| factor == "segment") {
+        let segments = export.trials.iter().map(|trial| trial.segment.as_deref());
+        let cells = Cells::Texts(segments.map(Option::unwrap_or_default).collect());
+        columns.insert(2, ("segment".to_owned(), cells));
+    }
     columns.extend(of_companions(export));
     for (name, cells) in &export.about {
         let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());

@@ -3,6 +3,7 @@
 use mimique_stats::Adjustment;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
+use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::reading;
 use crate::hypothesis::{HypothesisResult, test_hypothesis};
 use crate::report::document::{Block, DataTable, slug};
@@ -17,7 +18,15 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
         .study
         .hypotheses
         .par_iter()
-        .map(|hypothesis| test_hypothesis(&writer.naming, writer.export, writer.study, hypothesis))
+        .map(|hypothesis| {
+            test_hypothesis(
+                &writer.naming,
+                writer.export,
+                writer.study,
+                hypothesis,
+                OtherClipsTests::Both,
+            )
+        })
         .collect();
     let p: Vec<Option<f64>> = results.iter().map(|result| result.p).collect();
     let tested = p.iter().flatten().count();
@@ -78,6 +87,29 @@ impl Writer<'_> {
         self.figure(figure);
     }
 
+    /// Whether what was found holds for other clips too.
+    fn other_clips(&mut self, result: &HypothesisResult) {
+        let Some(found) = &result.other_clips else { return };
+        let language = self.language();
+        let id = format!("hypothesis-{}-other-clips", slug(&result.id));
+        let factor = result.factors.first().map_or("", String::as_str);
+        let caption = language.pick(
+            format!("{}: of other people and other clips", result.id),
+            format!("{} : pour d’autres personnes et d’autres extraits", result.id),
+        );
+        let table = tables::other_clips(&self.naming, id.clone(), caption, factor, found);
+        self.blocks.push(Block::Table(table));
+        let caption = language.pick(
+            format!("{}: how far people, segments and clips differ in the mixed model", result.id),
+            format!(
+                "{} : de combien personnes, segments et extraits diffèrent dans le modèle mixte",
+                result.id
+            ),
+        );
+        let deviations = tables::deviations(language, format!("{id}-sd"), caption, found);
+        self.blocks.extend(deviations.map(Block::Table));
+    }
+
     pub(crate) fn hypotheses(&mut self, hypotheses: &[HypothesisResult]) {
         if hypotheses.is_empty() {
             return;
@@ -85,6 +117,7 @@ impl Writer<'_> {
         let language = self.language();
         self.heading(2, "Hypotheses", "Hypothèses");
         self.blocks.push(Block::Caution(reading::trial_level_caution(language).to_owned()));
+        self.blocks.push(Block::Caution(reading::these_clips_caution(language).to_owned()));
         for result in hypotheses {
             self.blocks.push(Block::Heading(3, format!("{}. {}", result.id, result.statement)));
             let mut table = tables::two_columns(
@@ -111,13 +144,14 @@ impl Writer<'_> {
                 &result.recommended,
             );
             self.blocks.extend(pairs.map(Block::Table));
+            self.other_clips(result);
             self.people_by_condition(result);
             self.blocks.push(Block::Reading(result.reading.clone()));
         }
         if hypotheses.iter().filter(|result| result.p.is_some()).count() > 1 {
             let heading = language.pick(
-                ["hypothesis", "p (recommended test)", "p corrected for all hypotheses (Holm)"],
-                ["hypothèse", "p (test recommandé)", "p corrigé pour toutes les hypothèses (Holm)"],
+                ["hypothesis", "p (test that decides)", "p corrected for all hypotheses (Holm)"],
+                ["hypothèse", "p (test qui décide)", "p corrigé pour toutes les hypothèses (Holm)"],
             );
             let caption =
                 language.pick("All hypotheses together", "Toutes les hypothèses ensemble");

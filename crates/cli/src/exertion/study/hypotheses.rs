@@ -60,6 +60,7 @@ pub(super) fn of(args: &StudyOptions) -> Vec<Hypothesis> {
             measure: Measure::Answer,
             factors: factors.iter().map(|factor| (*factor).to_owned()).collect(),
             levels: Vec::new(),
+            generalise: None,
         });
     };
     if args.activities.len() > 1 && args.levels.len() > 1 {

@@ -1,0 +1,328 @@
+//! The system of all random effects, I + Λ Z' W Z Λ: factored by eliminating blocks first, solved, inverted where
+//! answers need it.
+//!
+//! Effects are in units of their standard deviation (Λ holds these), so that a standard deviation of 0 is no special
+//! case. With B the diagonal blocks and A their coupling with the rest, X = L^-1 A for B = L L', the rest's system is
+//! S = C - X' X (the Schur complement), which is dense.
+
+use super::design::Layout;
+use crate::numerics::dot;
+
+/// A factored system.
+#[derive(Clone)]
+pub(super) struct Factored {
+    /// L of each block, one after the other.
+    blocks: Vec<f64>,
+    /// X of each block, block's effects x rest.
+    cross: Vec<f64>,
+    /// L of S.
+    rest: Vec<f64>,
+    /// ln det of the whole.
+    pub ln_det: f64,
+}
+
+impl Factored {
+    pub(super) fn new(layout: &Layout) -> Self {
+        let rest = layout.in_rest;
+        Self {
+            blocks: vec![0.0; layout.blocks.iter().map(|block| block.size * block.size).sum()],
+            cross: vec![0.0; layout.in_blocks * rest],
+            rest: vec![0.0; rest * rest],
+            ln_det: 0.0,
+        }
+    }
+
+    /// Factors the system of these standard deviations (a term each) and weights (an answer each). Whether that
+    /// succeeded: not where a number is none.
+    pub(super) fn factor(&mut self, layout: &Layout, scale: &[f64], weights: &[f64]) -> bool {
+        let (rest, k) = (layout.in_rest, layout.eliminated);
+        self.blocks.fill(0.0);
+        self.cross.fill(0.0);
+        self.rest.fill(0.0);
+        for i in 0..rest {
+            self.rest[i * rest + i] = 1.0;
+        }
+        self.ln_det = 0.0;
+        let mut start = 0;
+        for block in &layout.blocks {
+            let size = block.size;
+            let own = &mut self.blocks[start..start + size * size];
+            let cross = &mut self.cross[block.first * rest..(block.first + size) * rest];
+            for i in 0..size {
+                own[i * size + i] = 1.0;
+            }
+            for place in block.rows.clone() {
+                let effects = layout.effects(place);
+                for (i, effect) in effects.iter().enumerate() {
+                    let by = weights[place] * scale[i];
+                    if i < k {
+                        let row = *effect as usize - block.first;
+                        for (j, other) in effects[..k].iter().enumerate() {
+                            own[row * size + (*other as usize - block.first)] += by * scale[j];
+                        }
+                        for (j, other) in effects.iter().enumerate().skip(k) {
+                            cross[row * rest + (*other as usize - layout.in_blocks)] +=
+                                by * scale[j];
+                        }
+                    } else {
+                        let row = *effect as usize - layout.in_blocks;
+                        for (j, other) in effects.iter().enumerate().skip(k) {
+                            self.rest[row * rest + (*other as usize - layout.in_blocks)] +=
+                                by * scale[j];
+                        }
+                    }
+                }
+            }
+            match cholesky(own, size) {
+                Some(ln_det) => self.ln_det += ln_det,
+                None => return false,
+            }
+            // X = L^-1 A, row after row; each then leaves the rest's lower half.
+            for i in 0..size {
+                let (before, here) = cross.split_at_mut(i * rest);
+                let row = &mut here[..rest];
+                for j in 0..i {
+                    let by = own[i * size + j];
+                    row.iter_mut().zip(&before[j * rest..]).for_each(|(a, x)| *a -= by * x);
+                }
+                let by = 1.0 / own[i * size + i];
+                row.iter_mut().for_each(|a| *a *= by);
+                for (r, x) in row.iter().enumerate().filter(|(_, x)| **x != 0.0) {
+                    let lower = &mut self.rest[r * rest..=r * rest + r];
+                    lower.iter_mut().zip(row.iter()).for_each(|(s, y)| *s -= x * y);
+                }
+            }
+            start += size * size;
+        }
+        match cholesky(&mut self.rest, rest) {
+            Some(ln_det) => self.ln_det += ln_det,
+            None => return false,
+        }
+        self.ln_det.is_finite()
+    }
+
+    /// Solves the system in place.
+    pub(super) fn solve(&self, layout: &Layout, values: &mut [f64]) {
+        let rest = layout.in_rest;
+        let (own, of_rest) = values.split_at_mut(layout.in_blocks);
+        let mut start = 0;
+        for block in &layout.blocks {
+            let size = block.size;
+            let part = &mut own[block.first..block.first + size];
+            forward(&self.blocks[start..start + size * size], size, part);
+            for (i, value) in part.iter().enumerate() {
+                let cross = &self.cross[(block.first + i) * rest..][..rest];
+                of_rest.iter_mut().zip(cross).for_each(|(r, x)| *r -= value * x);
+            }
+            start += size * size;
+        }
+        forward(&self.rest, rest, of_rest);
+        backward(&self.rest, rest, of_rest);
+        let mut start = 0;
+        for block in &layout.blocks {
+            let size = block.size;
+            let part = &mut own[block.first..block.first + size];
+            for (i, value) in part.iter_mut().enumerate() {
+                *value -= dot(&self.cross[(block.first + i) * rest..][..rest], of_rest);
+            }
+            backward(&self.blocks[start..start + size * size], size, part);
+            start += size * size;
+        }
+    }
+
+    /// For each answer, its place and the inverse between the effects that it has: terms x terms.
+    pub(super) fn covariances(&self, layout: &Layout, mut each: impl FnMut(usize, &[f64])) {
+        let (rest, k, terms) = (layout.in_rest, layout.eliminated, layout.terms.len());
+        if terms == 0 {
+            return;
+        }
+        let of_rest = inverse(&self.rest, rest);
+        let mut between = vec![0.0; terms * terms];
+        let mut start = 0;
+        for block in &layout.blocks {
+            let size = block.size;
+            let lower = &self.blocks[start..start + size * size];
+            start += size * size;
+            // Y = L^-T X = B^-1 A.
+            let mut y = self.cross[block.first * rest..(block.first + size) * rest].to_vec();
+            for i in (0..size).rev() {
+                let (here, after) = y.split_at_mut((i + 1) * rest);
+                let row = &mut here[i * rest..];
+                for j in i + 1..size {
+                    let by = lower[j * size + i];
+                    let other = &after[(j - i - 1) * rest..][..rest];
+                    row.iter_mut().zip(other).for_each(|(a, x)| *a -= by * x);
+                }
+                let by = 1.0 / lower[i * size + i];
+                row.iter_mut().for_each(|a| *a *= by);
+            }
+            // Minus the inverse between block and rest, and the inverse within the block.
+            let mut cross = vec![0.0; size * rest];
+            for i in 0..size {
+                let row = &mut cross[i * rest..][..rest];
+                for (r, by) in y[i * rest..][..rest].iter().enumerate().filter(|(_, y)| **y != 0.0)
+                {
+                    row.iter_mut().zip(&of_rest[r * rest..]).for_each(|(c, s)| *c += by * s);
+                }
+            }
+            let mut own = inverse(lower, size);
+            for i in 0..size {
+                for j in 0..size {
+                    own[i * size + j] += dot(&cross[i * rest..][..rest], &y[j * rest..][..rest]);
+                }
+            }
+            for place in block.rows.clone() {
+                let effects = layout.effects(place);
+                for (i, effect) in effects.iter().enumerate() {
+                    for (j, other) in effects.iter().enumerate().take(i + 1) {
+                        let value = match (i < k, j < k) {
+                            (true, _) => {
+                                let row = *effect as usize - block.first;
+                                own[row * size + (*other as usize - block.first)]
+                            }
+                            (false, true) => {
+                                let row = *other as usize - block.first;
+                                -cross[row * rest + (*effect as usize - layout.in_blocks)]
+                            }
+                            (false, false) => {
+                                let row = *effect as usize - layout.in_blocks;
+                                of_rest[row * rest + (*other as usize - layout.in_blocks)]
+                            }
+                        };
+                        between[i * terms + j] = value;
+                        between[j * terms + i] = value;
+                    }
+                }
+                each(place, &between);
+            }
+        }
+    }
+}
+
+/// L L' = the matrix, of which the lower half is read and overwritten by L. Returns ln det; none where the matrix is
+/// not positive definite.
+pub(super) fn cholesky(matrix: &mut [f64], size: usize) -> Option<f64> {
+    let mut ln_det = 0.0;
+    for i in 0..size {
+        let (above, here) = matrix.split_at_mut(i * size);
+        let row = &mut here[..size];
+        for j in 0..i {
+            let other = &above[j * size..][..size];
+            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
+        }
+        let square = row[i] - dot(&row[..i], &row[..i]);
+        if square.is_nan() || square <= 0.0 {
+            return None;
+        }
+        row[i] = square.sqrt();
+        ln_det += libm::log(square);
+    }
+    Some(ln_det)
+}
+
+/// L^-1 of values, in place.
+fn forward(lower: &[f64], size: usize, values: &mut [f64]) {
+    for i in 0..size {
+        let row = &lower[i * size..][..size];
+        values[i] = (values[i] - dot(&row[..i], &values[..i])) / row[i];
+    }
+}
+
+/// L'^-1 of values, in place.
+fn backward(lower: &[f64], size: usize, values: &mut [f64]) {
+    for i in (0..size).rev() {
+        let row = &lower[i * size..][..size];
+        values[i] /= row[i];
+        let by = values[i];
+        values[..i].iter_mut().zip(row).for_each(|(v, l)| *v -= by * l);
+    }
+}
+
+/// (L L')^-1, whole.
+pub(super) fn inverse(lower: &[f64], size: usize) -> Vec<f64> {
+    // Column i of L^-1 as row i, from its place i on: row j of L^-1 is built of those before it.
+    let mut columns = vec![0.0; size * size];
+    for j in 0..size {
+        let row = &lower[j * size..][..size];
+        for i in 0..=j {
+            let column = &mut columns[i * size..][..size];
+            let unit = if i == j { 1.0 } else { 0.0 };
+            column[j] = (unit - dot(&row[i..j], &column[i..j])) / row[j];
+        }
+    }
+    let mut inverse = vec![0.0; size * size];
+    for i in 0..size {
+        for j in 0..=i {
+            let value = dot(&columns[i * size..][i..size], &columns[j * size..][i..size]);
+            inverse[i * size + j] = value;
+            inverse[j * size + i] = value;
+        }
+    }
+    inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::factor::Factor;
+    use mimique_test_support::Random;
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn elimination_agrees_with_the_dense_system() {
+        let mut random = Random::new(5);
+        let mut codes = [const { Vec::new() }; 4];
+        for (person, segment, method) in
+            (0..6).flat_map(|p| (0..4).flat_map(move |s| (0..3).map(move |m| (p, s, m))))
+        {
+            if random.uniform() < 0.8 {
+                let own = [person, person * 3 + method, segment, segment * 3 + method];
+                codes.iter_mut().zip(own).for_each(|(codes, own)| codes.push(own));
+            }
+        }
+        let rows = codes[0].len();
+        let factors = codes.map(|codes| {
+            let levels = (0..18).map(|level: u32| level.to_string()).collect();
+            Factor { name: String::new(), levels, codes }.used()
+        });
+        let layout = Layout::of(&factors.each_ref(), rows);
+        assert!(layout.in_blocks > 0 && layout.in_rest > 0);
+        let scale = [0.7, 1.3, -0.4, 0.9];
+        let weights: Vec<f64> = (0..rows).map(|_| random.uniform()).collect();
+        let size = layout.size();
+        let mut dense = DMatrix::<f64>::identity(size, size);
+        for (place, weight) in weights.iter().enumerate() {
+            for (i, one) in layout.effects(place).iter().enumerate() {
+                for (j, other) in layout.effects(place).iter().enumerate() {
+                    dense[(*one as usize, *other as usize)] += weight * scale[i] * scale[j];
+                }
+            }
+        }
+        let mut system = Factored::new(&layout);
+        assert!(system.factor(&layout, &scale, &weights));
+        assert!((system.ln_det - dense.determinant().ln()).abs() < 1e-10);
+        let right: Vec<f64> = (0..size).map(|_| random.normal()).collect();
+        let mut solved = right.clone();
+        system.solve(&layout, &mut solved);
+        let back = &dense * DVector::from_vec(solved);
+        assert!((back - DVector::from_vec(right)).amax() < 1e-11);
+        let whole = dense.try_inverse().unwrap();
+        let mut seen = 0;
+        system.covariances(&layout, |place, between| {
+            seen += 1;
+            for (i, one) in layout.effects(place).iter().enumerate() {
+                for (j, other) in layout.effects(place).iter().enumerate() {
+                    let own = whole[(*one as usize, *other as usize)];
+                    assert!((between[i * 4 + j] - own).abs() < 1e-11);
+                }
+            }
+        });
+        assert_eq!(seen, rows);
+    }
+
+    #[test]
+    fn what_is_not_positive_definite_has_no_factor() {
+        assert_eq!(cholesky(&mut [1.0, 0.0, 2.0, 1.0], 2), None);
+        assert_eq!(cholesky(&mut [f64::NAN], 1), None);
+    }
+}
