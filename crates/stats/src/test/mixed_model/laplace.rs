@@ -174,8 +174,8 @@ impl Objective<'_> {
         let k = layout.terms.len();
         // Each answer's terms, the variance of its predictor, and c, its slope by each standard deviation.
         let mut terms = Vec::with_capacity(n);
-        for place in 0..n {
-            let eta = fixed[place] + predictor(layout, own.sds, &effects, place);
+        for (place, fixed) in fixed.iter().enumerate() {
+            let eta = fixed + predictor(layout, own.sds, &effects, place);
             terms.push(own.thresholds.terms(data.category[place] as usize, eta));
         }
         let mut variance = vec![0.0; n];
