@@ -6,34 +6,17 @@
 //! the steps between thresholds, the fixed effects, and the standard deviations. The likelihood is an even function
 //! of each of these, so that 0 is no bound: a sign means nothing and is dropped at the end.
 
-use nalgebra::{Cholesky, DMatrix};
-use rayon::prelude::*;
-
 use super::cumulative::Thresholds;
 use super::design::Layout;
 use super::effects::Factored;
 use crate::numerics::dot;
-use crate::numerics::minimise::{Stop, minimise};
 
-/// Largest element of the gradient at a maximum.
-pub(super) const GRADIENT: f64 = 1e-5;
-/// What the search aims at.
-const AIM: f64 = 1e-6;
-/// Steps of the search.
-const STEPS: usize = 400;
 /// Newton's steps to the mode of the effects.
 const MODE_STEPS: usize = 60;
 /// A step to the mode after which the next one, its square, is rounding.
 const LAST_STEP: f64 = 1e-6;
 /// Where the standard deviations begin.
 const START_SD: f64 = 0.5;
-/// A standard deviation that is held against 0, and how little the likelihood may lose by that.
-const SMALL_SD: f64 = 0.03;
-const SAME: f64 = 1e-6;
-/// Searches, at most: one that ends where a standard deviation of 0 is the worst goes on beside it.
-const ROUNDS: usize = 3;
-/// Step of the differences of gradients that give second derivatives.
-const DIFFERENCE: f64 = 1e-4;
 
 /// What a model is fitted to, answers in the order of the layout.
 #[derive(Clone)]
@@ -47,32 +30,11 @@ pub(super) struct Data {
     pub layout: Layout,
 }
 
-/// A fitted model.
-#[derive(Clone)]
-pub(super) struct Fit {
-    /// The parameters.
-    pub at: Vec<f64>,
-    pub log_likelihood: f64,
-    /// Largest element of the gradient.
-    pub gradient: f64,
-    pub thresholds: Vec<f64>,
-    pub coefficients: Vec<f64>,
-    /// Standard deviations by the model's terms.
-    pub sds: Vec<f64>,
-    modes: Vec<f64>,
-}
-
-impl Fit {
-    pub(super) fn converged(&self) -> bool {
-        self.gradient < GRADIENT
-    }
-}
-
 /// The objective, with the modes that it found last: the next search for them starts there.
 #[derive(Clone)]
-struct Objective<'a> {
+pub(super) struct Objective<'a> {
     data: &'a Data,
-    modes: Vec<f64>,
+    pub modes: Vec<f64>,
     system: Factored,
 }
 
@@ -84,18 +46,18 @@ struct AtEffects {
 }
 
 /// Parameters of a model apart.
-struct Parameters<'p> {
-    thresholds: Thresholds,
-    coefficients: &'p [f64],
-    sds: &'p [f64],
+pub(super) struct Parameters<'p> {
+    pub thresholds: Thresholds,
+    pub coefficients: &'p [f64],
+    pub sds: &'p [f64],
 }
 
 impl Data {
-    fn parameters(&self) -> usize {
+    pub(super) fn parameters(&self) -> usize {
         self.categories - 1 + self.columns + self.layout.terms.len()
     }
 
-    fn split<'p>(&self, at: &'p [f64]) -> Parameters<'p> {
+    pub(super) fn split<'p>(&self, at: &'p [f64]) -> Parameters<'p> {
         let (thresholds, rest) = at.split_at(self.categories - 1);
         let (coefficients, sds) = rest.split_at(self.columns);
         Parameters { thresholds: Thresholds::new(thresholds_of(thresholds)), coefficients, sds }
@@ -106,7 +68,7 @@ impl Data {
     }
 
     /// Where the search starts: thresholds of the shares of all answers, no fixed effects.
-    fn start(&self) -> Vec<f64> {
+    pub(super) fn start(&self) -> Vec<f64> {
         let mut counts = vec![0.0; self.categories];
         self.category.iter().for_each(|category| counts[*category as usize] += 1.0);
         let all = self.category.len() as f64;
@@ -123,7 +85,7 @@ impl Data {
         at
     }
 
-    fn objective(&self) -> Objective<'_> {
+    pub(super) fn objective(&self) -> Objective<'_> {
         let modes = vec![0.0; self.layout.size()];
         Objective { data: self, modes, system: Factored::new(&self.layout) }
     }
@@ -200,7 +162,7 @@ impl Objective<'_> {
     }
 
     /// Minus the log likelihood; the gradient is written into the second argument. Not a number where it has none.
-    fn value(&mut self, at: &[f64], gradient: &mut [f64]) -> f64 {
+    pub(super) fn value(&mut self, at: &[f64], gradient: &mut [f64]) -> f64 {
         gradient.fill(f64::NAN);
         let data = self.data;
         let layout = &data.layout;
@@ -212,8 +174,8 @@ impl Objective<'_> {
         let k = layout.terms.len();
         // Each answer's terms, the variance of its predictor, and c, its slope by each standard deviation.
         let mut terms = Vec::with_capacity(n);
-        for place in 0..n {
-            let eta = fixed[place] + predictor(layout, own.sds, &effects, place);
+        for (place, fixed) in fixed.iter().enumerate() {
+            let eta = fixed + predictor(layout, own.sds, &effects, place);
             terms.push(own.thresholds.terms(data.category[place] as usize, eta));
         }
         let mut variance = vec![0.0; n];
@@ -284,92 +246,11 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The maximum of the likelihood.
-pub(super) fn fit(data: &Data) -> Fit {
-    let mut objective = data.objective();
-    let first_sd = data.parameters() - data.layout.terms.len();
-    let mut start = data.start();
-    let mut slopes = vec![0.0; start.len()];
-    let mut rounds = 0;
-    loop {
-        rounds += 1;
-        let stop = Stop { gradient: AIM, steps: STEPS };
-        let mut found = minimise(start, &stop, |at, gradient| objective.value(at, gradient));
-        let mut escaped = false;
-        for place in first_sd..found.at.len() {
-            if found.at[place].abs() > SMALL_SD {
-                continue;
-            }
-            let mut probe = |sd: f64| {
-                let mut at = found.at.clone();
-                at[place] = sd;
-                objective.value(&at, &mut slopes)
-            };
-            // At 0 the slope is 0 by symmetry, also where 0 is the worst of all.
-            if rounds < ROUNDS && probe(3.0 * SMALL_SD) < found.value - SAME {
-                found.at[place] = 3.0 * SMALL_SD;
-                escaped = true;
-            } else if probe(0.0) <= found.value + SAME {
-                found.at[place] = 0.0;
-            }
-        }
-        if escaped {
-            start = found.at;
-            continue;
-        }
-        let value = objective.value(&found.at, &mut slopes);
-        let gradient = slopes.iter().fold(0.0_f64, |most, slope| {
-            if slope.is_nan() { f64::INFINITY } else { most.max(slope.abs()) }
-        });
-        let own = data.split(&found.at);
-        let mut sds = vec![0.0; data.layout.terms.len()];
-        for (term, sd) in data.layout.terms.iter().zip(own.sds) {
-            sds[*term] = sd.abs();
-        }
-        return Fit {
-            log_likelihood: -value,
-            gradient,
-            thresholds: own.thresholds.values().to_vec(),
-            coefficients: own.coefficients.to_vec(),
-            sds,
-            modes: objective.modes,
-            at: found.at,
-        };
-    }
-}
-
-/// Covariance of the coefficients: the inverse of the second derivatives by all parameters but standard deviations of
-/// 0, by differences of the exact gradient. None where these are not positive definite.
-pub(super) fn covariance(data: &Data, fit: &Fit) -> Option<DMatrix<f64>> {
-    let first_sd = data.parameters() - data.layout.terms.len();
-    let free: Vec<usize> =
-        (0..fit.at.len()).filter(|place| *place < first_sd || fit.at[*place] != 0.0).collect();
-    let rows: Vec<Vec<f64>> = free
-        .par_iter()
-        .map(|place| {
-            let mut objective = data.objective();
-            objective.modes.clone_from(&fit.modes);
-            let mut sides = [vec![0.0; fit.at.len()], vec![0.0; fit.at.len()]];
-            for (side, by) in sides.iter_mut().zip([DIFFERENCE, -DIFFERENCE]) {
-                let mut at = fit.at.clone();
-                at[*place] += by;
-                objective.value(&at, side);
-            }
-            let [above, below] = sides;
-            free.iter().map(|other| (above[*other] - below[*other]) / (2.0 * DIFFERENCE)).collect()
-        })
-        .collect();
-    let size = free.len();
-    let second = DMatrix::from_fn(size, size, |i, j| (rows[i][j] + rows[j][i]) / 2.0);
-    let inverse = Cholesky::new(second)?.inverse();
-    let coefficients = data.categories - 1;
-    Some(inverse.view((coefficients, coefficients), (data.columns, data.columns)).into_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::table::factor::Factor;
+    use crate::test::mixed_model::search::{covariance, fit};
     use mimique_test_support::Random;
 
     /// Answers of people to clips of two methods, some missing.
