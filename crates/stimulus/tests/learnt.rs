@@ -184,7 +184,9 @@ fn a_surface_travels_as_an_avatar_of_markers() {
     let pack = encode_pack(&moved);
     let shown = decode_pack(&pack.bytes).unwrap();
     eprintln!("surface avatar: {} bytes for {} shapes", pack.bytes.len(), shown.shape_names.len());
-    assert_eq!(shown.shape_names, set_up.operators.parts().shape_names);
+    assert_eq!(shown.face_shapes(), set_up.operators.parts().shape_names);
+    // The head turns with the surface, too.
+    assert!(shown.shape_names.ends_with(&mimique_avatar::HEAD_POSE_SHAPES.map(str::to_owned)));
     assert_eq!(shown.shape_names[1], format!("{}.y", bank.parts().marker_labels[0]));
 
     // What the stage draws is the surface: within the pack's rounding.

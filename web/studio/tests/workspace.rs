@@ -167,7 +167,7 @@ fn what_is_exported_is_what_was_solved() {
     let glb = workspace.animated_glb("a", 60, 160).unwrap();
     let mut again = Workspace::new();
     let facts = again.avatar_file("animated.glb", glb, None).unwrap();
-    assert_eq!(facts["shapes"].as_array().unwrap().len(), 54);
+    assert_eq!(facts["shapes"].as_array().unwrap().len(), 57);
     again.take_file("weights.csv", csv.as_bytes(), None, None).unwrap();
     let facts = again.solve("a", r#"{"method": "recorded"}"#).unwrap();
     assert_eq!(facts["warnings"], serde_json::json!([]));
@@ -304,7 +304,7 @@ fn the_eyes_look_where_they_are_told_to() {
     let facts = solve(&mut workspace);
     assert!((looks_left(&workspace) - 12.0).abs() < 1e-4);
     assert_eq!(facts["gaze_at_rest"], serde_json::json!([]));
-    let track = b"time,azimuth,elevation,vergence\n0,-8,0,0\n10,-8,0,0\n";
+    let track = b"frame,time,azimuth,elevation,vergence\n0,0,-8,0,0\n1,90,-8,0,0\n";
     assert_eq!(workspace.gaze_file("gaze.csv", track).unwrap()["kind"], "file");
     solve(&mut workspace);
     assert!((looks_left(&workspace) + 8.0).abs() < 1e-4);
