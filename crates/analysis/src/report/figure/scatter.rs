@@ -52,9 +52,11 @@ pub(crate) fn scatter(
         }
         let (least, most) = ends(panel.points.iter().map(|point| point.1));
         let x = Axis::new(least, most, left, left + width);
-        for &tick in [x.ticks.first(), x.ticks.last()].into_iter().flatten() {
+        let ends = [(x.ticks.first(), Anchor::Start), (x.ticks.last(), Anchor::End)];
+        for (tick, anchor) in ends {
+            let Some(&tick) = tick else { continue };
             let text = language.fixed(tick, x.decimals);
-            svg.text(x.place(tick), bottom + 15.0, "small", Anchor::Middle, &text);
+            svg.text(x.place(tick), bottom + 15.0, "small", anchor, &text);
         }
         let title = clipped(&panel.title, (width / 5.4) as usize);
         svg.text(left + width / 2.0, bottom + 30.0, "small", Anchor::Middle, &title);
