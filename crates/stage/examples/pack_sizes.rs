@@ -169,13 +169,18 @@ fn played(solved: &SolvedTake) -> Vec<Vec<f64>> {
 /// Bytes of a clip's weights as a take pack of recorded weights, and how far its rounding moves the
 /// vertex that it moves most, metres.
 fn weights_pack(avatar: &Avatar, weights: &[Vec<f64>]) -> (usize, f64) {
+    // Those of the shapes at the end are left out.
+    let (frames, shapes) = (weights.len(), weights.first().map_or(0, Vec::len));
     let weights = weights.concat();
-    let found = weight_steps(avatar, &weights);
+    let found = weight_steps(avatar, &weights, shapes);
     let take = TakePack {
         rate_hz: RATE_HZ,
         first_frame: 0,
-        played: 0..weights.len() / avatar.shape_names.len().max(1),
-        content: TakeContent::Weights { shape_names: avatar.shape_names.clone(), weights },
+        played: 0..frames,
+        content: TakeContent::Weights {
+            shape_names: avatar.shape_names[..shapes].to_vec(),
+            weights,
+        },
     };
     (encode_take_in_steps(&take, &found.steps).len(), found.error_m)
 }

@@ -40,7 +40,8 @@ fn four_seconds_of_solved_weights_fit_in_12_kb() {
         let solved =
             solve_packs(&read(&source.operators), &read(&source.take), &source.method).unwrap();
         let weights = at_playing_rate(&solved);
-        let found = weight_steps(&avatar, &weights);
+        let n = avatar.face_shapes().len();
+        let found = weight_steps(&avatar, &weights, n);
         assert!(found.error_m > 1e-6 && found.error_m <= 1e-5, "{id}: {} m off", found.error_m);
         let take = TakePack {
             rate_hz: RATE_HZ,
@@ -60,7 +61,6 @@ fn four_seconds_of_solved_weights_fit_in_12_kb() {
         else {
             panic!("{id}: markers");
         };
-        let n = avatar.face_shapes().len();
         let skin = avatar.skin().unwrap();
         let mut worst = 0f64;
         for (exact, rounded) in weights.chunks_exact(n).zip(back.chunks_exact(n)).step_by(6) {

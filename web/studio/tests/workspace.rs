@@ -173,9 +173,9 @@ fn what_is_exported_is_what_was_solved() {
     assert_eq!(facts["warnings"], serde_json::json!([]));
     let (a, b) = (workspace.weights("a").unwrap(), again.weights("a").unwrap());
     // Recorded weights have the shapes of the body, too, which rest.
-    assert_eq!(a.len() / 51, b.len() / 54);
-    for (a, b) in a.chunks_exact(51).zip(b.chunks_exact(54)) {
-        assert!(a.iter().chain(&[0.0; 3]).zip(b).all(|(x, y)| (x - y).abs() < 1e-6));
+    assert_eq!(a.len() / 51, b.len() / 57);
+    for (a, b) in a.chunks_exact(51).zip(b.chunks_exact(57)) {
+        assert!(a.iter().chain(&[0.0; 6]).zip(b).all(|(x, y)| (x - y).abs() < 1e-6));
     }
 }
 

@@ -22,10 +22,9 @@ pub struct WeightSteps {
     pub error_m: f64,
 }
 
-/// Steps about as coarse as these weights (frame-major, one per shape of the avatar) allow. Each shape's
-/// step is in inverse proportion to the farthest that it moves a vertex.
-pub fn weight_steps(avatar: &Avatar, weights: &[f64]) -> WeightSteps {
-    let count = avatar.shape_names.len();
+/// Steps about as coarse as these weights allow: frame-major, `count` per frame, those of the avatar's first shapes. Each
+/// shape's step is in inverse proportion to the farthest that it moves a vertex.
+pub fn weight_steps(avatar: &Avatar, weights: &[f64], count: usize) -> WeightSteps {
     let reach: Vec<f64> = (0..count).map(|k| reach(avatar, k)).collect();
     let mut size = 4.0 * TOLERANCE_M;
     loop {
