@@ -2,7 +2,7 @@
 // was solved beforehand.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -103,27 +103,6 @@ test("adaptive: levels follow the answers, and a reload goes on at the same leve
     const sds = rows.map((row) => Number(row.posterior_sd));
     assert.ok(sds[7] < 0.8 * sds[0], `the posterior narrows: ${sds}`);
     assert.ok(Math.abs(Number(rows[7].posterior_mean) - SEEN_FROM) < 0.2, rows[7].posterior_mean);
-  } finally {
-    await browser.close();
-    await server.stop();
-  }
-});
-
-test("adaptive: another study loads nothing of it", { skip: unable, timeout: 120_000 }, async () => {
-  const page = readFileSync("static/participant/bridge.js", "utf8");
-  assert.ok(page.includes('import("../adaptive/levels.js")'), "loaded on demand alone");
-  const server = await serve(["study-config/demo.json"]);
-  const browser = await open("webgl2");
-  const asked = [];
-  browser.page.on("request", (request) => asked.push(new URL(request.url()).pathname));
-  try {
-    await browser.page.goto(`${server.url}/s/demo/?backend=webgl2`);
-    await browser.page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(browser.page);
-    await go(browser.page, "mouse");
-    here = await leave(browser.page, here, 60_000);
-    assert.notEqual(here.view, "consent");
-    assert.deepEqual(asked.filter((path) => path.includes("adaptive")), []);
   } finally {
     await browser.close();
     await server.stop();

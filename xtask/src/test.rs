@@ -76,6 +76,7 @@ fn lints(tally: &mut Tally) {
     for (name, features) in [
         ("mimique-app", None),
         ("mimique-web-solver", None),
+        ("mimique-web-adaptive", None),
         ("mimique-web-studio", None),
         ("mimique-web-stage", Some("webgpu")),
         ("mimique-web-stage", Some("webgl")),
