@@ -167,14 +167,14 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
       assert.equal(weights.length, apart.length);
       assert.ok(Math.max(...apart.slice(0, 50_000)) < 1e-6, "the table's weights");
     }
-    assert.ok(channels.some(({ names }) => names.length === 54), "the skin has every shape");
+    assert.ok(channels.some(({ names }) => names.length === 57), "the skin has every shape");
     const brows = channels[0].names.indexOf("browDownLeft");
     const brow = channels[0].weights.filter((_, i) => i % channels[0].names.length === brows);
     assert.ok(Math.max(...brow) - Math.min(...brow) > 0.3, "the brow goes down");
     const file = join(folder, "animated.glb");
     writeFileSync(file, glb);
     const facts = JSON.parse(mimique(["inspect", "--json", file]));
-    assert.equal(facts.shape_count, 54);
+    assert.equal(facts.shape_count, 57);
 
     // Pictures: one a twenty-fifth of a second, each a face, another one as the expression comes.
     const count = Math.floor((to - from) * RATE + 1e-6) + 1;
@@ -215,7 +215,7 @@ test("studio: exports are opened again and show what was solved", { skip: noBrow
 
     // The head of the animation opens again and is solved.
     await page.setInputFiles("#avatar-file", file);
-    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.startsWith("animated.glb: 9202 vertices, 54 shapes"), null, { timeout: 60_000 });
+    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.startsWith("animated.glb: 9202 vertices, 57 shapes"), null, { timeout: 60_000 });
     assert.ok((await fact(page, "A", "Residual")) < 3);
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {

@@ -72,7 +72,7 @@ test("studio: a layout is made, dragged, moved by keys, thinned, taken back and 
     await page.goto(`${server.url}?backend=webgl2`);
     assert.ok(await page.locator("#layouts").isHidden(), "nothing to lay out yet");
     await page.click("#avatar-built-in");
-    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("54 shapes"));
+    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("57 shapes"));
     await unfold(page, "layouts");
     await make(page, 30);
     const first = await shown(page);

@@ -23,12 +23,12 @@ test("studio: a compression that only native builds read is named, and the head 
     await page.goto(`${server.url}?backend=webgl2`);
     await page.click("#avatar-built-in");
     const facts = () => page.locator("#avatar-facts").textContent();
-    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("54 shapes"));
+    await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("57 shapes"));
     await page.setInputFiles("#avatar-file", file);
     await page.waitForFunction(() => document.querySelector("#problem").checkVisibility(), undefined, { timeout: 60_000 });
     const said = await page.locator("#problem").textContent();
     for (const word of ["packed.glb", "EXT_meshopt_compression", "; "]) assert.ok(said.includes(word), said);
-    assert.match(await facts(), /54 shapes/);
+    assert.match(await facts(), /57 shapes/);
     assert.deepEqual(browser.errors, []);
   } finally {
     await browser.close();

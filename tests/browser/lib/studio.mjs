@@ -62,7 +62,7 @@ export async function unfold(page, id) {
 export async function builtIn(page, server) {
   await page.goto(`${server.url}?backend=webgl2`);
   await page.click("#avatar-built-in");
-  await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("54 shapes"));
+  await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("57 shapes"));
   await page.click("#take-built-in");
   await fact(page, "A", "Residual");
 }
