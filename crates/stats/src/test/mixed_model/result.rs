@@ -70,7 +70,7 @@ pub struct MixedGroupingRatio {
     pub p_half_chi_square: f64,
 }
 
-/// Result of [`mixed_model`].
+/// Result of [`mixed_model`](crate::mixed_model).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MixedModel {
     /// Always `mixed-model`.
