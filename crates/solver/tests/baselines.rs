@@ -36,19 +36,23 @@ impl Numbers {
     }
 }
 
-/// Markers and shapes at random, metres; `jawRight` undoes `jawLeft`, and looking out looking in.
+/// Markers and shapes at random, metres; `jawRight` undoes `jawLeft`, and looking out looking in; each
+/// side of the smile moves half of the markers.
 fn bank(seed: u64) -> Operators {
     let mut numbers = Numbers(seed);
     for _ in 0..20 {
         numbers.next();
     }
     let mut marker_deltas = vec![0.0; 3 * P * N];
-    for row in marker_deltas.chunks_exact_mut(N) {
+    for (at, row) in marker_deltas.chunks_exact_mut(N).enumerate() {
         for x in row.iter_mut() {
             *x = 0.006 * numbers.next();
         }
         row[2] = -0.9 * row[1] + 0.0005 * numbers.next();
         row[6] = -0.8 * row[5] + 0.001 * numbers.next();
+        // The two sides of the smile move markers of their own: at random, one seed in some 1,600 has
+        // them against each other, and they would be a pair that cancels.
+        row[if at / 3 < P / 2 { 4 } else { 3 }] = 0.0;
     }
     let mut shell_gram = vec![0.0; N * N];
     shell_gram.iter_mut().step_by(N + 1).for_each(|x| *x = 1e-4);
@@ -114,7 +118,7 @@ fn kkt(q: &[[f64; N]; N], b: &[f64; N], c: &[f64], bounds: &[[f64; 2]; N]) -> f6
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
     #[test]
     fn sparse_meets_its_conditions(seed in 0..100_000_u64, lambda in 0.0..0.5_f64) {
