@@ -175,17 +175,33 @@ export async function showClip(clip, beside) {
   if (beside) await (await stage("beside")).show(beside, 0);
 }
 
-/** Plays a clip once, the one beside it in step. Resolves with the log as JSON, its times as
+/** Plays a clip once, the one beside it in step, or in turn after it. Resolves with the log as JSON, its times as
     `study::PlayLog` has them. */
-export async function playClip(clip, beside) {
+export async function playClip(clip, beside, inTurn) {
   const here = await stage("clip");
-  const there = beside ? { stage: await stage("beside"), clipId: beside } : null;
+  const there = beside ? { stage: await stage("beside"), clipId: beside, inTurn } : null;
   const seen = watchView(() => here.stop("out of view"));
   try {
-    return JSON.stringify(onPageClock(await here.play(clip, there, true)));
+    const step = document.querySelector("main[data-step]")?.dataset.step;
+    const told = (await triggers)?.play({ step, clip, beside: beside ?? null });
+    const log = onPageClock(await here.play(clip, there, true, told));
+    return JSON.stringify({ ...log, triggers: told?.sent() });
   } finally {
     seen.disconnect();
   }
+}
+
+// Tells another program on this machine what is shown when, in studies that ask for it.
+let triggers;
+
+/** Opens the way to that program; `settings`: JSON of the study's triggers. */
+export function openTriggers(settings) {
+  triggers ??= import("../devices/triggers.js").then(({ Triggers }) => new Triggers(JSON.parse(settings)), () => null);
+}
+
+/** Tells events of the log, JSON. */
+export function tellTriggers(events) {
+  triggers?.then((open) => open?.tell(JSON.parse(events)));
 }
 
 // The share of a picture that is in view when all of it is: layouts round to parts of a pixel.

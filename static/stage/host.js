@@ -94,19 +94,23 @@ class Stage {
   }
 
   /// Plays a prepared clip once; resolves with the log whatever happens. `beside`: {stage, clipId}
-  /// of another stage, played in step. Its sound is heard where that is asked for.
-  async play(clipId, beside = null, heard = false) {
+  /// of another stage, played in step, or with `inTurn` after it. Its sound is heard where that is asked for; `told` as Playback
+  /// has it.
+  async play(clipId, beside = null, heard = false, told = undefined) {
     const clip = preparedClip(clipId);
     const parts = [{ stage: this, clip }];
     if (beside) parts.push({ stage: beside.stage, clip: preparedClip(beside.clipId) });
     if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
     const shown = parts.map((part) => part.clip);
     const sound = heard ? clip.sound : undefined;
-    const playback = new Playback(parts.map(({ stage, clip }) => stage.#part(clip)), sound);
+    const lasts = parts.map(({ clip }) => clip.duration_ms);
+    const inTurn = beside?.inTurn ?? false;
+    const turns = inTurn ? [[0, lasts[0]], [lasts[0], lasts[0] + lasts[1]]] : [];
+    const playback = new Playback(parts.map(({ stage, clip }, k) => stage.#part(clip, turns[k])), sound, told);
     for (const { stage } of parts) stage.#playback = playback;
     try {
       for (const { stage, clip } of parts) await stage.#ready(clip);
-      const log = await playback.run(Math.max(...parts.map(({ clip }) => clip.duration_ms)));
+      const log = await playback.run(inTurn ? lasts[0] + lasts[1] : Math.max(...lasts));
       if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
@@ -117,14 +121,22 @@ class Stage {
     } finally {
       for (const { stage, clip } of parts) {
         stage.#playback = null;
+        stage.#wait(false);
         stage.#shown = { clipId: clip.clip, timeMs: clip.duration_ms };
       }
     }
   }
 
-  // What a play does of this stage's clip.
-  #part(clip) {
-    return clip.video ? { clock: this.#video.clock(clip) } : { draw: (timeMs) => this.#draw(clip, timeMs) };
+  // What a play does of this stage's clip; `turn`: its share of a play in turn, ms.
+  #part(clip, turn) {
+    if (clip.video) return { clock: this.#video.clock(clip) };
+    const draw = (timeMs) => this.#draw(clip, timeMs);
+    return turn ? { draw, fromMs: turn[0], untilMs: turn[1], wait: (waits) => this.#wait(waits) } : { draw };
+  }
+
+  // style.css fades what waits for its turn.
+  #wait(waits) {
+    this.#canvas.toggleAttribute("data-waiting", waits);
   }
 
   async #ready(clip) {

@@ -1,4 +1,4 @@
-// One play of a clip, or of two in step, in the display's clock, and its log.
+// One play of a clip, or of two in step or in turn, in the display's clock, and its log.
 //
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
@@ -15,9 +15,18 @@ const SILENT_MS = 10_000;
 // About what a video that is loaded takes from being started to its first frame.
 const VIDEO_START_MS = 30;
 
+// Before its turn a clip stands at its first frame, after it at its last.
+function drawAt(part, ms) {
+  if (!part.wait) return part.draw(ms);
+  const { fromMs, untilMs } = part;
+  part.wait(ms < fromMs || (ms >= untilMs && fromMs === 0));
+  return part.draw(Math.min(Math.max(ms, fromMs), untilMs) - fromMs);
+}
+
 export class Playback {
   #parts;
   #sound;
+  #told;
   #clock;
   #drift = 0;
   #drawn = new Map();
@@ -29,10 +38,13 @@ export class Playback {
   #finish = null;
 
   /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
-  /// video's}. `sound`: heard with the first frame.
-  constructor(parts, sound) {
+  /// video's}. Of two in turn, each has fromMs and untilMs, its share of the play, and wait(whether it is
+  /// not its turn). `sound`: heard with the first frame. `told`: {frame(now, ms), end(now)} in each frame's
+  /// callback.
+  constructor(parts, sound, told) {
     this.#parts = parts;
     this.#sound = sound;
+    this.#told = told;
     this.#clock = parts.find((part) => part.clock)?.clock ?? null;
   }
 
@@ -99,7 +111,7 @@ export class Playback {
     const video = this.#clock?.takeFrame() ?? null;
     if (this.#parts.length === 1 && this.#clock) return video;
     for (const part of this.#parts) {
-      if (!part.clock && !this.#drawn.has(part) && part.draw(ms)) this.#drawn.set(part, ms);
+      if (!part.clock && !this.#drawn.has(part) && drawAt(part, ms)) this.#drawn.set(part, ms);
     }
     const times = [...this.#drawn.values()];
     if (times.length < this.#parts.filter((part) => !part.clock).length) return null;
@@ -143,6 +155,7 @@ export class Playback {
         if (shown !== null) {
           const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
           frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);
+          this.#told?.frame(now, shown);
           this.#sound?.frame(shown);
         }
       } catch (error) {
@@ -153,6 +166,7 @@ export class Playback {
       const ended = shown !== null || this.#clock || time >= durationMs + LAST_FRAME_MS;
       if (clipMs >= durationMs && frames.length > 0 && ended) {
         this.#endMs = now;
+        this.#told?.end(now);
         this.#finish();
         return;
       }

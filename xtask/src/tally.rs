@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::sync::mpsc;
 use std::thread;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 
@@ -20,21 +21,33 @@ pub struct Tally {
     pub skipped: u64,
     failures: Vec<String>,
     skips: Vec<String>,
+    /// What each step took, in the order in which they ended.
+    took: Vec<(String, Duration)>,
 }
 
 impl Tally {
     /// Runs a check that counts as one: it passes when the command succeeds.
     pub fn check(&mut self, name: &str, command: &mut Command) {
         say(name);
-        match command.status() {
+        let begun = Instant::now();
+        let status = command.status();
+        self.took(name, begun);
+        match status {
             Ok(status) if status.success() => self.passed += 1,
             Ok(status) => self.fail(format!("{name} ({status}): {}", show(command))),
             Err(error) => self.fail(format!("{name} could not start ({error}): {}", show(command))),
         }
     }
 
-    /// Counts something that was done, or was not.
-    pub fn done(&mut self, name: &str, done: Result<()>) {
+    fn took(&mut self, name: &str, begun: Instant) {
+        self.took.push((name.to_owned(), begun.elapsed()));
+    }
+
+    /// Counts something that is done here, or is not.
+    pub fn done(&mut self, name: &str, work: impl FnOnce() -> Result<()>) {
+        let begun = Instant::now();
+        let done = work();
+        self.took(name, begun);
         match done {
             Ok(()) => self.passed += 1,
             Err(error) => self.fail(format!("{name}: {error:#}")),
@@ -53,6 +66,7 @@ impl Tally {
     #[expect(clippy::print_stdout, reason = "the test program's own output, passed on")]
     pub fn tests(&mut self, name: &str, command: &mut Command) -> Result<()> {
         say(name);
+        let begun = Instant::now();
         let mut child = command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -78,6 +92,7 @@ impl Tally {
             let _ = reader.join();
         }
         let status = child.wait()?;
+        self.took(name, begun);
         // A test that says SKIPPED returned early and was counted as passed by its runner.
         let soft = counted.skips.len() as u64;
         self.passed += counted.passed.saturating_sub(soft);
@@ -143,6 +158,10 @@ impl Tally {
         for failure in &self.failures {
             println!("failed: {failure}");
         }
+        let minutes = |took: &Duration| took.as_secs_f64() / 60.0;
+        let took: Vec<String> =
+            self.took.iter().map(|(name, took)| format!("{name} {:.1}", minutes(took))).collect();
+        println!("minutes: {}", took.join("; "));
         println!("{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped);
         self.failed == 0 && (skip_allowed || self.skipped == 0)
     }

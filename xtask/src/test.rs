@@ -29,8 +29,8 @@ pub fn run(args: &Args) -> Result<()> {
     let python = needed()?;
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
     // The server embeds the pages, so they come before everything that compiles it.
-    tally.done("pages", web::all(true));
-    tally.done("size of the pages", budget::check());
+    tally.done("pages", || web::all(true));
+    tally.done("size of the pages", budget::check);
     lints(&mut tally);
     dependencies(&mut tally);
     native(&mut tally, python.as_deref())?;

@@ -132,12 +132,14 @@ fn write(
     folder.put("site.json", serde_json::to_string(&site)?.as_bytes())?;
     let language = study.default_language();
     let post = site.hosting.post.as_deref().map_or_else(String::new, origin);
+    let triggers = study.triggers.map(|triggers| triggers.origin()).unwrap_or_default();
     let values = [
         ("assets", prefix.as_str()),
         ("lang", language),
         ("title", study.study_metadata.title.in_language(language)),
         ("study", &study.id),
         ("post", &post),
+        ("triggers", &triggers),
     ];
     let page = assets.participant_page("participant/site.html", &values, study, language);
     let page = page.context(

@@ -62,8 +62,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let mut trials = 0;
     for item in &items {
         match item {
-            OrderedItem::Trial { trial, clip, .. } => {
+            OrderedItem::Trial { trial, clip, beside, .. } => {
                 trials += 1;
+                let clip = match beside {
+                    Some(right) => format!("{clip} | {right}"),
+                    None => clip.clone(),
+                };
                 writeln!(out, "{trials:>4}  {clip:<24}  {trial}")?;
             }
             OrderedItem::Component { component } => writeln!(out, "   -  {component}")?,

@@ -128,6 +128,7 @@ pub fn difference(
         let apart = |&v: &usize| length(reference.place(frame, v), other.place(frame, v));
         face.lips.iter().map(apart).fold(0.0, f64::max)
     };
+    let worst_lips: Vec<f64> = (0..frames).map(worst_lip).collect();
     let lips = !face.lips.is_empty() && frames > 0;
     let mean_over_frames =
         |of: &dyn Fn(usize) -> f64| (0..frames).map(of).sum::<f64>() / frames as f64;
@@ -137,9 +138,9 @@ pub fn difference(
     let deviation = |&v: &usize| spread_mm2(reference, v) - spread_mm2(other, v);
     Ok(Difference {
         parts,
-        lip_vertex_error_mm: lips.then(|| 1e3 * mean_over_frames(&worst_lip)),
+        lip_vertex_error_mm: lips.then(|| 1e3 * mean_over_frames(&|frame| worst_lips[frame])),
         lip_vertex_error_mm2: lips
-            .then(|| 1e6 * mean_over_frames(&|frame| worst_lip(frame).powi(2))),
+            .then(|| 1e6 * mean_over_frames(&|frame| worst_lips[frame].powi(2))),
         upper_face_deviation_mm2: upper
             .then(|| face.upper.iter().map(deviation).sum::<f64>() / face.upper.len() as f64),
         lip_gap_error_mm: gaps.then(|| 1e3 * mean_over_frames(&gap)),

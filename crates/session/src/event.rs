@@ -382,6 +382,10 @@ pub struct PlayLog {
     /// What was heard: a [`SoundLog`], which the page hands on as it is; null for a clip without sound.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub sound: Value,
+    /// How many messages of the play another program on the machine was sent; null where it was not there, or where
+    /// the study tells none.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub triggers: Value,
     /// Why the play ended early; null for a whole play.
     pub aborted: Option<String>,
 }

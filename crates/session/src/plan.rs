@@ -6,7 +6,7 @@ use crate::event::LevelShown;
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
-    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, Draw,
+    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, DealtPairs, Draw,
     KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
     Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training, option_order,
     order, right_answers,
@@ -108,6 +108,21 @@ pub struct Companion {
     pub caption: Option<LocalText>,
     /// A line below the trial's own clip.
     pub clip_caption: Option<LocalText>,
+    /// Whether it is played after the trial's own clip, not in step with it.
+    pub in_turn: bool,
+}
+
+impl Companion {
+    /// The clip on the right of a pair.
+    fn of_pair(right: &str, pairs: Option<&DealtPairs>) -> Self {
+        Self {
+            clip: right.to_owned(),
+            left: false,
+            caption: None,
+            clip_caption: None,
+            in_turn: pairs.is_some_and(|pairs| pairs.in_turn),
+        }
+    }
 }
 
 impl Plan {
@@ -221,7 +236,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     let mut steps = Vec::new();
     for item in items {
         steps.extend(match item {
-            OrderedItem::Trial { trial, component, clip, condition } => {
+            OrderedItem::Trial { trial, component, clip, beside, condition } => {
                 let block = match study.components.get(component) {
                     Some(Component::Trials(block)) => block,
                     Some(Component::Adaptive(block)) => {
@@ -242,9 +257,12 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     training: false,
                     number: trials,
                     condition: condition.clone(),
-                    beside: block.beside.as_ref().and_then(|beside| {
-                        companion(beside, clip, &study.clips, sides.is_left(component, beside))
-                    }),
+                    beside: match beside {
+                        Some(right) => Some(Companion::of_pair(right, block.pairs.as_ref())),
+                        None => block.beside.as_ref().and_then(|beside| {
+                            companion(beside, clip, &study.clips, sides.is_left(component, beside))
+                        }),
+                    },
                     right: Answers::new(),
                 };
                 let time_limit = block.time_limit.clone();
@@ -296,7 +314,7 @@ fn component_step(id: String, component: &Component) -> Option<Step> {
             (StepKind::Page(section), page.time_limit.clone())
         }
         Component::Break(rest) => (StepKind::Break(rest.clone()), None),
-        Component::Trials(_) | Component::Adaptive(_) => return None,
+        Component::Trials(_) | Component::Pairs(_) | Component::Adaptive(_) => return None,
     };
     Some(Step { id, kind, time_limit })
 }
@@ -308,6 +326,7 @@ fn companion(beside: &Beside, clip: &str, clips: &[Clip], left: bool) -> Option<
         left,
         caption: beside.caption.clone(),
         clip_caption: beside.clip_caption.clone(),
+        in_turn: false,
     })
 }
 

@@ -71,7 +71,8 @@ fn a_pair_is_played_when_both_are_ready_and_fails_with_either() {
         (trial.clip, trial.beside.unwrap().clip)
     };
     let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
-    let play = Effect::PlayClip { clip: clip.clone(), beside: Some(beside.clone()) };
+    let play =
+        Effect::PlayClip { clip: clip.clone(), beside: Some(beside.clone()), in_turn: false };
     assert!(effects.contains(&play), "{effects:?}");
     drop(state);
 

@@ -75,6 +75,14 @@ pub const SOUND_COLUMNS: [(&str, ColumnKind, &str, &str); 11] = {
     ]
 };
 
+/// Of studies with triggers, after `beside_drift_ms`: name, kind, unit, what it means.
+pub const TRIGGER_COLUMN: (&str, ColumnKind, &str, &str) = (
+    "triggers_sent",
+    ColumnKind::Integer,
+    "",
+    "Messages of the play that were sent to another program on the machine; empty where it was not there at the onset",
+);
+
 /// Of trials of adaptive blocks, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
 /// it means.
 pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
@@ -110,15 +118,38 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
     ]
 };
 
+/// Of trials of blocks of pairs, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
+/// it means.
+pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
+    use ColumnKind::Text;
+    [
+        (
+            "item_left",
+            Text,
+            "",
+            "Of a pair: the level of the clip on the left (of clips in turn, the first)",
+        ),
+        (
+            "item_right",
+            Text,
+            "",
+            "The level of the clip on the right (of clips in turn, the second)",
+        ),
+        ("item_chosen", Text, "", "The level that was chosen; empty for no difference"),
+        ("cell", Text, "", "What the two clips are alike in: the levels of `within`, joined by |"),
+    ]
+};
+
 /// Columns of the table of stimuli that are no measures; the factors of the clips stand behind them.
 pub const STIMULI_COLUMNS: [&str; 7] =
     ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
-/// Whether a column of exports is called so: nothing of a study may be. [`LEVEL_COLUMNS`] are only taken where there are
-/// adaptive blocks.
+/// Whether a column of exports is called so: nothing of a study may be. [`LEVEL_COLUMNS`] and [`PAIR_COLUMNS`] are only
+/// taken where there are such blocks.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION
         || EXCLUSION_COLUMNS.contains(&name)
+        || name == TRIGGER_COLUMN.0
         || SOUND_COLUMNS.iter().any(|(column, ..)| *column == name)
         || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }

@@ -1,9 +1,10 @@
 //! Answers about two clips that are shown together: which factors of the clips they can be told of.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use crate::question::{KindOfQuestion as _, Question};
-use crate::study_file::{Clip, Component, Measure, Study, TrialsComponent};
+use crate::study_file::{Clip, Measure, Study, TrialsComponent};
 
 /// Why the answers to a question cannot be told of the levels of a factor: they are about two clips.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,10 +43,9 @@ impl Study {
     ) -> BTreeSet<[String; 2]> {
         let clips = self.clips();
         let mut pairs = BTreeSet::new();
-        for block in self.blocks_asking(question) {
-            let Some(beside) = &block.beside else { continue };
-            for clip in clips.iter().filter(|clip| block.clips.takes(clip)) {
-                let other = beside.of(clip, &clips).and_then(|other| other.factor_text(factor));
+        for block in &self.blocks_asking(question) {
+            for (clip, other) in block.shown(&clips) {
+                let other = other.and_then(|other| other.factor_text(factor));
                 let (Some(one), Some(other)) = (clip.factor_text(factor), other) else { continue };
                 let is_compared = |level| levels.is_empty() || levels.contains(level);
                 if one != other && is_compared(&one) && is_compared(&other) {
@@ -57,14 +57,9 @@ impl Study {
     }
 
     /// The blocks of trials that ask a question.
-    fn blocks_asking<'s>(
-        &'s self,
-        question: &'s Question,
-    ) -> impl Iterator<Item = &'s TrialsComponent> {
-        self.components.values().filter_map(|component| match component {
-            Component::Trials(block) if block.questions.contains(&question.id) => Some(block),
-            _ => None,
-        })
+    fn blocks_asking(&self, question: &Question) -> Vec<Cow<'_, TrialsComponent>> {
+        let blocks = self.trial_blocks().into_iter().map(|(_, block)| block);
+        blocks.filter(|block| block.questions.contains(&question.id)).collect()
     }
 
     /// Why answers to `question` cannot be told of the levels of `factor`; `None` where they can be, as in
@@ -80,24 +75,18 @@ impl Study {
         factor: &str,
         levels: &[String],
     ) -> Option<AnswerOfPair> {
-        let blocks = || self.blocks_asking(question);
-        if blocks().all(|block| block.beside.is_none()) {
+        let blocks = self.blocks_asking(question);
+        if !blocks.iter().any(|block| block.shows_two()) {
             return None;
         }
         let clips = self.clips();
         let level = |clip: &Clip| clip.factor_text(factor);
-        let is_compared = |clip: &&Clip| {
+        let is_compared = |clip: &Clip| {
             let own = level(clip);
             own.is_some_and(|own| levels.is_empty() || levels.contains(&own))
         };
-        let shown: Vec<Shown<'_>> = blocks()
-            .flat_map(|block| {
-                let companion =
-                    |clip| block.beside.as_ref().and_then(|beside| beside.of(clip, &clips));
-                let taken = clips.iter().filter(|clip| block.clips.takes(clip));
-                taken.filter(is_compared).map(move |clip| (clip, companion(clip)))
-            })
-            .collect();
+        let shown = blocks.iter().flat_map(|block| block.shown(&clips));
+        let shown: Vec<Shown<'_>> = shown.filter(|(clip, _)| is_compared(clip)).collect();
         if shown.is_empty() {
             // The factor is about people.
             return None;

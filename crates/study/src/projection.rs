@@ -10,7 +10,8 @@ use crate::question::Question;
 use crate::study_file::{
     AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
     DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
-    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, questions_among,
+    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
+    questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -64,6 +65,10 @@ pub struct StudyProjection {
     #[serde(default, skip_serializing_if = "Value::is_null")]
     #[schemars(with = "Option<SoundPages>")]
     pub sound: Value,
+    /// What the page hands on to the script that tells another program: [`Triggers`], or null.
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    #[schemars(with = "Option<Triggers>")]
+    pub triggers: Value,
     /// Trials for practice.
     pub training: Option<Training>,
     /// Questions that several components ask.
@@ -104,6 +109,7 @@ impl Study {
             instructions: self.instructions.clone(),
             calibration: self.calibration.clone(),
             sound: serde_json::to_value(self.sound_pages()).unwrap_or_default(),
+            triggers: serde_json::to_value(self.triggers).unwrap_or_default(),
             training: self.training.clone(),
             questions: self.questions.clone(),
             components: self.projected_components(),
@@ -116,9 +122,12 @@ impl Study {
 }
 
 impl Study {
-    /// The components, adaptive blocks with the clips that they show.
+    /// The components, adaptive blocks with the clips that they show, blocks of pairs as the trials that they make.
     fn projected_components(&self) -> BTreeMap<String, Component> {
         let mut components = self.components.clone();
+        for (name, block) in self.trial_blocks() {
+            components.insert(name.to_owned(), Component::Trials(block.into_owned()));
+        }
         for (name, block) in self.adaptive() {
             let block = serde_json::to_value(block).unwrap_or_default();
             components.insert(name.to_owned(), Component::Adaptive(AdaptiveBlock(block)));

@@ -97,8 +97,7 @@ impl<'d> Data<'d> {
         for step in walk {
             match step {
                 Step::Page(name) if self.design.needs.pages => {
-                    let Some(Component::Questionnaire(page)) =
-                        self.design.study.components.get(name)
+                    let Some(Component::Questionnaire(page)) = self.design.components.get(name)
                     else {
                         continue;
                     };
@@ -140,7 +139,7 @@ impl<'d> Data<'d> {
         (clip, beside, block, done): (usize, Option<Companion>, &str, usize),
         earlier: &Answers,
     ) {
-        let Some(Component::Trials(component)) = self.design.study.components.get(block) else {
+        let Some(Component::Trials(component)) = self.design.components.get(block) else {
             return;
         };
         let needs = &self.design.needs;

@@ -1,6 +1,10 @@
 //! What participants of simulated studies go through: clips, orders, pages, and what must be drawn.
 
-use mimique_study::{Clip, Component, Draw, Measure, OrderError, OrderedItem, Sides, Study, order};
+use std::collections::BTreeMap;
+
+use mimique_study::{
+    Clip, Component, Draw, Measure, OrderError, OrderedItem, Sides, Study, StudyProjection, order,
+};
 
 use super::clips::{ScaledClips, scaled};
 use crate::simulate::{Companion, Draws, Model, Parameters, condition_and_slot};
@@ -10,6 +14,8 @@ use crate::trials::straight_lining;
 pub(crate) struct Design<'s> {
     pub study: &'s Study,
     pub clips: ScaledClips,
+    /// The components as pages carry them: blocks of pairs as the trials that they make.
+    pub components: BTreeMap<String, Component>,
     /// A participant each, from number 1.
     pub walks: Vec<Vec<Step>>,
     conditions: Vec<&'s str>,
@@ -57,8 +63,10 @@ impl<'s> Design<'s> {
             let mut sides = Sides::new(&projection, draw, &items);
             for item in items {
                 match item {
-                    OrderedItem::Trial { component, clip, .. } => {
-                        let beside = companion((study, &own_clips), &component, &clip, &mut sides);
+                    OrderedItem::Trial { component, clip, beside, .. } => {
+                        let beside = beside.map(|clip| (clip, false)).or_else(|| {
+                            companion((&projection, &own_clips), &component, &clip, &mut sides)
+                        });
                         let copies = |clip: &str| clips.stand_ins.get(clip).into_iter().flatten();
                         for (copy, &clip) in copies(&clip).enumerate() {
                             // A copy of a clip stands beside the same copy of its companion.
@@ -88,7 +96,7 @@ impl<'s> Design<'s> {
             runs: straight_lining::responses(study),
             responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
         };
-        Ok(Self { study, clips, walks, conditions, needs })
+        Ok(Self { study, clips, components: projection.components, walks, conditions, needs })
     }
 
     /// The condition of a participant, numbered from 1.
@@ -104,7 +112,7 @@ impl<'s> Design<'s> {
 
 /// The clip that a block plays beside another, and whether it stands on the left.
 fn companion(
-    (study, clips): (&Study, &[Clip]),
+    (study, clips): (&StudyProjection, &[Clip]),
     block: &str,
     clip: &str,
     sides: &mut Sides,

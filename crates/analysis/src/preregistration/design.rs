@@ -1,12 +1,14 @@
 //! Design and variables in words.
 
+use std::borrow::Cow;
+
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{
     Clip, Component, Constraint, KindOfQuestion as _, OrderRule, Question, Sequence, SequenceItem,
     Study,
 };
 
-use super::{Preregistration, Text, levels};
+use super::{Preregistration, Text, levels, pairs};
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::simulate::factor_levels;
@@ -172,10 +174,11 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         );
         text.line("");
     }
+    pairs::design(text, study, language, naming);
     levels::design(text, study, language);
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
-    let asked: Vec<&String> = blocks(study).flat_map(|block| &block.questions).collect();
+    let asked: Vec<String> = blocks(study).flat_map(|block| block.questions.clone()).collect();
     let is_asked = |id: &String| asked.contains(&id) || study.is_asked_of_levels(id);
     for question in study.questions.iter().filter(|question| is_asked(&question.id)) {
         measured(text, language, question);
@@ -221,11 +224,9 @@ fn measured(text: &mut Text, language: Language, question: &Question) {
 }
 
 /// The blocks of trials that the sequence shows.
-fn blocks(study: &Study) -> impl Iterator<Item = &mimique_study::TrialsComponent> {
-    study.components.iter().filter_map(move |(name, component)| match component {
-        Component::Trials(block) if names(&study.sequence, name) => Some(block),
-        _ => None,
-    })
+fn blocks(study: &Study) -> impl Iterator<Item = Cow<'_, mimique_study::TrialsComponent>> {
+    let shown = |name| names(&study.sequence, name);
+    study.trial_blocks().into_iter().filter_map(move |(name, block)| shown(name).then_some(block))
 }
 
 /// How many trials somebody of a condition can be shown.
@@ -234,9 +235,8 @@ fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Opti
         SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
         SequenceItem::Sequence(nested) => trials_in(study, nested, clips, condition),
         SequenceItem::Component(name) => match study.components.get(name) {
-            Some(Component::Trials(block)) => {
-                let chosen = clips.iter().filter(|clip| block.clips.takes(clip)).count();
-                chosen * block.repetitions as usize
+            Some(Component::Trials(_) | Component::Pairs(_)) => {
+                study.trial_block(name).map_or(0, |block| block.trial_count(clips))
             }
             Some(Component::Adaptive(_)) => {
                 study.adaptive().find(|(own, _)| own == name).map_or(0, |(_, block)| block.steps)

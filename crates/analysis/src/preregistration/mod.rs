@@ -6,6 +6,7 @@
 mod analysis;
 mod design;
 mod levels;
+mod pairs;
 
 use std::fmt::Write;
 

@@ -10,12 +10,13 @@ use axum::response::Response;
 use crate::state::settings::Settings;
 
 /// Scripts and styles only from here; nothing inline, nothing from elsewhere but packs, where they
-/// are named.
-fn content_security_policy(packs: Option<&str>) -> String {
+/// are named, and a program on the participant's machine that the page of a study tells of what it shows.
+pub(crate) fn content_security_policy(packs: Option<&str>, program: Option<&str>) -> String {
     let packs = packs.map(|packs| format!(" {}", origin(packs))).unwrap_or_default();
+    let program = program.map(|program| format!(" {program}")).unwrap_or_default();
     format!(
         "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
-         img-src 'self' data: blob:; connect-src 'self'{packs}; worker-src 'self'; \
+         img-src 'self' data: blob:; connect-src 'self'{packs}{program}; worker-src 'self'; \
          media-src 'self' blob:{packs}; form-action 'self'; frame-ancestors 'none'; \
          base-uri 'none'; object-src 'none'"
     )
@@ -35,7 +36,7 @@ pub(super) struct Headers(Arc<[(HeaderName, HeaderValue)]>);
 
 impl Headers {
     pub fn of(settings: &Settings, encrypted: bool) -> Self {
-        let policy = content_security_policy(settings.packs_address.as_deref());
+        let policy = content_security_policy(settings.packs_address.as_deref(), None);
         let fixed = HeaderValue::from_static;
         let mut headers = vec![
             // An address with characters that no header takes is left out by falling back.

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use axum::extract::{Path, Query, RawQuery, State};
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, html};
 use mimique_storage::{Role, StorageError};
@@ -13,6 +13,7 @@ use serde::Deserialize;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
+use crate::http::headers::content_security_policy;
 use crate::http::language::accepted;
 use crate::state::App;
 use crate::studio::page::{StudioFiles, studio_page};
@@ -92,7 +93,14 @@ pub(crate) async fn participant(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     let asked = asked.lang.as_deref();
-    from_template(&app, "participant/index.html", &study, asked, &headers)
+    let mut page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
+    if let Some(triggers) = app.study(&study)?.study().triggers {
+        let packs = app.settings.packs_address.as_deref();
+        let policy = content_security_policy(packs, Some(&triggers.origin()));
+        let policy = HeaderValue::from_str(&policy).map_err(Error::internal)?;
+        page.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    Ok(page)
 }
 
 pub(crate) async fn preview(

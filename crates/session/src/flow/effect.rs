@@ -18,12 +18,14 @@ pub enum Effect {
     /// `step`, `component`, `block`, whose draw it is (`seed`, `configHash`, `slot`), and `answers` so far: the side or
     /// null.
     ChooseLevel(Value),
-    /// Play this clip once from its start, the one beside it in step; report by `Played`.
+    /// Play this clip once from its start, the one beside it in step or in turn after it; report by `Played`.
     PlayClip {
         /// The trial's own clip.
         clip: String,
         /// The one beside it.
         beside: Option<String>,
+        /// Whether that one is played after it.
+        in_turn: bool,
     },
     /// Measure what browser and display can do; report by `Measured`, and by `Measured` again
     /// whenever the window changes its size while the device gate stands there.

@@ -304,13 +304,14 @@ impl<'a> Transition<'a> {
         }
         let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
         let (clip, beside) = (clip.to_owned(), beside.map(|(clip, left)| (clip.to_owned(), left)));
+        let in_turn = trial.beside.as_ref().is_some_and(|beside| beside.in_turn);
         if !self.state.record.attempt.is_started() {
             let (step, clip) = (step.id.clone(), clip.clone());
             let beside = beside.clone().map(|(clip, left)| ShownBeside { clip, left });
             self.record(EventKind::TrialStarted { step, clip, beside });
         }
         self.state.live.play = Play::Running;
-        self.effects.push(Effect::PlayClip { clip, beside: beside.map(|it| it.0) });
+        self.effects.push(Effect::PlayClip { clip, beside: beside.map(|it| it.0), in_turn });
         true
     }
 

@@ -13,6 +13,7 @@
 mod cells;
 mod column;
 mod levels;
+mod pairs;
 mod psych_ds;
 mod step_cells;
 mod study_columns;

@@ -8,11 +8,14 @@ use super::SessionRecord;
 use super::cells::{answer_cells, milliseconds, plain};
 use super::column::{Column, Table};
 use super::levels::{Blocks, level_cells, replay};
+use super::pairs::{self, chosen_item, pair_cells};
 use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
-use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, SOUND_COLUMNS};
+use mimique_study::columns::{
+    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, SOUND_COLUMNS, TRIGGER_COLUMN,
+};
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
     iso_time,
@@ -42,6 +45,8 @@ pub struct TidyForm {
     pub(super) clips: BTreeMap<String, Clip>,
     /// Adaptive blocks.
     blocks: Blocks,
+    /// The blocks of pairs, by name.
+    pairs: pairs::Blocks,
     /// Hash of the weights of each clip as they were solved beforehand.
     weights: BTreeMap<String, String>,
     /// Of a participant's condition (none: everybody's) and a component.
@@ -64,14 +69,22 @@ impl TidyForm {
         let has_sound = study.has_sound();
         let blocks: Blocks =
             study.adaptive().map(|(name, block)| (name.to_owned(), block)).collect();
+        let pairs: pairs::Blocks =
+            study.pair_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
         for fixed in FIXED_COLUMNS {
             let name = fixed.0;
             columns.push(column(fixed));
             if name == "beside_drift_ms" && has_sound {
                 columns.extend(SOUND_COLUMNS.map(column));
             }
+            if name == "beside_drift_ms" && study.triggers.is_some() {
+                columns.push(column(TRIGGER_COLUMN));
+            }
             if name == "chosen" && !blocks.is_empty() {
                 columns.extend(LEVEL_COLUMNS.map(column));
+            }
+            if name == "chosen" && !pairs.is_empty() {
+                columns.extend(PAIR_COLUMNS.map(column));
             }
             if name == "condition" {
                 columns.extend(assigned_column(study));
@@ -101,6 +114,7 @@ impl TidyForm {
                 .map(|clip| (clip.id.clone(), clip))
                 .collect(),
             blocks,
+            pairs,
             weights: weights.collect(),
             conditions,
             columns,
@@ -137,6 +151,7 @@ impl TidyForm {
             if let Some(replayed) = levels.get(&index) {
                 level_cells(step, replayed, &self.weights, &mut cells);
             }
+            pair_cells(step, &self.pairs, &self.clips, &mut cells);
             cells.put("trial_index", index.into());
             cells.put("trial_order", order);
             self.each_response(step, &earlier, |response| {
@@ -277,6 +292,7 @@ impl TidyForm {
                 _ => None,
             };
             row.put("chosen", chosen.into());
+            chosen_item((step, &question.id), chosen, &self.pairs, &self.clips, row);
         }
         if let Some(check) = &question.attention_check {
             let passed = alike(answer, &check.expected);

@@ -55,9 +55,8 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
 fn asked<'a>(subject: &Subject<'a>, id: &str) -> Vec<Asked<'a>> {
     let names = |ids: &[String]| ids.iter().any(|each| each == id);
     let practice = subject.study.training.iter().filter(|it| names(&it.questions));
-    let blocks = subject.study.components.iter().filter(
-        |(_, component)| matches!(component, Component::Trials(block) if names(&block.questions)),
-    );
+    let blocks = subject.study.trial_blocks();
+    let blocks = blocks.into_iter().filter(|(_, block)| names(&block.questions));
     practice
         .map(|_| Asked::Practice)
         .chain(blocks.map(|(name, _)| Asked::Component(name)))
@@ -120,8 +119,7 @@ fn known_before(
         Asked::Practice => study.training.as_ref().map(|it| it.questions.clone()),
         Asked::Component(name) => match study.components.get(name) {
             Some(Component::Questionnaire(it)) => Some(page(&it.questions)),
-            Some(Component::Trials(block)) => Some(block.questions.clone()),
-            _ => None,
+            _ => study.trial_block(name).map(|block| block.questions.clone()),
         },
     }
     .unwrap_or_default();

@@ -7,11 +7,12 @@ use super::problem::Problem;
 use super::values::Nearest;
 use crate::practice::right_answers;
 use crate::question::Question;
-use crate::study_file::{Component, Hearing, TimeLimit, Training};
+use crate::study_file::{Component, Hearing, TimeLimit, Training, Triggers};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     device(subject, issues);
     calibration(subject, issues);
+    triggers(subject, issues);
     time_limits(subject, issues);
     if let Some(training) = &subject.study.training {
         practice(subject, training, issues);
@@ -85,18 +86,35 @@ fn calibration(subject: &Subject<'_>, issues: &mut Issues) {
     }
 }
 
+/// Where another program listens.
+fn triggers(subject: &Subject<'_>, issues: &mut Issues) {
+    let Some(triggers) = subject.study.triggers else { return };
+    if !Triggers::PORTS.contains(&triggers.port) {
+        issues.error(
+            "/triggers/port",
+            Problem::OutOfRange {
+                value: f64::from(triggers.port),
+                unit: "as a port",
+                least: f64::from(*Triggers::PORTS.start()),
+                most: f64::from(*Triggers::PORTS.end()),
+            },
+        );
+    }
+}
+
 fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
     let study = subject.study;
-    let mut limits: Vec<(String, Option<&TimeLimit>)> = Vec::new();
-    let demographics = study.demographics.as_ref().and_then(|page| page.time_limit.as_ref());
+    let mut limits: Vec<(String, Option<TimeLimit>)> = Vec::new();
+    let demographics = study.demographics.as_ref().and_then(|page| page.time_limit.clone());
     limits.push(("/demographics".to_owned(), demographics));
-    let training = study.training.as_ref().and_then(|training| training.time_limit.as_ref());
+    let training = study.training.as_ref().and_then(|training| training.time_limit.clone());
     limits.push(("/training".to_owned(), training));
     for (name, component) in &study.components {
         let limit = match component {
-            Component::Trials(block) => block.time_limit.as_ref(),
-            Component::Questionnaire(page) => page.time_limit.as_ref(),
-            Component::Page(page) => page.time_limit.as_ref(),
+            Component::Trials(block) => block.time_limit.clone(),
+            Component::Pairs(block) => block.read().ok().and_then(|block| block.time_limit),
+            Component::Questionnaire(page) => page.time_limit.clone(),
+            Component::Page(page) => page.time_limit.clone(),
             Component::Adaptive(_) | Component::Break(_) => None,
         };
         limits.push((below("/components", name), limit));

@@ -19,6 +19,7 @@ mod hypotheses;
 mod issue;
 mod media;
 mod nearest;
+mod pairs;
 mod problem;
 mod questions;
 mod readable;

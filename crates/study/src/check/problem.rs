@@ -1,11 +1,12 @@
 //! Every problem that the check can find, as values: a code, what the words name, and what to do about
 //! it. The words are made here and nowhere else, in English, when somebody reads them.
 
+use mimique_adaptive::DesignError;
 use serde_json::Value;
 
 use crate::order::NoOrder;
 use crate::pairs::AnswerOfPair;
-use crate::study_file::{PathError, SyntaxError, WrongVariable};
+use crate::study_file::{NoPairs, PathError, SyntaxError, WrongVariable};
 
 use super::values::{Count, Known, Names, Nearest, Shown, Wanted};
 
@@ -438,6 +439,29 @@ NothingAgainst { against: String }: "adaptive",
     "a segment has no clip by \"{against}\" of this avatar", "add it to /stimuli/clips, or name other \"segments\"";
 TooManyLevels { clips: usize, most: usize }: "adaptive",
     "{clips} clips of levels would be solved beforehand, at most {most} are", "take fewer levels or segments";
+ComparedWithin { factor: String }: "pairs", "\"{factor}\" is what is compared: two clips of a pair differ in it",
+    "remove it from \"within\", or compare something else";
+ChoosesNoClip { question: String }: "pairs", "\"{question}\" does not choose between two clips",
+    "name a question of type \"comparison\"";
+ReasonChooses { question: String }: "pairs", "\"{question}\" is a second choice between the clips, no reason",
+    "name a question of another type, or ask it in a block of its own";
+NothingToCompare { factor: String, levels: usize }: "pairs", "the clips have {levels} level of \"{factor}\"",
+    "compare a factor of which the clips have two levels or more";
+CellIncomplete { why: NoPairs }: "pairs", "{why}",
+    "add that clip to /stimuli/clips, take other \"clips\", or leave the level out of \"levels\"";
+CellAmbiguous { why: NoPairs }: "pairs", "{why}",
+    "name the factor in which they differ in \"within\", or give each a level of its own by \"factors\"";
+ShareOfAll: "pairs", "a share of the pairs is asked for, and all of them", "write \"rule\": \"incomplete\", or remove \"perParticipant\"";
+NoDesign { why: DesignError }: "pairs", "{why}", "write another number";
+UnevenPairs { least: usize, most: usize }: "pairs", "a pair is shown {least} times, another one {most} times",
+    "ask for another number of pairs";
+InTurnWithSound: "pairs", "clips with sound are not shown in turn", "write \"inStep\", or remove /stimuli/sounds";
+InTurnWithVideo: "pairs", "videos are not shown in turn: they have clocks of their own",
+    "write \"inStep\", or take \"clips\" that are drawn";
+PairColumn { name: String }: "pairs",
+    "\"{name}\" is the name of a column that exports of blocks of pairs have", "give the factor or the question another name";
+SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs itself, evenly",
+    "remove \"numSamples\", and write \"schedule\": {{\"rule\": \"incomplete\", \"perParticipant\": …}}";
 NoTrials: "empty", "no trial is shown", "name a component of type \"trials\"";
 NoTrialsIn { condition: String }: "empty",
     "no trial is shown in the condition \"{condition}\"", "name a component of type \"trials\"";

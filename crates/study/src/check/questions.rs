@@ -1,5 +1,6 @@
 //! Questions: identifiers, options, scales, right answers.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::issue::{Issues, below};
@@ -40,7 +41,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     }
     conditions::examine(subject, issues);
     for (index, question) in study.questions.iter().enumerate() {
-        let blocks: Vec<&TrialsComponent> = blocks_asking(subject, &question.id).collect();
+        let blocks = blocks_asking(subject, &question.id);
         let in_training =
             study.training.iter().any(|training| training.questions.contains(&question.id));
         if blocks.is_empty() && !in_training && !subject.study.is_asked_of_levels(&question.id) {
@@ -50,7 +51,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             );
         }
         if question.kind.compares_clips()
-            && (in_training || blocks.iter().any(|block| block.beside.is_none()))
+            && (in_training || blocks.iter().any(|block| !block.shows_two()))
         {
             issues.error(
                 below("/questions", index),
@@ -62,14 +63,9 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
 }
 
 /// The blocks that ask a question.
-fn blocks_asking<'a>(
-    subject: &'a Subject<'_>,
-    id: &'a str,
-) -> impl Iterator<Item = &'a TrialsComponent> {
-    subject.study.components.values().filter_map(move |component| match component {
-        Component::Trials(block) if block.questions.iter().any(|each| each == id) => Some(block),
-        _ => None,
-    })
+fn blocks_asking<'a>(subject: &'a Subject<'_>, id: &str) -> Vec<Cow<'a, TrialsComponent>> {
+    let blocks = subject.study.trial_blocks().into_iter().map(|(_, block)| block);
+    blocks.filter(|block| block.questions.iter().any(|each| each == id)).collect()
 }
 
 fn identifier(subject: &Subject<'_>, question: &Question, place: &str, issues: &mut Issues) {
@@ -108,7 +104,7 @@ fn signs(question: &Question, place: &str, issues: &mut Issues) {
 fn truth(
     subject: &Subject<'_>,
     question: &Question,
-    blocks: &[&TrialsComponent],
+    blocks: &[Cow<'_, TrialsComponent>],
     place: &str,
     issues: &mut Issues,
 ) {

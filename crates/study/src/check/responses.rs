@@ -1,10 +1,12 @@
 //! What hypotheses and tables take: answers to questions of trials, by their names in the export.
 
+use std::borrow::Cow;
+
 use super::Subject;
 use super::issue::Issues;
 use super::problem::Problem;
 use crate::question::Question;
-use crate::study_file::{Component, Sequence, SequenceItem, Study, TrialsComponent};
+use crate::study_file::{Sequence, SequenceItem, Study, TrialsComponent};
 
 /// The question that gives an answer of this name.
 pub(super) fn question<'s>(study: &'s Study, response: &str) -> Option<&'s Question> {
@@ -51,7 +53,7 @@ pub(super) fn tested<'s>(
 /// Whether a trial that a condition is shown asks a question.
 pub(super) fn is_asked(study: &Study, condition: &str, question: &str) -> bool {
     let blocks = trials(study, &study.sequence, Some(condition));
-    blocks.into_iter().any(|block| asks(block, question))
+    blocks.into_iter().any(|block| asks(&block, question))
 }
 
 /// Whether trials are shown, and none of them, to nobody, asks a question.
@@ -59,7 +61,7 @@ fn is_asked_in_no_trial(study: &Study, question: &str) -> bool {
     let shown_to = study.conditions().into_iter().map(Some).chain([None]);
     let blocks: Vec<_> =
         shown_to.flat_map(|condition| trials(study, &study.sequence, condition)).collect();
-    !blocks.is_empty() && !blocks.iter().any(|block| asks(block, question))
+    !blocks.is_empty() && !blocks.iter().any(|block| asks(&block, question))
 }
 
 /// The blocks of trials that a condition is shown.
@@ -67,16 +69,13 @@ fn trials<'s>(
     study: &'s Study,
     sequence: &Sequence,
     condition: Option<&str>,
-) -> Vec<&'s TrialsComponent> {
+) -> Vec<Cow<'s, TrialsComponent>> {
     let of = |item: &SequenceItem| match item {
         SequenceItem::Sequence(nested) if nested.is_shown_in(condition) => {
             trials(study, nested, condition)
         }
         SequenceItem::Sequence(_) => Vec::new(),
-        SequenceItem::Component(name) => match study.components.get(name) {
-            Some(Component::Trials(block)) => vec![block],
-            _ => Vec::new(),
-        },
+        SequenceItem::Component(name) => study.trial_block(name).into_iter().collect(),
     };
     sequence.components.iter().flat_map(of).collect()
 }

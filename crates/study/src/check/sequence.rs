@@ -2,15 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Subject;
-use super::adaptive;
 use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
+use super::{Subject, adaptive, pairs};
 use crate::order::{CYCLES, Draw, Flaw, OrderError, prove};
 use crate::study_file::{
-    Beside, Clip, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
+    Beside, Clip, ClipSelection, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
 };
 
 /// Names of steps that are no components.
@@ -29,6 +28,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         }
         match component {
             Component::Trials(block) => trials(subject, block, &questions, &pointer, issues),
+            Component::Pairs(block) => pairs::examine(subject, block, &pointer, issues),
             Component::Adaptive(block) => adaptive::examine(subject, block, &pointer, issues),
             Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
                 let place = below(&pointer, "minimumSeconds");
@@ -97,11 +97,24 @@ fn trials(
     if block.repetitions == 0 {
         issues.error(below(pointer, "repetitions"), Problem::NoRepetition);
     }
+    selection(subject, &block.clips, &all_factors(subject), pointer, issues);
+    if let Some(companion) = &block.beside {
+        beside(subject, block, companion, &below(pointer, "beside"), issues);
+    }
+}
+
+/// Which clips a block takes: there are such clips.
+pub(super) fn selection(
+    subject: &Subject<'_>,
+    clips: &ClipSelection,
+    factors: &BTreeMap<String, BTreeSet<String>>,
+    pointer: &str,
+    issues: &mut Issues,
+) {
     let ids: Vec<&str> = subject.clips.iter().map(|clip| clip.id.as_str()).collect();
-    references(&block.clips.ids, &ids, &format!("{pointer}/clips/ids"), "clip", issues);
-    let factors = all_factors(subject);
+    references(&clips.ids, &ids, &format!("{pointer}/clips/ids"), "clip", issues);
     let names: Vec<&str> = factors.keys().map(String::as_str).collect();
-    for (factor, wanted) in &block.clips.factors {
+    for (factor, wanted) in &clips.factors {
         let place = below(&format!("{pointer}/clips/where"), factor);
         let Some(values) = factors.get(factor) else {
             issues.error(place, Problem::unknown("factor", factor, &names));
@@ -122,10 +135,7 @@ fn trials(
             }
         }
     }
-    if let Some(companion) = &block.beside {
-        beside(subject, block, companion, &below(pointer, "beside"), issues);
-    }
-    if !subject.clips.iter().any(|clip| block.clips.takes(clip)) {
+    if !subject.clips.iter().any(|clip| clips.takes(clip)) {
         issues.error(below(pointer, "clips"), Problem::NoClip);
     }
 }
@@ -169,7 +179,7 @@ fn beside(
 }
 
 /// Every factor with its values as text, `clip`, `avatar` and `segment` among them.
-fn all_factors(subject: &Subject<'_>) -> BTreeMap<String, BTreeSet<String>> {
+pub(super) fn all_factors(subject: &Subject<'_>) -> BTreeMap<String, BTreeSet<String>> {
     let mut factors: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for clip in subject.clips {
         let named = ["clip", "avatar", "segment"];
@@ -238,7 +248,7 @@ fn interruptions<'a>(
                 let problem = Problem::unknown("component", name, known);
                 issues.error(below(&place, "component"), problem);
             }
-            Some(Component::Trials(_) | Component::Adaptive(_)) => {
+            Some(Component::Trials(_) | Component::Pairs(_) | Component::Adaptive(_)) => {
                 let problem = Problem::InterruptedByTrials { component: name.clone() };
                 issues.error(below(&place, "component"), problem);
             }
@@ -266,18 +276,11 @@ fn reach(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Iss
         issues.error(pointer, Problem::ConstraintOnSequence { part: index + 1 });
         return;
     }
-    let blocks: Vec<&TrialsComponent> = here
-        .components
-        .iter()
-        .filter_map(|item| match item {
-            SequenceItem::Component(name) => subject.study.components.get(name),
-            SequenceItem::Sequence(_) => None,
-        })
-        .filter_map(|component| match component {
-            Component::Trials(block) => Some(block),
-            _ => None,
-        })
-        .collect();
+    let named = |item: &SequenceItem| match item {
+        SequenceItem::Component(name) => subject.study.trial_block(name),
+        SequenceItem::Sequence(_) => None,
+    };
+    let blocks: Vec<_> = here.components.iter().filter_map(named).collect();
     let factors = all_factors(subject);
     for (index, constraint) in here.constraints.iter().enumerate() {
         let factor = constraint.factor.as_str();
@@ -295,6 +298,13 @@ fn reach(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Iss
 fn constraints(subject: &Subject<'_>, here: &Sequence, pointer: &str, issues: &mut Issues) {
     if here.num_samples == Some(0) {
         issues.error(below(pointer, "numSamples"), Problem::NoSamples);
+    }
+    for item in here.components.iter().filter(|_| here.num_samples.is_some()) {
+        let SequenceItem::Component(name) = item else { continue };
+        if matches!(subject.study.components.get(name), Some(Component::Pairs(_))) {
+            let problem = Problem::SampledPairs { component: name.clone() };
+            issues.error(below(pointer, "numSamples"), problem);
+        }
     }
     if !here.constraints.is_empty() && here.order != OrderRule::Random {
         issues.error(below(pointer, "constraints"), Problem::OrderNotRandom);
@@ -322,9 +332,8 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
         SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
         SequenceItem::Sequence(nested) => trial_count(subject, nested, condition),
         SequenceItem::Component(name) => match subject.study.components.get(name) {
-            Some(Component::Trials(block)) => {
-                let chosen = subject.clips.iter().filter(|clip| block.clips.takes(clip)).count();
-                chosen.saturating_mul(block.repetitions as usize)
+            Some(Component::Trials(_) | Component::Pairs(_)) => {
+                subject.study.trial_block(name).map_or(0, |block| block.trial_count(subject.clips))
             }
             Some(Component::Adaptive(_)) => {
                 let of = subject.study.adaptive().find(|(own, _)| own == name);

@@ -10,7 +10,9 @@ use super::problem::Problem;
 use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
-use crate::study_file::{Capture, CaptureSource, Component, GazeSource, Sequence, SequenceItem};
+use crate::study_file::{
+    Capture, CaptureSource, Component, GazeSource, PairsComponent, Sequence, SequenceItem,
+};
 
 /// Frames a second that a clip can be shown at.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=1000.0;
@@ -311,7 +313,8 @@ fn references(subject: &Subject<'_>, issues: &mut Issues) {
 /// Factors: no name twice over, none in vain.
 fn factors(subject: &Subject<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
-    let used = factors_used(subject);
+    let pairs: Vec<PairsComponent> = subject.study.pair_blocks().map(|(_, block)| block).collect();
+    let used = factors_used(subject, &pairs);
     let avatars = stimuli.avatars.iter();
     let methods = stimuli.methods.iter();
     let sounds = stimuli.sounds.iter();
@@ -356,7 +359,7 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
 }
 
 /// The factors that something of the study reads. `method` and `alpha` need no use.
-fn factors_used<'a>(subject: &Subject<'a>) -> BTreeSet<&'a str> {
+fn factors_used<'a>(subject: &Subject<'a>, pairs: &'a [PairsComponent]) -> BTreeSet<&'a str> {
     fn of_sequence<'a>(sequence: &'a Sequence, used: &mut BTreeSet<&'a str>) {
         used.extend(sequence.constraints.iter().map(|each| each.factor.as_str()));
         for item in &sequence.components {
@@ -381,6 +384,10 @@ fn factors_used<'a>(subject: &Subject<'a>) -> BTreeSet<&'a str> {
         if let Component::Trials(block) = component {
             used.extend(block.clips.factors.keys().map(String::as_str));
         }
+    }
+    for block in pairs {
+        let named = block.within.iter().chain(block.clips.factors.keys());
+        used.extend(named.chain([&block.compare]).map(String::as_str));
     }
     of_sequence(&study.sequence, &mut used);
     used

@@ -42,8 +42,11 @@ pub enum OrderedItem {
         trial: String,
         /// Name of its component.
         component: String,
-        /// Its clip; empty where it follows from answers.
+        /// Its clip; empty where it follows from answers. Of a pair it stands left.
         clip: String,
+        /// Of a pair: the clip on the right.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        beside: Option<String>,
         /// Identifier of the nearest sequence that has one, else the component's name.
         condition: String,
     },
@@ -213,6 +216,7 @@ impl<'a> Context<'a> {
                 trial: format!("{name}/{number}"),
                 component: name.to_owned(),
                 clip: String::new(),
+                beside: None,
                 condition: condition.unwrap_or(name).to_owned(),
             };
             return Ok(vec![(1..=block.steps()).map(trial).collect()]);
@@ -220,6 +224,20 @@ impl<'a> Context<'a> {
         let Component::Trials(trials) = component else {
             return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);
         };
+        if let Some(pairs) = &trials.pairs {
+            let trial = |[left, right]: [&str; 2]| {
+                // The trial has one name, whatever its sides.
+                let [one, other] = if left < right { [left, right] } else { [right, left] };
+                vec![OrderedItem::Trial {
+                    trial: format!("{name}/{one}+{other}"),
+                    component: name.to_owned(),
+                    clip: left.to_owned(),
+                    beside: Some(right.to_owned()),
+                    condition: condition.unwrap_or(name).to_owned(),
+                }]
+            };
+            return Ok(pairs.of_slot(self.draw.participant).map(trial).collect());
+        }
         let mut parts = Vec::new();
         for showing in 1..=trials.repetitions {
             for clip in self.study.clips.iter().filter(|clip| trials.clips.takes(clip)) {
@@ -231,6 +249,7 @@ impl<'a> Context<'a> {
                     trial,
                     component: name.to_owned(),
                     clip: clip.id.clone(),
+                    beside: None,
                     condition: condition.unwrap_or(name).to_owned(),
                 }]);
             }
@@ -276,7 +295,8 @@ impl<'a> Context<'a> {
         sequence.constraints.iter().map(of).collect()
     }
 
-    /// A constraint with each part's value as a number; only single trials have one.
+    /// A constraint with each part's value as a number; only single trials have one, and pairs in what both of
+    /// their clips are alike.
     fn rule<'p>(
         &self,
         constraint: &crate::study_file::Constraint,
@@ -285,8 +305,14 @@ impl<'a> Context<'a> {
         let mut numbers: BTreeMap<String, u32> = BTreeMap::new();
         let values = parts
             .map(|part| {
-                let [OrderedItem::Trial { clip, .. }] = part.as_slice() else { return None };
-                let value = self.by_id.get(clip.as_str())?.factor_text(&constraint.factor)?;
+                let [OrderedItem::Trial { clip, beside, .. }] = part.as_slice() else {
+                    return None;
+                };
+                let of = |clip: &str| self.by_id.get(clip)?.factor_text(&constraint.factor);
+                let value = of(clip)?;
+                if beside.as_deref().is_some_and(|beside| of(beside).as_ref() != Some(&value)) {
+                    return None;
+                }
                 let next = numbers.len() as u32;
                 Some(*numbers.entry(value).or_insert(next))
             })

@@ -16,11 +16,13 @@ mod languages;
 mod local_text;
 mod media;
 mod method;
+mod pairs;
 mod paths;
 mod sequence;
 mod sound;
 mod stimuli;
 mod tables;
+mod triggers;
 
 use std::collections::BTreeMap;
 
@@ -50,6 +52,9 @@ pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining};
+pub use pairs::{
+    DealtPairs, NoPairs, PairRule, PairSchedule, PairShowing, PairsBlock, PairsComponent,
+};
 pub use paths::{PathError, WrongVariable, resolve_path};
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
@@ -65,6 +70,7 @@ pub use stimuli::{
     Performance, Segment, Span, Stimuli, video_type,
 };
 pub use tables::{Layout, TableLayout};
+pub use triggers::Triggers;
 
 /// A whole study file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -114,6 +120,9 @@ pub struct Study {
     /// How large a CSS pixel is, and how far away the eyes are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// A program on the participant's machine that is told what is shown when.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triggers: Option<Triggers>,
     /// How participants meet the sound of clips: captions, and the page on which the volume is set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound: Option<SoundSection>,
@@ -284,6 +293,9 @@ impl Study {
             }
             name => match self.components.get(name) {
                 Some(Component::Trials(block)) => shared(&block.questions),
+                Some(Component::Pairs(block)) => {
+                    block.read().map_or_else(|_| Vec::new(), |block| shared(&block.questions()))
+                }
                 Some(Component::Adaptive(block)) => shared(&[block.question().to_owned()]),
                 Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
                 _ => Vec::new(),

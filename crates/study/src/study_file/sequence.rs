@@ -13,6 +13,8 @@ use super::{Criterion, FactorValue, LocalText, Question, StatedAnswers, TimeLimi
 pub enum Component {
     /// A block: one trial a clip.
     Trials(TrialsComponent),
+    /// A block of paired comparisons.
+    Pairs(#[schemars(with = "super::PairsComponent")] super::PairsBlock),
     /// A block whose levels follow the answers.
     Adaptive(#[schemars(with = "super::AdaptiveComponent")] super::AdaptiveBlock),
     /// A page of questions.
@@ -48,6 +50,10 @@ pub struct TrialsComponent {
     /// How long its answers may take, from the end of the first whole play.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_limit: Option<TimeLimit>,
+    /// The pairs that it shows in place of single clips: derived ([`super::PairsComponent::trials`]), in no study file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub pairs: Option<super::DealtPairs>,
 }
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
@@ -262,7 +268,48 @@ impl Beside {
     }
 }
 
+impl TrialsComponent {
+    /// Each clip that is shown with what stands beside it; of pairs each pair once, whatever its sides.
+    pub fn shown<'c>(
+        &self,
+        clips: &'c [super::Clip],
+    ) -> Vec<(&'c super::Clip, Option<&'c super::Clip>)> {
+        let Some(pairs) = &self.pairs else {
+            let taken = clips.iter().filter(|clip| self.clips.takes(clip));
+            let companion = |clip| self.beside.as_ref().and_then(|beside| beside.of(clip, clips));
+            return taken.map(|clip| (clip, companion(clip))).collect();
+        };
+        let mut places: Vec<[usize; 2]> = pairs.slots.iter().flatten().copied().collect();
+        places.iter_mut().for_each(|pair| pair.sort_unstable());
+        places.sort_unstable();
+        places.dedup();
+        let clip = |place: usize| clips.iter().find(|clip| clip.id == pairs.clips[place]);
+        places.into_iter().filter_map(|[one, other]| Some((clip(one)?, clip(other)))).collect()
+    }
+
+    /// How many trials each participant is shown.
+    pub fn trial_count(&self, clips: &[super::Clip]) -> usize {
+        match &self.pairs {
+            Some(pairs) => pairs.each(),
+            None => {
+                let taken = clips.iter().filter(|clip| self.clips.takes(clip)).count();
+                taken.saturating_mul(self.repetitions as usize)
+            }
+        }
+    }
+
+    /// Whether each of its trials shows two clips.
+    pub fn shows_two(&self) -> bool {
+        self.beside.is_some() || self.pairs.is_some()
+    }
+}
+
 impl ClipSelection {
+    /// Whether every clip is taken.
+    pub fn is_everything(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Whether the block shows this clip.
     pub fn takes(&self, clip: &super::Clip) -> bool {
         (self.ids.is_empty() || self.ids.contains(&clip.id))

@@ -37,7 +37,20 @@ extern "C" {
     /// Plays a clip once, the one beside it in step; resolves with the log as JSON, its times on
     /// the page's clock.
     #[wasm_bindgen(js_name = playClip, catch)]
-    pub async fn play_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
+    pub async fn play_clip(
+        clip: &str,
+        beside: Option<String>,
+        in_turn: bool,
+    ) -> Result<JsValue, JsValue>;
+
+    /// Opens the way to a program on this machine that is told what is shown; `settings`: JSON of the study's
+    /// triggers.
+    #[wasm_bindgen(js_name = openTriggers)]
+    pub fn open_triggers(settings: &str);
+
+    /// Tells that program of events, JSON.
+    #[wasm_bindgen(js_name = tellTriggers)]
+    pub fn tell_triggers(events: &str);
 
     /// What browser and display can do, as the JSON of `mimique_study::Display`; where a clip is given, while
     /// it is drawn in the study's look.

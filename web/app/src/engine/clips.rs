@@ -118,11 +118,12 @@ impl Engine {
         });
     }
 
-    /// Plays a clip, and the one beside it in step.
-    pub(super) fn play(self: &Rc<Self>, clip: String, beside: Option<String>) {
+    /// Plays a clip, and the one beside it in step, or in turn after it.
+    pub(super) fn play(self: &Rc<Self>, clip: String, beside: Option<String>, in_turn: bool) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            let input = match host::play_clip(&clip, beside).await.map(|log| play_log(&log)) {
+            let played = host::play_clip(&clip, beside, in_turn).await;
+            let input = match played.map(|log| play_log(&log)) {
                 Ok(Ok(log)) => Input::Played(log),
                 Ok(Err(failure)) => Input::ClipFailed { clip, failure },
                 Err(thrown) => Input::ClipFailed { clip, failure: stage_failure(&thrown) },

@@ -93,6 +93,10 @@ impl Engine {
         let mut outbox = Outbox::new(stored);
         unsent.into_iter().for_each(|event| outbox.push(event));
         let fleeting = store.as_ref().is_some_and(|store| !store.is_lasting());
+        // A program beside the page is told of a session, not of who looks at the first pages.
+        if store.is_some() && !plan.study.triggers.is_null() {
+            host::open_triggers(&plan.study.triggers.to_string());
+        }
         let connection = Connection { fleeting, ..Connection::default() };
         Rc::new(Self {
             plan,
@@ -155,11 +159,16 @@ impl Engine {
     fn carry_out(self: &Rc<Self>, effect: Effect) {
         match effect {
             Effect::Store(event) if self.store.is_none() => self.before.borrow_mut().push(event),
-            Effect::Store(event) => self.keep(vec![event]),
+            Effect::Store(event) => {
+                if !self.plan.study.triggers.is_null() {
+                    host::tell_triggers(&json!([event]).to_string());
+                }
+                self.keep(vec![event]);
+            }
             Effect::Flush => self.flush(),
             Effect::PrepareClips(clips) => self.prepare_clips(clips),
             Effect::ChooseLevel(request) => self.choose_level(request),
-            Effect::PlayClip { clip, beside } => self.play(clip, beside),
+            Effect::PlayClip { clip, beside, in_turn } => self.play(clip, beside, in_turn),
             Effect::StopClip => host::stop_clip(),
             Effect::MeasureDevice => self.measure(),
             Effect::RequestFullscreen => host::request_fullscreen(),

@@ -110,6 +110,7 @@ impl<'a> Writer<'a> {
             let by = Some(factor);
             self.results.choices.push(Choices { response: asked.id.clone(), by, pairs, tests });
         }
+        self.reasons(asked);
         let pairs = counted(&choices, |clip| Some(clip.to_owned()), &[]);
         let caption = language
             .pick(format!("{label}: choices by clip"), format!("{label} : choix par extrait"));

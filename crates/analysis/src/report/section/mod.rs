@@ -1,6 +1,7 @@
 //! The sections of a report in their order: in short, participants, hypotheses, measures, timing, notes.
 
 pub(crate) mod best_worst;
+pub(crate) mod choice_reasons;
 pub(crate) mod choice_tests;
 pub(crate) mod choices;
 pub(crate) mod course;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio_stream::StreamExt as _;
 
-use super::tally::{Counting, Tally};
+use super::tally::{Counting, Tally, chosen_of};
 use crate::export::sources::{Version, as_started};
 
 /// The form of [`SessionSums`] and of what they are made by. Whoever changes either counts it up: what was
@@ -57,6 +57,8 @@ struct Places {
     trial_order: usize,
     response_id: usize,
     answer: usize,
+    /// Where the study has blocks of pairs.
+    item_chosen: Option<usize>,
     attention_passed: usize,
     duration: usize,
     frames: usize,
@@ -75,6 +77,7 @@ impl Places {
             trial_order: place("trial_order")?,
             response_id: place("response_id")?,
             answer: place("answer")?,
+            item_chosen: place("item_chosen"),
             attention_passed: place("attention_passed")?,
             duration: place("duration")?,
             frames: place("frames")?,
@@ -144,6 +147,11 @@ impl Counter {
                 let by = self.counting.get(response).copied().unwrap_or(Counting::Texts);
                 let tally = sums.answers.entry(response.to_owned()).or_default();
                 tally.count(&row[places.answer], by);
+                let chosen = places.item_chosen.map(|place| &row[place]);
+                if let Some(level) = chosen.filter(|level| !level.is_null()) {
+                    let tally = sums.answers.entry(chosen_of(response)).or_default();
+                    tally.count(level, Counting::Values);
+                }
             }
             // A trial has a row for each answer; it is one trial all the same.
             if kind == "trial" && counted.insert(text(places.trial_id)) {

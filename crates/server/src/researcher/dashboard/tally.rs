@@ -101,6 +101,11 @@ impl Numbers {
     }
 }
 
+/// Under which name the levels that a question of pairs chose are counted, beside the sides.
+pub(super) fn chosen_of(question: &str) -> String {
+    format!("{question}.chosen")
+}
+
 /// How the answers to one question are distributed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Distribution {
@@ -127,7 +132,11 @@ pub(crate) fn distributions(
     tallies: &BTreeMap<String, Tally>,
 ) -> Vec<Distribution> {
     let mut found = Vec::new();
+    let clips = study.clips();
     for question in questions(study) {
+        let chosen = chosen_of(&question.id);
+        let pairs = study.pair_blocks().filter(|(_, block)| block.question == question.id);
+        let levels: Vec<String> = pairs.flat_map(|(_, block)| block.compared(&clips)).collect();
         let prompt = question.prompt.in_language(language).to_owned();
         // Rows of a matrix and axes of a grid are responses of their own: `id.row`.
         let prefix = format!("{}.", question.id);
@@ -136,7 +145,10 @@ pub(crate) fn distributions(
                 found.push(Distribution {
                     question: id.clone(),
                     prompt: prompt.clone(),
-                    shape: shape(question, language, tally),
+                    shape: match *id == chosen && !levels.is_empty() {
+                        true => counts(once_each(&levels), tally),
+                        false => shape(question, language, tally),
+                    },
                 });
             }
         }
@@ -172,6 +184,12 @@ fn shape(question: &Question, language: &str, tally: &Tally) -> Shape {
         Summary::Numbers => tally.numbers.map_or(Shape::Texts(tally.texts), Shape::Numbers),
         Summary::Texts => Shape::Texts(tally.texts),
     }
+}
+
+/// Levels of a factor stand for themselves.
+fn once_each(levels: &[String]) -> impl Iterator<Item = (String, String)> {
+    let levels: BTreeSet<&String> = levels.iter().collect();
+    levels.into_iter().map(|level| (level.clone(), level.clone()))
 }
 
 fn counts(options: impl Iterator<Item = (String, String)>, tally: &Tally) -> Shape {

@@ -1,0 +1,317 @@
+//! A block of paired comparisons: every two levels of a factor side by side, in each segment.
+
+use std::borrow::Cow;
+
+use mimique_adaptive::{Balance, DesignError, PairDesign};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Clip, ClipSelection, Component, LocalText, Study, TimeLimit, TrialsComponent};
+
+/// A block of paired comparisons. Its items are the levels of a factor of the clips; two clips make a pair where they
+/// differ in it and are alike in what `within` names (a cell). Each trial shows one pair and asks which of the two.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct PairsComponent {
+    /// The factor whose levels are compared; `segment` and `avatar` can be named too.
+    #[serde(default = "method")]
+    pub compare: String,
+    /// Its levels; all that clips have if not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<String>,
+    /// Factors in which the two clips of a pair are alike.
+    #[serde(default = "segment_and_avatar")]
+    pub within: Vec<String>,
+    /// Which clips; all of them if not given.
+    #[serde(default, skip_serializing_if = "ClipSelection::is_everything")]
+    pub clips: ClipSelection,
+    /// Which pairs each participant is shown.
+    #[serde(default)]
+    pub schedule: PairSchedule,
+    /// How the two clips are shown.
+    #[serde(default)]
+    pub show: PairShowing,
+    /// Identifier of one of the study's `questions`, of type `comparison`.
+    pub question: String,
+    /// Identifier of one of the study's `questions` that is asked after the choice: why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reasons: Option<String>,
+    /// A line above the clips.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instruction: Option<LocalText>,
+    /// Most replays after the first whole play; without limit if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_replays: Option<u32>,
+    /// How long its answers may take, from the end of the first whole play.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<TimeLimit>,
+}
+
+/// Which pairs each participant is shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct PairSchedule {
+    /// All, or a share.
+    pub rule: PairRule,
+    /// Of a share: how many pairs each participant is shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub per_participant: Option<usize>,
+}
+
+/// How pairs are dealt.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum PairRule {
+    /// Every pair in every cell, to everybody.
+    #[default]
+    All,
+    /// A share of them: over participants every pair is shown in every cell equally often, and each
+    /// participant is shown every level equally often, both to within one.
+    Incomplete,
+}
+
+/// How the two clips of a pair are shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum PairShowing {
+    /// Side by side, in step.
+    #[default]
+    InStep,
+    /// Side by side, the left one first, then the right one.
+    InTurn,
+}
+
+/// The pairs that a block's trials show, derived from [`PairsComponent`].
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct DealtPairs {
+    /// Identifiers of the clips.
+    pub clips: Vec<String>,
+    /// For each slot of a period its pairs, the left clip first, as places in `clips`. In every other period
+    /// left and right are exchanged.
+    pub slots: Vec<Vec<[usize; 2]>>,
+    /// Whether the two clips are shown one after the other.
+    pub in_turn: bool,
+}
+
+/// Why a block has no pairs.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoPairs {
+    /// Of a cell: no clip has a level.
+    #[error("no clip of {cell} has the level {level:?}")]
+    LevelMissing {
+        /// The cell in words: `segment joy2, avatar head`.
+        cell: String,
+        /// The level.
+        level: String,
+    },
+    /// Of a cell: two clips have a level.
+    #[error("two clips of {cell} have the level {level:?}: {clips:?}")]
+    LevelTwice {
+        /// The cell in words.
+        cell: String,
+        /// The level.
+        level: String,
+        /// Both clips.
+        clips: [String; 2],
+    },
+    /// The pairs cannot be dealt.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+/// A block of pairs as pages carry it: JSON, of which they are sent the trials that it makes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PairsBlock(pub Value);
+
+fn method() -> String {
+    "method".to_owned()
+}
+
+fn segment_and_avatar() -> Vec<String> {
+    vec!["segment".to_owned(), "avatar".to_owned()]
+}
+
+impl PairsBlock {
+    /// The block.
+    ///
+    /// # Errors
+    /// What is wrong with it, where nobody has checked the study.
+    pub fn read(&self) -> Result<PairsComponent, serde_json::Error> {
+        PairsComponent::deserialize(&self.0)
+    }
+}
+
+/// Clips of a block that are alike in what its `within` names, by level.
+struct Cell<'c> {
+    /// Levels of `within`.
+    alike: Vec<Option<String>>,
+    /// A clip for each level that has been met, in the order of the levels.
+    clips: Vec<Option<&'c Clip>>,
+}
+
+impl PairsComponent {
+    /// Identifiers of the questions of each trial, in the order they are asked.
+    pub fn questions(&self) -> Vec<String> {
+        [&self.question].into_iter().chain(&self.reasons).cloned().collect()
+    }
+
+    /// The levels that are compared: those of the file, or those of the clips in their order.
+    pub fn compared(&self, clips: &[Clip]) -> Vec<String> {
+        if !self.levels.is_empty() {
+            return self.levels.clone();
+        }
+        let mut levels: Vec<String> = Vec::new();
+        let taken = clips.iter().filter(|clip| self.clips.takes(clip));
+        for level in taken.filter_map(|clip| clip.factor_text(&self.compare)) {
+            if !levels.contains(&level) {
+                levels.push(level);
+            }
+        }
+        levels
+    }
+
+    /// The block as the trials that it makes.
+    ///
+    /// # Errors
+    /// [`NoPairs`]: what the check of a study refuses.
+    pub fn trials(&self, clips: &[Clip]) -> Result<TrialsComponent, NoPairs> {
+        let levels = self.compared(clips);
+        let cells = self.cells(clips, &levels)?;
+        let design = self.design(levels.len(), cells.len())?;
+        let shown: Vec<&Clip> =
+            cells.iter().flat_map(|cell| cell.clips.iter().flatten()).copied().collect();
+        let ids = || shown.iter().map(|clip| clip.id.clone()).collect();
+        let place = |item: usize, cell: usize| cell * levels.len() + item;
+        let slots = (0..design.period()).map(|slot| {
+            let row = design.of_slot(slot);
+            row.iter().map(|p| [place(p.left, p.cell), place(p.right, p.cell)]).collect()
+        });
+        let in_turn = self.show == PairShowing::InTurn;
+        Ok(TrialsComponent {
+            clips: ClipSelection { ids: ids(), ..ClipSelection::default() },
+            instruction: self.instruction.clone(),
+            questions: self.questions(),
+            maximum_replays: self.maximum_replays,
+            repetitions: 1,
+            beside: None,
+            time_limit: self.time_limit.clone(),
+            pairs: Some(DealtPairs { clips: ids(), slots: slots.collect(), in_turn }),
+        })
+    }
+
+    /// How evenly the block deals its pairs.
+    ///
+    /// # Errors
+    /// [`NoPairs`].
+    pub fn balance(&self, clips: &[Clip]) -> Result<Balance, NoPairs> {
+        let levels = self.compared(clips);
+        let cells = self.cells(clips, &levels)?;
+        Ok(self.design(levels.len(), cells.len())?.balance())
+    }
+
+    fn design(&self, items: usize, cells: usize) -> Result<PairDesign, DesignError> {
+        match self.schedule.per_participant {
+            None => PairDesign::all(items, cells),
+            Some(pairs) => PairDesign::incomplete(items, cells, pairs),
+        }
+    }
+
+    /// The cells, in the order of the clips; each has a clip of every level.
+    fn cells<'c>(&self, clips: &'c [Clip], levels: &[String]) -> Result<Vec<Cell<'c>>, NoPairs> {
+        let mut cells: Vec<Cell<'c>> = Vec::new();
+        for clip in clips.iter().filter(|clip| self.clips.takes(clip)) {
+            let Some(item) = clip
+                .factor_text(&self.compare)
+                .and_then(|level| levels.iter().position(|own| *own == level))
+            else {
+                continue;
+            };
+            let alike: Vec<_> = self.within.iter().map(|name| clip.factor_text(name)).collect();
+            let found = cells.iter().position(|cell| cell.alike == alike);
+            let at = found.unwrap_or_else(|| {
+                cells.push(Cell { alike, clips: vec![None; levels.len()] });
+                cells.len() - 1
+            });
+            if let Some(first) = cells[at].clips[item].replace(clip) {
+                return Err(NoPairs::LevelTwice {
+                    cell: self.in_words(&cells[at]),
+                    level: levels[item].clone(),
+                    clips: [first.id.clone(), clip.id.clone()],
+                });
+            }
+        }
+        for cell in &cells {
+            if let Some(item) = cell.clips.iter().position(Option::is_none) {
+                let level = levels[item].clone();
+                return Err(NoPairs::LevelMissing { cell: self.in_words(cell), level });
+            }
+        }
+        Ok(cells)
+    }
+
+    /// `segment joy2, avatar head`.
+    fn in_words(&self, cell: &Cell<'_>) -> String {
+        let parts = self.within.iter().zip(&cell.alike);
+        let parts: Vec<String> =
+            parts.filter_map(|(name, level)| Some(format!("{name} {}", level.as_ref()?))).collect();
+        if parts.is_empty() { "the block".to_owned() } else { parts.join(", ") }
+    }
+}
+
+impl DealtPairs {
+    /// The pairs of a slot: the left clip, the right clip.
+    pub fn of_slot(&self, slot: u64) -> impl Iterator<Item = [&str; 2]> {
+        let period = self.slots.len().max(1) as u64;
+        let exchanged = slot / period % 2 == 1;
+        let row = self.slots.get((slot % period) as usize).map_or(&[][..], Vec::as_slice);
+        let clip = |place: usize| self.clips.get(place).map_or("", String::as_str);
+        row.iter().map(move |&[left, right]| match exchanged {
+            true => [clip(right), clip(left)],
+            false => [clip(left), clip(right)],
+        })
+    }
+
+    /// Pairs that each participant is shown.
+    pub fn each(&self) -> usize {
+        self.slots.first().map_or(0, Vec::len)
+    }
+}
+
+impl Study {
+    /// The blocks of pairs, by name. What cannot be read is left out: the check reports it.
+    pub fn pair_blocks(&self) -> impl Iterator<Item = (&str, PairsComponent)> {
+        self.components.iter().filter_map(|(name, component)| match component {
+            Component::Pairs(block) => Some((name.as_str(), block.read().ok()?)),
+            _ => None,
+        })
+    }
+
+    /// The blocks of trials of clips, by name: blocks of pairs as the trials that they make. What has no pairs is
+    /// left out: the check reports it.
+    pub fn trial_blocks(&self) -> Vec<(&str, Cow<'_, TrialsComponent>)> {
+        let clips = std::cell::OnceCell::new();
+        let of = |component| trials_of(component, || clips.get_or_init(|| self.clips()));
+        let blocks = self.components.iter();
+        blocks.filter_map(|(name, component)| Some((name.as_str(), of(component)?))).collect()
+    }
+
+    /// The block of trials of this name.
+    pub fn trial_block(&self, name: &str) -> Option<Cow<'_, TrialsComponent>> {
+        let clips = std::cell::OnceCell::new();
+        trials_of(self.components.get(name)?, || clips.get_or_init(|| self.clips()))
+    }
+}
+
+fn trials_of<'s, 'c>(
+    component: &'s Component,
+    clips: impl FnOnce() -> &'c Vec<Clip>,
+) -> Option<Cow<'s, TrialsComponent>> {
+    match component {
+        Component::Trials(block) => Some(Cow::Borrowed(block)),
+        Component::Pairs(block) => Some(Cow::Owned(block.read().ok()?.trials(clips()).ok()?)),
+        _ => None,
+    }
+}
