@@ -45,6 +45,10 @@ pub(crate) enum Design {
     Wins,
     /// Ratings by levels, people and segments.
     PeopleAndSegments,
+    /// Differences between two levels, one per person, and the smallest that matters.
+    EquivalenceOfPeople,
+    /// Two independent groups, and the smallest difference that matters.
+    EquivalenceOfGroups,
     /// A p that a model gives, which only the script in R fits, and only nearly.
     Given,
 }
@@ -69,6 +73,8 @@ impl Design {
             Self::NetChoices => "of_net_choices",
             Self::Wins => "of_wins",
             Self::PeopleAndSegments => "of_people_and_segments",
+            Self::EquivalenceOfPeople => "of_people_within",
+            Self::EquivalenceOfGroups => "of_groups_within",
             Self::Given => "given",
         }
     }

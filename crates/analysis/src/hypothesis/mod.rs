@@ -3,6 +3,7 @@
 pub(crate) mod call;
 pub(crate) mod comparison;
 pub(crate) mod conditions;
+pub(crate) mod equivalence;
 pub(crate) mod not_tested;
 pub(crate) mod other_clips;
 pub(crate) mod person_level;
@@ -20,6 +21,7 @@ use serde::Serialize;
 use crate::choices::{self, answers, tested};
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
+use crate::hypothesis::equivalence::Equivalence;
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::other_clips::{OtherClips, OtherClipsTests};
 use crate::hypothesis::person_level::PersonLevel;
@@ -47,6 +49,9 @@ pub(crate) struct HypothesisResult {
     /// Of other clips too, where ratings are compared within people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_clips: Option<OtherClips>,
+    /// Whether the difference is smaller than the smallest that matters, where that is what is tested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equivalence: Option<Equivalence>,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
     /// The people of each condition compared, where the assigned condition is a factor.
@@ -67,6 +72,7 @@ type Tests = Result<(Vec<TestOutcome>, PersonLevel), NotTested>;
 struct Read {
     trials: Vec<TestOutcome>,
     people: PersonLevel,
+    equivalence: Option<Equivalence>,
     reading: String,
 }
 
@@ -88,12 +94,18 @@ pub(crate) fn test_hypothesis(
         let counts = of_clips.map(|name| without_level(&measure.factor(export, name, &[])));
         counts.max().unwrap_or(0)
     });
-    let Read { trials, people, mut reading } = match (of_pair(study, hypothesis), &measure) {
+    let read = match (of_pair(study, hypothesis), &measure) {
         (Some(of_pair), _) => not_tested(language, &NotTested::OfPair(of_pair)),
+        (None, Some(measure)) if hypothesis.test == TestName::Equivalence => {
+            match equivalence::tested(export, study, hypothesis, measure) {
+                Ok(found) => equivalent(naming, hypothesis, measure, found),
+                Err(why) => not_tested(language, &why),
+            }
+        }
         (None, Some(measure)) => match tests(export, study, hypothesis, measure) {
             Ok((trials, people)) => {
                 let reading = reading_of(naming, hypothesis, measure, &people);
-                Read { trials, people, reading }
+                Read { trials, people, equivalence: None, reading }
             }
             Err(why) => not_tested(language, &why),
         },
@@ -102,6 +114,7 @@ pub(crate) fn test_hypothesis(
             not_tested(language, &NotTested::NoAnswers { response })
         }
     };
+    let Read { trials, people, equivalence, mut reading } = read;
     if trials_without_level > 0 {
         reading += &language.pick(
             format!(" {trials_without_level} trials have no value of the factor and take no part."),
@@ -140,8 +153,22 @@ pub(crate) fn test_hypothesis(
         p_holm_over_hypotheses: None,
         recommended: people,
         other_clips,
+        equivalence,
         reading,
     }
+}
+
+/// What the tests of equivalence say.
+fn equivalent(
+    naming: &Naming<'_>,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    found: equivalence::Tested,
+) -> Read {
+    let equivalence::Tested { equivalence, trials, people } = found;
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let reading = reading::equivalence(naming, &equivalence, measure, factor);
+    Read { trials, people, equivalence: Some(equivalence), reading }
 }
 
 /// Whether what is found holds for other clips too, where the hypothesis is of a kind that this can be asked of.
@@ -188,7 +215,7 @@ fn of_choices(
             let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
             let reading = choices::reading::choices(naming, &found, factor, label);
             let tests = found.as_in_the_thesis.tests;
-            Read { trials: tests, people: found.recommended, reading }
+            Read { trials: tests, people: found.recommended, equivalence: None, reading }
         }
     };
     HypothesisResult {
@@ -202,6 +229,7 @@ fn of_choices(
         p: deciding_p(&read.people),
         recommended: read.people,
         other_clips: None,
+        equivalence: None,
         trials_without_level: 0,
         people_by_condition: Labelled::default(),
         p_holm_over_hypotheses: None,
@@ -235,7 +263,8 @@ fn not_tested(language: Language, why: &NotTested) -> Read {
         overall: vec![TestOutcome::undefined(why.clone())],
         pairs: Vec::new(),
     };
-    Read { trials: vec![TestOutcome::undefined(why.clone())], people, reading }
+    let trials = vec![TestOutcome::undefined(why.clone())];
+    Read { trials, people, equivalence: None, reading }
 }
 
 /// Whether a test is about two factors and their interaction.
@@ -259,7 +288,13 @@ fn measure_of(
     }
 }
 
-fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tests {
+/// The factors of a hypothesis, and whether each is one of the clips.
+fn factors(
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+) -> Result<Vec<(Factor, bool)>, NotTested> {
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let mut factors = Vec::new();
     for (place, name) in hypothesis.factors.iter().enumerate() {
@@ -275,6 +310,11 @@ fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Meas
             return Err(NotTested::TooFewLevels { factor: factor.name.clone() });
         }
     }
+    Ok(factors)
+}
+
+fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tests {
+    let factors = factors(export, study, hypothesis, measure)?;
     match factors.as_slice() {
         [(first, first_within), (second, second_within), ..] if is_two_way(hypothesis.test) => {
             Ok((

@@ -535,6 +535,19 @@ NotOfOtherClips { hypothesis: String }: "not-a-number",
 TooFewSegments { segments: usize, needed: usize }: "wrong-length",
     "{segments} segments, of which a mixed model cannot tell how far others would differ",
     "show at least {needed} segments, or leave out \"generalise\"";
+NoSmallestEffect { hypothesis: String }: "missing-key",
+    "\"{hypothesis}\" tests equivalence without the smallest difference that matters",
+    "add \"smallestEffect\" in points of the scale, such as 0.5, chosen before there are answers";
+SmallestEffectOfOtherTest { test: &'static str }: "unknown-key",
+    "\"{test}\" has no smallest difference that matters", "take \"test\": \"equivalence\", or leave it out";
+NotASmallestEffect { value: f64 }: "out-of-range",
+    "{value} is no smallest difference that matters", "write a number above 0";
+SmallestEffectAsWide { value: f64, widest: f64 }: "out-of-range",
+    "no two answers differ by more than {widest}: less than {value} every difference would be",
+    "write a difference that matters, below {widest}";
+NoReasonOfSmallestEffect { hypothesis: String }: "no-reason",
+    "nothing says why a smaller difference of \"{hypothesis}\" does not matter",
+    "add \"smallestEffectReason\", which the preregistration prints";
 NoConditions { factor: String }: "no-conditions", "\"{factor}\" of a study that assigns no condition",
     "write nested sequences with \"conditional\": true, one for each condition; or name another factor";
 DependentSamples { test: &'static str, instead: &'static str }: "dependent-samples",

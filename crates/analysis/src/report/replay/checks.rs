@@ -50,6 +50,9 @@ impl Collector {
                     deciding = Some(key);
                 }
             }
+            if let Some(found) = &result.equivalence {
+                all.line(format!("{key}:beside"), &found.beside.line);
+            }
             if let (Some(p_holm), Some(deciding)) = (result.p_holm_over_hypotheses, deciding) {
                 decided.of.push(deciding);
                 decided.into.push(format!("{key}:over hypotheses"));

@@ -95,6 +95,15 @@ of_people <- function(test, y, g, levels, a, b) {
 }
 of_blocks <- function(test, y, g, levels) test(person_means(y, g, levels))
 
+# Whether a difference lies between two bounds.
+of_people_within <- function(test, y, g, levels, low, high) {
+  m <- person_means(y, g, levels)
+  test(m[, 1] - m[, 2], low, high)
+}
+of_groups_within <- function(test, y, g, levels, unit, low, high) {
+  test(by_unit(y, g, levels, unit), low, high)
+}
+
 of_two_factors <- function(test, y, a, a_levels, b, b_levels, effect, unit) {
   v <- number(y)
   of_a <- trials[[a]]

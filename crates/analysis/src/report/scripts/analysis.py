@@ -168,6 +168,17 @@ def of_blocks(test, y, g, levels):
     return test(person_means(y, g, levels)[1])
 
 
+def of_people_within(test, y, g, levels, low, high):
+    """Whether the difference of two levels within people lies between two bounds."""
+    _, m = person_means(y, g, levels)
+    return test(m[:, 0] - m[:, 1], low, high)
+
+
+def of_groups_within(test, y, g, levels, unit, low, high):
+    """The same of two groups."""
+    return test(by_unit(y, g, levels, unit), low, high)
+
+
 def of_two_factors(test, y, a, a_levels, b, b_levels, effect, unit):
     v, of_a, of_b = number(y), columns[a], columns[b]
     if unit != "trials":

@@ -4,6 +4,7 @@ pub(crate) mod best_worst;
 pub(crate) mod choice_tests;
 pub(crate) mod choices;
 pub(crate) mod course;
+pub(crate) mod equivalence;
 pub(crate) mod hypotheses;
 pub(crate) mod layout_tests;
 pub(crate) mod layouts;
