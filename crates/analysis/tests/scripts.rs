@@ -9,6 +9,7 @@ use std::process::Command;
 
 use mimique_analysis::{Language, Report, analyze};
 use mimique_stats::Table;
+use mimique_study::CompositeScale;
 use support::{Raters, demo_study, equivalence, export, parameter_study, study_in_conditions};
 
 /// Relative difference that two programs may have.
@@ -19,6 +20,13 @@ fn reports() -> Vec<(&'static str, Report)> {
     let methods = ["lsts", "box"];
     demo.hypotheses.push(equivalence("E1", "believability", "method", methods, 0.5));
     demo.hypotheses.push(equivalence("E2", "emotion", "method", methods, 0.1));
+    let scale = |items: [&str; 2], reversed: &[&str]| CompositeScale {
+        items: items.map(str::to_owned).into(),
+        reversed: reversed.iter().map(|item| (*item).to_owned()).collect(),
+    };
+    let items = ["believability", "perceived_intensity"];
+    demo.scales.insert("strength".to_owned(), scale(items, &[]));
+    conditions.scales.insert("strength".to_owned(), scale(items, &["perceived_intensity"]));
     let groups = ["rested", "at-once"];
     let own = equivalence("E3", "believability", "assigned_condition", groups, 0.5);
     conditions.hypotheses.push(own);

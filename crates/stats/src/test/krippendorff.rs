@@ -143,9 +143,8 @@ pub fn krippendorff(
         return Err(Unfit::NameWhereNumber { value, level: level.name() }.into());
     }
     let pairable: Vec<&Vec<usize>> = values.units.iter().filter(|unit| unit.len() > 1).collect();
-    let size = values.names.len();
     let counted: Vec<CountedUnit> =
-        pairable.iter().map(|unit| CountedUnit::of(unit, size)).collect();
+        pairable.iter().map(|unit| CountedUnit::of(unit, &values.numbers)).collect();
     let all: Vec<usize> = (0..pairable.len()).collect();
     let of = |level: MeasurementLevel| match alpha(values, &counted, &all, level) {
         None => Outcome::undefined(NoEstimate::NoDisagreementPossible),
@@ -173,14 +172,18 @@ pub fn krippendorff(
 struct CountedUnit {
     counts: Vec<(usize, f64)>,
     others: f64,
+    /// Sum and sum of squares of the values less the least of all.
+    sums: [f64; 2],
 }
 
 impl CountedUnit {
-    fn of(unit: &[usize], size: usize) -> Self {
-        let mut all = vec![0.0; size];
+    fn of(unit: &[usize], numbers: &[f64]) -> Self {
+        let mut all = vec![0.0; numbers.len()];
         unit.iter().for_each(|value| all[*value] += 1.0);
         let counts = all.into_iter().enumerate().filter(|(_, count)| *count > 0.0).collect();
-        Self { counts, others: (unit.len() - 1) as f64 }
+        let above = || unit.iter().map(|value| numbers[*value] - numbers[0]);
+        let sums = [above().sum(), above().map(|x| x * x).sum()];
+        Self { counts, others: (unit.len() - 1) as f64, sums }
     }
 }
 
@@ -191,6 +194,9 @@ fn alpha(
     chosen: &[usize],
     level: MeasurementLevel,
 ) -> Option<f64> {
+    if level == MeasurementLevel::Interval {
+        return alpha_of_differences(units, chosen);
+    }
     let size = values.names.len();
     let mut coincidences = vec![0.0; size * size];
     for &unit in chosen {
@@ -214,6 +220,22 @@ fn alpha(
         });
     }
     (expected > 0.0).then(|| 1.0 - (total - 1.0) * observed / expected)
+}
+
+/// The same of squared differences, without a table of the values, of which there may be thousands.
+fn alpha_of_differences(units: &[CountedUnit], chosen: &[usize]) -> Option<f64> {
+    let (mut observed, mut total, mut sum, mut squares) = (0.0, 0.0, 0.0, 0.0);
+    for &unit in chosen {
+        let CountedUnit { others, sums: [own_sum, own_squares], .. } = units[unit];
+        let size = others + 1.0;
+        observed += (size * own_squares - own_sum * own_sum) / others;
+        total += size;
+        sum += own_sum;
+        squares += own_squares;
+    }
+    let expected = total * squares - sum * sum;
+    // What rounding leaves of a spread that is none.
+    (expected > 1e-12 * total * squares).then(|| 1.0 - (total - 1.0) * observed / expected)
 }
 
 /// Squared distances of values.

@@ -17,6 +17,7 @@ mod local_text;
 mod media;
 mod method;
 mod paths;
+mod scales;
 mod sequence;
 mod sound;
 mod stimuli;
@@ -51,6 +52,7 @@ pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining};
 pub use paths::{PathError, WrongVariable, resolve_path};
+pub use scales::CompositeScale;
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
@@ -138,6 +140,9 @@ pub struct Study {
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<Hypothesis>,
+    /// Questions whose answers belong together, by the name of the scale; read by `mimique analyze`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub scales: BTreeMap<String, CompositeScale>,
     /// Tables of the report in the study's own layout; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<TableLayout>,
