@@ -4,13 +4,17 @@
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
+#[path = "support/equivalence.rs"]
+mod hypothesis_of;
+
+use hypothesis_of::equivalence;
 use mimique_analysis::{
     Language, Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
 };
 use mimique_stats::{EquivalenceOptions, Numbers, Table, equivalence_of_pairs};
 use mimique_study::Study;
 use serde_json::Value;
-use support::{Raters, demo_study, equivalence, export, study_in_conditions};
+use support::{Raters, demo_study, export, study_in_conditions};
 
 const METHODS: [&str; 2] = ["lsts", "box"];
 

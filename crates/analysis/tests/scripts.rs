@@ -1,16 +1,19 @@
 //! `analysis.R` and `analysis.py` as a reader runs them: every number of the report once more, by other
 //! programs.
 
+#[path = "support/equivalence.rs"]
+mod hypothesis_of;
 mod support;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hypothesis_of::equivalence;
 use mimique_analysis::{Language, Report, analyze};
 use mimique_stats::Table;
 use mimique_study::CompositeScale;
-use support::{Raters, demo_study, equivalence, export, parameter_study, study_in_conditions};
+use support::{Raters, demo_study, export, parameter_study, study_in_conditions};
 
 /// Relative difference that two programs may have.
 const TOLERANCE: f64 = 1e-8;

@@ -56,7 +56,7 @@ pub(super) fn by_clip(export: &Export, measure: &Measure) -> Blocks {
         .filter(|(_, own)| own.iter().all(|(_, count)| *count > 0.0))
         .map(|(clip, own)| (clip, own.into_iter().map(|(sum, count)| sum / count).collect()))
         .collect();
-    whole.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
+    whole.sort_unstable_by_key(|(clip, _)| *clip);
     Blocks {
         groups: people.iter().map(|person| export.people[*person].id.clone()).collect(),
         incomplete: all - whole.len(),

@@ -1,6 +1,7 @@
 //! The hypotheses of a study file, each tested as in the thesis and as recommended.
 
 pub(crate) mod call;
+mod choices;
 pub(crate) mod comparison;
 pub(crate) mod conditions;
 pub(crate) mod equivalence;
@@ -18,7 +19,6 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
 use serde::Serialize;
 
-use crate::choices::{self, answers, tested};
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
 use crate::hypothesis::equivalence::Equivalence;
@@ -86,7 +86,7 @@ pub(crate) fn test_hypothesis(
 ) -> HypothesisResult {
     let language = naming.language;
     if hypothesis.test.is_of_choices() {
-        return of_choices(naming, export, study, hypothesis);
+        return choices::of_choices(naming, export, study, hypothesis);
     }
     let measure = measure_of(export, study, hypothesis, language);
     let trials_without_level = measure.as_ref().map_or(0, |measure| {
@@ -188,53 +188,6 @@ fn of_clips(
         return None;
     }
     other_clips::tested(export, measure, &factor, hypothesis.generalise.is_some(), tests)
-}
-
-/// Tests a hypothesis about choices between two clips.
-fn of_choices(
-    naming: &Naming<'_>,
-    export: &Export,
-    study: &Study,
-    hypothesis: &Hypothesis,
-) -> HypothesisResult {
-    let language = naming.language;
-    let asked = study.questions.iter().find(|question| question.id == hypothesis.response);
-    let label = asked.map_or(hypothesis.response.as_str(), |question| {
-        question.prompt.in_language(language.code())
-    });
-    let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
-    let order = naming.level_order(factor);
-    let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
-        None if export.answers_to(&hypothesis.response).is_empty() => {
-            let response = hypothesis.response.clone();
-            not_tested(language, &NotTested::NoAnswers { response })
-        }
-        None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
-        Some(data) => {
-            let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
-            let reading = choices::reading::choices(naming, &found, factor, label);
-            let tests = found.as_in_the_thesis.tests;
-            Read { trials: tests, people: found.recommended, equivalence: None, reading }
-        }
-    };
-    HypothesisResult {
-        id: hypothesis.id.clone(),
-        statement: hypothesis.statement.in_language(language.code()).to_owned(),
-        test: hypothesis.test,
-        measure: hypothesis.response.clone(),
-        kind: MeasureKind::Choice,
-        factors: hypothesis.factors.clone(),
-        as_in_the_thesis: TrialLevel::new(read.trials),
-        p: deciding_p(&read.people),
-        recommended: read.people,
-        other_clips: None,
-        equivalence: None,
-        trials_without_level: 0,
-        people_by_condition: Labelled::default(),
-        p_holm_over_hypotheses: None,
-        reading: read.reading,
-    }
 }
 
 /// What the recommended tests say. A hypothesis of two factors is about their interaction, which stands

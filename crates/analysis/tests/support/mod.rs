@@ -1,7 +1,7 @@
 //! A study's export with simulated raters, written as `mimique export --format csv` writes it.
 
 use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
-use mimique_study::{Hypothesis, Question, QuestionKind, Study};
+use mimique_study::{Question, QuestionKind, Study};
 use mimique_test_support::Random;
 use serde_json::{Value, json};
 
@@ -204,20 +204,4 @@ pub fn demo_study() -> Study {
     let exclusions = study.exclusions.as_mut().expect("the demonstration has exclusions");
     exclusions.late_frame_share = Some(0.2);
     study
-}
-
-/// A hypothesis of equivalence about a study's answers.
-pub fn equivalence(
-    id: &str,
-    response: &str,
-    factor: &str,
-    levels: [&str; 2],
-    smallest: f64,
-) -> Hypothesis {
-    serde_json::from_value(json!({
-        "id": id, "statement": { "en": "Alike.", "fr": "Pareils." }, "test": "equivalence", "response": response,
-        "factors": [factor], "levels": levels, "smallestEffect": smallest,
-        "smallestEffectReason": { "en": "nobody sees it", "fr": "personne ne le voit" },
-    }))
-    .unwrap()
 }
