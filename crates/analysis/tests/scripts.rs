@@ -1,24 +1,42 @@
 //! `analysis.R` and `analysis.py` as a reader runs them: every number of the report once more, by other
 //! programs.
 
+#[path = "support/equivalence.rs"]
+mod hypothesis_of;
 mod support;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hypothesis_of::equivalence;
 use mimique_analysis::{Language, Report, analyze};
 use mimique_stats::Table;
+use mimique_study::CompositeScale;
 use support::{Raters, demo_study, export, parameter_study, study_in_conditions};
 
 /// Relative difference that two programs may have.
 const TOLERANCE: f64 = 1e-8;
 
 fn reports() -> Vec<(&'static str, Report)> {
+    let (mut demo, mut conditions) = (demo_study(), study_in_conditions());
+    let methods = ["lsts", "box"];
+    demo.hypotheses.push(equivalence("E1", "believability", "method", methods, 0.5));
+    demo.hypotheses.push(equivalence("E2", "emotion", "method", methods, 0.1));
+    let scale = |items: [&str; 2], reversed: &[&str]| CompositeScale {
+        items: items.map(str::to_owned).into(),
+        reversed: reversed.iter().map(|item| (*item).to_owned()).collect(),
+    };
+    let items = ["believability", "perceived_intensity"];
+    demo.scales.insert("strength".to_owned(), scale(items, &[]));
+    conditions.scales.insert("strength".to_owned(), scale(items, &["perceived_intensity"]));
+    let groups = ["rested", "at-once"];
+    let own = equivalence("E3", "believability", "assigned_condition", groups, 0.5);
+    conditions.hypotheses.push(own);
     [
-        ("demo", demo_study(), Raters { people: 9, effect: 0.5, seed: 4 }),
+        ("demo", demo, Raters { people: 9, effect: 0.5, seed: 4 }),
         ("parameter", parameter_study(), Raters { people: 14, effect: 0.3, seed: 8 }),
-        ("conditions", study_in_conditions(), Raters { people: 17, effect: 0.3, seed: 15 }),
+        ("conditions", conditions, Raters { people: 17, effect: 0.3, seed: 15 }),
     ]
     .into_iter()
     .map(|(name, study, raters)| {

@@ -66,7 +66,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let config_hash = mimique_study::config_hash(&file);
     let parameters = args.assumptions.read(&study)?;
     let options = power_options(&args);
-    let bar = progress_bar(power_runs(&options));
+    let bar = progress_bar(power_runs(&study, &options));
     let result = power(&study, &config_hash, &parameters, &options, &|| bar.inc(1));
     bar.finish_and_clear();
     let power = result.with_context(place)?;

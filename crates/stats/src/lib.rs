@@ -72,9 +72,9 @@ pub use test::detection::{
 };
 pub use test::difference_scaling::{DifferenceJudgement, DifferenceScale, difference_scaling};
 pub use test::equivalence::{
-    EquivalenceMannWhitney, EquivalenceOfGroups, EquivalenceOfPairs, EquivalenceOptions,
-    EquivalenceT, EquivalenceVerdict, EquivalenceWilcoxon, equivalence_of_groups,
-    equivalence_of_pairs,
+    EQUIVALENCE_PAIRED_T, EQUIVALENCE_WELCH, EquivalenceMannWhitney, EquivalenceOfGroups,
+    EquivalenceOfPairs, EquivalenceOptions, EquivalenceT, EquivalenceVerdict, EquivalenceWilcoxon,
+    equivalence_of_groups, equivalence_of_pairs,
 };
 pub use test::friedman::{Friedman, ImanDavenport, PairwiseHolm, Quade, friedman};
 pub use test::intraclass_correlation::{

@@ -45,6 +45,18 @@ pub(crate) enum Design {
     Wins,
     /// Ratings by levels, people and segments.
     PeopleAndSegments,
+    /// Differences between two levels, one per person, and the smallest that matters.
+    EquivalenceOfPeople,
+    /// Two independent groups, and the smallest difference that matters.
+    EquivalenceOfGroups,
+    /// Mean ratings, a row per clip that everybody rated, a column per person.
+    ClipsByPeople,
+    /// First answers, a row per clip, a column per person, gaps allowed.
+    FirstAnswers,
+    /// What each person was shown and answered, and a category.
+    Detection,
+    /// Items of a scale, a row per person.
+    Items,
     /// A p that a model gives, which only the script in R fits, and only nearly.
     Given,
 }
@@ -69,6 +81,12 @@ impl Design {
             Self::NetChoices => "of_net_choices",
             Self::Wins => "of_wins",
             Self::PeopleAndSegments => "of_people_and_segments",
+            Self::EquivalenceOfPeople => "of_people_within",
+            Self::EquivalenceOfGroups => "of_groups_within",
+            Self::ClipsByPeople => "of_clips_by_people",
+            Self::FirstAnswers => "of_first_answers",
+            Self::Detection => "of_detection",
+            Self::Items => "of_items",
             Self::Given => "given",
         }
     }

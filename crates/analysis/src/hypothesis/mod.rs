@@ -1,8 +1,10 @@
 //! The hypotheses of a study file, each tested as in the thesis and as recommended.
 
 pub(crate) mod call;
+mod choices;
 pub(crate) mod comparison;
 pub(crate) mod conditions;
+pub(crate) mod equivalence;
 pub(crate) mod not_tested;
 pub(crate) mod other_clips;
 pub(crate) mod person_level;
@@ -17,9 +19,9 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
 use serde::Serialize;
 
-use crate::choices::{self, answers, tested};
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
+use crate::hypothesis::equivalence::Equivalence;
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::other_clips::{OtherClips, OtherClipsTests};
 use crate::hypothesis::person_level::PersonLevel;
@@ -47,6 +49,9 @@ pub(crate) struct HypothesisResult {
     /// Of other clips too, where ratings are compared within people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_clips: Option<OtherClips>,
+    /// Whether the difference is smaller than the smallest that matters, where that is what is tested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equivalence: Option<Equivalence>,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
     /// The people of each condition compared, where the assigned condition is a factor.
@@ -67,6 +72,7 @@ type Tests = Result<(Vec<TestOutcome>, PersonLevel), NotTested>;
 struct Read {
     trials: Vec<TestOutcome>,
     people: PersonLevel,
+    equivalence: Option<Equivalence>,
     reading: String,
 }
 
@@ -80,7 +86,7 @@ pub(crate) fn test_hypothesis(
 ) -> HypothesisResult {
     let language = naming.language;
     if hypothesis.test.is_of_choices() {
-        return of_choices(naming, export, study, hypothesis);
+        return choices::of_choices(naming, export, study, hypothesis);
     }
     let measure = measure_of(export, study, hypothesis, language);
     let trials_without_level = measure.as_ref().map_or(0, |measure| {
@@ -88,12 +94,18 @@ pub(crate) fn test_hypothesis(
         let counts = of_clips.map(|name| without_level(&measure.factor(export, name, &[])));
         counts.max().unwrap_or(0)
     });
-    let Read { trials, people, mut reading } = match (of_pair(study, hypothesis), &measure) {
+    let read = match (of_pair(study, hypothesis), &measure) {
         (Some(of_pair), _) => not_tested(language, &NotTested::OfPair(of_pair)),
+        (None, Some(measure)) if hypothesis.test == TestName::Equivalence => {
+            match equivalence::tested(export, study, hypothesis, measure) {
+                Ok(found) => equivalent(naming, hypothesis, measure, found),
+                Err(why) => not_tested(language, &why),
+            }
+        }
         (None, Some(measure)) => match tests(export, study, hypothesis, measure) {
             Ok((trials, people)) => {
                 let reading = reading_of(naming, hypothesis, measure, &people);
-                Read { trials, people, reading }
+                Read { trials, people, equivalence: None, reading }
             }
             Err(why) => not_tested(language, &why),
         },
@@ -102,6 +114,7 @@ pub(crate) fn test_hypothesis(
             not_tested(language, &NotTested::NoAnswers { response })
         }
     };
+    let Read { trials, people, equivalence, mut reading } = read;
     if trials_without_level > 0 {
         reading += &language.pick(
             format!(" {trials_without_level} trials have no value of the factor and take no part."),
@@ -140,8 +153,22 @@ pub(crate) fn test_hypothesis(
         p_holm_over_hypotheses: None,
         recommended: people,
         other_clips,
+        equivalence,
         reading,
     }
+}
+
+/// What the tests of equivalence say.
+fn equivalent(
+    naming: &Naming<'_>,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+    found: equivalence::Tested,
+) -> Read {
+    let equivalence::Tested { equivalence, trials, people } = found;
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let reading = reading::equivalence(naming, &equivalence, measure, factor);
+    Read { trials, people, equivalence: Some(equivalence), reading }
 }
 
 /// Whether what is found holds for other clips too, where the hypothesis is of a kind that this can be asked of.
@@ -161,52 +188,6 @@ fn of_clips(
         return None;
     }
     other_clips::tested(export, measure, &factor, hypothesis.generalise.is_some(), tests)
-}
-
-/// Tests a hypothesis about choices between two clips.
-fn of_choices(
-    naming: &Naming<'_>,
-    export: &Export,
-    study: &Study,
-    hypothesis: &Hypothesis,
-) -> HypothesisResult {
-    let language = naming.language;
-    let asked = study.questions.iter().find(|question| question.id == hypothesis.response);
-    let label = asked.map_or(hypothesis.response.as_str(), |question| {
-        question.prompt.in_language(language.code())
-    });
-    let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
-    let order = naming.level_order(factor);
-    let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
-        None if export.answers_to(&hypothesis.response).is_empty() => {
-            let response = hypothesis.response.clone();
-            not_tested(language, &NotTested::NoAnswers { response })
-        }
-        None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
-        Some(data) => {
-            let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
-            let reading = choices::reading::choices(naming, &found, factor, label);
-            let tests = found.as_in_the_thesis.tests;
-            Read { trials: tests, people: found.recommended, reading }
-        }
-    };
-    HypothesisResult {
-        id: hypothesis.id.clone(),
-        statement: hypothesis.statement.in_language(language.code()).to_owned(),
-        test: hypothesis.test,
-        measure: hypothesis.response.clone(),
-        kind: MeasureKind::Choice,
-        factors: hypothesis.factors.clone(),
-        as_in_the_thesis: TrialLevel::new(read.trials),
-        p: deciding_p(&read.people),
-        recommended: read.people,
-        other_clips: None,
-        trials_without_level: 0,
-        people_by_condition: Labelled::default(),
-        p_holm_over_hypotheses: None,
-        reading: read.reading,
-    }
 }
 
 /// What the recommended tests say. A hypothesis of two factors is about their interaction, which stands
@@ -235,7 +216,8 @@ fn not_tested(language: Language, why: &NotTested) -> Read {
         overall: vec![TestOutcome::undefined(why.clone())],
         pairs: Vec::new(),
     };
-    Read { trials: vec![TestOutcome::undefined(why.clone())], people, reading }
+    let trials = vec![TestOutcome::undefined(why.clone())];
+    Read { trials, people, equivalence: None, reading }
 }
 
 /// Whether a test is about two factors and their interaction.
@@ -259,7 +241,13 @@ fn measure_of(
     }
 }
 
-fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tests {
+/// The factors of a hypothesis, and whether each is one of the clips.
+fn factors(
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+) -> Result<Vec<(Factor, bool)>, NotTested> {
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let mut factors = Vec::new();
     for (place, name) in hypothesis.factors.iter().enumerate() {
@@ -275,6 +263,11 @@ fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Meas
             return Err(NotTested::TooFewLevels { factor: factor.name.clone() });
         }
     }
+    Ok(factors)
+}
+
+fn tests(export: &Export, study: &Study, hypothesis: &Hypothesis, measure: &Measure) -> Tests {
+    let factors = factors(export, study, hypothesis, measure)?;
     match factors.as_slice() {
         [(first, first_within), (second, second_within), ..] if is_two_way(hypothesis.test) => {
             Ok((

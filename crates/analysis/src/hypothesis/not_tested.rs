@@ -17,6 +17,10 @@ pub(crate) enum NotTested {
     NoFactorNamed,
     /// The answers are about two clips.
     OfPair(AnswerOfPair),
+    /// The test is of two levels.
+    NotTwoLevels { factor: String, levels: usize },
+    /// The hypothesis of equivalence does not say what is small.
+    NoSmallestEffect,
 }
 
 impl NotTested {
@@ -39,6 +43,16 @@ impl NotTested {
                 language.pick("no factor is named", "aucun facteur n’est nommé").to_owned()
             }
             Self::OfPair(of_pair) => of_pair_in_words(of_pair, language),
+            Self::NotTwoLevels { factor, levels } => language.pick(
+                format!("\"{factor}\" has {levels} levels in the answers, and equivalence is tested of two: name them in \"levels\""),
+                format!("« {factor} » a {levels} niveaux dans les réponses, et l’équivalence se teste pour deux : nommez-les dans « levels »"),
+            ),
+            Self::NoSmallestEffect => language
+                .pick(
+                    "the study file does not say which difference is the smallest that matters (\"smallestEffect\")",
+                    "le fichier de l’étude ne dit pas quelle est la plus petite différence qui compte (« smallestEffect »)",
+                )
+                .to_owned(),
         }
     }
 }

@@ -1,11 +1,12 @@
 //! One line of a table of tests: what any test gives, with what it was a test of.
 
 use mimique_stats::{
-    AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency, Factor,
-    Friedman, HodgesLehmann, KruskalWallis, MannWhitney, MinFPrime, Numbers, Outcome, Refusal,
-    ScheirerRayHare, Sign, Spearman, SumsOfSquares, Term, TestNames, TestResult, TestRow,
-    WORTHS_RATIO, Wilcoxon, WilcoxonOptions, aligned_rank_transform, chi_square, friedman,
-    kruskal_wallis, mann_whitney, scheirer_ray_hare, sign, spearman, wilcoxon,
+    AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency,
+    EquivalenceOfGroups, EquivalenceOfPairs, Factor, Friedman, HodgesLehmann, KruskalWallis,
+    MannWhitney, MinFPrime, Numbers, Outcome, Refusal, ScheirerRayHare, Sign, Spearman,
+    SumsOfSquares, Term, TestNames, TestResult, TestRow, WORTHS_RATIO, Wilcoxon, WilcoxonOptions,
+    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
+    sign, spearman, wilcoxon,
 };
 use serde::{Serialize, Serializer};
 
@@ -52,7 +53,7 @@ impl Unit {
     }
 
     /// As the scripts in R and Python are told it.
-    fn in_scripts(&self) -> &'static str {
+    pub(crate) fn in_scripts(&self) -> &'static str {
         match self {
             Self::Trials => "trials",
             _ => "person means",
@@ -307,6 +308,25 @@ impl TestLine {
     pub(crate) fn worths_ratio(found: &BradleyTerry, call: Call) -> TestOutcome {
         let line = |row| Self { names: WORTHS_RATIO, unit: Unit::Trials, row, p_holm: None, call };
         found.ratio_row().map(line).map_reason(Why::from)
+    }
+
+    /// Two one-sided signed rank tests.
+    pub(crate) fn equivalence_of_pairs(found: &EquivalenceOfPairs, call: Call) -> TestOutcome {
+        Self::one(Ok(Outcome::Ok(found.clone())), &Unit::MeansWithinPeople, call)
+    }
+
+    /// Two one-sided rank sum tests.
+    pub(crate) fn equivalence_of_groups(
+        found: &EquivalenceOfGroups,
+        unit: &Unit,
+        call: Call,
+    ) -> TestOutcome {
+        Self::one(Ok(Outcome::Ok(found.clone())), unit, call)
+    }
+
+    /// A row that a test has beside its own.
+    pub(crate) fn beside(names: TestNames, row: TestRow, unit: Unit, call: Call) -> Self {
+        Self { names, unit, row, p_holm: None, call }
     }
 
     /// Scheirer-Ray-Hare with type I sums of squares: both factors and their interaction.

@@ -14,7 +14,7 @@ mod design;
 mod table;
 
 use mimique_stats::{Adjustment, Outcome, proportion};
-use mimique_study::{Hypothesis, OrderError, Problem, Study};
+use mimique_study::{Hypothesis, OrderError, Problem, Study, TestName};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -87,9 +87,9 @@ pub struct HypothesisPower {
     /// Whether the parameters hold an effect for it ([`Parameters::has_effect`]). Without one, what is
     /// counted as power is false positives.
     pub effect: bool,
-    /// With the effects of the parameters.
+    /// With the effects of the parameters; of a hypothesis of equivalence without them, at a true difference of 0.
     pub power: Columns,
-    /// Without the effects that the hypotheses look for.
+    /// Without the effects that the hypotheses look for; none of a hypothesis of equivalence.
     pub false_positives: Option<Columns>,
 }
 
@@ -193,7 +193,7 @@ pub fn power(
     for clips in clip_numbers(study, options) {
         let design = Design::new(study, config_hash, most, clips)?;
         let model = design.model(parameters);
-        let null_model = options.false_positives.then(|| design.model(&null));
+        let null_model = without_effects_too(study, options).then(|| design.model(&null));
         for &participants in &options.participants {
             let all = |model: &Model<'_>, purpose: &str| -> Vec<Run> {
                 let run = |run: usize| {
@@ -212,13 +212,18 @@ pub fn power(
                 .hypotheses
                 .iter()
                 .enumerate()
-                .map(|(place, hypothesis)| HypothesisPower {
-                    id: hypothesis.id.clone(),
-                    effect: effects[place],
-                    power: columns(&with, place, options.alpha),
-                    false_positives: without
-                        .as_ref()
-                        .map(|runs| columns(runs, place, options.alpha)),
+                .map(|(place, hypothesis)| {
+                    let columns = |runs: &Vec<Run>| columns(runs, place, options.alpha);
+                    let without = without.as_ref().map(columns);
+                    // What equivalence finds is that there is no difference.
+                    let equal = without.filter(|_| hypothesis.test == TestName::Equivalence);
+                    HypothesisPower {
+                        id: hypothesis.id.clone(),
+                        effect: effects[place] || equal.is_some(),
+                        power: equal.unwrap_or_else(|| columns(&with)),
+                        false_positives: without
+                            .filter(|_| options.false_positives && equal.is_none()),
+                    }
                 })
                 .collect();
             points.push(PowerPoint {
@@ -258,9 +263,16 @@ fn mean_people(runs: &[Run]) -> f64 {
     runs.iter().map(|run| run.people as f64).sum::<f64>() / runs.len() as f64
 }
 
+/// Whether the study is simulated without the effects of its hypotheses too: for false positives, and for the power of
+/// a hypothesis of equivalence.
+fn without_effects_too(study: &Study, options: &PowerOptions) -> bool {
+    let equivalence = |hypothesis: &Hypothesis| hypothesis.test == TestName::Equivalence;
+    options.false_positives || study.hypotheses.iter().any(equivalence)
+}
+
 /// How many runs [`power`] makes.
-pub fn power_runs(options: &PowerOptions) -> u64 {
-    let kinds = if options.false_positives { 2 } else { 1 };
+pub fn power_runs(study: &Study, options: &PowerOptions) -> u64 {
+    let kinds = if without_effects_too(study, options) { 2 } else { 1 };
     (options.participants.len() * options.clips.len().max(1) * options.runs * kinds) as u64
 }
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use mimique_stats::{
-    ChiSquare, Friedman, KruskalWallis, MannWhitney, MixedModel, ScheirerRayHare, Sign, Spearman,
-    TestNames, TestResult, WORTHS_RATIO, Wilcoxon,
+    ChiSquare, EquivalenceOfGroups, Friedman, KruskalWallis, MannWhitney, MixedModel,
+    ScheirerRayHare, Sign, Spearman, TestNames, TestResult, WORTHS_RATIO, Wilcoxon,
 };
 use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
-use super::{Preregistration, Text, levels};
+use super::{Preregistration, Text, equivalence, levels};
 use crate::hypothesis::is_two_way;
 use crate::language::Language;
 use crate::language::naming::Naming;
@@ -41,6 +41,7 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     );
     text.line(&words);
     text.line("");
+    equivalence::criteria(text, study);
     text.heading(3, "Data exclusion", "Exclusion de données");
     for rule in exclusions(from, language) {
         text.line(&format!("- {rule}"));
@@ -96,6 +97,7 @@ fn model(
         let words = language.pick("levels compared: ", "niveaux comparés : ");
         text.line(&format!("  - {words}{}", levels.join(", ")));
     }
+    equivalence::smallest_effect(text, language, hypothesis);
     let decides = language.pick("decides:", "décide :");
     if hypothesis.generalise.is_some() {
         text.line(&format!("  - {decides} {}.", test_of_other_clips(language)));
@@ -183,6 +185,8 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
     );
     if hypothesis.test.is_of_choices() {
         test_of_choices(language, setting.levels)
+    } else if hypothesis.test == TestName::Equivalence {
+        equivalence::tests(language, hypothesis, setting.is_trait)
     } else if is_two_way(hypothesis.test) {
         interaction_test(language, setting.traits_of_two).to_owned()
     } else if setting.is_trait {
@@ -264,6 +268,7 @@ fn test_of_the_thesis(language: Language, hypothesis: &Hypothesis, setting: &Set
             of_trials(language, Sign::NAMES)
         }
         _ if hypothesis.test.is_of_choices() => of_trials(language, WORTHS_RATIO),
+        TestName::Equivalence => of_trials(language, EquivalenceOfGroups::NAMES),
         _ if is_two_way(hypothesis.test) => {
             of_trials(language, ScheirerRayHare::NAMES) + ", type I"
         }

@@ -191,6 +191,7 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         }
         text.line("");
     }
+    scales(text, study);
     text.both(
         "Recorded with each trial: response time (from the first frame of the first whole play to the last change of the answer), replays, late frames, the longest frame, interruptions.",
         "Enregistrés à chaque essai : temps de réponse (de la première image de la première lecture complète au dernier changement de la réponse), relectures, images en retard, image la plus longue, interruptions.",
@@ -207,6 +208,29 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
             "Pour chaque choix entre deux extraits : les niveaux à gauche et à droite, et celui qui a été choisi.",
         );
     }
+}
+
+/// The scales, and how their consistency is told.
+fn scales(text: &mut Text, study: &Study) {
+    if study.scales.is_empty() {
+        return;
+    }
+    text.both(
+        "Scales, their consistency told by Cronbach’s alpha with Feldt’s interval:",
+        "Échelles, dont la cohérence est donnée par l’alpha de Cronbach et l’intervalle de Feldt :",
+    );
+    for (name, scale) in &study.scales {
+        let items: Vec<String> = scale
+            .items
+            .iter()
+            .map(|item| match scale.reversed.contains(item) {
+                true => format!("−`{item}`"),
+                false => format!("`{item}`"),
+            })
+            .collect();
+        text.line(&format!("- {name}: {}", items.join(", ")));
+    }
+    text.line("");
 }
 
 fn measured(text: &mut Text, language: Language, question: &Question) {

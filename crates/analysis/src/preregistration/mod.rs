@@ -5,6 +5,7 @@
 
 mod analysis;
 mod design;
+mod equivalence;
 mod levels;
 mod pairs;
 

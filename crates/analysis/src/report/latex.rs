@@ -119,6 +119,7 @@ pub(crate) fn escape(text: &str) -> String {
             '–' => escaped.push_str("--"),
             '—' => escaped.push_str("---"),
             '’' => escaped.push('\''),
+            '′' => escaped.push_str("$'$"),
             '‘' => escaped.push('`'),
             '“' => escaped.push_str("``"),
             '”' => escaped.push_str("''"),

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use mimique_stats::{Confusion, Description, Labelled, Outcome};
 use serde::Serialize;
 
+use crate::agreement::{Agreement, ScaleConsistency};
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::PersonLevel;
@@ -12,6 +13,7 @@ use crate::hypothesis::trial_level::TrialLevel;
 use crate::report::section::best_worst::BestWorstCounts;
 use crate::report::section::choices::Choices;
 use crate::report::section::course::Course;
+use crate::report::section::detection::QuestionDetection;
 use crate::report::section::layouts::LayoutCell;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::thresholds::BlockThresholds;
@@ -38,6 +40,13 @@ pub(crate) struct Results<'a> {
     /// Of adaptive blocks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub thresholds: Vec<BlockThresholds>,
+    /// Of forced choices, category by category.
+    pub detection: Vec<QuestionDetection>,
+    /// About the clips, question by question.
+    pub agreement: Vec<Agreement>,
+    /// Scales that the study file declares.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub scales: Vec<ScaleConsistency>,
     /// Where a table of stimuli was given.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stimulus_measures: Vec<MeasureCorrelation>,
@@ -57,6 +66,9 @@ impl Results<'_> {
         self.layouts.extend(part.layouts);
         self.late_frames.extend(part.late_frames);
         self.thresholds.extend(part.thresholds);
+        self.detection.extend(part.detection);
+        self.agreement.extend(part.agreement);
+        self.scales.extend(part.scales);
         self.stimulus_measures.extend(part.stimulus_measures);
     }
 }

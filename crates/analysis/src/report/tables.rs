@@ -15,7 +15,7 @@ use crate::report::document::DataTable;
 use crate::trials::measure::MeasureKind;
 
 /// Cells of one test: what was computed, p, effect.
-fn cells(language: Language, outcome: &TestOutcome, holm: bool) -> [String; 3] {
+pub(crate) fn cells(language: Language, outcome: &TestOutcome, holm: bool) -> [String; 3] {
     match outcome {
         Outcome::Undefined { reason } => [
             format!("{}{}", language.pick("undefined: ", "non défini : "), reason.words(language)),

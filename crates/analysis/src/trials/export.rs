@@ -9,6 +9,7 @@ use mimique_study::{Exclusions, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
+use crate::agreement::answers::on_pages;
 use crate::trials::combinations::Combinations;
 use crate::trials::error::ExportError;
 use crate::trials::reason::Reason;
@@ -152,6 +153,8 @@ pub(crate) struct Export {
     pub trials: Vec<Trial>,
     /// Answers to each question that was answered in trials, in the order of the file.
     pub answers: BTreeMap<String, Vec<Answer>>,
+    /// Answers on pages to the items of the study's scales, by item and person.
+    pub page_answers: BTreeMap<String, Vec<Option<f64>>>,
     /// Names of the factors.
     pub factors: Vec<String>,
     /// Answers about each person, and the assigned condition: column, then one cell a person.
@@ -174,6 +177,7 @@ impl Export {
             people: Vec::new(),
             trials: Vec::new(),
             answers: BTreeMap::new(),
+            page_answers: BTreeMap::new(),
             factors,
             about,
             flow: Flow::default(),
@@ -209,6 +213,7 @@ impl Export {
         let about = about_people(table, study, &person_of_row, people.len());
         let mut export = Self { people, flow, ..Self::new(factors, about) };
         export.read_trials(table, study, &person_of_row)?;
+        export.page_answers = on_pages(table, study, &person_of_row, export.people.len())?;
         Ok(export)
     }
 

@@ -79,6 +79,18 @@ pub struct IntraclassCorrelation {
     pub forms: Vec<IccForm>,
 }
 
+impl IntraclassCorrelation {
+    /// ICC2: of one rating, two-way random, agreement.
+    pub fn agreement_of_one(&self) -> &IccForm {
+        &self.forms[1]
+    }
+
+    /// ICC2k: of the mean of the raters.
+    pub fn agreement_of_mean(&self) -> &IccForm {
+        &self.forms[4]
+    }
+}
+
 /// Agreement of the groups (raters) over the blocks (clips). Refuses fewer than 5 whole clips or 3 raters;
 /// undefined where clips or ratings do not differ.
 pub fn intraclass_correlation(ratings: &Blocks) -> Result<Outcome<IntraclassCorrelation>, Refusal> {
@@ -271,7 +283,7 @@ impl TestResult for IntraclassCorrelation {
 
     /// The headline: ICC2 of one rating.
     fn rows(&self) -> Vec<Outcome<TestRow>> {
-        let form = &self.forms[1];
+        let form = self.agreement_of_one();
         vec![Outcome::Ok(TestRow {
             variant: form.form.to_owned(),
             term: Term::Whole,

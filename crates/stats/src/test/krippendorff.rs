@@ -47,26 +47,6 @@ impl MeasurementLevel {
             Self::Ratio => "ratio",
         }
     }
-
-    /// Squared distance of two values by their places, given the values and how often each occurs.
-    fn distance(self, c: usize, k: usize, values: &[f64], counts: &[f64]) -> f64 {
-        if c == k {
-            return 0.0;
-        }
-        match self {
-            Self::Nominal => 1.0,
-            Self::Ordinal => {
-                let (low, high) = (c.min(k), c.max(k));
-                let between: f64 = counts[low..=high].iter().sum();
-                (between - (counts[low] + counts[high]) / 2.0).powi(2)
-            }
-            Self::Interval => (values[c] - values[k]).powi(2),
-            Self::Ratio => {
-                let sum = values[c] + values[k];
-                if sum == 0.0 { 0.0 } else { ((values[c] - values[k]) / sum).powi(2) }
-            }
-        }
-    }
 }
 
 /// Values of units by several raters.
@@ -163,11 +143,13 @@ pub fn krippendorff(
         return Err(Unfit::NameWhereNumber { value, level: level.name() }.into());
     }
     let pairable: Vec<&Vec<usize>> = values.units.iter().filter(|unit| unit.len() > 1).collect();
+    let counted: Vec<CountedUnit> =
+        pairable.iter().map(|unit| CountedUnit::of(unit, &values.numbers)).collect();
     let all: Vec<usize> = (0..pairable.len()).collect();
-    let of = |level: MeasurementLevel| match alpha(values, &pairable, &all, level) {
+    let of = |level: MeasurementLevel| match alpha(values, &counted, &all, level) {
         None => Outcome::undefined(NoEstimate::NoDisagreementPossible),
         Some(found) => {
-            let drawn = |draw: &[usize]| alpha(values, &pairable, draw, level);
+            let drawn = |draw: &[usize]| alpha(values, &counted, draw, level);
             let interval = resampled_interval(pairable.len(), rounds, seed, drawn);
             Outcome::Ok(AlphaEstimate { alpha: found, interval })
         }
@@ -186,37 +168,105 @@ pub fn krippendorff(
     })
 }
 
+/// How often each value occurs in a unit, values that do not left out, and one less than the number of values.
+struct CountedUnit {
+    counts: Vec<(usize, f64)>,
+    others: f64,
+    /// Sum and sum of squares of the values less the least of all.
+    sums: [f64; 2],
+}
+
+impl CountedUnit {
+    fn of(unit: &[usize], numbers: &[f64]) -> Self {
+        let mut all = vec![0.0; numbers.len()];
+        unit.iter().for_each(|value| all[*value] += 1.0);
+        let counts = all.into_iter().enumerate().filter(|(_, count)| *count > 0.0).collect();
+        let above = || unit.iter().map(|value| numbers[*value] - numbers[0]);
+        let sums = [above().sum(), above().map(|x| x * x).sum()];
+        Self { counts, others: (unit.len() - 1) as f64, sums }
+    }
+}
+
 /// α of some of the units, each perhaps several times; none where all their values are equal.
 fn alpha(
     values: &UnitValues,
-    units: &[&Vec<usize>],
+    units: &[CountedUnit],
     chosen: &[usize],
     level: MeasurementLevel,
 ) -> Option<f64> {
+    if level == MeasurementLevel::Interval {
+        return alpha_of_differences(units, chosen);
+    }
     let size = values.names.len();
     let mut coincidences = vec![0.0; size * size];
     for &unit in chosen {
-        let unit = units[unit];
-        let weight = 1.0 / (unit.len() - 1) as f64;
-        for (i, c) in unit.iter().enumerate() {
-            for (j, k) in unit.iter().enumerate() {
-                if i != j {
-                    coincidences[c * size + k] += weight;
-                }
+        let unit = &units[unit];
+        for &(c, of_c) in &unit.counts {
+            for &(k, of_k) in &unit.counts {
+                let with = if c == k { of_k - 1.0 } else { of_k };
+                coincidences[c * size + k] += of_c * with / unit.others;
             }
         }
     }
     let counts: Vec<f64> = coincidences.chunks_exact(size).map(|row| row.iter().sum()).collect();
     let total: f64 = counts.iter().sum();
+    let distances = Distances { level, values: &values.numbers, counts: &counts };
     let (mut observed, mut expected) = (0.0, 0.0);
     for c in 0..size {
-        for k in 0..size {
-            let distance = level.distance(c, k, &values.numbers, &counts);
-            observed += coincidences[c * size + k] * distance;
-            expected += counts[c] * counts[k] * distance;
-        }
+        // Those of larger values are the same once more.
+        distances.above(c, |k, distance| {
+            observed += 2.0 * coincidences[c * size + k] * distance;
+            expected += 2.0 * counts[c] * counts[k] * distance;
+        });
     }
     (expected > 0.0).then(|| 1.0 - (total - 1.0) * observed / expected)
+}
+
+/// The same of squared differences, without a table of the values, of which there may be thousands.
+fn alpha_of_differences(units: &[CountedUnit], chosen: &[usize]) -> Option<f64> {
+    let (mut observed, mut total, mut sum, mut squares) = (0.0, 0.0, 0.0, 0.0);
+    for &unit in chosen {
+        let CountedUnit { others, sums: [own_sum, own_squares], .. } = units[unit];
+        let size = others + 1.0;
+        observed += (size * own_squares - own_sum * own_sum) / others;
+        total += size;
+        sum += own_sum;
+        squares += own_squares;
+    }
+    let expected = total * squares - sum * sum;
+    // What rounding leaves of a spread that is none.
+    (expected > 1e-12 * total * squares).then(|| 1.0 - (total - 1.0) * observed / expected)
+}
+
+/// Squared distances of values.
+struct Distances<'v> {
+    level: MeasurementLevel,
+    values: &'v [f64],
+    /// How often each value occurs.
+    counts: &'v [f64],
+}
+
+impl Distances<'_> {
+    /// Tells the distance of a value from each value after it, values being named by their places.
+    fn above(&self, c: usize, mut tell: impl FnMut(usize, f64)) {
+        let mut between = self.counts[c];
+        for k in c + 1..self.counts.len() {
+            between += self.counts[k];
+            let distance = match self.level {
+                MeasurementLevel::Nominal => 1.0,
+                MeasurementLevel::Ordinal => {
+                    (between - (self.counts[c] + self.counts[k]) / 2.0).powi(2)
+                }
+                MeasurementLevel::Interval => (self.values[c] - self.values[k]).powi(2),
+                MeasurementLevel::Ratio => {
+                    let sum = self.values[c] + self.values[k];
+                    let share = (self.values[c] - self.values[k]) / sum;
+                    if sum == 0.0 { 0.0 } else { share.powi(2) }
+                }
+            };
+            tell(k, distance);
+        }
+    }
 }
 
 /// `--level`.

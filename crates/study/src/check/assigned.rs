@@ -55,6 +55,7 @@ pub(super) fn hypothesis(
         | TestName::MannWhitney
         | TestName::ScheirerRayHare
         | TestName::ChiSquare
+        | TestName::Equivalence
         // What chooses between clips says itself that no two of them differ in the condition.
         | TestName::Sign
         | TestName::BradleyTerry => return,

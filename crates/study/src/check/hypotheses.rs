@@ -1,5 +1,7 @@
 //! Hypotheses: that the test fits the response and the factors that it names.
 
+mod equivalence;
+
 use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
@@ -25,6 +27,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         factors(subject, hypothesis, &pointer, issues);
         levels(subject, hypothesis, &pointer, issues);
         generalise(subject, hypothesis, &pointer, issues);
+        equivalence::examine(subject, hypothesis, &pointer, issues);
     }
 }
 
@@ -208,8 +211,10 @@ fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues:
         (0, None) => values.len(),
         (named, _) => named,
     };
-    let two =
-        matches!(hypothesis.test, TestName::Wilcoxon | TestName::MannWhitney | TestName::Sign);
+    let two = matches!(
+        hypothesis.test,
+        TestName::Wilcoxon | TestName::MannWhitney | TestName::Sign | TestName::Equivalence
+    );
     if (two && count != 2) || count < 2 {
         let factor = factor.clone();
         let problem = match two {

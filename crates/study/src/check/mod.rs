@@ -2,7 +2,7 @@
 //!
 //! Text -> JSON -> [`structure`] (keys and types, against the schema that the Rust types generate) ->
 //! raw types -> [`general`], [`questions`], [`conduct`], [`stimuli`], [`sequence`], [`hypotheses`],
-//! [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
+//! [`scales`], [`tables`] (what no type can say) -> [`CheckedStudy`]. Where the structure is [`damage`]d, the
 //! later stages run on what can be read of the file ([`readable`]).
 
 mod adaptive;
@@ -24,6 +24,7 @@ mod problem;
 mod questions;
 mod readable;
 mod responses;
+mod scales;
 mod schema;
 mod sequence;
 mod sound;
@@ -153,6 +154,7 @@ fn examine_study(
     sound::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);
     hypotheses::examine(&subject, issues);
+    scales::examine(&subject, issues);
     tables::examine(&subject, issues);
 }
 

@@ -559,6 +559,30 @@ NotOfOtherClips { hypothesis: String }: "not-a-number",
 TooFewSegments { segments: usize, needed: usize }: "wrong-length",
     "{segments} segments, of which a mixed model cannot tell how far others would differ",
     "show at least {needed} segments, or leave out \"generalise\"";
+NoSmallestEffect { hypothesis: String }: "missing-key",
+    "\"{hypothesis}\" tests equivalence without the smallest difference that matters",
+    "add \"smallestEffect\" in points of the scale, such as 0.5, chosen before there are answers";
+SmallestEffectOfOtherTest { test: &'static str }: "unknown-key",
+    "\"{test}\" has no smallest difference that matters", "take \"test\": \"equivalence\", or leave it out";
+NotASmallestEffect { value: f64 }: "out-of-range",
+    "{value} is no smallest difference that matters", "write a number above 0";
+SmallestEffectAsWide { value: f64, widest: f64 }: "out-of-range",
+    "{value} is no smallest difference that matters: no two answers differ by more than {widest}",
+    "write a difference that matters, below {widest}";
+NoReasonOfSmallestEffect { hypothesis: String }: "no-reason",
+    "nothing says why a smaller difference of \"{hypothesis}\" does not matter",
+    "add \"smallestEffectReason\", which the preregistration prints";
+TooFewItems { items: usize, needed: usize }: "wrong-length",
+    "{items} questions are no scale", "name at least {needed}";
+ItemWithoutNumber { question: String }: "not-a-number",
+    "\"{question}\" is not answered by a number, so that it cannot be added up",
+    "name a rating, a typed number, or a row of a matrix whose options are numbers";
+ItemsAskedApart { question: String }: "not-asked",
+    "\"{question}\" is asked about the participant and others of the scale in trials, or the other way round",
+    "name questions of pages, or questions of trials";
+ItemWithoutRange { question: String }: "out-of-range",
+    "answers to \"{question}\" have no lowest and highest, so that they cannot be turned round",
+    "give the question a minimum and a maximum, or leave it out of \"reversed\"";
 NoConditions { factor: String }: "no-conditions", "\"{factor}\" of a study that assigns no condition",
     "write nested sequences with \"conditional\": true, one for each condition; or name another factor";
 DependentSamples { test: &'static str, instead: &'static str }: "dependent-samples",

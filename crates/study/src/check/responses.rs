@@ -23,6 +23,25 @@ pub(super) fn tested<'s>(
     issues: &mut Issues,
 ) -> Option<&'s Question> {
     let study = subject.study;
+    let question = named(study, response, &place, issues)?;
+    if study.is_asked_of_levels(&question.id) {
+        issues.error(place, Problem::LevelsFollowAnswers { question: question.id.clone() });
+        return None;
+    }
+    if !of_conditions && is_asked_in_no_trial(study, &question.id) {
+        issues.error(place, Problem::AskedInNoTrial { question: question.id.clone() });
+        return None;
+    }
+    Some(question)
+}
+
+/// The question that gives an answer of this name; what is wrong with the name at `place` is reported.
+pub(super) fn named<'s>(
+    study: &'s Study,
+    response: &str,
+    place: &str,
+    issues: &mut Issues,
+) -> Option<&'s Question> {
     let Some(question) = question(study, response) else {
         if let Some(whole) = study.all_questions().find(|question| question.id == response) {
             issues.error(
@@ -39,14 +58,6 @@ pub(super) fn tested<'s>(
         issues.error(place, Problem::unknown("question", response, known));
         return None;
     };
-    if study.is_asked_of_levels(&question.id) {
-        issues.error(place, Problem::LevelsFollowAnswers { question: question.id.clone() });
-        return None;
-    }
-    if !of_conditions && is_asked_in_no_trial(study, &question.id) {
-        issues.error(place, Problem::AskedInNoTrial { question: question.id.clone() });
-        return None;
-    }
     Some(question)
 }
 

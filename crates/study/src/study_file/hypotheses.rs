@@ -31,6 +31,13 @@ pub struct Hypothesis {
     /// of segments and of clips decides, not the test of these clips. Of ratings compared within people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub generalise: Option<Generalise>,
+    /// Of the test `equivalence`: the smallest difference that matters, either way, in points of the scale (of right
+    /// answers a share from 0 to 1, of response times seconds).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_effect: Option<f64>,
+    /// Why a smaller difference does not matter: the preregistration says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_effect_reason: Option<LocalText>,
 }
 
 /// What a hypothesis is about beyond the people and clips of the study.
@@ -65,6 +72,8 @@ pub enum TestName {
     Sign,
     /// Worths of several from answers that choose between two of them.
     BradleyTerry,
+    /// Whether two differ by less than the smallest difference that matters: two one-sided tests.
+    Equivalence,
 }
 
 impl TestName {
@@ -91,6 +100,7 @@ impl TestName {
             Self::AlignedRankTransform => "aligned-rank-transform",
             Self::Sign => "sign",
             Self::BradleyTerry => "bradley-terry",
+            Self::Equivalence => "equivalence",
         }
     }
 }

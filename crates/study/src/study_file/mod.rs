@@ -18,6 +18,7 @@ mod media;
 mod method;
 mod pairs;
 mod paths;
+mod scales;
 mod sequence;
 mod sound;
 mod stimuli;
@@ -56,6 +57,7 @@ pub use pairs::{
     DealtPairs, NoPairs, PairRule, PairSchedule, PairShowing, PairsBlock, PairsComponent,
 };
 pub use paths::{PathError, WrongVariable, resolve_path};
+pub use scales::CompositeScale;
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
     PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
@@ -147,6 +149,9 @@ pub struct Study {
     /// What is tested, and how; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<Hypothesis>,
+    /// Questions whose answers belong together, by the name of the scale; read by `mimique analyze`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub scales: BTreeMap<String, CompositeScale>,
     /// Tables of the report in the study's own layout; read by `mimique analyze`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tables: Vec<TableLayout>,

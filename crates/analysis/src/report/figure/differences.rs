@@ -71,7 +71,7 @@ pub(crate) fn differences(
 }
 
 /// Dots of people; those with the same difference stand beside each other, above the estimate.
-fn difference_dots(svg: &mut Svg, axis: &Axis, y: f64, differences: &[f64]) {
+pub(super) fn difference_dots(svg: &mut Svg, axis: &Axis, y: f64, differences: &[f64]) {
     let mut sorted = differences.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let columns = ((RIGHT - LEFT) / 7.0).floor();

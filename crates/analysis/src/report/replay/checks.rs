@@ -1,6 +1,8 @@
 //! Every number of the results under a key, with the call that computes it again.
 
-use mimique_stats::{MixedModel, Outcome, TestResult as _};
+use mimique_stats::{
+    Detection, IntraclassCorrelation, MeasurementLevel, MixedModel, Outcome, TestResult as _,
+};
 
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::comparison::Comparison;
@@ -50,6 +52,9 @@ impl Collector {
                     deciding = Some(key);
                 }
             }
+            if let Some(found) = &result.equivalence {
+                all.line(format!("{key}:beside"), &found.beside.line);
+            }
             if let (Some(p_holm), Some(deciding)) = (result.p_holm_over_hypotheses, deciding) {
                 decided.of.push(deciding);
                 decided.into.push(format!("{key}:over hypotheses"));
@@ -94,8 +99,79 @@ impl Collector {
         for course in &results.course {
             all.line(format!("course:{}", course.measure), &course.trend);
         }
+        all.detection(results);
+        all.agreement(results);
         all.layouts(results);
         (all.checks, all.families)
+    }
+
+    /// d' of each category.
+    fn detection(&mut self, results: &Results<'_>) {
+        for own in &results.detection {
+            for category in &own.categories {
+                let Some((people, t)) = category.of_people.as_ref().and_then(|p| Some((p, p.t?)))
+                else {
+                    continue;
+                };
+                // The scripts have a d' of everybody.
+                if people.people < own.people {
+                    continue;
+                }
+                let call = Call::new(Design::Detection, Detection::NAMES.function);
+                self.checks.push(Check {
+                    key: format!("detection:{}:{}", own.response, category.category),
+                    call: call.text(&own.response).text(&category.category),
+                    values: vec![
+                        ("statistic", t.statistic),
+                        ("p", t.p),
+                        ("effect", people.d_prime_mean),
+                        ("n", people.people as f64),
+                    ],
+                });
+            }
+        }
+    }
+
+    /// Agreement about the clips, and scales.
+    fn agreement(&mut self, results: &Results<'_>) {
+        for own in &results.agreement {
+            let key = format!("agreement:{}", own.response);
+            if let Some(Outcome::Ok(icc)) = &own.icc {
+                let form = icc.agreement_of_one();
+                let name = IntraclassCorrelation::NAMES.function;
+                self.checks.push(Check {
+                    key: format!("{key}:icc"),
+                    call: Call::new(Design::ClipsByPeople, name).text(&own.response),
+                    values: vec![
+                        ("statistic", form.F),
+                        ("p", form.p),
+                        ("effect", form.icc),
+                        ("n", icc.clips_used as f64),
+                    ],
+                });
+            }
+            if let Outcome::Ok(alpha) = &own.krippendorff {
+                // Names are in a column of their own.
+                let words = own.level == MeasurementLevel::Nominal;
+                let column = format!("{}{}", own.response, if words { ".answer" } else { "" });
+                let call = Call::new(Design::FirstAnswers, "krippendorff").text(&column);
+                self.checks.push(Check {
+                    key: format!("{key}:alpha"),
+                    call: call.text(own.level.name()),
+                    values: vec![("alpha", alpha.alpha)],
+                });
+            }
+        }
+        for scale in &results.scales {
+            let Outcome::Ok(found) = &scale.cronbach else { continue };
+            let [low, high] = found.interval_95_feldt;
+            let call = Call::new(Design::Items, "cronbach").list(&scale.items);
+            self.checks.push(Check {
+                key: format!("scale:{}", scale.scale),
+                call: call.list(&scale.reversed),
+                values: vec![("alpha", found.alpha), ("low", low), ("high", high)],
+            });
+        }
     }
 
     fn comparison(&mut self, comparison: &Comparison) {

@@ -61,6 +61,12 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());
         columns.push((name.clone(), Cells::Texts(texts.collect())));
     }
+    for (item, cells) in &export.page_answers {
+        if !export.about.iter().any(|(name, _)| name == item) {
+            let numbers = person.iter().map(|&person| cells[person]);
+            columns.push((item.clone(), Cells::Numbers(numbers.collect())));
+        }
+    }
     let mut measures: Vec<Measure> = Vec::new();
     for asked in export.questions(writer.study) {
         let measure = Measure::of_question(export, &asked, Language::English);

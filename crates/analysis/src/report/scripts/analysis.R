@@ -95,6 +95,15 @@ of_people <- function(test, y, g, levels, a, b) {
 }
 of_blocks <- function(test, y, g, levels) test(person_means(y, g, levels))
 
+# Whether a difference lies between two bounds.
+of_people_within <- function(test, y, g, levels, low, high) {
+  m <- person_means(y, g, levels)
+  test(m[, 1] - m[, 2], low, high)
+}
+of_groups_within <- function(test, y, g, levels, unit, low, high) {
+  test(by_unit(y, g, levels, unit), low, high)
+}
+
 of_two_factors <- function(test, y, a, a_levels, b, b_levels, effect, unit) {
   v <- number(y)
   of_a <- trials[[a]]
@@ -132,6 +141,34 @@ of_answers <- function(test, question, g, levels) {
   keep <- !is.na(truth) & !is.na(answer)
   if (g != "") keep <- keep & trials[[g]] %in% levels
   test(truth[keep], answer[keep])
+}
+
+# How well a category is told from all others, person by person.
+of_detection <- function(test, question, category) {
+  truth <- trials[[paste0(question, ".truth")]]
+  answer <- trials[[paste0(question, ".answer")]]
+  keep <- !is.na(truth) & !is.na(answer)
+  test(person[keep], truth[keep], answer[keep], category)
+}
+
+# Mean ratings of the clips that everybody rated, and first answers with gaps: a row per clip, a column per person.
+of_clips_by_people <- function(test, y) {
+  v <- number(y)
+  keep <- !is.na(v)
+  m <- tapply(v[keep], list(trials$stimulus[keep], person[keep]), mean)
+  test(m[complete.cases(m), , drop = FALSE])
+}
+of_first_answers <- function(test, y, level) {
+  v <- number(y)
+  keep <- !is.na(v)
+  test(tapply(v[keep], list(trials$stimulus[keep], person[keep]), function(own) own[1]), level)
+}
+# Items of a scale, a row per person; to turn an item round changes no more than its sign does.
+of_items <- function(test, items, reversed) {
+  m <- sapply(items, function(item) overall_means(item)[unique(person)])
+  m <- m[complete.cases(m), , drop = FALSE]
+  m[, items %in% reversed] <- -m[, items %in% reversed]
+  test(m)
 }
 
 # Choices between levels of a factor: who chose, the level on either side, the answer.

@@ -168,6 +168,17 @@ def of_blocks(test, y, g, levels):
     return test(person_means(y, g, levels)[1])
 
 
+def of_people_within(test, y, g, levels, low, high):
+    """Whether the difference of two levels within people lies between two bounds."""
+    _, m = person_means(y, g, levels)
+    return test(m[:, 0] - m[:, 1], low, high)
+
+
+def of_groups_within(test, y, g, levels, unit, low, high):
+    """The same of two groups."""
+    return test(by_unit(y, g, levels, unit), low, high)
+
+
 def of_two_factors(test, y, a, a_levels, b, b_levels, effect, unit):
     v, of_a, of_b = number(y), columns[a], columns[b]
     if unit != "trials":
@@ -207,6 +218,46 @@ def of_answers(test, question, g, levels):
     if g:
         keep &= is_in(g, levels)
     return test(truth[keep], answer[keep])
+
+
+def of_detection(test, question, category):
+    """How well a category is told from all others, person by person."""
+    truth, answer = columns[question + ".truth"], columns[question + ".answer"]
+    keep = (truth != "") & (answer != "")
+    return test(person[keep].astype(str), truth[keep].astype(str), answer[keep].astype(str), category)
+
+
+def clips_by_people(y, combine):
+    """What is combined of each clip (rows) and person (columns); NaN where nothing was answered."""
+    v = number(y)
+    cells = {}
+    for clip, who, value in zip(columns["stimulus"], person, v):
+        if not math.isnan(value):
+            cells.setdefault((clip, who), []).append(value)
+    clips = sorted({clip for clip, _ in cells})
+    people = sorted({who for _, who in cells})
+    nothing = [math.nan]
+    rows = [[combine(cells.get((clip, who), nothing)) for who in people] for clip in clips]
+    return np.array(rows)
+
+
+def of_clips_by_people(test, y):
+    m = clips_by_people(y, np.mean)
+    return test(m[~np.isnan(m).any(axis=1)])
+
+
+def of_first_answers(test, y, level):
+    return test(clips_by_people(y, lambda own: own[0]), level)
+
+
+def of_items(test, items, reversed):
+    """Items of a scale, a row per person; to turn an item round changes no more than its sign does."""
+    by_person = []
+    for item in items:
+        sign = -1 if item in reversed else 1
+        by_person.append({who: sign * mean for who, mean in zip(*overall_means(item))})
+    people = [who for who in by_person[0] if all(who in own for own in by_person)]
+    return test(np.array([[own[who] for own in by_person] for who in people]))
 
 
 def choices_of(question, g, levels):

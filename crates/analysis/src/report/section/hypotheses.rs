@@ -144,6 +144,7 @@ impl Writer<'_> {
                 &result.recommended,
             );
             self.blocks.extend(pairs.map(Block::Table));
+            self.equivalence(result);
             self.other_clips(result);
             self.people_by_condition(result);
             self.blocks.push(Block::Reading(result.reading.clone()));

@@ -5,6 +5,8 @@ pub(crate) mod choice_reasons;
 pub(crate) mod choice_tests;
 pub(crate) mod choices;
 pub(crate) mod course;
+pub(crate) mod detection;
+pub(crate) mod equivalence;
 pub(crate) mod hypotheses;
 pub(crate) mod layout_tests;
 pub(crate) mod layouts;
@@ -158,6 +160,8 @@ fn of_measures<'a>(
     for layout in &study.tables {
         parts.push(Box::new(|part| part.layout(layout, hypotheses)));
     }
+    parts.push(Box::new(|part| part.agreement(measures)));
+    parts.push(Box::new(|part| part.scales()));
     parts.push(Box::new(|part| part.stimulus_measures(measures)));
     parts.push(Box::new(|part| part.course_of_the_session(&over_time)));
     parts.push(Box::new(|part| part.timing()));

@@ -22,6 +22,7 @@ impl Writer<'_> {
         let truth = asked.truth();
         let names = self.factors_told(asked);
         self.confusion_matrices(asked, &truth, &names);
+        self.detection(asked, &truth);
 
         let chance = match asked.question.map(|question| question.kind.options().len()) {
             Some(options) if options > 1 => Some(1.0 / options as f64),

@@ -61,6 +61,8 @@ pub(super) fn of(args: &StudyOptions) -> Vec<Hypothesis> {
             factors: factors.iter().map(|factor| (*factor).to_owned()).collect(),
             levels: Vec::new(),
             generalise: None,
+            smallest_effect: None,
+            smallest_effect_reason: None,
         });
     };
     if args.activities.len() > 1 && args.levels.len() > 1 {

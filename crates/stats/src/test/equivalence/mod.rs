@@ -24,6 +24,7 @@ use crate::test::mann_whitney::u_variance;
 use crate::test::wilcoxon::{WilcoxonOptions, wilcoxon};
 use crate::undefined::{NoEstimate, Undefined};
 pub(crate) use procedure::PROCEDURE;
+pub use procedure::{EQUIVALENCE_PAIRED_T, EQUIVALENCE_WELCH};
 
 /// What counts as equivalent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -356,7 +357,9 @@ fn signed_ranks(
 
 /// U of x less a shift, and the normal tail of a direction, corrected for ties and continuity.
 fn rank_sum(x: &[f64], y: &[f64], shift: f64, alternative: Alternative) -> Option<(f64, Tail)> {
-    let both: Vec<f64> = x.iter().map(|x| x - shift).chain(y.iter().copied()).collect();
+    // Rounded, so that values that should be equal are.
+    let shifted = x.iter().map(|x| rounded(x - shift));
+    let both: Vec<f64> = shifted.chain(y.iter().map(|y| rounded(*y))).collect();
     let ranks = Ranks::of(&both);
     let (m, n) = (x.len(), y.len());
     let sum: u64 = (0..m).map(|place| ranks.doubled_rank(place)).sum();

@@ -65,6 +65,30 @@ equivalence <- function(d, low, high) {
   walsh <- outer(d, d, "+") / 2
   c(statistic = max(p), p = max(p), effect = median(walsh[lower.tri(walsh, diag = TRUE)]), n = length(d))
 }
+
+# The same by t.
+equivalence_t <- function(d, low, high) {
+  p <- c(t.test(d, mu = low, alternative = "greater")$p.value, t.test(d, mu = high, alternative = "less")$p.value)
+  c(statistic = max(p), p = max(p), effect = mean(d), n = length(d))
+}
+
+# Two one-sided Mann-Whitney tests of two groups, normal with corrections for ties and continuity.
+equivalence_of_groups <- function(d, low, high) {
+  own <- split(d$values, d$groups)
+  tail_of <- function(shift, alternative) {
+    wilcox.test(round(own[[1]] - shift, 9), round(own[[2]], 9), alternative = alternative, exact = FALSE)$p.value
+  }
+  p <- c(tail_of(low, "greater"), tail_of(high, "less"))
+  c(statistic = max(p), p = max(p), effect = mean(own[[1]]) - mean(own[[2]]), n = length(d$values))
+}
+
+# The same by Welch's t.
+equivalence_welch <- function(d, low, high) {
+  own <- split(d$values, d$groups)
+  p <- c(t.test(own[[1]], own[[2]], mu = low, alternative = "greater")$p.value,
+         t.test(own[[1]], own[[2]], mu = high, alternative = "less")$p.value)
+  c(statistic = max(p), p = max(p), effect = mean(own[[1]]) - mean(own[[2]]), n = length(d$values))
+}
 "#,
     python: r#"
 def equivalence(d, low, high):
@@ -82,6 +106,32 @@ def equivalence(d, low, high):
     p = max(tail_of(d - low), tail_of(high - d))
     i, j = np.triu_indices(len(d))
     return dict(statistic=p, p=p, effect=np.median((d[i] + d[j]) / 2), n=len(d))
+
+
+def equivalence_t(d, low, high):
+    """The same by t."""
+    greater = stats.ttest_1samp(d, low, alternative="greater").pvalue
+    p = max(greater, stats.ttest_1samp(d, high, alternative="less").pvalue)
+    return dict(statistic=p, p=p, effect=np.mean(d), n=len(d))
+
+
+def equivalence_of_groups(g, low, high):
+    """Two one-sided Mann-Whitney tests, normal with corrections for ties and continuity."""
+
+    def tail_of(shift, alternative):
+        a, b = np.round(g[0] - shift, 9), np.round(g[1], 9)
+        return stats.mannwhitneyu(a, b, alternative=alternative, method="asymptotic").pvalue
+
+    p = max(tail_of(low, "greater"), tail_of(high, "less"))
+    return dict(statistic=p, p=p, effect=np.mean(g[0]) - np.mean(g[1]), n=len(g[0]) + len(g[1]))
+
+
+def equivalence_welch(g, low, high):
+    """The same by Welch's t."""
+    a, b = g
+    greater = stats.ttest_ind(a - low, b, equal_var=False, alternative="greater").pvalue
+    p = max(greater, stats.ttest_ind(a - high, b, equal_var=False, alternative="less").pvalue)
+    return dict(statistic=p, p=p, effect=np.mean(a) - np.mean(b), n=len(a) + len(b))
 "#,
     golden_cases: "",
 };
@@ -161,7 +211,7 @@ impl TestResult for EquivalenceOfGroups {
         statistic_symbol: "p",
         effect: "difference of means",
         effect_symbol: "difference",
-        function: "equivalence",
+        function: "equivalence_of_groups",
     };
 
     fn rows(&self) -> Vec<Outcome<TestRow>> {
@@ -176,6 +226,47 @@ impl TestResult for EquivalenceOfGroups {
             effect: difference,
             n: self.n[0] + self.n[1],
         })]
+    }
+}
+
+/// What the paired t tests beside [`EquivalenceOfPairs`] are called.
+pub const EQUIVALENCE_PAIRED_T: TestNames = TestNames {
+    test: "equivalence of pairs by t",
+    short: "equivalence, paired t",
+    in_words: ["two one-sided paired t tests", "deux tests t appariés unilatéraux"],
+    statistic: "larger p",
+    statistic_symbol: "p",
+    effect: "mean difference",
+    effect_symbol: "difference",
+    function: "equivalence_t",
+};
+
+/// What Welch's t tests beside [`EquivalenceOfGroups`] are called.
+pub const EQUIVALENCE_WELCH: TestNames = TestNames {
+    test: "equivalence of groups by Welch's t",
+    short: "equivalence, Welch’s t",
+    in_words: ["two one-sided Welch t tests", "deux tests t de Welch unilatéraux"],
+    statistic: "larger p",
+    statistic_symbol: "p",
+    effect: "difference of means",
+    effect_symbol: "difference",
+    function: "equivalence_welch",
+};
+
+impl EquivalenceT {
+    /// As a line of a table of tests, of `n` observations.
+    pub fn row(&self, n: usize) -> TestRow {
+        TestRow {
+            variant: String::new(),
+            term: Term::Whole,
+            statistic: self.p,
+            // Welch's are not whole.
+            degrees_of_freedom: Vec::new(),
+            p_value: self.p,
+            ln_p: self.ln_p,
+            effect: Some(self.difference),
+            n,
+        }
     }
 }
 

@@ -1,0 +1,59 @@
+//! Hypotheses about choices between two clips.
+
+use mimique_stats::Labelled;
+use mimique_study::{Hypothesis, Study};
+
+use super::{HypothesisResult, Read, deciding_p, not_tested};
+use crate::choices::{answers, reading, tested};
+use crate::hypothesis::not_tested::NotTested;
+use crate::hypothesis::trial_level::TrialLevel;
+use crate::language::naming::Naming;
+use crate::trials::export::Export;
+use crate::trials::measure::MeasureKind;
+
+/// Tests a hypothesis about choices between two clips.
+pub(super) fn of_choices(
+    naming: &Naming<'_>,
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+) -> HypothesisResult {
+    let language = naming.language;
+    let asked = study.questions.iter().find(|question| question.id == hypothesis.response);
+    let label = asked.map_or(hypothesis.response.as_str(), |question| {
+        question.prompt.in_language(language.code())
+    });
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let order = naming.level_order(factor);
+    let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
+        None if export.answers_to(&hypothesis.response).is_empty() => {
+            let response = hypothesis.response.clone();
+            not_tested(language, &NotTested::NoAnswers { response })
+        }
+        None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
+        Some(data) => {
+            let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
+            let reading = reading::choices(naming, &found, factor, label);
+            let tests = found.as_in_the_thesis.tests;
+            Read { trials: tests, people: found.recommended, equivalence: None, reading }
+        }
+    };
+    HypothesisResult {
+        id: hypothesis.id.clone(),
+        statement: hypothesis.statement.in_language(language.code()).to_owned(),
+        test: hypothesis.test,
+        measure: hypothesis.response.clone(),
+        kind: MeasureKind::Choice,
+        factors: hypothesis.factors.clone(),
+        as_in_the_thesis: TrialLevel::new(read.trials),
+        p: deciding_p(&read.people),
+        recommended: read.people,
+        other_clips: None,
+        equivalence: None,
+        trials_without_level: 0,
+        people_by_condition: Labelled::default(),
+        p_holm_over_hypotheses: None,
+        reading: read.reading,
+    }
+}

@@ -1,0 +1,128 @@
+//! What tests of equivalence say.
+
+use mimique_stats::{EquivalenceVerdict, Outcome};
+
+use super::{difference, unit};
+use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
+use crate::language::Language;
+use crate::language::naming::Naming;
+use crate::trials::measure::{Measure, MeasureKind};
+
+/// The verdict on two levels, with the numbers that it rests on.
+pub(crate) fn equivalence(
+    naming: &Naming<'_>,
+    found: &Equivalence,
+    measure: &Measure,
+    factor: &str,
+) -> String {
+    let (language, kind) = (naming.language, measure.kind);
+    let [a, b] = found.levels.each_ref().map(|level| naming.level(factor, level));
+    let label = &measure.label;
+    let least =
+        format!("{}{}", shown(language, kind, found.smallest_effect), points(language, kind));
+    let people: Vec<String> = found.people.iter().map(usize::to_string).collect();
+    let people = people.join(language.pick(" and ", " et "));
+    let line = match &found.decides.line {
+        Outcome::Ok(line) => line,
+        Outcome::Undefined { reason } => {
+            let reason = reason.words(language);
+            return language.pick(
+                format!(
+                    "Whether {a} and {b} are equivalent on “{label}” cannot be tested ({reason})."
+                ),
+                format!(
+                    "L’équivalence de {a} et {b} pour « {label} » ne peut être testée ({reason})."
+                ),
+            );
+        }
+    };
+    let verdict = match found.decides.verdict {
+        Some(EquivalenceVerdict::Equivalent) => language.pick(
+            format!("{a} and {b} are equivalent: they differ by less than {least}, either way"),
+            format!("{a} et {b} sont équivalents : ils diffèrent de moins de {least}, dans un sens comme dans l’autre"),
+        ),
+        Some(EquivalenceVerdict::DifferentButSmall) => language.pick(
+            format!("{a} and {b} differ, but by less than {least}, the smallest difference that matters"),
+            format!("{a} et {b} diffèrent, mais de moins de {least}, la plus petite différence qui compte"),
+        ),
+        Some(EquivalenceVerdict::Different) => language.pick(
+            format!("{a} and {b} differ, and that by less than {least} was not shown"),
+            format!("{a} et {b} diffèrent, et que ce soit de moins de {least} n’a pas été montré"),
+        ),
+        Some(EquivalenceVerdict::Undecided) | None => language.pick(
+            format!("undecided: neither that {a} and {b} differ nor that they do so by less than {least} was shown; more people would tell"),
+            format!("indécis : ni que {a} et {b} diffèrent, ni que ce soit de moins de {least} n’a été montré ; davantage de personnes le diraient"),
+        ),
+    };
+    let test = line.names.in_words[language.pick(0, 1)];
+    let mut numbers = vec![format!("{test}, {}", language.p(line.row.p_value))];
+    numbers.extend(found.decides.p_difference.map(|p| {
+        let p = language.p(p);
+        language.pick(format!("of any difference {p}"), format!("d’une différence quelconque {p}"))
+    }));
+    numbers.extend(estimate(language, kind, found));
+    numbers.push(language.pick(format!("{people} people"), format!("{people} personnes")));
+    let numbers = numbers.join("; ");
+    let colon = language.pick("", "\u{a0}");
+    let topic = language.pick(format!("On “{label}”"), format!("Pour « {label} »"));
+    let beside = beside(language, &found.beside);
+    format!("{topic}{colon}: {verdict} ({numbers}).{beside}")
+}
+
+/// The verdict in a word.
+pub(crate) fn verdict(language: Language, verdict: EquivalenceVerdict) -> &'static str {
+    match verdict {
+        EquivalenceVerdict::Equivalent => language.pick("equivalent", "équivalents"),
+        EquivalenceVerdict::Different => language.pick("different", "différents"),
+        EquivalenceVerdict::DifferentButSmall => {
+            language.pick("different, but small", "différents, mais peu")
+        }
+        EquivalenceVerdict::Undecided => language.pick("undecided", "indécis"),
+    }
+}
+
+/// The estimate with its interval: by ranks where they give one, else by t.
+fn estimate(language: Language, kind: MeasureKind, found: &Equivalence) -> Option<String> {
+    let ranks = found.decides.interval_90.is_some();
+    let own = if ranks { &found.decides } else { &found.beside };
+    let (estimate, [low, high]) = (own.estimate?, own.interval_90?);
+    let [estimate, low, high] = [estimate, low, high].map(|v| difference(language, kind, v));
+    let unit = unit(language, kind);
+    let of = match ranks {
+        true => language.pick("median difference", "différence médiane"),
+        false => language.pick("difference of means", "différence des moyennes"),
+    };
+    Some(language.pick(
+        format!("{of} {estimate}{unit}, 90 % interval {low} to {high}"),
+        format!("{of} {estimate}{unit}, intervalle à 90 % de {low} à {high}"),
+    ))
+}
+
+fn beside(language: Language, tests: &OneSidedTests) -> String {
+    let (Outcome::Ok(line), Some(found)) = (&tests.line, tests.verdict) else {
+        return String::new();
+    };
+    let test = line.names.in_words[language.pick(0, 1)];
+    let (p, found) = (language.p(line.row.p_value), verdict(language, found));
+    language.pick(
+        format!(" Beside it {test}: {p}, {found}."),
+        format!(" À côté, {test} : {p}, {found}."),
+    )
+}
+
+/// The smallest effect as it was written.
+fn shown(language: Language, kind: MeasureKind, value: f64) -> String {
+    match kind {
+        MeasureKind::Recognition => language.number(value * 100.0),
+        _ => language.number(value),
+    }
+}
+
+fn points(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Rating | MeasureKind::Choice => {
+            language.pick(" points of the scale", " points de l’échelle")
+        }
+        _ => unit(language, kind),
+    }
+}

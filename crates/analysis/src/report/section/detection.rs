@@ -1,0 +1,188 @@
+//! How well each shown category is told from all others: d' and criterion, person by person.
+
+use mimique_stats::{
+    DetectedCategory, Detection, Factor, MeanTest, Outcome, Sensitivity, SignalCounts, detection,
+};
+use serde::Serialize;
+
+use crate::report::document::{Block, DataTable, slug};
+use crate::report::figure::{DetectionPoints, detection_plane};
+use crate::report::section::Writer;
+use crate::trials::asked_question::AskedQuestion;
+
+/// Detection of the categories of a forced choice.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct QuestionDetection {
+    pub response: String,
+    pub people: usize,
+    pub answers: usize,
+    pub categories: Vec<CategoryDetection>,
+}
+
+/// A category against all others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct CategoryDetection {
+    pub category: String,
+    /// Answers of all people together.
+    #[serde(flatten)]
+    pub counts: SignalCounts,
+    /// Of all people together, log-linear rates.
+    pub pooled: Outcome<Sensitivity>,
+    /// Of the people, each of whom was shown five signals or more; none where somebody was shown fewer.
+    pub of_people: Option<PeopleDetection>,
+}
+
+/// Means over people.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct PeopleDetection {
+    /// People with a d'.
+    pub people: usize,
+    pub d_prime_mean: f64,
+    /// By t.
+    pub d_prime_interval_95: Option<[f64; 2]>,
+    pub criterion_mean: f64,
+    /// d' against 0; none where it does not vary.
+    pub t: Option<MeanTest>,
+}
+
+impl Writer<'_> {
+    /// d' and criterion of each category; nothing where fewer than two were shown.
+    pub(crate) fn detection(&mut self, asked: &AskedQuestion<'_>, truth: &str) {
+        let Some(found) = self.detected(asked) else { return };
+        let of = |found: &DetectedCategory| CategoryDetection {
+            category: found.category.clone(),
+            counts: found.counts,
+            pooled: found.pooled_loglinear.clone(),
+            of_people: of_people(found),
+        };
+        let result = QuestionDetection {
+            response: asked.id.clone(),
+            people: found.participants,
+            answers: found.n,
+            categories: found.categories.iter().map(of).collect(),
+        };
+        self.heading(3, "Detection: d′ and criterion", "Détection : d′ et critère");
+        self.paragraph(
+            "Each category against all others: d′ = z(hits) − z(false alarms) says how well it is told from them, 0 where it is not; c above 0 that it is named rarely, below 0 that it is named often. Rates are log-linear (Hautus 1995). Means are over people with t intervals; where somebody was shown fewer than five of a category, only the answers of all people together are told.",
+            "Chaque catégorie contre toutes les autres : d′ = z(détections) − z(fausses alarmes) dit combien elle en est distinguée, 0 si elle ne l’est pas ; c au-dessus de 0 qu’elle est rarement nommée, au-dessous qu’elle l’est souvent. Les taux sont log-linéaires (Hautus 1995). Les moyennes sont sur les personnes, avec des intervalles t ; si quelqu’un a vu moins de cinq extraits d’une catégorie, seules les réponses de toutes les personnes ensemble sont données.",
+        );
+        let table = self.detection_table(&result, truth);
+        self.blocks.push(Block::Table(table));
+        self.detection_figure(asked, truth, &found);
+        self.results.detection.push(result);
+    }
+
+    fn detected(&self, asked: &AskedQuestion<'_>) -> Option<Detection> {
+        let answers = self.export.answers_to(&asked.id);
+        let people = answers.iter().map(|own| Some(self.export.people[own.person].id.as_str()));
+        let people = Factor::from_cells("participant", people, |_| None);
+        let shown = answers.iter().map(|own| own.truth.as_deref());
+        let shown = Factor::from_cells("truth", shown, |_| None);
+        let given = answers.iter().map(|own| Some(&*own.text));
+        let given = Factor::from_cells("answer", given, |_| None);
+        detection(&people, &shown, &given).ok()
+    }
+
+    fn detection_table(&self, result: &QuestionDetection, truth: &str) -> DataTable {
+        let language = self.language();
+        let heading = language.pick(
+            [
+                "",
+                "hits",
+                "false alarms",
+                "d′, mean over people [95 %]",
+                "c, mean",
+                "p of d′ = 0",
+                "d′, all together",
+                "c, all together",
+            ],
+            [
+                "",
+                "détections",
+                "fausses alarmes",
+                "d′, moyenne des personnes [95 %]",
+                "c, moyenne",
+                "p de d′ = 0",
+                "d′, ensemble",
+                "c, ensemble",
+            ],
+        );
+        let caption = language.pick(
+            format!("Detection of each category among all others ({} people)", result.people),
+            format!("Détection de chaque catégorie parmi les autres ({} personnes)", result.people),
+        );
+        let id = format!("{}-detection", slug(&result.response));
+        let mut table = DataTable::new(id, caption, heading);
+        let number = |value: f64| language.fixed(value, 2);
+        let none = || "–".to_owned();
+        for own in &result.categories {
+            let SignalCounts { hits, signals, false_alarms, noise } = own.counts;
+            let people = own.of_people.as_ref();
+            let mean = people.map(|found| {
+                let mean = number(found.d_prime_mean);
+                match found.d_prime_interval_95.map(|ends| ends.map(number)) {
+                    Some([low, high]) => format!("{mean} [{low}; {high}]"),
+                    None => mean,
+                }
+            });
+            let p = people.and_then(|found| found.t).map(|t| language.p_cell(t.p, t.ln_p));
+            let pooled = own.pooled.clone().ok();
+            table.row([
+                self.naming.level(truth, &own.category),
+                format!("{hits}/{signals}"),
+                format!("{false_alarms}/{noise}"),
+                mean.unwrap_or_else(none),
+                people.map_or_else(none, |found| number(found.criterion_mean)),
+                p.unwrap_or_else(none),
+                pooled.map_or_else(none, |found| number(found.d_prime)),
+                pooled.map_or_else(none, |found| number(found.criterion)),
+            ]);
+        }
+        table
+    }
+
+    fn detection_figure(&mut self, asked: &AskedQuestion<'_>, truth: &str, found: &Detection) {
+        let language = self.language();
+        let points: Vec<DetectionPoints> = found
+            .categories
+            .iter()
+            .filter_map(|own| {
+                let name = self.naming.level(truth, &own.category);
+                let mean = match of_people(own) {
+                    Some(people) => [people.criterion_mean, people.d_prime_mean],
+                    None => {
+                        let pooled = own.pooled_loglinear.clone().ok()?;
+                        return Some(DetectionPoints {
+                            name,
+                            mean: [pooled.criterion, pooled.d_prime],
+                            people: Vec::new(),
+                        });
+                    }
+                };
+                let people = own.people.iter().filter_map(|person| person.sensitivity);
+                let people = people.map(|own| [own.criterion, own.d_prime]).collect();
+                Some(DetectionPoints { name, mean, people })
+            })
+            .collect();
+        if points.is_empty() {
+            return;
+        }
+        let caption = language.pick("d′ against the criterion c", "d′ selon le critère c");
+        let id = format!("{}-d-prime", slug(&asked.id));
+        self.figure(detection_plane(language, &id, caption, &points));
+    }
+}
+
+/// Means over people; none where somebody was shown fewer than five signals.
+fn of_people(found: &DetectedCategory) -> Option<PeopleDetection> {
+    if found.few_signals {
+        return None;
+    }
+    Some(PeopleDetection {
+        people: found.people.iter().filter(|person| person.sensitivity.is_some()).count(),
+        d_prime_mean: found.d_prime_mean?,
+        d_prime_interval_95: found.d_prime_interval_95,
+        criterion_mean: found.criterion_mean?,
+        t: found.t,
+    })
+}

@@ -1,0 +1,113 @@
+//! Tests of equivalence below those of a hypothesis: a table, and the intervals in the zone of differences that do not
+//! matter.
+
+use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
+use crate::hypothesis::reading;
+use crate::report::document::{Block, DataTable, slug};
+use crate::report::figure::{EquivalenceInterval, equivalence_zone};
+use crate::report::section::Writer;
+use crate::report::tables;
+use crate::trials::measure::MeasureKind;
+
+impl Writer<'_> {
+    /// The table and the figure of a hypothesis of equivalence; nothing of another one.
+    pub(crate) fn equivalence(&mut self, result: &HypothesisResult) {
+        let Some(found) = &result.equivalence else { return };
+        let table = self.equivalence_table(result, found);
+        self.blocks.push(Block::Table(table));
+        let language = self.language();
+        let names = language.pick(
+            ["median difference", "mean difference"],
+            ["différence médiane", "différence moyenne"],
+        );
+        let intervals: Vec<EquivalenceInterval> = names
+            .into_iter()
+            .zip([&found.decides, &found.beside])
+            .filter_map(|(label, tests)| {
+                let ends = tests.interval_90?.map(|end| scaled(result.kind, end));
+                let estimate = scaled(result.kind, tests.estimate?);
+                Some(EquivalenceInterval { label, estimate, ends })
+            })
+            .collect();
+        if intervals.is_empty() {
+            return;
+        }
+        let factor = result.factors.first().map_or("", String::as_str);
+        let [a, b] = &found.levels;
+        let pair = self.naming.pair(factor, a, b);
+        let least = language.number(scaled(result.kind, found.smallest_effect));
+        let caption = language.pick(
+            format!(
+                "{}: {pair}, 90 % intervals in the zone of differences below {least}",
+                result.id
+            ),
+            format!(
+                "{} : {pair}, intervalles à 90 % dans la zone des différences sous {least}",
+                result.id
+            ),
+        );
+        let id = format!("hypothesis-{}-zone", slug(&result.id));
+        let differences: Vec<f64> =
+            found.differences.iter().map(|value| scaled(result.kind, *value)).collect();
+        let zone = scaled(result.kind, found.smallest_effect);
+        let figure = equivalence_zone(language, &id, &caption, zone, &intervals, &differences);
+        self.figure(figure);
+    }
+
+    fn equivalence_table(&self, result: &HypothesisResult, found: &Equivalence) -> DataTable {
+        let language = self.language();
+        let heading = language.pick(
+            [
+                "two one-sided tests",
+                "p (larger)",
+                "difference [90 %]",
+                "p of any difference",
+                "verdict",
+            ],
+            [
+                "deux tests unilatéraux",
+                "p (le plus grand)",
+                "différence [90 %]",
+                "p d’une différence quelconque",
+                "verdict",
+            ],
+        );
+        let factor = result.factors.first().map_or("", String::as_str);
+        let [a, b] = &found.levels;
+        let pair = self.naming.pair(factor, a, b);
+        let caption = language.pick(
+            format!("{}: is {pair} smaller than what matters?", result.id),
+            format!("{} : {pair} est-elle plus petite que ce qui compte ?", result.id),
+        );
+        let id = format!("hypothesis-{}-equivalence", slug(&result.id));
+        let mut table = DataTable::new(id, caption, heading);
+        for tests in [&found.decides, &found.beside] {
+            table.row(self.equivalence_row(result.kind, tests));
+        }
+        table
+    }
+
+    fn equivalence_row(&self, kind: MeasureKind, tests: &OneSidedTests) -> [String; 5] {
+        let language = self.language();
+        let [test, p, _] = tables::cells(language, &tests.line, false);
+        let name = tests.line.clone().ok().map(|line| line.names.in_words[language.pick(0, 1)]);
+        let interval = tests.estimate.zip(tests.interval_90).map(|(estimate, [low, high])| {
+            let [estimate, low, high] =
+                [estimate, low, high].map(|value| reading::difference(language, kind, value));
+            format!("{estimate} [{low}; {high}]")
+        });
+        [
+            name.map_or(test, str::to_owned),
+            p,
+            interval.unwrap_or_else(|| "–".to_owned()),
+            tests.p_difference.map_or_else(|| "–".to_owned(), |p| language.p_cell(p, p.ln())),
+            tests.verdict.map_or("–", |verdict| reading::verdict(language, verdict)).to_owned(),
+        ]
+    }
+}
+
+/// In the unit that people read: points of percent for right answers.
+fn scaled(kind: MeasureKind, value: f64) -> f64 {
+    if kind == MeasureKind::Recognition { value * 100.0 } else { value }
+}
