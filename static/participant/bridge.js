@@ -182,8 +182,7 @@ export async function playClip(clip, beside, inTurn) {
   const there = beside ? { stage: await stage("beside"), clipId: beside, inTurn } : null;
   const seen = watchView(() => here.stop("out of view"));
   try {
-    const step = document.querySelector("main[data-step]")?.dataset.step;
-    const told = (await triggers)?.play({ step, clip, beside: beside ?? null });
+    const told = (await triggers)?.play({ clip, beside: beside ?? null });
     const log = onPageClock(await here.play(clip, there, true, told));
     return JSON.stringify({ ...log, triggers: told?.sent() });
   } finally {

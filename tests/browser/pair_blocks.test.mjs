@@ -22,8 +22,8 @@ const study = small("duels", {
   sequence: { order: "random", components: ["duels"] },
   stimuli: stimuli(
     { head: { builtin: { seed: 1 } } },
-    { box: { method: "box" }, lsts: { method: "lsts" }, real: { method: "recorded" } },
-    [["head", "box"], ["head", "lsts"], ["head", "real"]],
+    { box: { method: "box" }, lsts: { method: "lsts" }, recorded: { method: "recorded" } },
+    [["head", "box"], ["head", "lsts"], ["head", "recorded"]],
   ),
 });
 
@@ -88,7 +88,7 @@ test("pair blocks: each two methods in turn, left and right, in the export", { s
       .filter((row) => row.trial_type === "trial" && row.response_id === "better");
     assert.equal(rows.length, 3);
     const pairs = rows.map((row) => [row.item_left, row.item_right].sort().join(" "));
-    assert.deepEqual(pairs.sort(), ["box lsts", "box real", "lsts real"]);
+    assert.deepEqual(pairs.sort(), ["box lsts", "box recorded", "lsts recorded"]);
     for (const row of rows) {
       assert.deepEqual([row.stimulus, row.beside, row.beside_side], [`joy2.${row.item_left}`, `joy2.${row.item_right}`, "right"]);
       assert.equal(row.cell, "joy2|head");
