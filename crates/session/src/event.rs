@@ -384,8 +384,8 @@ pub struct PlayLog {
     pub sound: Value,
     /// How many messages of the play another program on the machine was sent; null where it was not there, or where
     /// the study tells none.
-    #[serde(skip_serializing_if = "Value::is_null")]
-    pub triggers: Value,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triggers: Option<u32>,
     /// Why the play ended early; null for a whole play.
     pub aborted: Option<String>,
 }

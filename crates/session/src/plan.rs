@@ -258,7 +258,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     number: trials,
                     condition: condition.clone(),
                     beside: match beside {
-                        Some(right) => Some(Companion::of_pair(right, block.pairs.as_ref())),
+                        Some(right) => Some(Companion::of_pair(right, block.pairs.as_deref())),
                         None => block.beside.as_ref().and_then(|beside| {
                             companion(beside, clip, &study.clips, sides.is_left(component, beside))
                         }),

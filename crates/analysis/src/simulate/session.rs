@@ -329,7 +329,7 @@ impl Walk<'_, '_> {
             renderer: String::new(),
             drift_ms: 0.0,
             sound: serde_json::Value::Null,
-            triggers: serde_json::Value::Null,
+            triggers: None,
             aborted: aborted.map(str::to_owned),
         }
     }

@@ -118,7 +118,7 @@ fn play_cells(play: &PlayLog, attempt: &Attempt, opened_ms: f64, cells: &mut Cel
     put("weights_hash", play.weights_hash.as_str().into());
     let renderer = Some(play.renderer.as_str()).filter(|hash| !hash.is_empty());
     put("renderer", renderer.into());
-    put("triggers_sent", play.triggers.clone());
+    put("triggers_sent", play.triggers.into());
     let Some(sound) = play.sound_log() else { return };
     let number = |ms: Option<f64>| ms.map_or(Value::Null, milliseconds);
     put("sound_status", sound.status.into());

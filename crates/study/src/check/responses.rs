@@ -72,7 +72,7 @@ fn is_asked_in_no_trial(study: &Study, question: &str) -> bool {
     let shown_to = study.conditions().into_iter().map(Some).chain([None]);
     let blocks: Vec<_> =
         shown_to.flat_map(|condition| trials(study, &study.sequence, condition)).collect();
-    !blocks.is_empty() && !blocks.iter().any(|block| asks(&block, question))
+    !blocks.is_empty() && !blocks.iter().any(|block| asks(block, question))
 }
 
 /// The blocks of trials that a condition is shown.

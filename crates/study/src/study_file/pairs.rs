@@ -198,7 +198,7 @@ impl PairsComponent {
             repetitions: 1,
             beside: None,
             time_limit: self.time_limit.clone(),
-            pairs: Some(DealtPairs { clips: ids(), slots: slots.collect(), in_turn }),
+            pairs: Some(Box::new(DealtPairs { clips: ids(), slots: slots.collect(), in_turn })),
         })
     }
 

@@ -53,7 +53,7 @@ pub struct TrialsComponent {
     /// The pairs that it shows in place of single clips: derived ([`super::PairsComponent::trials`]), in no study file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(skip)]
-    pub pairs: Option<super::DealtPairs>,
+    pub pairs: Option<Box<super::DealtPairs>>,
 }
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
