@@ -35,9 +35,9 @@ const BUDGETS: [Budget; 4] = [
         // both languages, what happens before the session, and what is said when the first page does not come.
         // 5 are adaptive blocks: the events of their levels, trials whose clips follow from answers, and what asks
         // the module that chooses (not counted here: studies with such a block alone load it).
-        // 5 are blocks of pairs (the reader of the dealt pairs, whose turn it is to be shown them, clips in turn) and
+        // 4 are blocks of pairs (the reader of the dealt pairs, whose turn it is to be shown them, clips in turn) and
         // what is told to another program on the machine.
-        kilobytes: 346.0,
+        kilobytes: 345.0,
     },
     Budget {
         name: "the solver and the scripts of the stage",
