@@ -137,26 +137,30 @@ export async function prepareClip(clip, source, progress) {
   return JSON.stringify(await prepareClip(clip, JSON.parse(source), progress));
 }
 
-// The two places where clips are shown: "clip", and "beside" it.
-const places = new Map();
+// The canvases on which clips are shown, by name.
+const canvases = new Map();
 
-/** Puts a stage on the canvas of a place; it opens while the clip is loaded. Should it fail, it is opened
-    again, and says why, when a clip is shown. */
-export function attachStage(place, canvas, look) {
-  detachStage(place);
-  places.set(place, { canvas, look: JSON.parse(look), opening: null });
-  stage(place).catch(() => {});
+/** Puts a stage on a canvas; it opens while the clip is loaded. Should it fail, it is opened again, and says
+    why, when a clip is shown. */
+export function attachStage(name, canvas, look) {
+  detach(name);
+  canvases.set(name, { canvas, look: JSON.parse(look), opening: null });
+  stage(name).catch(() => {});
 }
 
-/** Takes the stage off a place's canvas. */
-export function detachStage(place) {
-  const old = places.get(place)?.opening;
-  places.delete(place);
+/** Takes the stages off the canvases that have gone. */
+export function detachStages() {
+  for (const [name, { canvas }] of [...canvases]) if (!canvas.isConnected) detach(name);
+}
+
+function detach(name) {
+  const old = canvases.get(name)?.opening;
+  canvases.delete(name);
   old?.then((stage) => stage.close(), () => {});
 }
 
-async function stage(place) {
-  const here = places.get(place);
+async function stage(name) {
+  const here = canvases.get(name);
   if (!here) throw new Error("there is no canvas on this page");
   if (!here.opening) {
     const mine = stageHost().then(({ openStage }) => openStage(here.canvas, here.look));
@@ -169,21 +173,26 @@ async function stage(place) {
   return here.opening;
 }
 
-/** Shows the first frame of a clip, and of the one beside it, before they are played. */
-export async function showClip(clip, beside) {
-  await (await stage("clip")).show(clip, 0);
-  if (beside) await (await stage("beside")).show(beside, 0);
+/** Shows the first frame of clips, [{canvas, clip}] as JSON, before they are played. */
+export async function showClips(clips) {
+  for (const { canvas, clip } of JSON.parse(clips)) await (await stage(canvas)).show(clip, 0);
 }
 
-/** Plays a clip once, the one beside it in step, or in turn after it. Resolves with the log as JSON, its times as
+// The stage of the play in progress.
+let playing = null;
+
+/** Plays clips once, [{canvas, clip}] as JSON, in step or in turn. Resolves with the log as JSON, its times as
     `study::PlayLog` has them. */
-export async function playClip(clip, beside, inTurn) {
-  const here = await stage("clip");
-  const there = beside ? { stage: await stage("beside"), clipId: beside, inTurn } : null;
-  const seen = watchView(() => here.stop("out of view"));
+export async function playClips(clips, inTurn) {
+  const placed = JSON.parse(clips);
+  const [{ clip }, ...others] = placed;
+  const stages = await Promise.all(placed.map(({ canvas }) => stage(canvas)));
+  const here = (playing = stages[0]);
+  const beside = others.map((other, k) => ({ stage: stages[k + 1], clipId: other.clip }));
+  const seen = watchView(placed, () => here.stop("out of view"));
   try {
-    const told = (await triggers)?.play({ clip, beside: beside ?? null });
-    const log = onPageClock(await here.play(clip, there, true, told));
+    const told = (await triggers)?.play({ clip, beside: others[0]?.clip ?? null, ...(others.length > 1 && { panel: placed.map((each) => each.clip) }) });
+    const log = onPageClock(await here.play(clip, { beside, inTurn, heard: true, told }));
     return JSON.stringify({ ...log, triggers: told?.sent() });
   } finally {
     seen.disconnect();
@@ -206,9 +215,10 @@ export function tellTriggers(events) {
 // The share of a picture that is in view when all of it is: layouts round to parts of a pixel.
 const WHOLE = 0.98;
 
-// Brings the pictures into view, and calls back once a part of one is not.
-function watchView(left) {
-  const pictures = [...places.values()].map(({ canvas }) => canvas.closest(".stage") ?? canvas);
+// Brings the pictures of a play into view, and calls back once a part of one is not.
+function watchView(placed, left) {
+  const shown = placed.map((each) => canvases.get(each.canvas).canvas);
+  const pictures = shown.map((canvas) => canvas.closest(".stage") ?? canvas);
   pictures[0]?.closest(".stage-frame")?.scrollIntoView({ block: "nearest" });
   const parts = new IntersectionObserver((seen) => {
     if (seen.some(({ intersectionRatio }) => intersectionRatio < WHOLE)) left();
@@ -257,5 +267,5 @@ export function nextLevel(request) {
 
 /** Aborts the play in progress. */
 export function stopClip() {
-  places.get("clip")?.opening?.then((stage) => stage.stop(), () => {});
+  playing?.stop();
 }

@@ -93,24 +93,27 @@ class Stage {
     }
   }
 
-  /// Plays a prepared clip once; resolves with the log whatever happens. `beside`: {stage, clipId}
-  /// of another stage, played in step, or with `inTurn` after it. Its sound is heard where that is asked for; `told` as Playback
-  /// has it.
-  async play(clipId, beside = null, heard = false, told = undefined) {
+  /// Plays a prepared clip once; resolves with the log whatever happens. `beside`: [{stage, clipId}] of other
+  /// stages, played in step, or with `inTurn` one after the other behind it. Its sound is heard where that is
+  /// asked for; `told` as Playback has it.
+  async play(clipId, { beside = [], inTurn = false, heard = false, told } = {}) {
     const clip = preparedClip(clipId);
-    const parts = [{ stage: this, clip }];
-    if (beside) parts.push({ stage: beside.stage, clip: preparedClip(beside.clipId) });
+    const others = beside.map(({ stage, clipId }) => ({ stage, clip: preparedClip(clipId) }));
+    const parts = [{ stage: this, clip }, ...others];
     if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
     const shown = parts.map((part) => part.clip);
     const sound = heard ? clip.sound : undefined;
-    const lasts = parts.map(({ clip }) => clip.duration_ms);
-    const inTurn = beside?.inTurn ?? false;
-    const turns = inTurn ? [[0, lasts[0]], [lasts[0], lasts[0] + lasts[1]]] : [];
-    const playback = new Playback(parts.map(({ stage, clip }, k) => stage.#part(clip, turns[k])), sound, told);
+    const turns = [];
+    let lasts = 0;
+    for (const { duration_ms: own } of shown) {
+      turns.push({ fromMs: lasts, untilMs: lasts + own, isLast: turns.length === shown.length - 1 });
+      lasts = inTurn ? lasts + own : Math.max(lasts, own);
+    }
+    const playback = new Playback(parts.map(({ stage, clip }, k) => stage.#part(clip, inTurn ? turns[k] : null)), sound, told);
     for (const { stage } of parts) stage.#playback = playback;
     try {
       for (const { stage, clip } of parts) await stage.#ready(clip);
-      const log = await playback.run(inTurn ? lasts[0] + lasts[1] : Math.max(...lasts));
+      const log = await playback.run(lasts);
       if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
@@ -127,11 +130,11 @@ class Stage {
     }
   }
 
-  // What a play does of this stage's clip; `turn`: its share of a play in turn, ms.
+  // What a play does of this stage's clip; `turn`: its share of a play in turn (fromMs, untilMs, isLast).
   #part(clip, turn) {
     if (clip.video) return { clock: this.#video.clock(clip) };
     const draw = (timeMs) => this.#draw(clip, timeMs);
-    return turn ? { draw, fromMs: turn[0], untilMs: turn[1], wait: (waits) => this.#wait(waits) } : { draw };
+    return turn ? { draw, ...turn, wait: (waits) => this.#wait(waits) } : { draw };
   }
 
   // style.css fades what waits for its turn.
@@ -278,7 +281,8 @@ class Stage {
     }
   }
 
-  #log([clip, beside], { failure, ...log }) {
+  #log(shown, { failure, ...log }) {
+    const [clip, beside, ...more] = shown;
     const css = this.#canvas.getBoundingClientRect();
     return {
       backend: this.#backend,
@@ -290,6 +294,7 @@ class Stage {
       provenance: clip.provenance,
       beside_provenance: beside?.provenance ?? "",
       renderer,
+      ...(more.length > 0 && { panel: shown.map(({ clip, provenance, weights_hash }) => ({ clip, provenance, weights_hash })) }),
     };
   }
 }

@@ -1,9 +1,9 @@
-// One play of a clip, or of two in step or in turn, in the display's clock, and its log.
+// One play of a clip, or of several in step or in turn, in the display's clock, and its log.
 //
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
 // refresh periods after the one before. The first is one that the display began after the play: on a page
-// that was busy, the frame that it is told of may have begun long before. Where one of the two is a video,
+// that was busy, the frame that it is told of may have begun long before. Where one of several is a video,
 // the video sets the time; of a video alone the log has its own frames.
 import { refreshPeriod } from "./clock.js";
 
@@ -18,8 +18,8 @@ const VIDEO_START_MS = 30;
 // Before its turn a clip stands at its first frame, after it at its last.
 function drawAt(part, ms) {
   if (!part.wait) return part.draw(ms);
-  const { fromMs, untilMs } = part;
-  part.wait(ms < fromMs || (ms >= untilMs && fromMs === 0));
+  const { fromMs, untilMs, isLast } = part;
+  part.wait(ms < fromMs || (ms >= untilMs && !isLast));
   return part.draw(Math.min(Math.max(ms, fromMs), untilMs) - fromMs);
 }
 
@@ -37,9 +37,8 @@ export class Playback {
   #failure = null;
   #finish = null;
 
-  /// `parts`: one or two of {draw(clipMs): whether the frame goes to the display} and {clock: a
-  /// video's}. Of two in turn, each has fromMs and untilMs, its share of the play, and wait(whether it is
-  /// not its turn). `sound`: heard with the first frame. `told`: {frame(now, ms), end(now)} in each frame's
+  /// `parts`: {draw(clipMs): whether the frame goes to the display} each, or {clock: a video's}. In turn, each
+  /// has fromMs and untilMs, its share of the play, isLast, and wait(whether it is not its turn). `sound`: heard with the first frame. `told`: {frame(now, ms), end(now)} in each frame's
   /// callback.
   constructor(parts, sound, told) {
     this.#parts = parts;

@@ -44,6 +44,10 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
+/// Browser tests that hold a clip's frames or its sound against a clock, and go through the longest studies: nothing
+/// runs beside them.
+const TIMED: [&str; 4] = ["sound", "study", "together", "triggers"];
+
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {
     install::nextest()?;
@@ -153,16 +157,26 @@ fn browser(tally: &mut Tally) -> Result<()> {
         tally.fail(format!("browser tests: {} was not built", binary.display()));
         return Ok(());
     }
-    let mut tests = Command::new("node");
-    tests.args(["--test", "--test-concurrency=1", "--test-reporter=tap"]).current_dir(&folder);
     let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)?
         .filter_map(|e| Some(e.ok()?.path()))
         .filter(|p| p.to_string_lossy().ends_with(".test.mjs"))
         .collect();
     files.sort();
-    tests.args(files);
-    tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_BINARY", binary);
-    tally.tests("browser tests", &mut tests)
+    let is_timed = |path: &PathBuf| {
+        let name = path.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
+        TIMED.contains(&name.trim_end_matches(".test.mjs"))
+    };
+    let (timed, others): (Vec<_>, Vec<_>) = files.into_iter().partition(is_timed);
+    let mut run = |name: &str, beside: u32, files: Vec<PathBuf>| {
+        let mut tests = Command::new("node");
+        tests.args(["--test", &format!("--test-concurrency={beside}"), "--test-reporter=tap"]);
+        tests.args(files).current_dir(&folder);
+        tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_BINARY", &binary);
+        tally.tests(name, &mut tests)
+    };
+    // A page mostly waits for clips to be played: two of them share the cores well.
+    run("browser tests, two beside each other", 2, others)?;
+    run("browser tests of what is timed, one after the other", 1, timed)
 }
 
 fn need(package: &Package) {

@@ -20,7 +20,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
@@ -204,9 +204,18 @@ fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
     install::wasm_target()?;
     let tools = if optimise { tools()? } else { None };
     let wasm_opt = tools.as_ref().map(|folder| folder.join("binaryen/bin/wasm-opt"));
-    for module in MODULES.iter().filter(|module| wanted(module)) {
-        module.build(wasm_opt.as_deref())?;
-    }
+    let wanted: Vec<&Module> = MODULES.iter().filter(|module| wanted(module)).collect();
+    // Linking with link-time optimisation keeps one core: the modules of the two profiles, which have folders and
+    // locks of their own, are built beside each other.
+    let of_profile = |profile: &str| -> Result<()> {
+        let mut own = wanted.iter().filter(|module| module.profile == profile);
+        own.try_for_each(|module| module.build(wasm_opt.as_deref()))
+    };
+    std::thread::scope(|scope| -> Result<()> {
+        let speed = scope.spawn(|| of_profile("web-solver"));
+        of_profile("web")?;
+        speed.join().map_err(|_| anyhow!("the build of the solver's modules has stopped"))?
+    })?;
     gather(tools.map(|folder| folder.join("esbuild/bin/esbuild")).as_deref())
 }
 

@@ -62,11 +62,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let mut trials = 0;
     for item in &items {
         match item {
-            OrderedItem::Trial { trial, clip, beside, .. } => {
+            OrderedItem::Trial { trial, clip, beside, panel, .. } => {
                 trials += 1;
                 let clip = match beside {
                     Some(right) => format!("{clip} | {right}"),
-                    None => clip.clone(),
+                    None if panel.is_empty() => clip.clone(),
+                    None => panel.join(" | "),
                 };
                 writeln!(out, "{trials:>4}  {clip:<24}  {trial}")?;
             }

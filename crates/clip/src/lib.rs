@@ -65,6 +65,7 @@ mod packs;
 mod pipeline;
 mod solve_packs;
 mod unsolved;
+mod weight_timing;
 
 pub use frame_statistics::FrameStatistics;
 pub use gaze::with_gaze_at_rest;

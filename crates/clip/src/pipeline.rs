@@ -13,6 +13,7 @@ use mimique_solver::{
 use crate::gaze::{bring_eyes_together, gaze_at_rest, with_gaze_at_rest};
 use crate::packs::SegmentMarkers;
 use crate::unsolved::{UnsolvedFrames, settle};
+use crate::weight_timing::time_weights;
 
 /// The markers that are solved: stored frames, and which of them are played.
 #[derive(Debug, Clone)]
@@ -121,6 +122,8 @@ pub fn solve_markers(
         }
     }
     put_driven(&mut solution.weights, shape_names, take);
+    time_weights(&mut solution.weights, shape_names.len(), take.rate_hz, &spec)
+        .map_err(FrontEndError::Lowpass)?;
     let seconds = PipelineSeconds {
         set_up: set_up - start,
         front_end: front_end - set_up,

@@ -3,7 +3,7 @@
 
 use mimique_avatar::HEAD_POSE_SHAPES;
 use mimique_avatar::pack::PackError;
-use mimique_solver::{FitError, MethodSpec, Operators};
+use mimique_solver::{FitError, FrontEndError, MethodSpec, Operators};
 
 use crate::frame_statistics::FrameStatistics;
 use crate::hashes::weights_hash;
@@ -11,6 +11,7 @@ use crate::packs::{
     SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
 };
 use crate::pipeline::{MarkerTake, PipelineError, solve_markers};
+use crate::weight_timing::time_weights;
 
 /// The weights of a clip.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +88,9 @@ fn solve_with(
         TakeContent::Markers(_) => Ok(solve_segment(&operators()?, &take, spec)?),
         TakeContent::Weights { shape_names, weights } => {
             let n = shape_names.len();
-            let weights = weights[take.played.start * n..take.played.end * n].to_vec();
+            let mut weights = weights[take.played.start * n..take.played.end * n].to_vec();
+            time_weights(&mut weights, n, take.rate_hz, spec)
+                .map_err(|error| PipelineError::from(FrontEndError::Lowpass(error)))?;
             Ok(SolvedTake {
                 shape_names: shape_names.clone(),
                 rate_hz: take.rate_hz,
@@ -118,7 +121,7 @@ pub fn solve_segment(
     let solution = solve_markers(operators, &marker_take, spec, &mut || 0.0)?;
     let statistics = FrameStatistics::of(&solution.reports);
     let (shape_names, weights) =
-        with_head_pose(&operators.parts().shape_names, solution.weights, &marker_take);
+        with_head_pose(&operators.parts().shape_names, solution.weights, &marker_take, spec)?;
     Ok(SolvedTake {
         shape_names,
         rate_hz: take.rate_hz,
@@ -137,21 +140,25 @@ fn with_head_pose(
     shape_names: &[String],
     weights: Vec<f64>,
     take: &MarkerTake<'_>,
-) -> (Vec<String>, Vec<f64>) {
+    spec: &MethodSpec,
+) -> Result<(Vec<String>, Vec<f64>), PipelineError> {
     let SegmentMarkers { driven_shapes, driven_weights, .. } = take.markers;
     let place = |name: &&str| driven_shapes.iter().position(|driven| driven == name);
     let places: Vec<usize> = HEAD_POSE_SHAPES.iter().filter_map(place).collect();
     let known = shape_names.iter().any(|name| HEAD_POSE_SHAPES.contains(&name.as_str()));
     if places.len() < HEAD_POSE_SHAPES.len() || known {
-        return (shape_names.to_vec(), weights);
+        return Ok((shape_names.to_vec(), weights));
     }
     let rows = weights.chunks_exact(shape_names.len());
     let frames = driven_weights.chunks_exact(driven_shapes.len()).skip(take.played.start);
-    let beside = |(row, driven): (&[f64], &[f64])| {
-        let head = places.iter().map(|&k| driven[k]);
-        row.iter().copied().chain(head).collect::<Vec<f64>>()
-    };
-    let weights = rows.zip(frames).flat_map(beside).collect();
+    let mut head: Vec<f64> = frames
+        .take(take.played.len())
+        .flat_map(|driven| places.iter().map(|&k| driven[k]))
+        .collect();
+    time_weights(&mut head, places.len(), take.rate_hz, spec).map_err(FrontEndError::Lowpass)?;
+    let beside =
+        |(row, head): (&[f64], &[f64])| row.iter().chain(head).copied().collect::<Vec<f64>>();
+    let weights = rows.zip(head.chunks_exact(places.len())).flat_map(beside).collect();
     let names = shape_names.iter().cloned().chain(HEAD_POSE_SHAPES.map(str::to_owned));
-    (names.collect(), weights)
+    Ok((names.collect(), weights))
 }

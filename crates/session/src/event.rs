@@ -97,6 +97,9 @@ pub enum EventKind {
         /// What is played beside it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         beside: Option<ShownBeside>,
+        /// Of a panel: its clips from the first place to the last.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        panel: Vec<String>,
     },
     /// A trial of an adaptive block has its level, by the answers before it.
     LevelChosen {
@@ -266,6 +269,18 @@ pub struct ShownBeside {
     pub left: bool,
 }
 
+/// A clip of a panel as it was shown.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ShownInPanel {
+    /// Which clip.
+    pub clip: String,
+    /// Its provenance, as the page had it.
+    pub provenance: String,
+    /// SHA-256 of its weights as the browser solved them, hexadecimal.
+    pub weights_hash: String,
+}
+
 /// What was chosen for a trial of an adaptive block ([`mimique_study::ChosenLevel`]), as its event says. It has no
 /// reader of its own, which would weigh on every page.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -377,8 +392,15 @@ pub struct PlayLog {
     pub beside_provenance: String,
     /// What drew it: the hash in the address of the page's modules and shaders.
     pub renderer: String,
-    /// Side by side: the largest time between what the two clips showed in one frame, milliseconds.
+    /// Of several clips in step: the largest time between what two of them showed in one frame, milliseconds.
     pub drift_ms: f64,
+    /// Of a panel: each clip that was played, [`ShownInPanel`]s, which the page hands on as they are; else null.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub panel: Value,
+    /// Of a panel: the place of the clip that was played alone, from 1; 0 is the open reference. Null where all were
+    /// played.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alone: Option<u32>,
     /// What was heard: a [`SoundLog`], which the page hands on as it is; null for a clip without sound.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub sound: Value,
@@ -407,6 +429,11 @@ impl PlayLog {
     /// What was heard; none for a clip without sound.
     pub fn sound_log(&self) -> Option<SoundLog> {
         SoundLog::deserialize(&self.sound).ok()
+    }
+
+    /// The clips of a panel as they were played; none of other trials.
+    pub fn shown_in_panel(&self) -> Vec<ShownInPanel> {
+        Vec::deserialize(&self.panel).unwrap_or_default()
     }
 
     /// Whether the clip was shown to its end.

@@ -8,8 +8,8 @@ use mimique_study::text::{Words, words};
 use mimique_study::{
     AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, DealtPairs, Draw,
     KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
-    Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training, option_order,
-    order, right_answers,
+    PanelPages, Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training,
+    answer_about, option_order, order, right_answers,
 };
 use serde::Deserialize as _;
 
@@ -93,6 +93,8 @@ pub struct TrialStep {
     pub condition: String,
     /// What is played in step beside the clip.
     pub beside: Option<Companion>,
+    /// The panel, where several clips are rated on one scale.
+    pub panel: Option<Panel>,
     /// Right answers by question, of a practice trial.
     pub right: Answers,
 }
@@ -110,6 +112,69 @@ pub struct Companion {
     pub clip_caption: Option<LocalText>,
     /// Whether it is played after the trial's own clip, not in step with it.
     pub in_turn: bool,
+}
+
+/// Several clips that are rated on one scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// The clips, from the first place to the last.
+    pub clips: Vec<String>,
+    /// The clip that stands on the page as the reference.
+    pub reference: Option<String>,
+    /// Whether they are played one after the other.
+    pub in_turn: bool,
+    /// Identifier of the question that is asked of each.
+    pub question: String,
+    /// What is asked.
+    pub prompt: LocalText,
+}
+
+impl Panel {
+    /// The panel at the places that were drawn, and its questions: what is asked of each of its clips.
+    fn of(
+        pages: &PanelPages,
+        clips: &[String],
+        asked: Vec<Question>,
+    ) -> Option<(Self, Vec<Question>)> {
+        let page =
+            pages.pages.iter().find(|page| clips.iter().all(|it| page.clips.contains(it)))?;
+        let asked = asked.into_iter().next()?;
+        let of = |(place, clip): (usize, &String)| Question {
+            id: answer_about(&asked.id, clip),
+            prompt: LocalText::Plain(letter(place)),
+            help: None,
+            video: None,
+            ..asked.clone()
+        };
+        let questions = clips.iter().enumerate().map(of).collect();
+        let panel = Self {
+            clips: clips.to_vec(),
+            reference: pages.reference.and_then(|at| page.clips.get(at)).cloned(),
+            in_turn: pages.in_turn,
+            question: asked.id.clone(),
+            prompt: asked.prompt.clone(),
+        };
+        Some((panel, questions))
+    }
+
+    /// The clip at a place from 1; 0 is the open reference.
+    pub fn clip(&self, place: u32) -> Option<&str> {
+        match (place as usize).checked_sub(1) {
+            Some(at) => self.clips.get(at).map(String::as_str),
+            None => self.reference.as_deref(),
+        }
+    }
+
+    /// The places that are played, in the order in which they stand: the open reference, then the clips.
+    pub fn places(&self) -> impl Iterator<Item = u32> {
+        let first = if self.reference.is_some() { 0 } else { 1 };
+        first..=self.clips.len() as u32
+    }
+}
+
+/// A, B, C: what the clip at a place of a panel is called.
+pub fn letter(place: usize) -> String {
+    char::from(b'A' + (place % 26) as u8).to_string()
 }
 
 impl Companion {
@@ -236,7 +301,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     let mut steps = Vec::new();
     for item in items {
         steps.extend(match item {
-            OrderedItem::Trial { trial, component, clip, beside, condition } => {
+            OrderedItem::Trial { trial, component, clip, beside, panel, condition } => {
                 let block = match study.components.get(component) {
                     Some(Component::Trials(block)) => block,
                     Some(Component::Adaptive(block)) => {
@@ -249,9 +314,17 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     _ => continue,
                 };
                 trials += 1;
+                let asked = questions(study, &block.questions);
+                let pages = block.panel.as_deref();
+                let (panel, questions) =
+                    match pages.and_then(|pages| Panel::of(pages, panel, asked.clone())) {
+                        Some((panel, questions)) => (Some(panel), questions),
+                        None => (None, asked),
+                    };
                 let step = TrialStep {
                     clip: clip.clone(),
-                    questions: questions(study, &block.questions),
+                    questions,
+                    panel,
                     instruction: block.instruction.clone(),
                     maximum_replays: block.maximum_replays,
                     training: false,
@@ -298,6 +371,7 @@ fn adaptive_trial(
         number,
         condition: condition.to_owned(),
         beside: None,
+        panel: None,
         right: Answers::new(),
     }
 }
@@ -314,7 +388,10 @@ fn component_step(id: String, component: &Component) -> Option<Step> {
             (StepKind::Page(section), page.time_limit.clone())
         }
         Component::Break(rest) => (StepKind::Break(rest.clone()), None),
-        Component::Trials(_) | Component::Pairs(_) | Component::Adaptive(_) => return None,
+        Component::Trials(_)
+        | Component::Pairs(_)
+        | Component::Panel(_)
+        | Component::Adaptive(_) => return None,
     };
     Some(Step { id, kind, time_limit })
 }
@@ -377,6 +454,7 @@ fn practice(study: &StudyProjection, training: &Training, steps: &mut Vec<Step>)
                 number: index + 1,
                 condition: "training".to_owned(),
                 beside: None,
+                panel: None,
                 right,
             };
             let id = format!("training/{}/{clip}{again}", index + 1);

@@ -122,7 +122,7 @@ fn no_answer_counts_before_one_whole_play() {
 
     // A play cut short does not count either.
     let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
-    assert!(effects.iter().any(|effect| matches!(effect, Effect::PlayClip { .. })));
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::PlayClips { .. })));
     let mut log = whole_play(page.now_ms);
     log.aborted = Some("hidden".into());
     let (state, _) = update(&page.plan, state, Input::Played(log), page.now_ms + 900.0);
@@ -696,7 +696,7 @@ fn a_slow_network_holds_nobody_up_and_the_code_back() {
                 Effect::PrepareClips(clips) => {
                     inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
                 }
-                Effect::PlayClip { .. } => inputs.push_back(Input::Played(whole_play(now_ms))),
+                Effect::PlayClips { .. } => inputs.push_back(Input::Played(whole_play(now_ms))),
                 Effect::Complete { .. } => panic!("nothing has arrived"),
                 _ => {}
             }

@@ -4,7 +4,9 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use mimique_session::flow::{Effect, Input, Phase, TrialStep, View, update, view};
+use mimique_session::flow::{
+    BESIDE_CANVAS, Effect, Input, OWN_CANVAS, Phase, PlacedClip, TrialStep, View, update, view,
+};
 use mimique_session::rows::{SessionRecord, Table, tidy, wide};
 use mimique_study::Study;
 use serde_json::{Value, json};
@@ -71,8 +73,10 @@ fn a_pair_is_played_when_both_are_ready_and_fails_with_either() {
         (trial.clip, trial.beside.unwrap().clip)
     };
     let (state, effects) = update(&page.plan, page.state.clone(), Input::Play, page.now_ms);
-    let play =
-        Effect::PlayClip { clip: clip.clone(), beside: Some(beside.clone()), in_turn: false };
+    let placed =
+        |canvas: &str, clip: &String| PlacedClip { canvas: canvas.to_owned(), clip: clip.clone() };
+    let clips = vec![placed(OWN_CANVAS, &clip), placed(BESIDE_CANVAS, &beside)];
+    let play = Effect::PlayClips { clips, in_turn: false };
     assert!(effects.contains(&play), "{effects:?}");
     drop(state);
 

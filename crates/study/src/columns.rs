@@ -118,6 +118,27 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
     ]
 };
 
+/// Of trials of panels, in exports of studies that have such a block, after `chosen`: name, kind, unit, what it means.
+pub const PANEL_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
+    use ColumnKind::{Integer, Text};
+    [
+        (
+            "panel_condition",
+            Text,
+            "",
+            "Of a clip of a panel: its condition, the level of the compared factor",
+        ),
+        ("panel_role", Text, "", "reference (the hidden one), anchor, or condition"),
+        ("panel_place", Integer, "", "Its place on the page, from 1, which stands for A"),
+        (
+            "panel_replays",
+            Integer,
+            "",
+            "Whole plays of this clip alone, after the first play of all",
+        ),
+    ]
+};
+
 /// Of trials of blocks of pairs, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
 /// it means.
 pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {

@@ -35,7 +35,7 @@ pub use projection::StudyProjection;
 pub use question::{
     AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
     KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,
-    Question, QuestionKind, QuestionKindView, Ranking, SHORT_TEXT, Scale, ShortText, Showing,
-    Simulated, SingleChoice, Slider, Summary, Told,
+    Question, QuestionKind, QuestionKindView, Ranking, SHORT_TEXT, SPACE_KEY, Scale, ShortText,
+    Showing, Simulated, SingleChoice, Slider, Summary, Told,
 };
 pub use study_file::*;

@@ -5,14 +5,15 @@
 use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
-use mimique_session::flow::{Input, Phase, View, view};
+use mimique_session::flow::{Input, Phase, PlacedClip, QuestionKindView, View, view};
+use mimique_study::SPACE_KEY;
 use mimique_study::text::{Words, words};
 use mimique_web_panics::report_panics;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::spawn_local;
 
 use crate::act::Act;
-use crate::browser::window::{WindowEvent, watch};
+use crate::browser::window::{WindowEvent, watch, watch_keys};
 use crate::browser::{clock, document, focus, host};
 use crate::dom::{Element, Mount};
 use crate::engine::Engine;
@@ -40,7 +41,7 @@ struct Shown {
     step: Option<String>,
     language: String,
     /// Phase of the trial, its clip and the one beside it.
-    phase: Option<(&'static str, String, Option<String>)>,
+    phase: Option<(&'static str, Vec<PlacedClip>)>,
 }
 
 /// The page. It lives as long as the document.
@@ -88,7 +89,9 @@ pub fn start() {
     });
     app.begin();
     // What holds the page from now on.
+    let keys = Rc::clone(&app);
     watch(move |event| app.window(event));
+    watch_keys(move |key, at_ms| keys.key(key, at_ms));
 }
 
 impl App {
@@ -212,6 +215,26 @@ impl App {
         }
     }
 
+    /// A key: an answer, where a question of the trial has it.
+    fn key(&self, key: &str, at_ms: f64) -> bool {
+        let Some(engine) = self.engine() else { return false };
+        let View::Trial(trial) = view(&engine.plan, &engine.state()) else { return false };
+        let is_it = |own: &str| match own {
+            SPACE_KEY => key == " ",
+            own => own.to_lowercase() == key.to_lowercase(),
+        };
+        for asked in trial.keys.iter().filter(|_| trial.can_press) {
+            let QuestionKindView::Keys { options, keys } = &asked.kind else { continue };
+            let found = keys.iter().position(|own| own.as_deref().is_some_and(is_it));
+            if let Some(option) = found.and_then(|place| options.get(place)) {
+                let (question, value) = (asked.id.clone(), option.value.clone());
+                engine.dispatch(Input::Press { question, value, at_ms });
+                return true;
+            }
+        }
+        false
+    }
+
     /// Something changed that the screen shows: it is drawn again at the end of this turn, or once what is
     /// pressed is let go. A page that moved in between would take the button from under the pointer.
     fn changed(&self) {
@@ -294,9 +317,9 @@ impl App {
             shown.phase = None;
         }
         let View::Trial(trial) = view else { return };
-        let companion = trial.beside.map(|beside| beside.clip);
+        let placed = trial.placed();
         let word = pages::phase_word(&trial.phase);
-        let phase = Some((word, trial.clip.clone(), companion.clone()));
+        let phase = Some((word, placed.clone()));
         if shown.phase == phase {
             return;
         }
@@ -315,7 +338,7 @@ impl App {
             _ => {}
         }
         if matches!(trial.phase, Phase::Ready) {
-            engine.show(trial.clip, companion);
+            engine.show(&placed);
         }
     }
 }

@@ -169,7 +169,7 @@ impl<'p> World<'p> {
                     Effect::PrepareClips(clips) => {
                         inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }))
                     }
-                    Effect::PlayClip { .. } => {
+                    Effect::PlayClips { .. } => {
                         let onset_ms = self.now_ms;
                         inputs.push_back(Input::Played(PlayLog { onset_ms, ..PlayLog::default() }));
                     }

@@ -43,6 +43,8 @@ pub(crate) enum Design {
     NetChoices,
     /// How often each person chose each level.
     Wins,
+    /// Which of every two levels was rated higher on a page.
+    PageOrder,
     /// Ratings by levels, people and segments.
     PeopleAndSegments,
     /// Differences between two levels, one per person, and the smallest that matters.
@@ -80,6 +82,7 @@ impl Design {
             Self::Choices => "of_choices",
             Self::NetChoices => "of_net_choices",
             Self::Wins => "of_wins",
+            Self::PageOrder => "of_page_order",
             Self::PeopleAndSegments => "of_people_and_segments",
             Self::EquivalenceOfPeople => "of_people_within",
             Self::EquivalenceOfGroups => "of_groups_within",

@@ -63,12 +63,14 @@ impl<'s> Design<'s> {
             let mut sides = Sides::new(&projection, draw, &items);
             for item in items {
                 match item {
-                    OrderedItem::Trial { component, clip, beside, .. } => {
+                    OrderedItem::Trial { component, clip, beside, panel, .. } => {
                         let beside = beside.map(|clip| (clip, false)).or_else(|| {
                             companion((&projection, &own_clips), &component, &clip, &mut sides)
                         });
                         let copies = |clip: &str| clips.stand_ins.get(clip).into_iter().flatten();
-                        for (copy, &clip) in copies(&clip).enumerate() {
+                        // The clips of a panel are rated one by one.
+                        let shown = if panel.is_empty() { vec![clip] } else { panel };
+                        for (copy, &clip) in shown.iter().flat_map(|it| copies(it).enumerate()) {
                             // A copy of a clip stands beside the same copy of its companion.
                             let beside = beside.as_ref().and_then(|(id, left)| {
                                 Some(Companion { clip: *copies(id).nth(copy)?, left: *left })

@@ -8,7 +8,7 @@ use mimique_study::{
     Study,
 };
 
-use super::{Preregistration, Text, levels, pairs};
+use super::{Preregistration, Text, levels, pairs, panels};
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::simulate::factor_levels;
@@ -175,6 +175,7 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         text.line("");
     }
     pairs::design(text, study, language, naming);
+    panels::design(text, study, language, naming);
     levels::design(text, study, language);
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
@@ -259,7 +260,7 @@ fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Opti
         SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
         SequenceItem::Sequence(nested) => trials_in(study, nested, clips, condition),
         SequenceItem::Component(name) => match study.components.get(name) {
-            Some(Component::Trials(_) | Component::Pairs(_)) => {
+            Some(Component::Trials(_) | Component::Pairs(_) | Component::Panel(_)) => {
                 study.trial_block(name).map_or(0, |block| block.trial_count(clips))
             }
             Some(Component::Adaptive(_)) => {

@@ -8,6 +8,7 @@ mod design;
 mod equivalence;
 mod levels;
 mod pairs;
+mod panels;
 
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! Blocks of pairs in words: what is compared, and which pairs each participant is shown.
 
-use mimique_study::{PairShowing, Study};
+use mimique_study::{ClipShowing, Study};
 
 use super::Text;
 use crate::language::Language;
@@ -19,8 +19,8 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming:
         let (within, all) = (within.join(", "), trials.shown(&clips).len());
         let each = trials.trial_count(&clips);
         let how = match block.show {
-            PairShowing::InStep => language.pick("side by side, in step", "côte à côte, en phase"),
-            PairShowing::InTurn => language.pick(
+            ClipShowing::InStep => language.pick("side by side, in step", "côte à côte, en phase"),
+            ClipShowing::InTurn => language.pick(
                 "side by side, the left one first, then the right one",
                 "côte à côte, celui de gauche d’abord, puis celui de droite",
             ),

@@ -15,6 +15,7 @@ use crate::report::section::choices::Choices;
 use crate::report::section::course::Course;
 use crate::report::section::detection::QuestionDetection;
 use crate::report::section::layouts::LayoutCell;
+use crate::report::section::panels::PanelResult;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::thresholds::BlockThresholds;
 use crate::trials::export::{Flow, Person};
@@ -47,6 +48,9 @@ pub(crate) struct Results<'a> {
     /// Scales that the study file declares.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub scales: Vec<ScaleConsistency>,
+    /// Of blocks of panels.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub panels: Vec<PanelResult>,
     /// Where a table of stimuli was given.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stimulus_measures: Vec<MeasureCorrelation>,
@@ -69,6 +73,7 @@ impl Results<'_> {
         self.detection.extend(part.detection);
         self.agreement.extend(part.agreement);
         self.scales.extend(part.scales);
+        self.panels.extend(part.panels);
         self.stimulus_measures.extend(part.stimulus_measures);
     }
 }

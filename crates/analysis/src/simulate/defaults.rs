@@ -110,6 +110,9 @@ const OTHER_ANSWER: f64 = 0.03;
 /// Shift from one level of intensity to the next.
 const INTENSITY_STEP: f64 = 0.15;
 
+/// How far the anchor of a panel is rated below the other conditions, of 100 points.
+const ANCHOR_BELOW: f64 = 30.0;
+
 impl Parameters {
     /// The default parameters of a study.
     pub fn for_study(study: &Study) -> Self {
@@ -120,7 +123,8 @@ impl Parameters {
         for (response, scale) in all_scales(study) {
             let question = response.split('.').next().unwrap_or(&response);
             let shown = in_trials(&response) || in_trials(question);
-            let rating = rating(study, &levels, &response, scale, shown);
+            let mut rating = rating(study, &levels, &response, scale, shown);
+            anchored(study, &mut rating, &response);
             ratings.insert(response, rating);
         }
         let mut recognition = BTreeMap::new();
@@ -154,6 +158,7 @@ impl Parameters {
             ratings,
             recognition,
             comparisons,
+            panels: super::panels::defaults(study),
             discrimination: super::levels::defaults(study),
             choices,
             numbers,
@@ -177,6 +182,15 @@ impl Parameters {
 }
 
 type Levels = BTreeMap<String, Vec<String>>;
+
+/// The anchor of a panel is rated far below the rest.
+fn anchored(study: &Study, rating: &mut Rating, response: &str) {
+    for (_, block) in study.panel_blocks().filter(|(_, block)| block.question == response) {
+        if let Some(anchor) = block.anchor {
+            rating.effects.entry(block.compare).or_default().insert(anchor, -ANCHOR_BELOW);
+        }
+    }
+}
 
 /// A number within bounds. Most numbers that a study asks for are ages.
 fn typed_number(minimum: Option<f64>, maximum: Option<f64>) -> NumberAnswer {

@@ -12,6 +12,7 @@ mod latent;
 mod levels;
 mod model;
 mod null;
+mod panels;
 mod parameters;
 mod person;
 mod random;

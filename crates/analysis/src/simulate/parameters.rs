@@ -5,6 +5,7 @@
 //! | `ratings` | a scale each: mean, spreads of people, clips and noise, thresholds, effects |
 //! | `recognition` | a question with a right answer each: confusion matrix, spreads, effects |
 //! | `comparisons` | a question that chooses between two clips each: worths, spreads, side, ties |
+//! | `panels` | a block of panels each: spread of pages, share of people who miss the reference |
 //! | `discrimination` | an adaptive block each: threshold and its spread over people, spread, lapse |
 //! | `choices`, `numbers` | how other questions are answered, those about the participant too |
 //! | `times` | log-normal answering times |
@@ -33,6 +34,9 @@ pub struct Parameters {
     /// Questions that choose between two clips.
     #[serde(default)]
     pub comparisons: BTreeMap<String, Compared>,
+    /// Blocks of panels, beside the `ratings` of their question.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub panels: BTreeMap<String, PanelRatings>,
     /// Adaptive blocks: how people tell levels.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrimination: BTreeMap<String, Discrimination>,
@@ -139,6 +143,17 @@ pub struct Compared {
     pub tie: f64,
     /// Share of answers without looking.
     pub lapse: f64,
+}
+
+/// How people rate a block of panels: who finds the hidden reference rates it at the end of the scale, all else as the
+/// `ratings` of the question say, the clips of a page with a shift in common.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct PanelRatings {
+    /// Standard deviation of the shift that the clips of a page have in common, points.
+    pub page_sd: f64,
+    /// Share of people who do not find the hidden reference and rate it as any other clip.
+    pub misses_reference: f64,
 }
 
 /// How people tell the levels of an adaptive block: P(right) = 1/2 + (1/2 - lapse) Φ((level - threshold) / spread).

@@ -63,6 +63,8 @@ pub(crate) enum Raw {
 struct Seen {
     clip: usize,
     beside: Option<Companion>,
+    /// What a rating has in common with others of its page, points.
+    shift: f64,
 }
 
 /// A clip that is played in step beside the trial's own.
@@ -200,7 +202,19 @@ impl<'m> Person<'m> {
         beside: Option<Companion>,
         trial: usize,
     ) -> Option<Raw> {
-        let seen = Some(Seen { clip, beside });
+        let seen = Some(Seen { clip, beside, shift: 0.0 });
+        self.mind.answer(&mut self.answers, question, seen, trial)
+    }
+
+    /// The rating of a clip of a panel, moved by what its page has in common.
+    pub(crate) fn panel_answer(
+        &mut self,
+        question: usize,
+        clip: usize,
+        shift: f64,
+        trial: usize,
+    ) -> Option<Raw> {
+        let seen = Some(Seen { clip, beside: None, shift });
         self.mind.answer(&mut self.answers, question, seen, trial)
     }
 
@@ -272,10 +286,10 @@ impl Mind<'_> {
         }
         Some(match &asked.way {
             Way::Scales(rated) => match rated.as_slice() {
-                [one] => Raw::Number(self.rate(draws, one, clip, trial)),
+                [one] => Raw::Number(self.rate(draws, one, seen, trial)),
                 several => {
                     let values: Vec<f64> =
-                        several.iter().map(|one| self.rate(draws, one, clip, trial)).collect();
+                        several.iter().map(|one| self.rate(draws, one, seen, trial)).collect();
                     let parts = asked.question.kind.parts().unwrap_or_default();
                     let parts = parts.into_iter().map(str::to_owned);
                     let values = values.into_iter().map(|value| (value as i64).into());
@@ -350,12 +364,12 @@ impl Mind<'_> {
         }
     }
 
-    fn rate(&self, draws: &mut Draws, rated: &Rated, clip: Option<usize>, trial: usize) -> f64 {
+    fn rate(&self, draws: &mut Draws, rated: &Rated, seen: Option<Seen>, trial: usize) -> f64 {
         if self.careless {
             return rated.scale.value(draws.below(rated.scale.points.max(1)));
         }
-        let value = clip.map_or(rated.mean, |clip| {
-            self.values[rated.latent][clip] + rated.per_trial * trial as f64
+        let value = seen.map_or(rated.mean, |seen| {
+            self.values[rated.latent][seen.clip] + seen.shift + rated.per_trial * trial as f64
         });
         let value = value + rated.noise_sd * draws.normal();
         rated.scale.value(rated.borders.partition_point(|border| *border <= value))

@@ -40,9 +40,15 @@ impl Parameters {
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")
         })?;
-        for part in
-            ["ratings", "recognition", "comparisons", "discrimination", "choices", "numbers"]
-        {
+        for part in [
+            "ratings",
+            "recognition",
+            "comparisons",
+            "panels",
+            "discrimination",
+            "choices",
+            "numbers",
+        ] {
             refuse_unknown(&value, &given, part)?;
         }
         merge(&mut value, given, 0);
@@ -74,6 +80,14 @@ impl Parameters {
         }
         for (question, compared) in &self.comparisons {
             check_compared(&format!("/comparisons/{question}"), compared, &levels)?;
+        }
+        for (block, given) in &self.panels {
+            deviation(&format!("/panels/{block}/pageSd"), given.page_sd)?;
+            if !(0.0..=1.0).contains(&given.misses_reference) {
+                let problem = format!("{} is no share", given.misses_reference);
+                let place = format!("/panels/{block}/missesReference");
+                return Err(problem_at(&place, problem, "give 0 to 1"));
+            }
         }
         for (block, given) in &self.discrimination {
             let at = |key: &str| format!("/discrimination/{block}/{key}");

@@ -1,14 +1,17 @@
 //! A simulated person goes through the study: the page's own state machine makes the events.
 
-use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
+use mimique_session::flow::{Effect, Input, Panel, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
-use mimique_study::{Answers, Calibration, Display, Multilingual as _, OrderError};
+use mimique_study::{
+    Answers, Calibration, Display, KindOfQuestion as _, Multilingual as _, OrderError,
+};
 
 use super::latent::ClipEffects;
 use super::levels::{Levels, Observer};
 use super::model::Model;
-use super::person::{BEFORE_REPLAY_MS, Companion, Person, Showing, as_json};
+use super::panels::RatedPage;
+use super::person::{BEFORE_REPLAY_MS, Companion, Person, Raw, Showing, as_json};
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
 const FIRST_SESSION_MS: f64 = 1_767_603_600_000.0;
@@ -49,7 +52,7 @@ pub(crate) fn events(
     let levels = Levels::default();
     let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
     let observer = Observer::new(model.parameters, seed, started.participant);
-    let mut walk = Walk { model, person, practice, observer, page, trial: 0 };
+    let mut walk = Walk { model, seed, person, practice, observer, page, trial: 0 };
     walk.go();
     Ok(walk.page.events)
 }
@@ -102,6 +105,7 @@ pub(crate) fn eighths(ms: f64) -> f64 {
 
 struct Walk<'w, 'm> {
     model: &'m Model<'m>,
+    seed: u64,
     person: Person<'m>,
     practice: Person<'m>,
     observer: Observer,
@@ -137,8 +141,13 @@ impl Walk<'_, '_> {
                     self.shown(&step.id);
                     self.read(800.0);
                     self.watch(&client, &trial.clip, trial.maximum_replays, trial.training);
-                    self.answer_trial(&trial.clip, trial.training);
+                    if self.page.state.record.step == here {
+                        self.answer_trial(&trial.clip, trial.training);
+                    }
                     self.trial += usize::from(!trial.training);
+                    if self.page.state.record.step != here {
+                        continue;
+                    }
                 }
                 StepKind::Questions { page, demographics } => {
                     self.shown(&step.id);
@@ -283,13 +292,57 @@ impl Walk<'_, '_> {
             self.page.wait(60.0);
             let sound = self.heard(clip);
             let log = PlayLog { sound, ..self.log(&showing, backend, client, None) };
-            self.page.wait(self.model.parameters.times.clip_ms);
+            let left_ms = match play {
+                0 => self.press_while_playing(clip, training),
+                _ => self.model.parameters.times.clip_ms,
+            };
+            self.page.wait(left_ms);
+            let here = self.page.state.record.step;
             self.page.send(Input::Played(log));
+            if self.page.state.record.step != here {
+                // The last press was all that the trial asked for.
+                return;
+            }
         }
         if showing.focus_loss {
             self.page.send(Input::FocusLost);
             self.page.send(Input::FocusGained);
         }
+    }
+
+    /// Presses the keys of the trial's questions while the clip plays; how much of the clip is left then. What would
+    /// come after its end is answered with the other questions.
+    fn press_while_playing(&mut self, clip: &str, training: bool) -> f64 {
+        let mut left_ms = self.model.parameters.times.clip_ms;
+        let here = self.page.state.record.step;
+        let keyed: Vec<String> = self.page.plan.steps[here]
+            .questions()
+            .iter()
+            .filter(|question| question.kind.keys().is_some())
+            .map(|question| question.id.clone())
+            .collect();
+        for question in keyed {
+            let Some((value, ms)) = self.pressed(&question, clip, training) else { continue };
+            if ms < left_ms {
+                self.page.wait(ms);
+                left_ms -= ms;
+                let at_ms = self.page.now_ms;
+                self.page.send(Input::Press { question, value, at_ms });
+            }
+        }
+        left_ms.max(1.0)
+    }
+
+    /// What a person would press, and how long it takes; nothing where the answer is the option without a key.
+    fn pressed(&mut self, question: &str, clip: &str, training: bool) -> Option<(String, f64)> {
+        let (place, clip) = (self.model.question(question)?, self.model.clip(clip)?);
+        let trial = self.trial;
+        let person = if training { &mut self.practice } else { &mut self.person };
+        let ms = person.answering_ms(Some(clip));
+        let raw = person.trial_answer(place, clip, None, trial)?;
+        let asked = &self.model.questions[place];
+        let value = as_json(asked, raw).as_str()?.to_owned();
+        asked.question.kind.keys()?.contains_key(&value).then_some((value, ms))
     }
 
     /// One browser has one back end: drawn by the participant's number alone.
@@ -330,6 +383,8 @@ impl Walk<'_, '_> {
             drift_ms: 0.0,
             sound: serde_json::Value::Null,
             triggers: None,
+            panel: serde_json::Value::Null,
+            alone: None,
             aborted: aborted.map(str::to_owned),
         }
     }
@@ -340,8 +395,12 @@ impl Walk<'_, '_> {
             self.answer_level(&shown);
             return;
         }
-        let Some(clip) = self.model.clip(clip) else { return };
         let trial = self.page.plan.steps[here].trial();
+        if let Some(panel) = trial.and_then(|trial| trial.panel.clone()) {
+            self.answer_panel(&panel);
+            return;
+        }
+        let Some(clip) = self.model.clip(clip) else { return };
         let beside = trial.and_then(|trial| trial.beside.as_ref()).and_then(|beside| {
             Some(Companion { clip: self.model.clip(&beside.clip)?, left: beside.left })
         });
@@ -351,9 +410,43 @@ impl Walk<'_, '_> {
                 continue;
             }
             let Some(place) = self.model.question(&question.id) else { continue };
+            if question.kind.keys().is_some() {
+                // Whoever has not pressed while the clip was played does so now.
+                let (id, clip) = (question.id.clone(), self.model.clips[clip].id.clone());
+                if self.page.state.record.draft(&id).is_none()
+                    && let Some((value, ms)) = self.pressed(&id, &clip, training)
+                {
+                    self.page.wait(ms);
+                    let at_ms = self.page.now_ms;
+                    self.page.send(Input::Press { question: id, value, at_ms });
+                }
+                continue;
+            }
             let person = if training { &mut self.practice } else { &mut self.person };
             let ms = person.answering_ms(Some(clip));
             let Some(raw) = person.trial_answer(place, clip, beside, self.trial) else { continue };
+            let value = as_json(&self.model.questions[place], raw);
+            self.page.wait(ms);
+            self.page.send(Input::Answer { question: question.id.clone(), value });
+        }
+        self.read(500.0);
+    }
+
+    /// Each clip of a panel, from the first place to the last.
+    fn answer_panel(&mut self, panel: &Panel) {
+        let step = &self.page.plan.steps[self.page.state.record.step];
+        let number = self.page.plan.started.participant;
+        let page = RatedPage::of(self.model.parameters, self.seed, number, &step.id);
+        let Some(place) = self.model.question(&panel.question) else { return };
+        for (question, id) in step.questions().iter().zip(&panel.clips) {
+            let Some(clip) = self.model.clip(id) else { continue };
+            let ms = self.person.answering_ms(Some(clip));
+            let found = page.is_found(panel, id) && !self.person.is_careless();
+            let raw = match question.kind.bounds() {
+                Some([_, Some(most)]) if found => Some(Raw::Number(most)),
+                _ => self.person.panel_answer(place, clip, page.shift, self.trial),
+            };
+            let Some(raw) = raw else { continue };
             let value = as_json(&self.model.questions[place], raw);
             self.page.wait(ms);
             self.page.send(Input::Answer { question: question.id.clone(), value });

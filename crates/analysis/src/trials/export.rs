@@ -13,6 +13,7 @@ use crate::agreement::answers::on_pages;
 use crate::trials::combinations::Combinations;
 use crate::trials::error::ExportError;
 use crate::trials::reason::Reason;
+use crate::trials::screening::{Screening, screen};
 use crate::trials::sessions::{Sessions, about_people};
 use crate::trials::straight_lining::count_runs;
 use crate::trials::trial_rows::{TrialReader, TrialRows, stretches};
@@ -160,6 +161,8 @@ pub(crate) struct Export {
     /// Answers about each person, and the assigned condition: column, then one cell a person.
     pub about: Vec<(String, Vec<Option<String>>)>,
     pub flow: Flow,
+    /// Whom BS.1534 leaves out of panels, a block each that has a hidden reference.
+    pub screening: Vec<Screening>,
     /// Of the trials; found when first asked for.
     combinations: OnceLock<Combinations>,
 }
@@ -181,6 +184,7 @@ impl Export {
             factors,
             about,
             flow: Flow::default(),
+            screening: Vec::new(),
             combinations: OnceLock::new(),
         }
     }
@@ -203,7 +207,8 @@ impl Export {
         let mut sessions = Sessions::read(table)?;
         count_runs(table, study, &sessions.person_of_row, &mut sessions.people)?;
         let mut flow = exclude_people(study, &mut sessions.people, &sessions.stages);
-        let Sessions { people, person_of_row, reasons, .. } = sessions;
+        let Sessions { mut people, person_of_row, reasons, .. } = sessions;
+        let screening = screen(table, study, &person_of_row, &mut people, &mut flow)?;
         for (person, reason) in people.iter().zip(&reasons) {
             if let (Some(Reason::ByResearcher), Some(reason)) = (person.excluded, reason) {
                 *flow.researcher_reasons.entry((*reason).to_owned()).or_insert(0) += 1;
@@ -211,7 +216,7 @@ impl Export {
         }
         let factors = study.factor_names().into_iter().filter(|name| table.has(name)).collect();
         let about = about_people(table, study, &person_of_row, people.len());
-        let mut export = Self { people, flow, ..Self::new(factors, about) };
+        let mut export = Self { people, flow, screening, ..Self::new(factors, about) };
         export.read_trials(table, study, &person_of_row)?;
         export.page_answers = on_pages(table, study, &person_of_row, export.people.len())?;
         Ok(export)

@@ -9,6 +9,8 @@ pub enum Reason {
     AnsweredTooSoon,
     /// A person: more attention checks failed than allowed.
     AttentionChecks,
+    /// A person whom ITU-R BS.1534-3 leaves out of a panel.
+    Bs1534,
     /// A person who did not agree.
     Declined,
     /// A person whom the researcher excluded.
@@ -39,6 +41,7 @@ impl Reason {
         match self {
             Self::AnsweredTooSoon => "answered too soon",
             Self::AttentionChecks => "attention checks",
+            Self::Bs1534 => "missed the hidden reference or the anchor (BS.1534)",
             Self::Declined => "declined",
             Self::ByResearcher => "excluded by the researcher",
             Self::Incomplete => "incomplete",
@@ -58,6 +61,7 @@ impl Reason {
         match self {
             Self::AnsweredTooSoon => "réponse trop rapide",
             Self::AttentionChecks => "contrôles d’attention",
+            Self::Bs1534 => "référence cachée ou ancre manquée (BS.1534)",
             Self::Declined => "sans accord",
             Self::ByResearcher => "exclus par le chercheur",
             Self::Incomplete => "incomplets",

@@ -23,6 +23,8 @@ pub(crate) struct TrialReader<'t> {
     person_of_row: &'t [usize],
     kind: Column<'t>,
     trial_id: Column<'t>,
+    /// Tells the clips of a panel apart.
+    panel_place: Column<'t>,
     rt: Column<'t>,
     rt_open: Column<'t>,
     stimulus: Column<'t>,
@@ -49,6 +51,9 @@ pub(crate) struct TrialReader<'t> {
     /// Segment of each clip of the study.
     segments: HashMap<String, Arc<str>>,
 }
+
+/// What tells a trial.
+type TrialKey<'t> = (usize, &'t str, Option<&'t str>);
 
 /// What a stretch of rows holds.
 #[derive(Default)]
@@ -102,6 +107,7 @@ impl<'t> TrialReader<'t> {
             person_of_row,
             kind: column("trial_type"),
             trial_id: column("trial_id"),
+            panel_place: column("panel_place"),
             rt: column("rt"),
             rt_open: column("rt_open"),
             stimulus: column("stimulus"),
@@ -131,7 +137,7 @@ impl<'t> TrialReader<'t> {
     /// Reads a stretch that has all rows of its people.
     pub(crate) fn read(&self, rows: Range<usize>) -> Result<TrialRows, ExportError> {
         // A trial is left out for its first reason; the quickest answer decides for all of it.
-        let mut quickest: HashMap<(usize, &str), f64> = HashMap::new();
+        let mut quickest: HashMap<TrialKey<'_>, f64> = HashMap::new();
         for row in rows.clone() {
             // Exports of before there was that column have the time from the onset alone.
             let open = self.rt_open.number(row)?;
@@ -140,15 +146,15 @@ impl<'t> TrialReader<'t> {
                 (self.kind.text(row), self.trial_id.text(row), rt)
                 && self.rules.shortest_rt_ms.is_some()
             {
-                let least = quickest.entry((self.person_of_row[row], trial)).or_insert(rt);
+                let least = quickest.entry(self.key(row, trial)).or_insert(rt);
                 *least = least.min(rt);
             }
         }
         let mut read = TrialRows::default();
         let mut texts = Texts::default();
-        let mut seen: HashMap<(usize, &str), Option<usize>> = HashMap::new();
+        let mut seen: HashMap<TrialKey<'_>, Option<usize>> = HashMap::new();
         // Rows of one trial mostly follow each other.
-        let mut last: Option<((usize, &str), Option<usize>)> = None;
+        let mut last: Option<(TrialKey<'_>, Option<usize>)> = None;
         for row in rows {
             if self.kind.text(row) != Some("trial") {
                 continue;
@@ -159,7 +165,7 @@ impl<'t> TrialReader<'t> {
                 continue;
             };
             let person = self.person_of_row[row];
-            let key = (person, id);
+            let key = self.key(row, id);
             let same = last.filter(|(known, _)| *known == key).map(|(_, trial)| trial);
             let trial = match same.or_else(|| seen.get(&key).copied()) {
                 Some(trial) => trial,
@@ -194,6 +200,11 @@ impl<'t> TrialReader<'t> {
             }
         }
         Ok(read)
+    }
+
+    /// What tells a trial: its person, its identifier, and of a panel the place of its clip.
+    fn key(&self, row: usize, trial: &'t str) -> TrialKey<'t> {
+        (self.person_of_row[row], trial, self.panel_place.text(row))
     }
 
     /// How far a clip's sound was from its time; infinitely far where it was not played, none of a clip without.

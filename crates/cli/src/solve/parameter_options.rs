@@ -76,6 +76,7 @@ fn value_name(row: &Parameter) -> String {
     match (row.kind, row.about.quantity) {
         (Kind::Number, Quantity::Metres) => "LENGTH".to_owned(),
         (Kind::Number, Quantity::Hertz) => "HZ".to_owned(),
+        (Kind::Number, Quantity::Milliseconds) => "MS".to_owned(),
         (Kind::Number | Kind::WholeNumber, _) => "NUMBER".to_owned(),
         (Kind::Interval, _) => "LOW:HIGH".to_owned(),
         (Kind::Word(words), _) => words.join("|"),

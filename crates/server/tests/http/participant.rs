@@ -34,7 +34,12 @@ pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec
         log.add(EventKind::PageShown { step: id.clone() });
         if let Some(trial) = step.trial() {
             let clip = trial.clip.clone();
-            log.add(EventKind::TrialStarted { step: id.clone(), clip: clip.clone(), beside: None });
+            log.add(EventKind::TrialStarted {
+                step: id.clone(),
+                clip: clip.clone(),
+                beside: None,
+                panel: Vec::new(),
+            });
             log.add(EventKind::TrialPlayed { step: id.clone(), log: Box::new(play(log.now_ms)) });
             log.add(EventKind::TrialFinished {
                 step: id,

@@ -59,9 +59,21 @@ pub(super) fn is_saving(state: &State) -> bool {
 
 /// Whether the clip on the screen may be played, or played again.
 pub(super) fn can_play(plan: &Plan, state: &State) -> bool {
+    may_play(plan, state, state.record.attempt.plays)
+}
+
+/// Whether the clip at a place of a panel may be played alone: once all were seen, as often as replays are left.
+pub(super) fn can_play_alone(plan: &Plan, state: &State, place: u32) -> bool {
+    let attempt = &state.record.attempt;
+    let alone = attempt.alone.get(&place).copied().unwrap_or_default();
+    attempt.plays > 0 && may_play(plan, state, attempt.plays + alone)
+}
+
+/// Whether what has been seen so often may be played.
+fn may_play(plan: &Plan, state: &State, plays: u32) -> bool {
     let Some(step) = plan.step(state.record.step) else { return false };
     let Some(trial) = step.trial() else { return false };
-    let replays_left = match (state.record.attempt.plays, trial.maximum_replays) {
+    let replays_left = match (plays, trial.maximum_replays) {
         (0, _) | (_, None) => true,
         (plays, Some(most)) => plays <= most,
     };

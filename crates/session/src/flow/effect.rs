@@ -1,7 +1,9 @@
 //! What the page has to do.
 
-use crate::wire;
+use serde::Serialize;
 use serde_json::Value;
+
+use crate::wire;
 
 /// What the page has to do; each is carried out once, in the order given.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,13 +20,11 @@ pub enum Effect {
     /// `step`, `component`, `block`, whose draw it is (`seed`, `configHash`, `slot`), and `answers` so far: the side or
     /// null.
     ChooseLevel(Value),
-    /// Play this clip once from its start, the one beside it in step or in turn after it; report by `Played`.
-    PlayClip {
-        /// The trial's own clip.
-        clip: String,
-        /// The one beside it.
-        beside: Option<String>,
-        /// Whether that one is played after it.
+    /// Play these clips once from their start, in step or in turn; report by `Played`.
+    PlayClips {
+        /// The clips: of a trial of one or two its own first.
+        clips: Vec<PlacedClip>,
+        /// Whether they are played one after the other.
         in_turn: bool,
     },
     /// Measure what browser and display can do; report by `Measured`, and by `Measured` again
@@ -51,4 +51,23 @@ pub enum Effect {
     Withdraw,
     /// A new page stands there: move the focus to its heading.
     FocusHeading,
+}
+
+/// A clip on its canvas.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PlacedClip {
+    /// The canvas: [`OWN_CANVAS`], [`BESIDE_CANVAS`], or that of a place of a panel ([`canvas_of_place`]).
+    pub canvas: String,
+    /// Identifier of the clip.
+    pub clip: String,
+}
+
+/// The canvas of a trial's own clip.
+pub const OWN_CANVAS: &str = "clip";
+/// The canvas of the clip beside it.
+pub const BESIDE_CANVAS: &str = "beside";
+
+/// The canvas of a place of a panel, from 1; 0 is the open reference.
+pub fn canvas_of_place(place: u32) -> String {
+    ["panel-", &place.to_string()].concat()
 }

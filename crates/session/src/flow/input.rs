@@ -36,10 +36,21 @@ pub enum Input {
         /// The answer, as JSON (see [`mimique_study::QuestionKind`]).
         value: Value,
     },
+    /// An option of a question with keys was pressed, by its key or its button.
+    Press {
+        /// Identifier of the question.
+        question: String,
+        /// The option's value.
+        value: String,
+        /// When, page clock: the time of the press itself, milliseconds.
+        at_ms: f64,
+    },
     /// The button that leads on.
     Next,
     /// The button that plays, or plays again.
     Play,
+    /// The button of a panel that plays the clip at this place alone, from 1; 0 is the open reference.
+    PlayAlone(u32),
     /// The stage has played the clip, wholly or not. Its times are on the page's clock.
     Played(PlayLog),
     /// A clip is being loaded and solved.
@@ -132,8 +143,10 @@ impl Input {
             Self::Decline => "decline",
             Self::Shown { .. } => "shown",
             Self::Answer { .. } => "answer",
+            Self::Press { .. } => "press",
             Self::Next => "next",
             Self::Play => "play",
+            Self::PlayAlone(_) => "play_alone",
             Self::Played(_) => "played",
             Self::ClipProgress { .. } => "clip_progress",
             Self::ClipPrepared { .. } => "clip_prepared",

@@ -22,6 +22,7 @@ mod gate;
 mod input;
 mod levels;
 mod needs;
+mod presses;
 mod render;
 mod render_gate;
 mod render_question;
@@ -31,9 +32,9 @@ mod view;
 mod view_gate;
 mod view_question;
 
-pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
+pub use crate::plan::{Companion, Panel, Plan, Step, StepKind, TrialStep};
 pub use agreement::AgreementView;
-pub use effect::Effect;
+pub use effect::{BESIDE_CANVAS, Effect, OWN_CANVAS, PlacedClip, canvas_of_place};
 pub(crate) use gate::unmet;
 pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM, SOUND_HEARD};
 pub use input::Input;
@@ -42,8 +43,8 @@ pub use render::view;
 pub use state::{Live, Play, State};
 pub use update::update;
 pub use view::{
-    BesideView, ButtonView, ClockView, CodeView, ContactView, EndView, FailedView, Phase,
-    ProgressView, RecordsView, SectionView, StageSize, TrialView, View,
+    BesideView, ButtonView, ClockView, CodeView, ContactView, EndView, FailedView, PanelFigure,
+    PanelView, Phase, ProgressView, RecordsView, SectionView, StageSize, TrialView, View,
 };
 pub use view_gate::{
     CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, SoundView,

@@ -1,20 +1,21 @@
 //! From state to screen: decisions made, texts in the participant's language.
 
 use super::agreement::{self, AgreementView};
-use super::allowed::{break_seconds_left, can_play, can_submit, is_saving};
+use super::allowed::{break_seconds_left, can_play, can_play_alone, can_submit, is_saving};
+use super::effect::canvas_of_place;
 use super::gate;
 use super::needs::{Needs, needs_of};
 use super::state::{Play, State};
 use super::view::{
-    BesideView, ButtonView, CodeView, EndView, FailedView, Phase, ProgressView, RecordsView,
-    SectionView, TrialView, View,
+    BesideView, ButtonView, CodeView, EndView, FailedView, PanelFigure, PanelView, Phase,
+    ProgressView, RecordsView, SectionView, TrialView, View,
 };
 use crate::event::PlayLog;
-use crate::plan::{Plan, Step, StepKind, TrialStep};
+use crate::plan::{Panel, Plan, Step, StepKind, TrialStep, letter};
 use crate::record::CutShort;
 use crate::standing::Standing;
 use mimique_study::text::Words;
-use mimique_study::{LocalText, MEDIA_PREFIX, Section};
+use mimique_study::{LocalText, MEDIA_PREFIX, QuestionKindView, Section};
 
 /// What stands on the screen.
 pub fn view(plan: &Plan, state: &State) -> View {
@@ -197,6 +198,10 @@ impl Screen<'_> {
         };
         let can_play = can_play(self.plan, state);
         let (clip, beside) = trial.pair(progress.level.as_deref());
+        let (keys, questions) = self
+            .questions(step)
+            .into_iter()
+            .partition(|asked| matches!(asked.kind, QuestionKindView::Keys { .. }));
         let can_answer = progress.plays > 0 && !playing;
         let mut button = self.button(words.submit());
         button.hint = (!can_answer).then(|| words.watch_first().to_owned());
@@ -219,6 +224,7 @@ impl Screen<'_> {
                     clip_caption: clip_caption.map(|text| self.text(text)),
                 }
             }),
+            panel: trial.panel.as_ref().map(|panel| self.panel(panel)),
             heading,
             instruction: trial.instruction.as_ref().map(|text| self.text(text)),
             size: self.stage_size(),
@@ -231,11 +237,32 @@ impl Screen<'_> {
             can_play,
             play_label: play_label.to_owned(),
             can_replay: can_play && progress.plays > 0,
-            questions: self.questions(step),
+            keys,
+            can_press: progress.plays > 0 || (playing && state.live.alone.is_none()),
+            questions,
             can_answer,
             button,
             progress: self.progress(),
         }
+    }
+
+    fn panel(&self, panel: &Panel) -> PanelView {
+        let figure = |place: u32| {
+            let caption = match (place as usize).checked_sub(1) {
+                Some(at) => letter(at),
+                None => self.words.reference().to_owned(),
+            };
+            Some(PanelFigure {
+                place,
+                canvas: canvas_of_place(place),
+                clip: panel.clip(place)?.to_owned(),
+                play_label: self.words.play_alone(&caption),
+                caption,
+                can_play: can_play_alone(self.plan, self.state, place),
+            })
+        };
+        let figures = panel.places().filter_map(figure).collect();
+        PanelView { prompt: self.text(&panel.prompt), figures }
     }
 
     fn end(&self) -> View {

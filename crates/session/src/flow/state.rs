@@ -38,6 +38,8 @@ pub struct Live {
     pub failed: BTreeMap<String, StageFailure>,
     /// Whether a clip is being played.
     pub play: Play,
+    /// The place of a panel that is being played alone; none where all are.
+    pub alone: Option<u32>,
     /// Whether missing answers are pointed out.
     pub show_problems: bool,
     /// Whether the device gate waits for the screen to be filled.

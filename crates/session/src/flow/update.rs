@@ -3,14 +3,14 @@
 use mimique_study::Answers;
 use serde_json::Value;
 
-use super::allowed::{can_play, can_submit, shown_questions};
-use super::effect::Effect;
+use super::allowed::{can_play, can_play_alone, can_submit, shown_questions};
+use super::effect::{BESIDE_CANVAS, Effect, OWN_CANVAS, PlacedClip, canvas_of_place};
 use super::gate;
 use super::input::Input;
 use super::needs::needs_ahead;
 use super::state::{Play, State};
 use crate::event::{Client, EventKind, PlayLog, ShownBeside, StageFailure};
-use crate::plan::{Plan, Step, StepKind, TrialStep};
+use crate::plan::{Panel, Plan, Step, StepKind, TrialStep};
 use crate::wire;
 
 /// Unexpected inputs that are recorded; further ones are only ignored, so that a page gone wrong
@@ -86,8 +86,10 @@ impl<'a> Transition<'a> {
             Input::Decline => self.decline(),
             Input::Shown { step } => self.shown(step),
             Input::Answer { question, value } => self.answer(question, value),
+            Input::Press { question, value, at_ms } => self.press(question, value, *at_ms),
             Input::Next => self.next(),
             Input::Play => self.play(),
+            Input::PlayAlone(place) => self.play_alone(*place),
             Input::Played(log) => self.played(log),
             Input::ClipFailed { clip, failure } => self.clip_failed(clip, failure),
             Input::Online => self.online(),
@@ -112,10 +114,15 @@ impl<'a> Transition<'a> {
 
     /// Makes an event: it is applied, and stored under the next number.
     pub(super) fn record(&mut self, kind: EventKind) {
+        self.record_at(kind, self.now_ms);
+    }
+
+    /// The same of what happened a moment ago, page clock.
+    pub(super) fn record_at(&mut self, kind: EventKind, at_ms: f64) {
         let body = kind.to_body();
         let sequence = self.state.record.events;
-        self.state.record.apply(Some(self.plan), kind, self.now_ms);
-        self.effects.push(Effect::Store(wire::Event { sequence, at_ms: self.now_ms, body }));
+        self.state.record.apply(Some(self.plan), kind, at_ms);
+        self.effects.push(Effect::Store(wire::Event { sequence, at_ms, body }));
     }
 
     fn unexpected(&mut self, input: &Input) {
@@ -242,7 +249,7 @@ impl<'a> Transition<'a> {
         true
     }
 
-    fn next(&mut self) -> bool {
+    pub(super) fn next(&mut self) -> bool {
         let Some(step) = self.step() else { return false };
         if step.kind == StepKind::Consent {
             return false;
@@ -304,14 +311,40 @@ impl<'a> Transition<'a> {
         }
         let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
         let (clip, beside) = (clip.to_owned(), beside.map(|(clip, left)| (clip.to_owned(), left)));
-        let in_turn = trial.beside.as_ref().is_some_and(|beside| beside.in_turn);
+        let panel = trial.panel.as_ref();
         if !self.state.record.attempt.is_started() {
             let (step, clip) = (step.id.clone(), clip.clone());
             let beside = beside.clone().map(|(clip, left)| ShownBeside { clip, left });
-            self.record(EventKind::TrialStarted { step, clip, beside });
+            let panel = panel.map_or_else(Vec::new, |panel| panel.clips.clone());
+            self.record(EventKind::TrialStarted { step, clip, beside, panel });
         }
+        let placed = |canvas: &str, clip| PlacedClip { canvas: canvas.to_owned(), clip };
+        let clips = match panel {
+            Some(panel) => panel.places().filter_map(|place| placed_of(panel, place)).collect(),
+            None => [placed(OWN_CANVAS, clip)]
+                .into_iter()
+                .chain(beside.map(|(clip, _)| placed(BESIDE_CANVAS, clip)))
+                .collect(),
+        };
+        let in_turn = panel.map_or_else(
+            || trial.beside.as_ref().is_some_and(|beside| beside.in_turn),
+            |panel| panel.in_turn,
+        );
+        self.run(Effect::PlayClips { clips, in_turn }, None)
+    }
+
+    /// The clip at a place of a panel once more, alone.
+    fn play_alone(&mut self, place: u32) -> bool {
+        let panel = self.trial().and_then(|(_, trial)| trial.panel.as_ref());
+        let Some(clip) = panel.and_then(|panel| placed_of(panel, place)) else { return false };
+        can_play_alone(self.plan, &self.state, place)
+            && self.run(Effect::PlayClips { clips: vec![clip], in_turn: false }, Some(place))
+    }
+
+    fn run(&mut self, play: Effect, alone: Option<u32>) -> bool {
         self.state.live.play = Play::Running;
-        self.effects.push(Effect::PlayClip { clip, beside: beside.map(|it| it.0), in_turn });
+        self.state.live.alone = alone;
+        self.effects.push(play);
         true
     }
 
@@ -321,8 +354,12 @@ impl<'a> Transition<'a> {
             return false;
         }
         self.state.live.play = Play::Still;
-        let log = self.judged(log.clone());
+        let alone = self.state.live.alone.take();
+        let log = self.judged(PlayLog { alone, ..log.clone() });
         self.record(EventKind::TrialPlayed { step: step.id.clone(), log: Box::new(log) });
+        if alone.is_none() {
+            self.after_play();
+        }
         self.end_slow();
         true
     }
@@ -331,10 +368,9 @@ impl<'a> Transition<'a> {
         self.state.live.prepared.remove(clip);
         self.state.live.progress.remove(clip);
         self.state.live.failed.insert(clip.to_owned(), failure.clone());
-        let is_shown = self.trial().is_some_and(|(_, trial)| {
-            let (own, beside) = trial.pair(self.state.record.attempt.level.as_deref());
-            own == clip || beside.is_some_and(|it| it.0 == clip)
-        });
+        let level = self.state.record.attempt.level.as_deref();
+        let needs = self.step().map(|step| step.needs(&self.state.record.language, level));
+        let is_shown = needs.is_some_and(|needs| needs.iter().any(|need| need == clip));
         if is_shown {
             self.state.live.play = Play::Still;
         }
@@ -368,4 +404,10 @@ impl<'a> Transition<'a> {
         }
         true
     }
+}
+
+/// The clip at a place of a panel, on the canvas of that place.
+fn placed_of(panel: &Panel, place: u32) -> Option<PlacedClip> {
+    let clip = panel.clip(place)?.to_owned();
+    Some(PlacedClip { canvas: canvas_of_place(place), clip })
 }

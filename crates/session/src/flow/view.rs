@@ -1,6 +1,7 @@
 //! The vocabulary of the screen: what the page renders, without deciding anything itself.
 
 use super::agreement::AgreementView;
+use super::effect::{BESIDE_CANVAS, OWN_CANVAS, PlacedClip};
 use super::view_gate::{CalibrationView, DeviceView, FeedbackView, SoundView};
 use super::view_question::QuestionView;
 
@@ -181,6 +182,8 @@ pub struct TrialView {
     pub clip: String,
     /// What is played in step beside it.
     pub beside: Option<BesideView>,
+    /// The panel, where several clips are rated on one scale; `clip` is its first.
+    pub panel: Option<PanelView>,
     /// "Clip 3 of 12".
     pub heading: String,
     /// A line above the clip.
@@ -202,7 +205,11 @@ pub struct TrialView {
     pub play_label: String,
     /// Whether another replay is allowed after the first whole play.
     pub can_replay: bool,
-    /// The questions.
+    /// The questions that keys answer while the clip plays.
+    pub keys: Vec<QuestionView>,
+    /// Whether these can be answered now.
+    pub can_press: bool,
+    /// The other questions.
     pub questions: Vec<QuestionView>,
     /// Whether answers can be given: after one whole play, not while the clip plays.
     pub can_answer: bool,
@@ -210,6 +217,21 @@ pub struct TrialView {
     pub button: ButtonView,
     /// How far the session is.
     pub progress: ProgressView,
+}
+
+impl TrialView {
+    /// The clips that are played, on their canvases: of a trial of one or two its own first.
+    pub fn placed(&self) -> Vec<PlacedClip> {
+        let placed = |canvas: &str, clip: &str| PlacedClip {
+            canvas: canvas.to_owned(),
+            clip: clip.to_owned(),
+        };
+        if let Some(panel) = &self.panel {
+            return panel.figures.iter().map(|it| placed(&it.canvas, &it.clip)).collect();
+        }
+        let beside = self.beside.iter().map(|it| placed(BESIDE_CANVAS, &it.clip));
+        [placed(OWN_CANVAS, &self.clip)].into_iter().chain(beside).collect()
+    }
 }
 
 /// A clip that is played in step beside the trial's own.
@@ -223,6 +245,32 @@ pub struct BesideView {
     pub caption: Option<String>,
     /// A line below the trial's own clip.
     pub clip_caption: Option<String>,
+}
+
+/// Several clips that are rated on one scale.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PanelView {
+    /// What is asked of each; the questions of the trial have the clips' letters as prompts.
+    pub prompt: String,
+    /// The clips as they stand: the open reference, where there is one, then A, B, C.
+    pub figures: Vec<PanelFigure>,
+}
+
+/// A clip of a panel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PanelFigure {
+    /// Its place, from 1; 0 is the open reference.
+    pub place: u32,
+    /// Its canvas.
+    pub canvas: String,
+    /// Identifier of the clip.
+    pub clip: String,
+    /// "A", or "Reference".
+    pub caption: String,
+    /// What the button says that plays it alone.
+    pub play_label: String,
+    /// Whether that button works.
+    pub can_play: bool,
 }
 
 /// Where a trial is.

@@ -53,11 +53,12 @@ impl Record {
             EventKind::Answered { step, question, value } => {
                 self.answered(plan, &step, question, value, at_ms)
             }
-            EventKind::TrialStarted { step, beside, .. } => {
+            EventKind::TrialStarted { step, beside, panel, .. } => {
                 let fits = self.is_at(plan, &step);
                 if fits {
                     self.attempt.started_ms = Some(at_ms);
                     self.attempt.beside = beside;
+                    self.attempt.panel = panel;
                 }
                 fits
             }

@@ -15,6 +15,10 @@ pub struct Attempt {
     pub started_ms: Option<f64>,
     /// What is played beside the trial's own clip.
     pub beside: Option<ShownBeside>,
+    /// The clips of a panel, from the first place to the last; empty elsewhere.
+    pub panel: Vec<String>,
+    /// Whole plays of one clip of a panel alone, by its place from 1; 0 is the open reference.
+    pub alone: BTreeMap<u32, u32>,
     /// The level of a trial of an adaptive block.
     pub level: Option<Box<LevelShown>>,
     /// Whole plays.
@@ -68,6 +72,10 @@ impl Attempt {
             self.interruptions += 1;
             self.slow_plays += u32::from(why == CutShort::TooFewFrames);
             self.mute_plays += u32::from(why == CutShort::NoSound);
+            return;
+        }
+        if let Some(place) = log.alone {
+            *self.alone.entry(place).or_default() += 1;
             return;
         }
         self.plays += 1;

@@ -14,6 +14,7 @@ mod cells;
 mod column;
 mod levels;
 mod pairs;
+mod panels;
 mod psych_ds;
 mod step_cells;
 mod study_columns;

@@ -73,15 +73,9 @@ impl TidyForm {
         let about: Vec<&str> = step.client.about.values().map(String::as_str).collect();
         put("browser", about.join(" ").into());
         let Some(clip) = &step.clip else { return };
-        put("stimulus", clip.as_str().into());
         put("replays", (step.replays + step.attempt.earlier_plays).into());
-        if let Some(known) = self.clips.get(clip) {
-            for (factor, value) in &known.factors {
-                put(factor, value.to_value());
-            }
-        }
         let play = step.attempt.play.as_ref();
-        put("provenance", self.provenance(clip, play.map(|play| play.provenance.as_str())));
+        self.clip_cells(clip, play.map(|play| play.provenance.as_str()), cells);
         if let Some(play) = play {
             play_cells(play, &step.attempt, record.opened_ms, cells);
         }
@@ -94,6 +88,15 @@ impl TidyForm {
         put("beside_side", if beside.left { "left" } else { "right" }.into());
         let logged = play.map(|play| play.beside_provenance.as_str());
         put("beside_provenance", self.provenance(&beside.clip, logged));
+    }
+
+    /// Writes which clip it is, with its factors and its provenance as logged.
+    pub(super) fn clip_cells(&self, clip: &str, logged: Option<&str>, cells: &mut Cells<'_>) {
+        cells.put("stimulus", clip.into());
+        for (factor, value) in self.clips.get(clip).into_iter().flat_map(|it| &it.factors) {
+            cells.put(factor, value.to_value());
+        }
+        cells.put("provenance", self.provenance(clip, logged));
     }
 
     /// What the page logged with the play: the stimuli that are served now may be others under the

@@ -9,12 +9,14 @@ use super::cells::{answer_cells, milliseconds, plain};
 use super::column::{Column, Table};
 use super::levels::{Blocks, level_cells, replay};
 use super::pairs::{self, chosen_item, pair_cells};
+use super::panels;
 use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
-    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, SOUND_COLUMNS, TRIGGER_COLUMN,
+    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SOUND_COLUMNS,
+    TRIGGER_COLUMN,
 };
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
@@ -47,6 +49,8 @@ pub struct TidyForm {
     blocks: Blocks,
     /// The blocks of pairs, by name.
     pairs: pairs::Blocks,
+    /// The blocks of panels, by name.
+    pub(super) panels: panels::Blocks,
     /// Hash of the weights of each clip as they were solved beforehand.
     weights: BTreeMap<String, String>,
     /// Of a participant's condition (none: everybody's) and a component.
@@ -71,6 +75,8 @@ impl TidyForm {
             study.adaptive().map(|(name, block)| (name.to_owned(), block)).collect();
         let pairs: pairs::Blocks =
             study.pair_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
+        let panels: panels::Blocks =
+            study.panel_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
         for fixed in FIXED_COLUMNS {
             let name = fixed.0;
             columns.push(column(fixed));
@@ -85,6 +91,9 @@ impl TidyForm {
             }
             if name == "chosen" && !pairs.is_empty() {
                 columns.extend(PAIR_COLUMNS.map(column));
+            }
+            if name == "chosen" && !panels.is_empty() {
+                columns.extend(PANEL_COLUMNS.map(column));
             }
             if name == "condition" {
                 columns.extend(assigned_column(study));
@@ -115,6 +124,7 @@ impl TidyForm {
                 .collect(),
             blocks,
             pairs,
+            panels,
             weights: weights.collect(),
             conditions,
             columns,
@@ -155,7 +165,11 @@ impl TidyForm {
             cells.put("trial_index", index.into());
             cells.put("trial_order", order);
             self.each_response(step, &earlier, |response| {
-                rows.push(self.row(cells.clone(), step, response));
+                let mut cells = cells.clone();
+                if let Some(clip) = response.clip {
+                    self.panel_cells(step, clip, &mut cells);
+                }
+                rows.push(self.row(cells, step, response));
             });
             step.keep_answers(&mut earlier);
         }
@@ -173,7 +187,9 @@ impl TidyForm {
         for step in &record.finished {
             let is_demographics = StepType::of(step) == StepType::Demographics;
             self.each_response(step, &earlier, |response| {
-                found.push((step.id.clone(), response.id, is_demographics));
+                // Of a panel the name that tells its clips apart.
+                let id = response.clip.map_or(response.id, |_| response.kept.to_owned());
+                found.push((step.id.clone(), id, is_demographics));
             });
             step.keep_answers(&mut earlier);
         }
@@ -245,7 +261,19 @@ impl TidyForm {
         mut take: impl FnMut(Response<'_>),
     ) {
         let questions = self.study.questions_of(&step.id);
-        for question in &questions {
+        let rated = self.rated(step);
+        for rated in &rated {
+            let asked = questions.iter().find(|question| question.id == rated.question);
+            take(Response {
+                id: rated.question.to_owned(),
+                kept: &rated.kept,
+                clip: Some(rated.clip),
+                asked: asked.map(|question| (*question, rated.answer)),
+                cell: plain(Some(rated.answer)),
+            });
+        }
+        let of_panel = |id: &str| rated.iter().any(|rated| rated.question == id);
+        for question in questions.iter().filter(|question| !of_panel(&question.id)) {
             let answer = step.answers.get(&question.id);
             if answer.is_none() && !question.is_shown(&step.answers, earlier) {
                 continue;
@@ -255,7 +283,8 @@ impl TidyForm {
                 let id = format!("{}{suffix}", question.id);
                 take(Response {
                     id,
-                    question: &question.id,
+                    kept: &question.id,
+                    clip: None,
                     asked: Some((question, answer)),
                     cell,
                 });
@@ -263,9 +292,11 @@ impl TidyForm {
         }
         // Answers to questions that this version of the study no longer asks.
         for (id, answer) in &step.answers {
-            if !questions.iter().any(|question| question.id == *id) {
+            let is_known = questions.iter().any(|question| question.id == *id)
+                || rated.iter().any(|rated| rated.kept == *id);
+            if !is_known {
                 let cell = plain(Some(answer));
-                take(Response { id: id.clone(), question: id, asked: None, cell });
+                take(Response { id: id.clone(), kept: id, clip: None, asked: None, cell });
             }
         }
     }
@@ -302,16 +333,20 @@ impl TidyForm {
 
     /// The row of a response; the cells are those of its step.
     fn row(&self, mut cells: Cells<'_>, step: &FinishedStep, response: Response<'_>) -> Vec<Value> {
-        let Response { id, question, asked, cell } = response;
+        let Response { id, kept, clip: _, asked, cell } = response;
         cells.put("response_id", id.into());
         if let Some((asked, answer)) = asked {
             self.judge(asked, step, answer, &mut cells);
         }
         let onset_ms = step.attempt.play.as_ref().map_or(step.start_ms, |play| play.onset_ms);
-        let answered_ms = step.attempt.answered_ms.get(question).filter(|_| !cell.is_null());
-        let open = answered_ms.zip(step.attempt.answering_ms).map(|(at_ms, open)| at_ms - open);
+        let answered_ms = step.attempt.answered_ms.get(kept).filter(|_| !cell.is_null());
+        // Keys can be pressed from the first frame on.
+        let is_keyed = asked.is_some_and(|(question, _)| question.kind.keys().is_some());
+        let opened_ms =
+            step.attempt.answering_ms.map(|at_ms| if is_keyed { onset_ms } else { at_ms });
+        let open = answered_ms.zip(opened_ms).map(|(at_ms, open)| at_ms - open);
         cells.put("rt_open", open.map_or(Value::Null, milliseconds));
-        let rt = step.attempt.answered_ms.get(question).map(|at_ms| at_ms - onset_ms);
+        let rt = step.attempt.answered_ms.get(kept).map(|at_ms| at_ms - onset_ms);
         // An answer without an event of its own takes the time at which all were sent.
         let rt = rt.filter(|_| !cell.is_null()).or(step.rt_ms.filter(|_| !cell.is_null()));
         cells.put("rt", rt.map_or(Value::Null, milliseconds));
@@ -325,8 +360,10 @@ impl TidyForm {
 struct Response<'r> {
     /// Identifier of the response: the question's, and that of its part.
     id: String,
-    /// Identifier of the question.
-    question: &'r str,
+    /// The name under which the answer is kept: the question's, and of a panel the clip's.
+    kept: &'r str,
+    /// The clip that it is about, of a panel.
+    clip: Option<&'r str>,
     /// The question and its whole answer; none where the study no longer asks it.
     asked: Option<(&'r Question, &'r Value)>,
     /// What was answered.

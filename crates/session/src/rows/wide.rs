@@ -125,11 +125,11 @@ impl WideForm {
         let first = rows.first()?;
         let personal = PERSONAL.iter().filter_map(|name| self.tidy.place(name));
         let mut cells: Vec<Value> = personal.map(|place| first[place].clone()).collect();
-        let places = ["trial_id", "response_id", "answer", "rt"].map(|name| self.tidy.place(name));
-        let [Some(trial), Some(response), Some(answer), Some(rt)] = places else { return None };
-        let text = |cell: &'_ Value| cell.as_str().unwrap_or_default().to_owned();
-        let given: BTreeMap<(String, String), &Vec<Value>> =
-            rows.iter().map(|row| ((text(&row[trial]), text(&row[response])), row)).collect();
+        let places = ["answer", "rt"].map(|name| self.tidy.place(name));
+        let [Some(answer), Some(rt)] = places else { return None };
+        // The rows come in the order of the responses.
+        let keys = self.tidy.responses(record).into_iter().map(|(trial, kept, _)| (trial, kept));
+        let given: BTreeMap<(String, String), &Vec<Value>> = keys.zip(&rows).collect();
         for (key, column) in &self.answers {
             let row = given.get(key);
             let own = |place: usize| row.map_or(Value::Null, |row| row[place].clone());

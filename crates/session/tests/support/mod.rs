@@ -105,8 +105,8 @@ impl Page {
                     self.send(Input::ClipPrepared { clip });
                 }
             }
-            Effect::PlayClip { clip, .. } => {
-                self.played.push(clip);
+            Effect::PlayClips { clips, .. } => {
+                self.played.extend(clips.into_iter().next().map(|placed| placed.clip));
                 let onset_ms = self.now_ms + 20.0;
                 self.now_ms += 2_000.0;
                 let sound = self.sound.clone();

@@ -33,7 +33,7 @@ impl Method {
 
     /// Whether it uses the parameters of a group.
     pub fn uses(self, group: Group) -> bool {
-        self.definition().uses.contains(&group)
+        group == Group::Timing || self.definition().uses.contains(&group)
     }
 
     /// Whether the weights of a frame depend on other frames of the take: on the one before, or on those

@@ -39,6 +39,8 @@ pub enum Group {
     FrontEnd,
     /// The frames of a take.
     Frames,
+    /// What becomes of the weights over time: every method uses it.
+    Timing,
 }
 
 impl Group {
@@ -61,6 +63,7 @@ impl Group {
             Group::Shapes | Group::Markers => "Shapes and markers",
             Group::FrontEnd => "Front end",
             Group::Frames => "Frames",
+            Group::Timing => "Timing",
         }
     }
 }

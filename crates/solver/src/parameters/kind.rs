@@ -41,6 +41,8 @@ pub enum Quantity {
     Metres,
     /// Hertz.
     Hertz,
+    /// Milliseconds.
+    Milliseconds,
 }
 
 /// Whose names a list or an object has.
@@ -106,6 +108,7 @@ impl Quantity {
             Quantity::Ratio => "",
             Quantity::Metres => "m",
             Quantity::Hertz => "Hz",
+            Quantity::Milliseconds => "ms",
         }
     }
 }

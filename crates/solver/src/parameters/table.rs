@@ -349,6 +349,22 @@ parameters! {
     /// interpolated between the solved frames around them and marked in the report.
     unsolved: Option<Unsolved> as "unsolved",
     { group: Group::Frames, label: "Frames not solved", found_by: Some("refuse"), }
+
+    /// Cut-off of the zero-phase low-pass of all weights: slow movements are left. Of a gentle movement 2 Hz leave
+    /// little, as an anchor should.
+    lowpass_hz: Option<f64> as "lowpassHz",
+    {
+        group: Group::Timing, label: "Low-pass of the weights", range: Range::at_least(0.0),
+        quantity: Quantity::Hertz, zero: Some("no filter"), zero_word: Some("none"),
+        step: Some(0.5), found_by: Some("none"),
+    }
+
+    /// How much later than its markers the face moves; below 0 it is early.
+    delay_ms: Option<f64> as "delayMs",
+    {
+        group: Group::Timing, label: "Delay of the face", range: Range::between(-1000.0, 1000.0),
+        quantity: Quantity::Milliseconds, step: Some(10.0), found_by: Some("0"),
+    }
 }
 
 impl MethodSpec {

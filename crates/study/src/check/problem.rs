@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::order::NoOrder;
 use crate::pairs::AnswerOfPair;
-use crate::study_file::{NoPairs, PathError, SyntaxError, WrongVariable};
+use crate::study_file::{NoCells, PathError, SyntaxError, WrongVariable};
 
 use super::values::{Count, Known, Names, Nearest, Shown, Wanted};
 
@@ -447,21 +447,36 @@ ReasonChooses { question: String }: "pairs", "\"{question}\" is a second choice 
     "name a question of another type, or ask it in a block of its own";
 NothingToCompare { factor: String, levels: usize }: "pairs", "the clips have {levels} level of \"{factor}\"",
     "compare a factor of which the clips have two levels or more";
-CellIncomplete { why: NoPairs }: "pairs", "{why}",
+CellIncomplete { why: NoCells }: "cells", "{why}",
     "add that clip to /stimuli/clips, take other \"clips\", or leave the level out of \"levels\"";
-CellAmbiguous { why: NoPairs }: "pairs", "{why}",
+CellAmbiguous { why: NoCells }: "cells", "{why}",
     "name the factor in which they differ in \"within\", or give each a level of its own by \"factors\"";
 ShareOfAll: "pairs", "a share of the pairs is asked for, and all of them", "write \"rule\": \"incomplete\", or remove \"perParticipant\"";
 NoDesign { why: DesignError }: "pairs", "{why}", "write another number";
 UnevenPairs { least: usize, most: usize }: "pairs", "a pair is shown {least} times, another one {most} times",
     "ask for another number of pairs";
-InTurnWithSound: "pairs", "clips with sound are not shown in turn", "write \"inStep\", or remove /stimuli/sounds";
-InTurnWithVideo: "pairs", "videos are not shown in turn: they have clocks of their own",
-    "write \"inStep\", or take \"clips\" that are drawn";
-PairColumn { name: String }: "pairs",
-    "\"{name}\" is the name of a column that exports of blocks of pairs have", "give the factor or the question another name";
+SeveralWithSound: "several-clips", "clips with sound are shown one a page, or two in step",
+    "show pairs \"inStep\", or remove /stimuli/sounds";
+SeveralWithVideo: "several-clips", "a video has a clock of its own, by which clips in turn and panels cannot go",
+    "show pairs \"inStep\", or take \"clips\" that are drawn";
+BlockColumn { name: String }: "several-clips",
+    "\"{name}\" is the name of a column that exports of such blocks have", "give the factor or the question another name";
+Conditions { conditions: usize, fewest: usize, most: usize }: "panel",
+    "a page would show {conditions} conditions, {fewest} to {most} can be", "name the conditions in \"levels\"";
+NoScale { question: String }: "panel", "\"{question}\" is no scale from 0 to 100",
+    "name a question of type \"slider\" with \"minimum\": 0 and \"maximum\": 100, without \"showIf\" and \"attentionCheck\"";
+ReferenceIsAnchor { level: String }: "panel", "\"{level}\" is the reference, and the anchor", "name two conditions";
+NoCondition { level: String, conditions: String }: "panel", "\"{level}\" is no condition of the panel",
+    "name one of {conditions}";
+ScreensByReference: "panel", "the rule of BS.1534 goes by the hidden reference, and the panel has none",
+    "name it: \"reference\"";
 SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs itself, evenly",
     "remove \"numSamples\", and write \"schedule\": {{\"rule\": \"incomplete\", \"perParticipant\": …}}";
+NoKey { key: String }: "keys", "\"{key}\" is no key that every keyboard has", "write a letter, a digit, or \"Space\"";
+KeyTwice { key: String }: "keys", "\"{key}\" stands for two options", "give each a key of its own";
+SeveralWithoutKey: "keys", "several options have no key", "give all of them a key, or all but the one that stands for no press";
+KeysWithoutClip { question: String }: "keys", "\"{question}\" is answered while a clip plays, and here none does",
+    "ask it in a block of type \"trials\", or remove \"keys\"";
 NoTrials: "empty", "no trial is shown", "name a component of type \"trials\"";
 NoTrialsIn { condition: String }: "empty",
     "no trial is shown in the condition \"{condition}\"", "name a component of type \"trials\"";
@@ -614,7 +629,7 @@ NoTruthInTable { response: String }: "no-truth",
 
 impl Problem {
     /// There is no `what` (`clip`) of this name; `known` are those that there are.
-    pub(super) fn unknown<T: AsRef<str>>(
+    pub(crate) fn unknown<T: AsRef<str>>(
         what: &'static str,
         name: &str,
         known: impl IntoIterator<Item = T>,

@@ -35,6 +35,10 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
                 );
             }
             question.kind.check(&place, issues);
+            if question.kind.keys().is_some() && pointer != "/questions" {
+                let problem = Problem::KeysWithoutClip { question: question.id.clone() };
+                issues.error(below(&place, "keys"), problem);
+            }
             signs(question, &place, issues);
             attention::examine(subject, question, &place, issues);
         }

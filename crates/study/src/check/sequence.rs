@@ -6,7 +6,7 @@ use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
-use super::{Subject, adaptive, pairs};
+use super::{Subject, adaptive, pairs, panel};
 use crate::order::{CYCLES, Draw, Flaw, OrderError, prove};
 use crate::study_file::{
     Beside, Clip, ClipSelection, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
@@ -29,6 +29,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         match component {
             Component::Trials(block) => trials(subject, block, &questions, &pointer, issues),
             Component::Pairs(block) => pairs::examine(subject, block, &pointer, issues),
+            Component::Panel(block) => panel::examine(subject, block, &pointer, issues),
             Component::Adaptive(block) => adaptive::examine(subject, block, &pointer, issues),
             Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
                 let place = below(&pointer, "minimumSeconds");
@@ -248,7 +249,7 @@ fn interruptions<'a>(
                 let problem = Problem::unknown("component", name, known);
                 issues.error(below(&place, "component"), problem);
             }
-            Some(Component::Trials(_) | Component::Pairs(_) | Component::Adaptive(_)) => {
+            Some(component) if component.is_block() => {
                 let problem = Problem::InterruptedByTrials { component: name.clone() };
                 issues.error(below(&place, "component"), problem);
             }
@@ -332,7 +333,7 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
         SequenceItem::Sequence(nested) if !nested.is_shown_in(condition) => 0,
         SequenceItem::Sequence(nested) => trial_count(subject, nested, condition),
         SequenceItem::Component(name) => match subject.study.components.get(name) {
-            Some(Component::Trials(_) | Component::Pairs(_)) => {
+            Some(Component::Trials(_) | Component::Pairs(_) | Component::Panel(_)) => {
                 subject.study.trial_block(name).map_or(0, |block| block.trial_count(subject.clips))
             }
             Some(Component::Adaptive(_)) => {

@@ -11,7 +11,8 @@ use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
 use crate::study_file::{
-    Capture, CaptureSource, Component, GazeSource, PairsComponent, Sequence, SequenceItem,
+    Capture, CaptureSource, ClipSelection, Component, GazeSource, PairsComponent, PanelComponent,
+    Sequence, SequenceItem,
 };
 
 /// Frames a second that a clip can be shown at.
@@ -314,7 +315,11 @@ fn references(subject: &Subject<'_>, issues: &mut Issues) {
 fn factors(subject: &Subject<'_>, issues: &mut Issues) {
     let stimuli = &subject.study.stimuli;
     let pairs: Vec<PairsComponent> = subject.study.pair_blocks().map(|(_, block)| block).collect();
-    let used = factors_used(subject, &pairs);
+    let panels: Vec<PanelComponent> =
+        subject.study.panel_blocks().map(|(_, block)| block).collect();
+    let pairs = pairs.iter().map(|block| (&block.compare, &block.within, &block.clips));
+    let panels = panels.iter().map(|block| (&block.compare, &block.within, &block.clips));
+    let used = factors_used(subject, pairs.chain(panels));
     let avatars = stimuli.avatars.iter();
     let methods = stimuli.methods.iter();
     let sounds = stimuli.sounds.iter();
@@ -359,7 +364,10 @@ fn factors(subject: &Subject<'_>, issues: &mut Issues) {
 }
 
 /// The factors that something of the study reads. `method` and `alpha` need no use.
-fn factors_used<'a>(subject: &Subject<'a>, pairs: &'a [PairsComponent]) -> BTreeSet<&'a str> {
+fn factors_used<'a>(
+    subject: &Subject<'a>,
+    compared: impl Iterator<Item = (&'a String, &'a Vec<String>, &'a ClipSelection)>,
+) -> BTreeSet<&'a str> {
     fn of_sequence<'a>(sequence: &'a Sequence, used: &mut BTreeSet<&'a str>) {
         used.extend(sequence.constraints.iter().map(|each| each.factor.as_str()));
         for item in &sequence.components {
@@ -385,9 +393,9 @@ fn factors_used<'a>(subject: &Subject<'a>, pairs: &'a [PairsComponent]) -> BTree
             used.extend(block.clips.factors.keys().map(String::as_str));
         }
     }
-    for block in pairs {
-        let named = block.within.iter().chain(block.clips.factors.keys());
-        used.extend(named.chain([&block.compare]).map(String::as_str));
+    for (compare, within, clips) in compared {
+        let named = within.iter().chain(clips.factors.keys());
+        used.extend(named.chain([compare]).map(String::as_str));
     }
     of_sequence(&study.sequence, &mut used);
     used

@@ -25,7 +25,7 @@ mod subset;
 use std::collections::BTreeMap;
 
 use crate::projection::StudyProjection;
-use crate::study_file::{Clip, Component, OrderRule, Sequence, SequenceItem};
+use crate::study_file::{Clip, Component, OrderRule, PanelPage, Sequence, SequenceItem};
 use constrained::{Search, arrange};
 pub(crate) use proof::{CYCLES, Flaw, prove};
 use rotation::Rotation;
@@ -47,6 +47,9 @@ pub enum OrderedItem {
         /// Of a pair: the clip on the right.
         #[serde(skip_serializing_if = "Option::is_none")]
         beside: Option<String>,
+        /// Of a panel: its clips at their places; `clip` is the first of them.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        panel: Vec<String>,
         /// Identifier of the nearest sequence that has one, else the component's name.
         condition: String,
     },
@@ -217,6 +220,7 @@ impl<'a> Context<'a> {
                 component: name.to_owned(),
                 clip: String::new(),
                 beside: None,
+                panel: Vec::new(),
                 condition: condition.unwrap_or(name).to_owned(),
             };
             return Ok(vec![(1..=block.steps()).map(trial).collect()]);
@@ -233,10 +237,27 @@ impl<'a> Context<'a> {
                     component: name.to_owned(),
                     clip: left.to_owned(),
                     beside: Some(right.to_owned()),
+                    panel: Vec::new(),
                     condition: condition.unwrap_or(name).to_owned(),
                 }]
             };
             return Ok(pairs.of_slot(self.draw.participant).map(trial).collect());
+        }
+        if let Some(panel) = &trials.panel {
+            let trial = |page: &PanelPage| {
+                let trial = [name, "/", &page.cell].concat();
+                let mut clips = page.clips.clone();
+                self.draw.stream(&format!("panel/{trial}")).shuffle(&mut clips);
+                vec![OrderedItem::Trial {
+                    trial,
+                    component: name.to_owned(),
+                    clip: clips.first().cloned().unwrap_or_default(),
+                    beside: None,
+                    panel: clips,
+                    condition: condition.unwrap_or(name).to_owned(),
+                }]
+            };
+            return Ok(panel.pages.iter().map(trial).collect());
         }
         let mut parts = Vec::new();
         for showing in 1..=trials.repetitions {
@@ -250,6 +271,7 @@ impl<'a> Context<'a> {
                     component: name.to_owned(),
                     clip: clip.id.clone(),
                     beside: None,
+                    panel: Vec::new(),
                     condition: condition.unwrap_or(name).to_owned(),
                 }]);
             }
@@ -295,8 +317,8 @@ impl<'a> Context<'a> {
         sequence.constraints.iter().map(of).collect()
     }
 
-    /// A constraint with each part's value as a number; only single trials have one, and pairs in what both of
-    /// their clips are alike.
+    /// A constraint with each part's value as a number; only single trials have one, pairs and panels
+    /// in what all of their clips are alike.
     fn rule<'p>(
         &self,
         constraint: &crate::study_file::Constraint,
@@ -305,12 +327,13 @@ impl<'a> Context<'a> {
         let mut numbers: BTreeMap<String, u32> = BTreeMap::new();
         let values = parts
             .map(|part| {
-                let [OrderedItem::Trial { clip, beside, .. }] = part.as_slice() else {
+                let [OrderedItem::Trial { clip, beside, panel, .. }] = part.as_slice() else {
                     return None;
                 };
                 let of = |clip: &str| self.by_id.get(clip)?.factor_text(&constraint.factor);
                 let value = of(clip)?;
-                if beside.as_deref().is_some_and(|beside| of(beside).as_ref() != Some(&value)) {
+                let mut others = beside.iter().chain(panel);
+                if others.any(|other| of(other).as_ref() != Some(&value)) {
                     return None;
                 }
                 let next = numbers.len() as u32;

@@ -4,6 +4,7 @@
 //! columns in the export, how people are simulated, what the page shows, its tests) and one line in
 //! [`QuestionKind`]; the page has a control for what it shows. Everything else asks [`KindOfQuestion`].
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use enum_dispatch::enum_dispatch;
@@ -111,6 +112,11 @@ pub trait KindOfQuestion {
     /// Its rows, each of which is answered.
     fn rows(&self) -> &[Choice] {
         &[]
+    }
+
+    /// The key of each option that is answered by a key while the clip plays, by its value; none of other questions.
+    fn keys(&self) -> Option<&BTreeMap<String, String>> {
+        None
     }
 
     /// In which order the options are shown.

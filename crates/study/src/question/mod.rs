@@ -39,7 +39,7 @@ pub use number::NumberField;
 pub use ranking::Ranking;
 pub use short_text::{SHORT_TEXT, ShortText};
 pub use simulation::{Chance, Scale, Simulated};
-pub use single_choice::SingleChoice;
+pub use single_choice::{SPACE_KEY, SingleChoice};
 pub use slider::Slider;
 pub use valence_arousal::Grid;
 pub use view::{ChoiceView, QuestionKindView, Showing};

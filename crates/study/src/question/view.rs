@@ -9,6 +9,13 @@ use crate::text::{Words, typeset};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum QuestionKindView {
+    /// Answered by keys while the clip plays.
+    Keys {
+        /// The options.
+        options: Vec<ChoiceView>,
+        /// The key of each; one may have none.
+        keys: Vec<Option<String>>,
+    },
     /// Radio buttons.
     SingleChoice {
         /// In the order shown.

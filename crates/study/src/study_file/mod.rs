@@ -8,6 +8,7 @@
 mod adaptive;
 mod between;
 mod clips;
+mod compared;
 mod conduct;
 mod exertion;
 mod general;
@@ -17,12 +18,14 @@ mod local_text;
 mod media;
 mod method;
 mod pairs;
+mod panel;
 mod paths;
 mod scales;
 mod sequence;
 mod sound;
 mod stimuli;
 mod tables;
+mod trial_blocks;
 mod triggers;
 
 use std::collections::BTreeMap;
@@ -37,6 +40,7 @@ pub use adaptive::{
 };
 pub use between::UnknownCondition;
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
+pub use compared::NoCells;
 pub use conduct::{
     AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,
     DeviceRules, FullscreenRule, ScreeningRule, StatedAnswers, StaticHosting, TimeLimit,
@@ -53,14 +57,14 @@ pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining};
-pub use pairs::{
-    DealtPairs, NoPairs, PairRule, PairSchedule, PairShowing, PairsBlock, PairsComponent,
-};
+pub use pairs::{DealtPairs, NoPairs, PairRule, PairSchedule, PairsBlock, PairsComponent};
+pub use panel::{PanelBlock, PanelComponent, PanelExclusion, PanelPage, PanelPages, answer_about};
 pub use paths::{PathError, WrongVariable, resolve_path};
 pub use scales::CompositeScale;
 pub use sequence::{
-    Beside, BreakComponent, ClipSelection, Component, Constraint, Interruption, OrderRule,
-    PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training, TrialsComponent,
+    Beside, BreakComponent, ClipSelection, ClipShowing, Component, Constraint, Interruption,
+    OrderRule, PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training,
+    TrialsComponent,
 };
 pub use sound::{
     Caption, CaptionRule, CaptureSound, HeardSound, Hearing, SegmentSound, SoundCheck, SoundPages,
@@ -300,6 +304,9 @@ impl Study {
                 Some(Component::Trials(block)) => shared(&block.questions),
                 Some(Component::Pairs(block)) => {
                     block.read().map_or_else(|_| Vec::new(), |block| shared(&block.questions()))
+                }
+                Some(Component::Panel(block)) => {
+                    block.read().map_or_else(|_| Vec::new(), |block| shared(&[block.question]))
                 }
                 Some(Component::Adaptive(block)) => shared(&[block.question().to_owned()]),
                 Some(Component::Questionnaire(page)) => page.questions.iter().collect(),

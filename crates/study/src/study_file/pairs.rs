@@ -1,13 +1,14 @@
 //! A block of paired comparisons: every two levels of a factor side by side, in each segment.
 
-use std::borrow::Cow;
-
 use mimique_adaptive::{Balance, DesignError, PairDesign};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Clip, ClipSelection, Component, LocalText, Study, TimeLimit, TrialsComponent};
+use super::compared::{Compared, NoCells, method, segment_and_avatar};
+use super::{
+    Clip, ClipSelection, ClipShowing, Component, LocalText, Study, TimeLimit, TrialsComponent,
+};
 
 /// A block of paired comparisons. Its items are the levels of a factor of the clips; two clips make a pair where they
 /// differ in it and are alike in what `within` names (a cell). Each trial shows one pair and asks which of the two.
@@ -31,7 +32,7 @@ pub struct PairsComponent {
     pub schedule: PairSchedule,
     /// How the two clips are shown.
     #[serde(default)]
-    pub show: PairShowing,
+    pub show: ClipShowing,
     /// Identifier of one of the study's `questions`, of type `comparison`.
     pub question: String,
     /// Identifier of one of the study's `questions` that is asked after the choice: why.
@@ -71,17 +72,6 @@ pub enum PairRule {
     Incomplete,
 }
 
-/// How the two clips of a pair are shown.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "camelCase")]
-pub enum PairShowing {
-    /// Side by side, in step.
-    #[default]
-    InStep,
-    /// Side by side, the left one first, then the right one.
-    InTurn,
-}
-
 /// The pairs that a block's trials show, derived from [`PairsComponent`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -98,24 +88,9 @@ pub struct DealtPairs {
 /// Why a block has no pairs.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoPairs {
-    /// Of a cell: no clip has a level.
-    #[error("no clip of {cell} has the level {level:?}")]
-    LevelMissing {
-        /// The cell in words: `segment joy2, avatar head`.
-        cell: String,
-        /// The level.
-        level: String,
-    },
-    /// Of a cell: two clips have a level.
-    #[error("two clips of {cell} have the level {level:?}: {clips:?}")]
-    LevelTwice {
-        /// The cell in words.
-        cell: String,
-        /// The level.
-        level: String,
-        /// Both clips.
-        clips: [String; 2],
-    },
+    /// The clips make no cells.
+    #[error(transparent)]
+    Cells(#[from] NoCells),
     /// The pairs cannot be dealt.
     #[error(transparent)]
     Design(#[from] DesignError),
@@ -125,14 +100,6 @@ pub enum NoPairs {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PairsBlock(pub Value);
-
-fn method() -> String {
-    "method".to_owned()
-}
-
-fn segment_and_avatar() -> Vec<String> {
-    vec!["segment".to_owned(), "avatar".to_owned()]
-}
 
 impl PairsBlock {
     /// The block.
@@ -144,33 +111,20 @@ impl PairsBlock {
     }
 }
 
-/// Clips of a block that are alike in what its `within` names, by level.
-struct Cell<'c> {
-    /// Levels of `within`.
-    alike: Vec<Option<String>>,
-    /// A clip for each level that has been met, in the order of the levels.
-    clips: Vec<Option<&'c Clip>>,
-}
-
 impl PairsComponent {
     /// Identifiers of the questions of each trial, in the order they are asked.
     pub fn questions(&self) -> Vec<String> {
         [&self.question].into_iter().chain(&self.reasons).cloned().collect()
     }
 
+    fn compares(&self) -> Compared<'_> {
+        let Self { compare, levels, within, clips, .. } = self;
+        Compared { compare, levels, within, clips }
+    }
+
     /// The levels that are compared: those of the file, or those of the clips in their order.
     pub fn compared(&self, clips: &[Clip]) -> Vec<String> {
-        if !self.levels.is_empty() {
-            return self.levels.clone();
-        }
-        let mut levels: Vec<String> = Vec::new();
-        let taken = clips.iter().filter(|clip| self.clips.takes(clip));
-        for level in taken.filter_map(|clip| clip.factor_text(&self.compare)) {
-            if !levels.contains(&level) {
-                levels.push(level);
-            }
-        }
-        levels
+        self.compares().levels(clips)
     }
 
     /// The block as the trials that it makes.
@@ -179,17 +133,16 @@ impl PairsComponent {
     /// [`NoPairs`]: what the check of a study refuses.
     pub fn trials(&self, clips: &[Clip]) -> Result<TrialsComponent, NoPairs> {
         let levels = self.compared(clips);
-        let cells = self.cells(clips, &levels)?;
+        let cells = self.compares().cells(clips, &levels)?;
         let design = self.design(levels.len(), cells.len())?;
-        let shown: Vec<&Clip> =
-            cells.iter().flat_map(|cell| cell.clips.iter().flatten()).copied().collect();
+        let shown: Vec<&Clip> = cells.iter().flat_map(|cell| &cell.clips).copied().collect();
         let ids = || shown.iter().map(|clip| clip.id.clone()).collect();
         let place = |item: usize, cell: usize| cell * levels.len() + item;
         let slots = (0..design.period()).map(|slot| {
             let row = design.of_slot(slot);
             row.iter().map(|p| [place(p.left, p.cell), place(p.right, p.cell)]).collect()
         });
-        let in_turn = self.show == PairShowing::InTurn;
+        let in_turn = self.show == ClipShowing::InTurn;
         Ok(TrialsComponent {
             clips: ClipSelection { ids: ids(), ..ClipSelection::default() },
             instruction: self.instruction.clone(),
@@ -199,6 +152,7 @@ impl PairsComponent {
             beside: None,
             time_limit: self.time_limit.clone(),
             pairs: Some(Box::new(DealtPairs { clips: ids(), slots: slots.collect(), in_turn })),
+            panel: None,
         })
     }
 
@@ -208,7 +162,7 @@ impl PairsComponent {
     /// [`NoPairs`].
     pub fn balance(&self, clips: &[Clip]) -> Result<Balance, NoPairs> {
         let levels = self.compared(clips);
-        let cells = self.cells(clips, &levels)?;
+        let cells = self.compares().cells(clips, &levels)?;
         Ok(self.design(levels.len(), cells.len())?.balance())
     }
 
@@ -217,47 +171,6 @@ impl PairsComponent {
             None => PairDesign::all(items, cells),
             Some(pairs) => PairDesign::incomplete(items, cells, pairs),
         }
-    }
-
-    /// The cells, in the order of the clips; each has a clip of every level.
-    fn cells<'c>(&self, clips: &'c [Clip], levels: &[String]) -> Result<Vec<Cell<'c>>, NoPairs> {
-        let mut cells: Vec<Cell<'c>> = Vec::new();
-        for clip in clips.iter().filter(|clip| self.clips.takes(clip)) {
-            let Some(item) = clip
-                .factor_text(&self.compare)
-                .and_then(|level| levels.iter().position(|own| *own == level))
-            else {
-                continue;
-            };
-            let alike: Vec<_> = self.within.iter().map(|name| clip.factor_text(name)).collect();
-            let found = cells.iter().position(|cell| cell.alike == alike);
-            let at = found.unwrap_or_else(|| {
-                cells.push(Cell { alike, clips: vec![None; levels.len()] });
-                cells.len() - 1
-            });
-            if let Some(first) = cells[at].clips[item].replace(clip) {
-                return Err(NoPairs::LevelTwice {
-                    cell: self.in_words(&cells[at]),
-                    level: levels[item].clone(),
-                    clips: [first.id.clone(), clip.id.clone()],
-                });
-            }
-        }
-        for cell in &cells {
-            if let Some(item) = cell.clips.iter().position(Option::is_none) {
-                let level = levels[item].clone();
-                return Err(NoPairs::LevelMissing { cell: self.in_words(cell), level });
-            }
-        }
-        Ok(cells)
-    }
-
-    /// `segment joy2, avatar head`.
-    fn in_words(&self, cell: &Cell<'_>) -> String {
-        let parts = self.within.iter().zip(&cell.alike);
-        let parts: Vec<String> =
-            parts.filter_map(|(name, level)| Some(format!("{name} {}", level.as_ref()?))).collect();
-        if parts.is_empty() { "the block".to_owned() } else { parts.join(", ") }
     }
 }
 
@@ -287,31 +200,5 @@ impl Study {
             Component::Pairs(block) => Some((name.as_str(), block.read().ok()?)),
             _ => None,
         })
-    }
-
-    /// The blocks of trials of clips, by name: blocks of pairs as the trials that they make. What has no pairs is
-    /// left out: the check reports it.
-    pub fn trial_blocks(&self) -> Vec<(&str, Cow<'_, TrialsComponent>)> {
-        let clips = std::cell::OnceCell::new();
-        let of = |component| trials_of(component, || clips.get_or_init(|| self.clips()));
-        let blocks = self.components.iter();
-        blocks.filter_map(|(name, component)| Some((name.as_str(), of(component)?))).collect()
-    }
-
-    /// The block of trials of this name.
-    pub fn trial_block(&self, name: &str) -> Option<Cow<'_, TrialsComponent>> {
-        let clips = std::cell::OnceCell::new();
-        trials_of(self.components.get(name)?, || clips.get_or_init(|| self.clips()))
-    }
-}
-
-fn trials_of<'s, 'c>(
-    component: &'s Component,
-    clips: impl FnOnce() -> &'c Vec<Clip>,
-) -> Option<Cow<'s, TrialsComponent>> {
-    match component {
-        Component::Trials(block) => Some(Cow::Borrowed(block)),
-        Component::Pairs(block) => Some(Cow::Owned(block.read().ok()?.trials(clips()).ok()?)),
-        _ => None,
     }
 }

@@ -15,6 +15,8 @@ pub enum Component {
     Trials(TrialsComponent),
     /// A block of paired comparisons.
     Pairs(#[schemars(with = "super::PairsComponent")] super::PairsBlock),
+    /// A block of several clips a page, on one scale.
+    Panel(#[schemars(with = "super::PanelComponent")] super::PanelBlock),
     /// A block whose levels follow the answers.
     Adaptive(#[schemars(with = "super::AdaptiveComponent")] super::AdaptiveBlock),
     /// A page of questions.
@@ -54,6 +56,10 @@ pub struct TrialsComponent {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(skip)]
     pub pairs: Option<Box<super::DealtPairs>>,
+    /// The panels that it shows in place of single clips: derived ([`super::PanelComponent::trials`]), in no study file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub panel: Option<Box<super::PanelPages>>,
 }
 
 /// What is played in step beside each clip of a block: the clip of the same segment by another
@@ -88,6 +94,17 @@ pub enum Side {
     Right,
     /// Drawn for each trial, each side in half of a participant's trials.
     Random,
+}
+
+/// How the clips of a trial of several are shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase")]
+pub enum ClipShowing {
+    /// Side by side, in step.
+    #[default]
+    InStep,
+    /// Side by side, one after the other from left to right.
+    InTurn,
 }
 
 fn once() -> u32 {
@@ -268,8 +285,16 @@ impl Beside {
     }
 }
 
+impl Component {
+    /// Whether it stands for trials.
+    pub fn is_block(&self) -> bool {
+        matches!(self, Self::Trials(_) | Self::Pairs(_) | Self::Panel(_) | Self::Adaptive(_))
+    }
+}
+
 impl TrialsComponent {
-    /// Each clip that is shown with what stands beside it; of pairs each pair once, whatever its sides.
+    /// Each clip that is shown with what stands beside it; of pairs each pair once, whatever its sides. The clips of a
+    /// panel are answered one by one: nothing stands beside them.
     pub fn shown<'c>(
         &self,
         clips: &'c [super::Clip],
@@ -289,16 +314,17 @@ impl TrialsComponent {
 
     /// How many trials each participant is shown.
     pub fn trial_count(&self, clips: &[super::Clip]) -> usize {
-        match &self.pairs {
-            Some(pairs) => pairs.each(),
-            None => {
+        match (&self.pairs, &self.panel) {
+            (Some(pairs), _) => pairs.each(),
+            (_, Some(panel)) => panel.pages.len(),
+            (None, None) => {
                 let taken = clips.iter().filter(|clip| self.clips.takes(clip)).count();
                 taken.saturating_mul(self.repetitions as usize)
             }
         }
     }
 
-    /// Whether each of its trials shows two clips.
+    /// Whether the answers of its trials are about two clips.
     pub fn shows_two(&self) -> bool {
         self.beside.is_some() || self.pairs.is_some()
     }

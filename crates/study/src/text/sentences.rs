@@ -19,6 +19,11 @@ impl Words {
         self.fill(Place::training_of, &[("number", &number), ("of", &of)])
     }
 
+    /// "Play B": one clip of a panel alone.
+    pub fn play_alone(&self, name: &str) -> String {
+        self.fill(Place::play_alone, &[("name", &name)])
+    }
+
     /// The answers are in this browser alone.
     pub fn kept_here(&self, email: &str) -> String {
         self.fill(Place::kept_here, &[("email", &email)])

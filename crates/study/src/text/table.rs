@@ -47,6 +47,8 @@ fixed {
     play: "Play the clip", "Voir l’extrait";
     /// Button: play again.
     play_again: "Play again", "Revoir l’extrait";
+    /// Names the open reference of a panel.
+    reference: "Reference", "Référence";
     /// Button: try again.
     retry: "Try again", "Réessayer";
     /// Button: stop taking part.
@@ -315,6 +317,8 @@ made {
     trial_of: "Clip {number} of {of}", "Extrait {number} sur {of}";
     /// "Practice clip 1 of 2".
     training_of: "Practice clip {number} of {of}", "Extrait d’entraînement {number} sur {of}";
+    /// Button: play one clip of a panel.
+    play_alone: "Play {name}", "Revoir {name}";
     /// The answers are in this browser alone.
     kept_here:
         "Your answers are kept in this browser only. Please download them and send the file to the investigator: {email}.",

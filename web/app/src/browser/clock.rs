@@ -12,6 +12,11 @@ pub fn now() -> f64 {
     window().performance().map_or(0.0, |clock| clock.time_origin() + clock.now())
 }
 
+/// When an event happened, on that clock.
+pub fn time_of(event: &web_sys::Event) -> f64 {
+    window().performance().map_or(0.0, |clock| clock.time_origin() + event.time_stamp())
+}
+
 /// Waits.
 pub async fn sleep(time: Duration) {
     TimeoutFuture::new(time.as_millis() as u32).await;

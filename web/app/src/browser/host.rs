@@ -22,26 +22,22 @@ extern "C" {
         progress: &js_sys::Function,
     ) -> Result<JsValue, JsValue>;
 
-    /// Puts a stage on the canvas of a place: `clip`, or `beside` it.
+    /// Puts a stage on a canvas, by the canvas's name (`mimique_session::flow::PlacedClip`).
     #[wasm_bindgen(js_name = attachStage)]
-    pub fn attach_stage(place: &str, canvas: &Node, look: &str);
+    pub fn attach_stage(name: &str, canvas: &Node, look: &str);
 
-    /// Takes the stage off the canvas of a place.
-    #[wasm_bindgen(js_name = detachStage)]
-    pub fn detach_stage(place: &str);
+    /// Takes the stages off the canvases that have gone.
+    #[wasm_bindgen(js_name = detachStages)]
+    pub fn detach_stages();
 
-    /// Shows the first frame of a clip and of the one beside it.
-    #[wasm_bindgen(js_name = showClip, catch)]
-    pub async fn show_clip(clip: &str, beside: Option<String>) -> Result<JsValue, JsValue>;
+    /// Shows the first frame of clips, JSON of `PlacedClip`s.
+    #[wasm_bindgen(js_name = showClips, catch)]
+    pub async fn show_clips(clips: &str) -> Result<JsValue, JsValue>;
 
-    /// Plays a clip once, the one beside it in step; resolves with the log as JSON, its times on
+    /// Plays clips once, JSON of `PlacedClip`s, in step or in turn; resolves with the log as JSON, its times on
     /// the page's clock.
-    #[wasm_bindgen(js_name = playClip, catch)]
-    pub async fn play_clip(
-        clip: &str,
-        beside: Option<String>,
-        in_turn: bool,
-    ) -> Result<JsValue, JsValue>;
+    #[wasm_bindgen(js_name = playClips, catch)]
+    pub async fn play_clips(clips: &str, in_turn: bool) -> Result<JsValue, JsValue>;
 
     /// Opens the way to a program on this machine that is told what is shown; `settings`: JSON of the study's
     /// triggers.

@@ -7,7 +7,9 @@ use gloo_events::{EventListener, EventListenerOptions, EventListenerPhase};
 use gloo_timers::callback::{Interval, Timeout};
 use gloo_utils::{document, window};
 use wasm_bindgen::JsCast as _;
-use web_sys::{Element, Event, EventTarget};
+use web_sys::{Element, Event, EventTarget, KeyboardEvent};
+
+use super::clock::time_of;
 
 /// What happens to the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,4 +101,24 @@ fn watch_presses<F: Fn(WindowEvent) + 'static>(call: &Rc<F>) {
         })
         .forget();
     }
+}
+
+/// Calls back with every key that is pressed alone, and not into a field of text: its name, and when, page clock. The
+/// browser does nothing of its own with a key that was taken.
+pub fn watch_keys(call: impl Fn(&str, f64) -> bool + 'static) {
+    const TYPED_INTO: &str = "textarea, input:not([type=range], [type=radio], [type=checkbox])";
+    let options = EventListenerOptions::enable_prevent_default();
+    EventListener::new_with_options(&window(), "keydown", options, move |event: &Event| {
+        let Some(pressed) = event.dyn_ref::<KeyboardEvent>() else { return };
+        let target = event.target().and_then(|target| target.dyn_into::<Element>().ok());
+        let is_typed = target.is_some_and(|target| target.matches(TYPED_INTO).unwrap_or(false));
+        let with_others = pressed.ctrl_key() || pressed.alt_key() || pressed.meta_key();
+        if is_typed || with_others || pressed.repeat() {
+            return;
+        }
+        if call(&pressed.key(), time_of(event)) {
+            event.prevent_default();
+        }
+    })
+    .forget();
 }

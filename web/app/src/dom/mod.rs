@@ -13,6 +13,7 @@ use wasm_bindgen::JsCast as _;
 use web_sys::{Event, HtmlInputElement, HtmlTextAreaElement, KeyboardEvent, Node};
 
 use crate::act::Act;
+use crate::browser::clock::time_of;
 
 pub use mount::Mount;
 
@@ -22,6 +23,8 @@ pub struct FieldEvent {
     pub value: String,
     /// Whether a check box is checked.
     pub checked: bool,
+    /// When it happened, page clock.
+    pub at_ms: f64,
 }
 
 impl FieldEvent {
@@ -31,20 +34,21 @@ impl FieldEvent {
     }
 
     fn of(event: &Event) -> Self {
+        let at_ms = time_of(event);
         if let Some(press) = event.dyn_ref::<KeyboardEvent>() {
             let is_shortcut = press.ctrl_key() || press.alt_key() || press.meta_key();
             let value = if is_shortcut { String::new() } else { press.key() };
-            return Self { value, checked: false };
+            return Self { value, checked: false, at_ms };
         }
         let Some(target) = event.target() else {
-            return Self { value: String::new(), checked: false };
+            return Self { value: String::new(), checked: false, at_ms };
         };
         match target.dyn_into::<HtmlInputElement>() {
-            Ok(input) => Self { value: input.value(), checked: input.checked() },
+            Ok(input) => Self { value: input.value(), checked: input.checked(), at_ms },
             Err(other) => {
                 let area = other.dyn_ref::<HtmlTextAreaElement>();
                 let value = area.map(HtmlTextAreaElement::value).unwrap_or_default();
-                Self { value, checked: false }
+                Self { value, checked: false, at_ms }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use mimique_session::flow::Input;
+use mimique_session::flow::{Input, PlacedClip};
 use mimique_session::{PlayLog, StageFailure};
 use mimique_study::MEDIA_PREFIX;
 use serde_json::Value;
@@ -106,11 +106,11 @@ impl Engine {
         });
     }
 
-    /// Shows the first frame of a clip that is prepared, and of the one beside it.
-    pub fn show(self: &Rc<Self>, clip: String, beside: Option<String>) {
-        let engine = Rc::clone(self);
+    /// Shows the first frame of clips that are prepared, each on its canvas.
+    pub fn show(self: &Rc<Self>, clips: &[PlacedClip]) {
+        let (engine, clip, clips) = (Rc::clone(self), first(clips), as_json(clips));
         spawn_local(async move {
-            if let Err(thrown) = host::show_clip(&clip, beside).await {
+            if let Err(thrown) = host::show_clips(&clips).await {
                 engine.prepared.borrow_mut().remove(&clip);
                 let failure = stage_failure(&thrown);
                 engine.dispatch(Input::ClipFailed { clip, failure });
@@ -118,11 +118,11 @@ impl Engine {
         });
     }
 
-    /// Plays a clip, and the one beside it in step, or in turn after it.
-    pub(super) fn play(self: &Rc<Self>, clip: String, beside: Option<String>, in_turn: bool) {
-        let engine = Rc::clone(self);
+    /// Plays clips in step, or in turn.
+    pub(super) fn play(self: &Rc<Self>, clips: &[PlacedClip], in_turn: bool) {
+        let (engine, clip, clips) = (Rc::clone(self), first(clips), as_json(clips));
         spawn_local(async move {
-            let played = host::play_clip(&clip, beside, in_turn).await;
+            let played = host::play_clips(&clips, in_turn).await;
             let input = match played.map(|log| play_log(&log)) {
                 Ok(Ok(log)) => Input::Played(log),
                 Ok(Err(failure)) => Input::ClipFailed { clip, failure },
@@ -131,6 +131,15 @@ impl Engine {
             engine.dispatch(input);
         });
     }
+}
+
+/// The clip that a failure of the stage is told of.
+fn first(clips: &[PlacedClip]) -> String {
+    clips.first().map_or_else(String::new, |placed| placed.clip.clone())
+}
+
+fn as_json(clips: &[PlacedClip]) -> String {
+    serde_json::json!(clips).to_string()
 }
 
 fn play_log(log: &JsValue) -> Result<PlayLog, StageFailure> {

@@ -91,6 +91,16 @@ impl Collector {
                 all.person_level(&key, &tests.recommended);
             }
         }
+        for panel in &results.panels {
+            let key = format!("panel:{}", panel.block);
+            if let Some(conditions) = &panel.conditions {
+                all.trial_level(&key, &conditions.as_in_the_thesis);
+                all.person_level(&key, &conditions.recommended);
+            }
+            if let Some(order) = &panel.order {
+                all.line(format!("{key}:order"), &order.test);
+            }
+        }
         for two in &results.two_way {
             let key = format!("two-way:{}:{}", two.measure, two.factors.join(":"));
             all.trial_level(&key, &two.as_in_the_thesis);

@@ -205,6 +205,21 @@ of_wins <- function(test, question, g, levels) {
   test(won(d$left, "left") + won(d$right, "right"))
 }
 
+# Which of every two levels was rated higher on the same page.
+of_page_order <- function(test, y, g, levels) {
+  v <- number(y)
+  keep <- !is.na(v) & trials[[g]] %in% levels
+  d <- data.frame(v = v[keep], level = match(trials[[g]][keep], levels), person = person[keep],
+                  page = paste(person[keep], trials$trial_order[keep]))
+  d <- d[order(d$page, d$level), ]
+  pairs <- do.call(rbind, lapply(split(d, d$page), function(own) {
+    if (nrow(own) < 2) return(NULL)
+    two <- utils::combn(nrow(own), 2)
+    data.frame(person = own$person[1], left = levels[own$level[two[1, ]]], right = levels[own$level[two[2, ]]],
+               sign = sign(own$v[two[1, ]] - own$v[two[2, ]]))
+  }))
+  test(pairs$person, pairs$left, pairs$right, c("right", "same", "left")[pairs$sign + 2], FALSE)
+}
 # Ratings by the levels of a factor, over people and segments.
 of_people_and_segments <- function(test, y, g, levels) {
   v <- number(y)

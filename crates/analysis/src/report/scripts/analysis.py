@@ -296,6 +296,22 @@ def of_wins(test, question, g, levels):
     return test(np.array([[wins(one, level) for level in levels] for one in np.unique(who)]))
 
 
+def of_page_order(test, y, g, levels):
+    """Which of every two levels was rated higher on the same page."""
+    v, order = number(y), number("trial_order")
+    keep = ~np.isnan(v) & is_in(g, levels)
+    pages = {}
+    for who, page, level, value in zip(person[keep], order[keep], columns[g][keep], v[keep]):
+        pages.setdefault((who, page), {})[level] = value
+    rows = []
+    for (who, _), ratings in pages.items():
+        for a, b in itertools.combinations([level for level in levels if level in ratings], 2):
+            word = ["same", "left", "right"][int(np.sign(ratings[a] - ratings[b]))]
+            rows.append((who, a, b, word))
+    who, left, right, answer = (np.array(column, dtype=object) for column in zip(*rows))
+    return test(who, left, right, answer, False)
+
+
 def of_people_and_segments(test, y, g, levels):
     """Ratings by the levels of a factor, over people and segments."""
     v = number(y)

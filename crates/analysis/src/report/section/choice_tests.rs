@@ -77,7 +77,8 @@ impl Writer<'_> {
         table
     }
 
-    fn worths(
+    /// Worths of levels: their ranking, every two of them, and whether the model describes the choices.
+    pub(crate) fn worths(
         &mut self,
         id: &str,
         factor: &str,

@@ -12,6 +12,7 @@ pub(crate) mod layout_tests;
 pub(crate) mod layouts;
 pub(crate) mod measures;
 pub(crate) mod notes;
+pub(crate) mod panels;
 pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod stimulus_measures;
@@ -147,6 +148,7 @@ fn of_measures<'a>(
     for (asked, measure) in rated {
         parts.push(Box::new(|part| part.rating(asked, measure)));
     }
+    parts.push(Box::new(|part| part.panels(measures)));
     parts.push(Box::new(|part| part.thresholds()));
     for asked in &choices {
         parts.push(Box::new(|part| part.choices(asked)));

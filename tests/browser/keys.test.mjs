@@ -1,0 +1,89 @@
+// Keys while the clip plays: the first press is the answer, its time that of the press on the frames' clock; a finger
+// presses the buttons; what comes after the clip's end counts too.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { violations } from "./lib/access.mjs";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { parse } from "./lib/csv.mjs";
+import { go, leave, phase, place } from "./lib/participant.mjs";
+import { mimique, serve } from "./lib/server.mjs";
+import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+
+const unable = skip(!executable && "Chromium not found");
+
+const option = (value, words) => ({ value, label: text(words) });
+const study = small("speeded", {
+  questions: [{
+    id: "felt", type: "singleChoice", prompt: text("Joy or anger?"), truth: "expression",
+    options: [option("joy", "Joy"), option("anger", "Anger")], keys: { joy: "F", anger: "J" },
+  }],
+  components: { faces: trials(["joy2.lsts", "joy2.recorded", "joy2.box"], ["felt"]) },
+  sequence: { order: "fixed", components: ["faces"] },
+  stimuli: stimuli(
+    { head: { builtin: { seed: 1 } } },
+    { lsts: { method: "lsts" }, recorded: { method: "recorded" }, box: { method: "box" } },
+    [["head", "lsts"], ["head", "recorded"], ["head", "box"]],
+  ),
+});
+
+test("keys: pressed while the clip plays, by key and by finger, and after it", { skip: unable, timeout: 300_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-keys-"));
+  writeFileSync(join(folder, "speeded.json"), JSON.stringify(study));
+  const server = await serve([join(folder, "speeded.json")]);
+  const browser = await open("webgl2", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  const shots = screenshotFolder("keys");
+  const { page } = browser;
+  const pressed = (value) => page.locator(`button[data-action=press][value=${value}]`).getAttribute("aria-pressed");
+  try {
+    await page.goto(`${server.url}/s/speeded/?backend=webgl2`);
+    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+    let here = await place(page);
+    while (here.view !== "trial") {
+      await go(page, "keyboard");
+      here = await leave(page, here, 60_000);
+    }
+    for (const how of ["key", "finger", "late"]) {
+      await phase(page, "ready", 120_000);
+      await page.keyboard.press("j");
+      assert.equal(await pressed("anger"), "false", "nothing before the clip plays");
+      await go(page, "keyboard");
+      await phase(page, "playing");
+      if (how === "key") {
+        await page.waitForTimeout(1000);
+        await page.keyboard.press("f");
+        await page.waitForFunction(() => document.querySelector("button[value=joy]").getAttribute("aria-pressed") === "true");
+        await page.keyboard.press("j");
+        await page.screenshot({ path: join(shots, "pressed.png") });
+        assert.deepEqual([await pressed("joy"), await pressed("anger")], ["true", "false"], "the first one stays");
+        assert.deepEqual(await violations(page), [], "axe");
+      } else if (how === "finger") {
+        await page.waitForTimeout(500);
+        await page.locator("button[value=anger]").tap();
+      } else {
+        await phase(page, "answering", 60_000);
+        await page.keyboard.press("F");
+      }
+      here = await leave(page, here, 60_000);
+    }
+    while (here.view !== "end") {
+      if (here.view !== "receipt") await go(page, "keyboard");
+      here = await leave(page, here, 60_000);
+    }
+    assert.deepEqual(browser.errors, [], "the console is clean");
+    const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.response_id === "felt");
+    assert.deepEqual(rows.map(({ answer, correct }) => [answer, correct]), [["joy", "true"], ["anger", "false"], ["joy", "true"]]);
+    const [first, second, third] = rows.map((row) => Number(row.rt));
+    // A second after the page said that it plays, which is some frames before or after the first frame.
+    assert.ok(first > 700 && first < 3000, `${first} ms`);
+    assert.ok(second > 200 && second < 2500, `${second} ms`);
+    assert.ok(third > 3800, `after a clip of 4 s: ${third} ms`);
+    for (const row of rows) assert.equal(row.rt, row.rt_open);
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
