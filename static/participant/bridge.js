@@ -192,11 +192,38 @@ export async function playClips(clips, inTurn) {
   const seen = watchView(placed, () => here.stop("out of view"));
   try {
     const told = (await triggers)?.play({ clip, beside: others[0]?.clip ?? null, ...(others.length > 1 && { panel: placed.map((each) => each.clip) }) });
-    const log = onPageClock(await here.play(clip, { beside, inTurn, heard: true, told }));
-    return JSON.stringify({ ...log, triggers: told?.sent() });
+    const lines = followed();
+    const each = lines ? { frame: (now, ms) => (told?.frame(now, ms), lines.frame(now)), end: (now) => told?.end(now) } : told;
+    const log = onPageClock(await here.play(clip, { beside, inTurn, heard: true, told: each }));
+    return JSON.stringify({ ...log, triggers: told?.sent(), traces: lines?.courses(log.end_ms - log.onset_ms) });
   } finally {
     seen.disconnect();
   }
+}
+
+// study::TRACE_HZ
+const TRACE_HZ = 60;
+
+// Where the lines stand that are moved while a clip plays; null where the trial has none. The first one has the
+// keyboard.
+function followed() {
+  const lines = [...document.querySelectorAll("input[data-trace]")];
+  if (lines.length === 0) return null;
+  lines[0].focus();
+  const notes = [];
+  return {
+    frame: (now) => notes.push([now, ...lines.map((line) => Number(line.value))]),
+    // At each instant where the line stood at the last frame before.
+    courses: (lastsMs) => {
+      const courses = Object.fromEntries(lines.map((line) => [line.dataset.trace, []]));
+      let at = 0;
+      for (let k = 0; notes.length > 0 && (k * 1000) / TRACE_HZ <= lastsMs + 1e-6; k++) {
+        while (at + 1 < notes.length && notes[at + 1][0] - notes[0][0] <= (k * 1000) / TRACE_HZ + 1e-6) at += 1;
+        lines.forEach((line, n) => courses[line.dataset.trace].push(notes[at][n + 1]));
+      }
+      return courses;
+    },
+  };
 }
 
 // Tells another program on this machine what is shown when, in studies that ask for it.

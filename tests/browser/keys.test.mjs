@@ -87,3 +87,55 @@ test("keys: pressed while the clip plays, by key and by finger, and after it", {
     await server.stop();
   }
 });
+
+const line = small("followed", {
+  questions: [{ id: "intensity", type: "slider", whilePlaying: true, prompt: text("How intense?"), minimum: 0, maximum: 100, leftLabel: text("not"), rightLabel: text("very") }],
+  components: { faces: trials(["joy2.lsts"], ["intensity"]) },
+  sequence: { order: "fixed", components: ["faces"] },
+  stimuli: stimuli({ head: { builtin: { seed: 1 } } }, { lsts: { method: "lsts" } }, [["head", "lsts"]]),
+});
+
+test("keys: a line moved while the clip plays, 60 values a second", { skip: unable, timeout: 200_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-line-"));
+  writeFileSync(join(folder, "followed.json"), JSON.stringify(line));
+  const server = await serve([join(folder, "followed.json")]);
+  const browser = await open("webgl2", { viewport: { width: 1280, height: 800 } });
+  const shots = screenshotFolder("keys");
+  const { page } = browser;
+  try {
+    await page.goto(`${server.url}/s/followed/?backend=webgl2`);
+    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+    let here = await place(page);
+    while (here.view !== "trial") {
+      await go(page, "keyboard");
+      here = await leave(page, here, 60_000);
+    }
+    await phase(page, "ready", 120_000);
+    await go(page, "keyboard");
+    await phase(page, "playing");
+    await page.waitForFunction(() => document.activeElement?.matches("input[data-trace]"), null, { timeout: 10_000 });
+    await page.waitForTimeout(1000);
+    for (let presses = 0; presses < 20; presses++) await page.keyboard.press("ArrowRight");
+    await page.screenshot({ path: join(shots, "line.png") });
+    assert.deepEqual(await violations(page), [], "axe");
+    here = await leave(page, here, 60_000);
+    while (here.view !== "end") {
+      if (here.view !== "receipt") await go(page, "keyboard");
+      here = await leave(page, here, 60_000);
+    }
+    assert.deepEqual(browser.errors, [], "the console is clean");
+    const [row] = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((each) => each.response_id === "intensity");
+    const course = JSON.parse(row.trace);
+    // A clip of 4 s, the first and the last instant among them.
+    assert.ok(Math.abs(course.length - 241) <= 2, `${course.length} values`);
+    assert.deepEqual([course[0], course.at(-1)], [50, 70]);
+    assert.ok(course.every((value, k) => k === 0 || value >= course[k - 1]), "it only rises");
+    const turn = course.findIndex((value) => value > 50);
+    assert.ok(turn > 30 && turn < 180, `moved about a second after the onset: ${turn / 60} s`);
+    const mean = course.reduce((sum, value) => sum + value, 0) / course.length;
+    assert.ok(Math.abs(Number(row.answer) - mean) < 1e-3);
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});

@@ -408,6 +408,10 @@ pub struct PlayLog {
     /// the study tells none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub triggers: Option<u32>,
+    /// Of ratings that follow the clip: question -> where its line stood, `mimique_study::TRACE_HZ` times a second. The
+    /// machine makes answers of it and keeps none.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub traces: Value,
     /// Why the play ended early; null for a whole play.
     pub aborted: Option<String>,
 }

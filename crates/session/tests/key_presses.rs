@@ -140,3 +140,49 @@ fn an_option_without_a_key_stands_for_no_press() {
         let View::Trial(_) = page.view() else { panic!("the next trial stands there") };
     }
 }
+
+/// The speeded example with a line that follows the clip in the question's place.
+fn followed() -> String {
+    text(|question| {
+        *question = json!({
+            "id": "intensity", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
+            "prompt": {"en": "How intense?", "fr": "Quelle intensité ?"},
+            "leftLabel": {"en": "not", "fr": "pas"}, "rightLabel": {"en": "very", "fr": "très"},
+        });
+    })
+    .replace("[\"felt\"]", "[\"intensity\"]")
+    .replace("\"response\":\"felt\",\"measure\":\"rt\"", "\"response\":\"intensity\"")
+}
+
+#[test]
+fn the_course_of_the_first_whole_play_is_the_answer_and_its_mean_is_in_the_export() {
+    let mut page = at_first_trial(&followed());
+    assert_eq!((trial(&page).keys.len(), trial(&page).questions.len()), (1, 0));
+    let played = |page: &Page, course: Value, aborted: Option<&str>| {
+        let traces = json!({"intensity": course, "other": [1]});
+        let aborted = aborted.map(str::to_owned);
+        Input::Played(PlayLog { traces, aborted, ..whole_play(page.now_ms) })
+    };
+    step(&mut page, Input::Play);
+    let cut = played(&page, json!([0, 0]), Some("page hidden"));
+    step(&mut page, cut);
+    assert_eq!(trial(&page).phase, Phase::Ready, "a play that was cut short is no answer");
+    step(&mut page, Input::Play);
+    let wrong = played(&page, json!([50, 101]), None);
+    step(&mut page, wrong);
+    assert!(!trial(&page).button.can_submit, "the line ends at 100");
+    let mut page = at_first_trial(&followed());
+    let before = page.state.record.step;
+    step(&mut page, Input::Play);
+    let whole = played(&page, json!([50, 60, 70, 80]), None);
+    step(&mut page, whole);
+    assert_eq!(page.state.record.step, before + 1, "nothing else is asked");
+    let study = Study::from_value(&mimique_study::parse(&followed()).unwrap()).unwrap();
+    let record = SessionRecord { started: &page.plan.started, events: &page.stored };
+    let table = tidy(&study, &BTreeMap::new(), [record]);
+    let place = |name: &str| table.columns.iter().position(|column| column.name == name).unwrap();
+    let row = table.rows.iter().find(|row| row[place("response_id")] == "intensity").unwrap();
+    assert_eq!((row[place("answer")].as_f64(), &row[place("trace")]), (Some(65.0), &json!("[50,60,70,80]")));
+    let bodies: Vec<String> = page.stored.iter().map(|event| event.body.to_string()).collect();
+    assert!(bodies.iter().all(|body| !body.contains("\"traces\"")), "kept once, as the answer");
+}

@@ -118,6 +118,15 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
     ]
 };
 
+/// Of ratings that follow the clip, in exports of studies that have such a question, after `answer`: name, kind, unit,
+/// what it means.
+pub const TRACE_COLUMN: (&str, ColumnKind, &str, &str) = (
+    "trace",
+    ColumnKind::Text,
+    "",
+    "Of a rating that follows the clip: where the line stood, 60 times a second from the first frame to the last, a list in JSON; answer is its mean",
+);
+
 /// Of trials of panels, in exports of studies that have such a block, after `chosen`: name, kind, unit, what it means.
 pub const PANEL_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
     use ColumnKind::{Integer, Text};
@@ -171,6 +180,7 @@ pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION
         || EXCLUSION_COLUMNS.contains(&name)
         || name == TRIGGER_COLUMN.0
+        || name == TRACE_COLUMN.0
         || SOUND_COLUMNS.iter().any(|(column, ..)| *column == name)
         || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }

@@ -36,6 +36,6 @@ pub use question::{
     AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
     KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,
     Question, QuestionKind, QuestionKindView, Ranking, SHORT_TEXT, SPACE_KEY, Scale, ShortText,
-    Showing, Simulated, SingleChoice, Slider, Summary, Told,
+    Showing, Simulated, SingleChoice, Slider, Summary, TRACE_HZ, Told,
 };
 pub use study_file::*;

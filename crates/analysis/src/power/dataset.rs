@@ -322,6 +322,7 @@ impl Given<'_> {
             truth: truth.map(Into::into),
             rt_ms: self.rt_ms,
             trial,
+            trace: None,
         })
     }
 }

@@ -17,6 +17,7 @@ use crate::report::section::detection::QuestionDetection;
 use crate::report::section::layouts::LayoutCell;
 use crate::report::section::panels::PanelResult;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
+use crate::report::section::traces::MeanTraces;
 use crate::thresholds::BlockThresholds;
 use crate::trials::export::{Flow, Person};
 
@@ -48,6 +49,9 @@ pub(crate) struct Results<'a> {
     /// Scales that the study file declares.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub scales: Vec<ScaleConsistency>,
+    /// Of ratings that follow the clip.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub traces: Vec<MeanTraces>,
     /// Of blocks of panels.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub panels: Vec<PanelResult>,
@@ -74,6 +78,7 @@ impl Results<'_> {
         self.agreement.extend(part.agreement);
         self.scales.extend(part.scales);
         self.panels.extend(part.panels);
+        self.traces.extend(part.traces);
         self.stimulus_measures.extend(part.stimulus_measures);
     }
 }

@@ -4,7 +4,7 @@ use mimique_session::flow::{Effect, Input, Panel, Plan, State, StepKind, update}
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{
-    Answers, Calibration, Display, KindOfQuestion as _, Multilingual as _, OrderError,
+    Answers, Calibration, Display, KindOfQuestion as _, Multilingual as _, OrderError, TRACE_HZ,
 };
 
 use super::latent::ClipEffects;
@@ -291,7 +291,8 @@ impl Walk<'_, '_> {
             self.page.send(Input::Play);
             self.page.wait(60.0);
             let sound = self.heard(clip);
-            let log = PlayLog { sound, ..self.log(&showing, backend, client, None) };
+            let traces = self.follow(clip, training, play);
+            let log = PlayLog { sound, traces, ..self.log(&showing, backend, client, None) };
             let left_ms = match play {
                 0 => self.press_while_playing(clip, training),
                 _ => self.model.parameters.times.clip_ms,
@@ -331,6 +332,40 @@ impl Walk<'_, '_> {
             }
         }
         left_ms.max(1.0)
+    }
+
+    /// Where the lines of the trial stand while the clip plays for the first time: from the middle to the rating that
+    /// the person comes to, after a second half-way.
+    fn follow(&mut self, clip: &str, training: bool, play: usize) -> serde_json::Value {
+        let here = self.page.state.record.step;
+        let traced: Vec<(String, [f64; 2])> = self.page.plan.steps[here]
+            .questions()
+            .iter()
+            .filter(|question| question.kind.is_traced() && play == 0)
+            .filter_map(|question| {
+                let [low, high] = question.kind.bounds()?;
+                Some((question.id.clone(), [low?, high?]))
+            })
+            .collect();
+        let seconds = self.model.parameters.times.clip_ms / 1000.0;
+        let (model, trial) = (self.model, self.trial);
+        let mut courses = serde_json::Map::new();
+        for (question, [low, high]) in traced {
+            let places = (model.question(&question), model.clip(clip));
+            let (Some(place), Some(clip)) = places else { continue };
+            let person = if training { &mut self.practice } else { &mut self.person };
+            let Some(Raw::Number(rating)) = person.trial_answer(place, clip, None, trial) else {
+                continue;
+            };
+            let middle = (low + high) / 2.0;
+            let at = |k: usize| {
+                let share = 1.0 - libm::exp2(-(k as f64) / TRACE_HZ);
+                (middle + share * (rating - middle)).round().clamp(low, high)
+            };
+            let course: Vec<f64> = (0..=(seconds * TRACE_HZ) as usize).map(at).collect();
+            courses.insert(question, course.into());
+        }
+        if courses.is_empty() { serde_json::Value::Null } else { courses.into() }
     }
 
     /// What a person would press, and how long it takes; nothing where the answer is the option without a key.
@@ -384,6 +419,7 @@ impl Walk<'_, '_> {
             sound: serde_json::Value::Null,
             triggers: None,
             panel: serde_json::Value::Null,
+            traces: serde_json::Value::Null,
             alone: None,
             aborted: aborted.map(str::to_owned),
         }
@@ -410,6 +446,9 @@ impl Walk<'_, '_> {
                 continue;
             }
             let Some(place) = self.model.question(&question.id) else { continue };
+            if question.kind.is_traced() {
+                continue;
+            }
             if question.kind.keys().is_some() {
                 // Whoever has not pressed while the clip was played does so now.
                 let (id, clip) = (question.id.clone(), self.model.clips[clip].id.clone());

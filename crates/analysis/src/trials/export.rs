@@ -56,6 +56,8 @@ pub(crate) struct Answer {
     pub rt_ms: Option<f64>,
     /// Place in [`Export::trials`].
     pub trial: usize,
+    /// Of a rating that followed the clip: where it stood, `mimique_study::TRACE_HZ` times a second.
+    pub trace: Option<Arc<[f32]>>,
 }
 
 /// One trial that is used: its clip, factors and frames.

@@ -45,6 +45,7 @@ pub(crate) struct TrialReader<'t> {
     answer: Column<'t>,
     correct: Column<'t>,
     truth: Column<'t>,
+    trace: Column<'t>,
     levels: Vec<Column<'t>>,
     /// Levels of each clip of the study, by its identifier: the rows have those of the trial's own clip alone.
     of_clips: HashMap<String, Vec<Option<Arc<str>>>>,
@@ -128,6 +129,7 @@ impl<'t> TrialReader<'t> {
             answer: column("answer"),
             correct: column("correct"),
             truth: column("truth"),
+            trace: column("trace"),
             levels: export.factors.iter().map(|factor| column(factor)).collect(),
             of_clips: levels_of_clips(study, &export.factors),
             segments: segments_of_clips(study),
@@ -190,6 +192,7 @@ impl<'t> TrialReader<'t> {
                     truth: self.truth.text(row).map(|truth| texts.shared(truth)),
                     rt_ms: self.rt.number(row)?,
                     trial,
+                    trace: self.course(row),
                 };
                 match read.answers.get_mut(question) {
                     Some(answers) => answers.push(answer),
@@ -205,6 +208,12 @@ impl<'t> TrialReader<'t> {
     /// What tells a trial: its person, its identifier, and of a panel the place of its clip.
     fn key(&self, row: usize, trial: &'t str) -> TrialKey<'t> {
         (self.person_of_row[row], trial, self.panel_place.text(row))
+    }
+
+    /// Where a rating that followed the clip stood; none of others, and of a cell that is no list of numbers.
+    fn course(&self, row: usize) -> Option<Arc<[f32]>> {
+        let course: Vec<f32> = serde_json::from_str(self.trace.text(row)?).ok()?;
+        Some(course.into())
     }
 
     /// How far a clip's sound was from its time; infinitely far where it was not played, none of a clip without.

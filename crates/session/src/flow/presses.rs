@@ -1,4 +1,5 @@
-//! Questions that are answered by keys while a clip plays: the first press is the answer.
+//! Questions that are answered while a clip plays: by keys, the first press being the answer, and by lines whose course is
+//! the answer.
 
 use mimique_study::{KindOfQuestion as _, Question};
 use serde_json::Value;
@@ -50,14 +51,29 @@ impl Transition<'_> {
         self.leave_when_pressed();
     }
 
+    /// Makes answers of the lines that followed a play, where it counts and is the first that does.
+    pub(super) fn after_traces(&mut self, traces: &Value) {
+        let Some(step) = self.step() else { return };
+        let asked = shown_questions(step, &self.state).filter(|asked| asked.kind.is_traced());
+        let open = asked.filter(|asked| self.state.record.draft(&asked.id).is_none());
+        let open: Vec<String> = open.map(|asked| asked.id.clone()).collect();
+        for question in open {
+            if let Some(course) = traces.get(&question).filter(|course| course.is_array()) {
+                self.give(&question, course.clone(), self.now_ms);
+            }
+        }
+    }
+
     /// A trial that asks nothing else is over with its last press.
     fn leave_when_pressed(&mut self) {
         let Some(step) = self.step() else { return };
         let state = &self.state;
-        let only_keys = shown_questions(step, state).all(|asked| asked.kind.keys().is_some());
-        let answered = self.keyed().all(|asked| state.record.draft(&asked.id).is_some());
+        let asked = || shown_questions(step, state);
+        let meanwhile = |asked: &Question| asked.kind.keys().is_some() || asked.kind.is_traced();
+        let only_keys = asked().all(meanwhile);
+        let answered = asked().all(|asked| state.record.draft(&asked.id).is_some());
         let is_over = state.live.play == Play::Still && state.record.attempt.plays > 0;
-        if only_keys && answered && is_over && self.keyed().next().is_some() {
+        if only_keys && answered && is_over && asked().next().is_some() {
             self.next();
         }
     }

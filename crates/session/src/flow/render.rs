@@ -10,12 +10,13 @@ use super::view::{
     BesideView, ButtonView, CodeView, EndView, FailedView, PanelFigure, PanelView, Phase,
     ProgressView, RecordsView, SectionView, TrialView, View,
 };
+use super::view_question::QuestionView;
 use crate::event::PlayLog;
 use crate::plan::{Panel, Plan, Step, StepKind, TrialStep, letter};
 use crate::record::CutShort;
 use crate::standing::Standing;
 use mimique_study::text::Words;
-use mimique_study::{LocalText, MEDIA_PREFIX, QuestionKindView, Section};
+use mimique_study::{LocalText, MEDIA_PREFIX, Section};
 
 /// What stands on the screen.
 pub fn view(plan: &Plan, state: &State) -> View {
@@ -201,7 +202,7 @@ impl Screen<'_> {
         let (keys, questions) = self
             .questions(step)
             .into_iter()
-            .partition(|asked| matches!(asked.kind, QuestionKindView::Keys { .. }));
+            .partition(|asked: &QuestionView| asked.kind.is_meanwhile());
         let can_answer = progress.plays > 0 && !playing;
         let mut button = self.button(words.submit());
         button.hint = (!can_answer).then(|| words.watch_first().to_owned());

@@ -355,8 +355,13 @@ impl<'a> Transition<'a> {
         }
         self.state.live.play = Play::Still;
         let alone = self.state.live.alone.take();
-        let log = self.judged(PlayLog { alone, ..log.clone() });
+        let traces = log.traces.clone();
+        let log = self.judged(PlayLog { alone, traces: Value::Null, ..log.clone() });
+        let counts = log.is_whole() && alone.is_none();
         self.record(EventKind::TrialPlayed { step: step.id.clone(), log: Box::new(log) });
+        if counts {
+            self.after_traces(&traces);
+        }
         if alone.is_none() {
             self.after_play();
         }

@@ -205,9 +205,9 @@ pub struct TrialView {
     pub play_label: String,
     /// Whether another replay is allowed after the first whole play.
     pub can_replay: bool,
-    /// The questions that keys answer while the clip plays.
+    /// The questions that are answered while the clip plays: by keys, and by lines.
     pub keys: Vec<QuestionView>,
-    /// Whether these can be answered now.
+    /// Whether keys can be pressed now.
     pub can_press: bool,
     /// The other questions.
     pub questions: Vec<QuestionView>,

@@ -14,8 +14,15 @@ pub(super) fn number(value: f64) -> Value {
     if value.fract() == 0.0 && value.abs() < 9e15 { (value as i64).into() } else { value.into() }
 }
 
-/// An answer as rows: suffix of the response's name, and the cell.
+/// An answer as rows: suffix of the response's name, and the cell. A rating that followed the clip is its mean.
 pub(super) fn answer_cells(question: &Question, answer: &Value) -> Vec<(String, Value)> {
+    if question.kind.is_traced() {
+        let course: Vec<f64> =
+            answer.as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+        let mean = course.iter().sum::<f64>() / course.len() as f64;
+        let cell = if course.is_empty() { Value::Null } else { milliseconds(mean) };
+        return vec![(String::new(), cell)];
+    }
     match question.kind.parts() {
         Some(parts) => {
             let cell = |part: &str| plain(Some(&question.kind.part_of(answer, part)));

@@ -16,7 +16,7 @@ use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
     ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SOUND_COLUMNS,
-    TRIGGER_COLUMN,
+    TRACE_COLUMN, TRIGGER_COLUMN,
 };
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
@@ -91,6 +91,9 @@ impl TidyForm {
             }
             if name == "chosen" && !pairs.is_empty() {
                 columns.extend(PAIR_COLUMNS.map(column));
+            }
+            if name == "answer" && study.all_questions().any(|asked| asked.kind.is_traced()) {
+                columns.push(column(TRACE_COLUMN));
             }
             if name == "chosen" && !panels.is_empty() {
                 columns.extend(PANEL_COLUMNS.map(column));
@@ -337,6 +340,9 @@ impl TidyForm {
         cells.put("response_id", id.into());
         if let Some((asked, answer)) = asked {
             self.judge(asked, step, answer, &mut cells);
+            if asked.kind.is_traced() && !answer.is_null() {
+                cells.put(TRACE_COLUMN.0, answer.to_string().into());
+            }
         }
         let onset_ms = step.attempt.play.as_ref().map_or(step.start_ms, |play| play.onset_ms);
         let answered_ms = step.attempt.answered_ms.get(kept).filter(|_| !cell.is_null());

@@ -45,7 +45,8 @@ fn scale(subject: &Subject<'_>, block: &PanelComponent, pointer: &str, issues: &
     };
     let is_scale = matches!(
         &question.kind,
-        QuestionKind::Slider(line) if [line.minimum, line.maximum] == [0.0, 100.0]
+        QuestionKind::Slider(line)
+            if [line.minimum, line.maximum] == [0.0, 100.0] && !line.while_playing
     );
     if !is_scale || question.show_if.is_some() || question.attention_check.is_some() {
         issues.error(place, Problem::NoScale { question: block.question.clone() });

@@ -475,8 +475,8 @@ SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs it
 NoKey { key: String }: "keys", "\"{key}\" is no key that every keyboard has", "write a letter, a digit, or \"Space\"";
 KeyTwice { key: String }: "keys", "\"{key}\" stands for two options", "give each a key of its own";
 SeveralWithoutKey: "keys", "several options have no key", "give all of them a key, or all but the one that stands for no press";
-KeysWithoutClip { question: String }: "keys", "\"{question}\" is answered while a clip plays, and here none does",
-    "ask it in a block of type \"trials\", or remove \"keys\"";
+WithoutClip { question: String }: "while-playing", "\"{question}\" is answered while a clip plays, and here none does",
+    "ask it in a block of type \"trials\", or remove what makes it so";
 NoTrials: "empty", "no trial is shown", "name a component of type \"trials\"";
 NoTrialsIn { condition: String }: "empty",
     "no trial is shown in the condition \"{condition}\"", "name a component of type \"trials\"";

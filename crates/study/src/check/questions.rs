@@ -35,9 +35,11 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
                 );
             }
             question.kind.check(&place, issues);
-            if question.kind.keys().is_some() && pointer != "/questions" {
-                let problem = Problem::KeysWithoutClip { question: question.id.clone() };
-                issues.error(below(&place, "keys"), problem);
+            let (keyed, traced) = (question.kind.keys().is_some(), question.kind.is_traced());
+            if (keyed || traced) && pointer != "/questions" {
+                let problem = Problem::WithoutClip { question: question.id.clone() };
+                let key = if keyed { "keys" } else { "whilePlaying" };
+                issues.error(below(&place, key), problem);
             }
             signs(question, &place, issues);
             attention::examine(subject, question, &place, issues);

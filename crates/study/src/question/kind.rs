@@ -119,6 +119,11 @@ pub trait KindOfQuestion {
         None
     }
 
+    /// Whether the answer is the course of a line that is moved while the clip plays.
+    fn is_traced(&self) -> bool {
+        false
+    }
+
     /// In which order the options are shown.
     fn option_order(&self) -> OptionOrder {
         OptionOrder::Fixed

@@ -40,7 +40,7 @@ pub use ranking::Ranking;
 pub use short_text::{SHORT_TEXT, ShortText};
 pub use simulation::{Chance, Scale, Simulated};
 pub use single_choice::{SPACE_KEY, SingleChoice};
-pub use slider::Slider;
+pub use slider::{Slider, TRACE_HZ};
 pub use valence_arousal::Grid;
 pub use view::{ChoiceView, QuestionKindView, Showing};
 

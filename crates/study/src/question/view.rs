@@ -39,6 +39,8 @@ pub enum QuestionKindView {
     },
     /// A number on a line.
     Slider {
+        /// Whether it is moved while the clip plays.
+        while_playing: bool,
         /// Lowest value.
         minimum: f64,
         /// Highest value.
@@ -102,6 +104,13 @@ pub enum QuestionKindView {
         /// In the order shown.
         options: Vec<ChoiceView>,
     },
+}
+
+impl QuestionKindView {
+    /// Whether it is answered while the clip plays.
+    pub fn is_meanwhile(&self) -> bool {
+        matches!(self, Self::Keys { .. } | Self::Slider { while_playing: true, .. })
+    }
 }
 
 /// An option.

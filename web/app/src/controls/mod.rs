@@ -148,7 +148,7 @@ fn control(answering: &Answering) -> Vec<Element> {
         QuestionKindView::Likert { points, left, right } => {
             likert::likert(answering, points, left, right)
         }
-        QuestionKindView::Slider { minimum, maximum, step, left, right } => {
+        QuestionKindView::Slider { minimum, maximum, step, left, right, .. } => {
             slider::slider(answering, [*minimum, *maximum, *step], [left, right])
         }
         QuestionKindView::Number { minimum, maximum, integer, unit } => {

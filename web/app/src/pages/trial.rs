@@ -41,7 +41,7 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         .option(trial.instruction.as_ref().map(|text| words("p", "", text).key("instruction")))
         .with(frame(engine, trial, seen))
         .option(trial.captions.as_ref().map(captions))
-        .all(trial.keys.iter().map(|asked| keys(asked, trial.can_press)).collect())
+        .all(trial.keys.iter().map(|asked| meanwhile(asked, trial.can_press)).collect())
         .with(words("p", "trial-message", &trial.message).key("message").set("role", "status"));
     if let Some((reason, retry)) = failed {
         card = card
@@ -66,6 +66,35 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         .set("data-phase", phase_word(&trial.phase))
         .with(progress_line(trial.progress))
         .with(el("div", "trial").key("trial").with(card).with(answers))
+}
+
+/// A question that is answered while the clip plays.
+fn meanwhile(asked: &QuestionView, can_press: bool) -> Element {
+    match &asked.kind {
+        QuestionKindView::Slider { minimum, maximum, step, left, right, .. } => {
+            line(asked, [*minimum, *maximum, *step], [left, right])
+        }
+        _ => keys(asked, can_press),
+    }
+}
+
+/// A line that is moved while the clip plays; where it stands, a script notes (`static/participant/bridge.js`).
+fn line(asked: &QuestionView, [minimum, maximum, step]: [f64; 3], ends: [&str; 2]) -> Element {
+    let field = el("input", "")
+        .set("type", "range")
+        .set("min", &minimum.to_string())
+        .set("max", &maximum.to_string())
+        .set("step", &step.to_string())
+        .set("aria-label", &asked.prompt)
+        .set("data-trace", &asked.id);
+    let [left, right] = ends.map(|end| words("span", "", end));
+    el("div", "keys")
+        .key(&asked.id)
+        .set("data-question", &asked.id)
+        .with(words("p", "", &asked.prompt))
+        .with(left)
+        .with(field)
+        .with(right)
 }
 
 /// A question that keys answer while the clip plays: what is asked, and each option with its key, to be pressed too.

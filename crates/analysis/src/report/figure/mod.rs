@@ -14,6 +14,7 @@ mod ranking;
 mod scatter;
 mod shares;
 pub(crate) mod svg;
+mod traces;
 
 pub(crate) use boxes::boxes;
 pub(crate) use confusion::confusion;
@@ -26,6 +27,7 @@ pub(crate) use likert::likert;
 pub(crate) use ranking::ranking;
 pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;
+pub(crate) use traces::traces;
 
 use crate::report::figure::svg::WIDTH;
 

@@ -111,6 +111,17 @@ impl Svg {
         );
     }
 
+    /// An area of a colour, see-through.
+    pub(crate) fn band(&mut self, outline: &[[f64; 2]], colour: &str) {
+        let points: Vec<String> =
+            outline.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        let _ = writeln!(
+            self.body,
+            r#"<path d="M{}Z" fill="{colour}" fill-opacity="0.18" stroke="none"/>"#,
+            points.join("L")
+        );
+    }
+
     /// A filled circle.
     pub fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(

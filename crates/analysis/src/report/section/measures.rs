@@ -59,6 +59,7 @@ impl Writer<'_> {
             };
             self.figure(drawing);
         }
+        self.traces(measure, &factors);
         self.comparisons(measure, &factors);
         let Some((first, others)) = factors.split_first() else { return };
         for second in others {

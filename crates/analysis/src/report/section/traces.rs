@@ -1,0 +1,101 @@
+//! Ratings that follow the clip: their mean over people at each instant, by the factor that the study compares.
+
+use std::collections::BTreeMap;
+
+use mimique_stats::{Factor, t_quantile_upper};
+use mimique_study::TRACE_HZ;
+use serde::Serialize;
+
+use crate::report::document::slug;
+use crate::report::figure;
+use crate::report::section::Writer;
+use crate::trials::measure::Measure;
+
+/// The mean course of a rating at each level of a factor.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct MeanTraces {
+    pub response: String,
+    pub factor: String,
+    /// From one value of a course to the next, seconds.
+    pub step_seconds: f64,
+    pub levels: Vec<MeanTrace>,
+}
+
+/// The mean course at one level.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct MeanTrace {
+    pub level: String,
+    /// People with a course at this level.
+    pub people: usize,
+    /// Mean of people's means at each instant.
+    pub mean: Vec<f64>,
+    /// Its 95 % interval by t at each instant by itself; none of one person.
+    pub interval_95: Option<Vec<[f64; 2]>>,
+}
+
+impl Writer<'_> {
+    /// The mean courses of a rating that followed the clip, by the first factor in use; nothing of other ratings.
+    pub(crate) fn traces(&mut self, measure: &Measure, factors: &[String]) {
+        let has_course =
+            self.export.answers_to(&measure.id).iter().any(|answer| answer.trace.is_some());
+        let Some(name) = factors.first().filter(|_| has_course) else { return };
+        let factor = measure.factor(self.export, name, &[]);
+        let levels: Vec<MeanTrace> = (0..factor.levels.len())
+            .filter_map(|level| self.mean_trace(measure, &factor, level))
+            .collect();
+        let language = self.language();
+        self.heading(3, "While the clip plays", "Pendant l’extrait");
+        self.paragraph(
+            "Means over people of each one’s mean course, with 95 % intervals by t at each instant by itself: they are not corrected for the number of instants.",
+            "Moyennes, sur les personnes, du cours moyen de chacune, avec des intervalles t à 95 % à chaque instant pris à part : ils ne sont pas corrigés du nombre d’instants.",
+        );
+        let lines: Vec<(String, &MeanTrace)> =
+            levels.iter().map(|own| (self.naming.level(name, &own.level), own)).collect();
+        let id = format!("{}-while-playing", slug(&measure.id));
+        let shown = self.naming.factor(name);
+        let caption = language.pick(
+            format!("{} while the clip plays, by {shown}", measure.label),
+            format!("{} pendant l’extrait, par {shown}", measure.label),
+        );
+        let drawing = figure::traces(language, &id, &caption, 1.0 / TRACE_HZ, &lines);
+        self.figure(drawing);
+        let (response, factor) = (measure.id.clone(), name.clone());
+        let step_seconds = 1.0 / TRACE_HZ;
+        self.results.traces.push(MeanTraces { response, factor, step_seconds, levels });
+    }
+
+    /// The mean course at a level: as long as the shortest.
+    fn mean_trace(&self, measure: &Measure, factor: &Factor, level: usize) -> Option<MeanTrace> {
+        let answers = self.export.answers_to(&measure.id);
+        let mut people: BTreeMap<usize, (Vec<f64>, f64)> = BTreeMap::new();
+        for (answer, &code) in answers.iter().zip(&factor.codes) {
+            let Some(course) = answer.trace.as_ref().filter(|_| code as usize == level) else {
+                continue;
+            };
+            let new = || (vec![0.0; course.len()], 0.0);
+            let (sums, count) = people.entry(answer.person).or_insert_with(new);
+            sums.truncate(course.len());
+            sums.iter_mut().zip(course.iter()).for_each(|(sum, value)| *sum += f64::from(*value));
+            *count += 1.0;
+        }
+        let length = people.values().map(|(sums, _)| sums.len()).min()?;
+        let n = people.len();
+        let at = |instant: usize| -> [f64; 2] {
+            let values = || people.values().map(|(sums, count)| sums[instant] / count);
+            let mean = values().sum::<f64>() / n as f64;
+            let squares: f64 = values().map(|value| (value - mean).powi(2)).sum();
+            [mean, (squares / (n as f64 - 1.0) / n as f64).sqrt()]
+        };
+        let found: Vec<[f64; 2]> = (0..length).map(at).collect();
+        let interval_95 = (n > 1).then(|| {
+            let t = t_quantile_upper(0.025, n as f64 - 1.0);
+            found.iter().map(|[mean, se]| [mean - t * se, mean + t * se]).collect()
+        });
+        Some(MeanTrace {
+            level: factor.levels[level].clone(),
+            people: n,
+            mean: found.iter().map(|[mean, _]| *mean).collect(),
+            interval_95,
+        })
+    }
+}
