@@ -319,34 +319,49 @@ fn mean_and_t(values: &[f64]) -> (f64, Option<f64>) {
 /// Intensities of the trials that one person answered with one category.
 pub(super) struct OwnIntensities {
     pub(super) values: Vec<f64>,
-    mean: f64,
-    /// Sum of squares about it.
+    units: Vec<OwnAmplitudes>,
+}
+
+/// A unit in these trials.
+struct OwnAmplitudes {
+    unit: usize,
+    /// The trials that show it.
+    trials: Vec<usize>,
+    /// Its amplitudes there, less their mean.
+    amplitudes: Vec<f64>,
+    /// The sum of their squares.
     squares: f64,
-    /// Of each unit that varies: its amplitudes less their mean, and the sum of their squares.
-    units: Vec<(usize, Vec<f64>, f64)>,
 }
 
 /// Intensities of everybody.
 pub(super) struct Intensities {
     pub(super) units: usize,
-    /// Of each category: the people of whom it has some that vary.
+    /// Of each category: the people of whom it has some.
     pub(super) of_category: Vec<Vec<OwnIntensities>>,
     /// Of each category and unit: one over the root of the number of people who have a z there.
     pub(super) pooling: Vec<Vec<f64>>,
 }
 
-impl OwnIntensities {
-    /// Tells z of each unit that varies, of intensities in some order.
-    pub(super) fn each_z(&self, values: &[f64], mut tell: impl FnMut(usize, f64)) {
-        let n = values.len() as f64;
-        for (unit, amplitudes, squares) in &self.units {
-            let product = self.product(values, amplitudes);
-            tell(*unit, product * ((n - 1.0) / (squares * self.squares)).sqrt());
-        }
+impl OwnAmplitudes {
+    /// Slope of the intensities of these trials on the amplitudes, and z; none where they do not vary.
+    fn slope(&self, values: &[f64]) -> Option<[f64; 2]> {
+        let own: Vec<f64> = self.trials.iter().map(|trial| values[*trial]).collect();
+        let (mean, squares) = about(&own)?;
+        let products = own.iter().zip(&self.amplitudes).map(|(value, a)| (value - mean) * a);
+        let product: f64 = products.sum();
+        let all = own.len() as f64;
+        Some([product / self.squares, product * ((all - 1.0) / (self.squares * squares)).sqrt()])
     }
+}
 
-    fn product(&self, values: &[f64], amplitudes: &[f64]) -> f64 {
-        values.iter().zip(amplitudes).map(|(value, a)| (value - self.mean) * a).sum()
+impl OwnIntensities {
+    /// Tells z of each unit, of intensities in some order.
+    pub(super) fn each_z(&self, values: &[f64], mut tell: impl FnMut(usize, f64)) {
+        for own in &self.units {
+            if let Some([_, z]) = own.slope(values) {
+                tell(own.unit, z);
+            }
+        }
     }
 }
 
@@ -355,15 +370,18 @@ impl Intensities {
     pub(super) fn of(trials: &ReverseTrials) -> Option<Self> {
         trials.trials.iter().any(|trial| trial.intensity.is_some()).then(|| {
             let units = trials.units.len();
-            let own = |person: usize, category: usize| own_intensities(trials, person, category);
+            let people = 0..trials.people.len();
             let of_category: Vec<Vec<OwnIntensities>> = (0..trials.categories.len())
                 .map(|category| {
-                    (0..trials.people.len()).filter_map(|person| own(person, category)).collect()
+                    people.clone().map(|person| own_intensities(trials, person, category)).collect()
                 })
                 .collect();
             let pooling = of_category.iter().map(|people| {
                 let with = |unit: usize| {
-                    people.iter().filter(|own| own.units.iter().any(|each| each.0 == unit)).count()
+                    people
+                        .iter()
+                        .filter(|own| own.units.iter().any(|each| each.unit == unit))
+                        .count()
                 };
                 (0..units).map(|unit| 1.0 / (with(unit).max(1) as f64).sqrt()).collect()
             });
@@ -374,52 +392,43 @@ impl Intensities {
 
     /// None where nobody has a slope.
     fn test(&self, category: usize, unit: usize, largest: &Largest) -> Option<UnitTest> {
-        let (mut slopes, mut correlations, mut sum) = (Vec::new(), Vec::new(), 0.0);
-        for own in &self.of_category[category] {
-            let Some((_, amplitudes, squares)) = own.units.iter().find(|each| each.0 == unit)
-            else {
-                continue;
-            };
-            slopes.push(own.product(&own.values, amplitudes) / squares);
-            own.each_z(&own.values, |each, z| {
-                if each == unit {
-                    sum += z;
-                    correlations.push(z / (own.values.len() as f64 - 1.0).sqrt());
-                }
-            });
-        }
+        let people = &self.of_category[category];
+        let of_unit = |own: &OwnIntensities| {
+            let amplitudes = own.units.iter().find(|each| each.unit == unit)?;
+            let [slope, z] = amplitudes.slope(&own.values)?;
+            Some((slope, z, z / (amplitudes.trials.len() as f64 - 1.0).sqrt()))
+        };
+        let found: Vec<(f64, f64, f64)> = people.iter().filter_map(of_unit).collect();
+        let slopes: Vec<f64> = found.iter().map(|(slope, ..)| *slope).collect();
         if slopes.is_empty() {
             return None;
         }
         let (effect, t) = mean_and_t(&slopes);
-        let z = sum * self.pooling[category][unit];
-        Some(UnitTest { effect, r: moments(&correlations).0, t, z, p: largest.p(z) })
+        let z = found.iter().map(|(_, z, _)| z).sum::<f64>() * self.pooling[category][unit];
+        let r = found.iter().map(|(.., r)| r).sum::<f64>() / found.len() as f64;
+        Some(UnitTest { effect, r, t, z, p: largest.p(z) })
     }
 }
 
-fn own_intensities(
-    trials: &ReverseTrials,
-    person: usize,
-    category: usize,
-) -> Option<OwnIntensities> {
+fn own_intensities(trials: &ReverseTrials, person: usize, category: usize) -> OwnIntensities {
     let own = trials.trials.iter();
     let own = own.filter(|trial| trial.person == person && trial.answer == category);
     let rated: Vec<_> = own.filter_map(|trial| Some((trial, trial.intensity?))).collect();
-    if rated.len() < 3 {
-        return None;
-    }
     let values: Vec<f64> = rated.iter().map(|(_, value)| *value).collect();
-    let (mean, squares) = about(&values)?;
     let of_unit = |unit: usize| {
-        let amplitude = |trial: &super::ReverseTrial| {
-            trial.courses.iter().find(|each| each.unit == unit).map_or(0.0, |each| each.amplitude)
-        };
-        let amplitudes: Vec<f64> = rated.iter().map(|(trial, _)| amplitude(trial)).collect();
-        let (mean, squares) = about(&amplitudes)?;
-        Some((unit, amplitudes.into_iter().map(|a| a - mean).collect(), squares))
+        let shown = rated.iter().enumerate().filter_map(|(place, (trial, _))| {
+            let course = trial.courses.iter().find(|each| each.unit == unit)?;
+            Some((place, course.amplitude))
+        });
+        let (trials, heights): (Vec<usize>, Vec<f64>) = shown.unzip();
+        let (mean, squares) = about(&heights)?;
+        let amplitudes: Vec<f64> = heights.into_iter().map(|height| height - mean).collect();
+        let own = OwnAmplitudes { unit, trials, amplitudes, squares };
+        // Two trials always lie on a line.
+        (own.trials.len() >= 3 && own.slope(&values).is_some()).then_some(own)
     };
     let units = (0..trials.units.len()).filter_map(of_unit).collect();
-    Some(OwnIntensities { values, mean, squares, units })
+    OwnIntensities { values, units }
 }
 
 /// Mean and sum of squares about it; none where values do not vary.

@@ -10,13 +10,13 @@
 //!   exact over all orders of the person's answers; z = r √(N - 1), r being Pearson's correlation of activation and
 //!   answer. The same of a unit's *presence* (0 or 1) is the statistic of Jack, Garrod, Yu, Caldara and Schyns
 //!   (PNAS 109(19), 2012);
-//! - *intensity*: the slope of a person's linear regression of intensity on the unit's peak amplitude (0 where it is
-//!   absent) over the trials answered with the category, and z = r √(n_c - 1);
+//! - *intensity*: the slope of a person's linear regression of intensity on the unit's peak amplitude, over the m trials
+//!   that show the unit and were answered with the category, and z = r √(m - 1);
 //! - *group*: the mean of difference, r or slope over people; t, the mean over its standard error, which describes how
 //!   alike people are; and z = Σ z_p / √P over the P people who have one, of which all cells have variance 1 where
 //!   answers do not depend on what is shown.
 //!
-//! The test: each person's answers are dealt anew over that person's trials; the largest |z| over all units and times
+//! The test: each person's answers (or the intensities of one category) are dealt anew over that person's trials; the largest |z| over all units and times
 //! is noted (Westfall and Young 1993; Nichols and Holmes 2002). The corrected p of a cell is (1 + the number of draws
 //! whose largest |z| reaches the cell's) / (1 + draws): in data without any dependence the probability of any p <= 0.05
 //! in an image is 0.05. Images of presence, of intensity and of each person are corrected in the same way, each by

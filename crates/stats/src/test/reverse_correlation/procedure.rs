@@ -80,9 +80,7 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
         )?,
         seed: arguments.whole("seed", 1)?,
     };
-    let result = reverse_correlation(&trials, options)?;
-    let text = words(&result);
-    Ok(Answer::of(&Outcome::<_, crate::Undefined>::Ok(result), |_| text))
+    Ok(Answer::of(&Outcome::Ok(reverse_correlation(&trials, options)?), words))
 }
 
 fn words(result: &ReverseCorrelation) -> String {

@@ -198,9 +198,14 @@ fn rows_make_trials_and_bad_rows_are_named() {
     assert_eq!(trials.units, ["AU04", "AU06", "AU12"]);
     assert_eq!((trials.trials.len(), trials.trials[0].courses.len()), (2, 2));
     assert_eq!((trials.trials[1].intensity, trials.latest_offset_s()), (Some(5.0), 1.0));
+    let unanswered = read(&format!("{head}{good}a,3,,AU12,0,0.5,1,0.8,\n")).unwrap();
+    assert_eq!((unanswered.trials.len(), unanswered.dropped), (2, 1));
     for (row, says) in [
         ("a,2,joy,AU12,0,0.5,1,0.8,5\n", "trial \"2\" of \"a\": its rows differ"),
         ("a,2,anger,AU04,0,0.5,1,0.8,5\n", "\"AU04\" is in two rows"),
+        ("a,2,,AU12,0,0.5,1,0.8,5\n", "its rows differ"),
+        ("a,3,joy,AU12,0,0.5,1,,3\n", "row 4: no course"),
+        ("a,3,joy,,0,0.5,1,0.8,3\n", "row 4: no course"),
         ("a,3,joy,AU12,0.6,0.5,1,0.8,3\n", "row 4: no course"),
         ("a,3,joy,AU12,0.1,0.5,1,1.5,3\n", "row 4: no course"),
     ] {

@@ -43,19 +43,18 @@ impl ReverseTrials {
     /// From a row per trial and unit that it shows. `labels` are the people, their trials, the answers and the units;
     /// `courses` are onset, peak and offset in seconds, and amplitude. Without `bends`, the shares of rise and fall at
     /// which half of the height is passed, both are one half. Refuses courses that are none, a unit that a trial shows
-    /// twice, and a trial with two answers.
+    /// twice, and a trial whose rows differ in answer or intensity; a trial without an answer is left out.
     pub fn of(
         [participant, trial, answer, unit]: [&Factor; 4],
         courses: [&Numbers; 4],
         bends: Option<[&Numbers; 2]>,
         intensity: Option<&Numbers>,
     ) -> Result<Self, Refusal> {
-        let mut numbers = courses.to_vec();
-        numbers.extend(bends.into_iter().flatten());
-        let complete = complete_rows(&numbers, &[participant, trial, answer, unit])?;
+        let complete = complete_rows(&[], &[participant, trial, answer])?;
         let rows = complete.to_vec();
         let [people, numbers_of_trials, answers, units] =
             [participant, trial, answer, unit].map(|factor| factor.rows(&rows));
+        half_answered(participant, trial, answer)?;
         let mut trials: BTreeMap<(u32, u32), ReverseTrial> = BTreeMap::new();
         for (at, &row) in rows.iter().enumerate() {
             let [onset_s, peak_s, offset_s, amplitude] = courses.map(|column| column.values[row]);
@@ -71,8 +70,9 @@ impl ReverseTrials {
             };
             let ascending = 0.0 <= onset_s && onset_s < peak_s && peak_s < offset_s;
             let inside = |share: f64| share > 0.0 && share < 1.0;
-            let high = amplitude > 0.0 && amplitude <= 1.0;
-            if !(ascending && high && inside(bend(0)) && inside(bend(1))) {
+            let high = amplitude > 0.0 && amplitude <= 1.0 && offset_s.is_finite();
+            let named = units.codes[at] != Factor::MISSING;
+            if !(named && ascending && high && inside(bend(0)) && inside(bend(1))) {
                 return Err(Unfit::NoCourse { row: row + 1 }.into());
             }
             let key = (people.codes[at], numbers_of_trials.codes[at]);
@@ -122,4 +122,22 @@ impl ReverseTrials {
         let (column, rows) = (self.answer_column.clone(), self.trials.len());
         Err(Refusal::TooFewLevels { column, levels, rows, needed: 2 })
     }
+}
+
+/// Refuses a trial that has an answer in some of its rows and none in others.
+fn half_answered(participant: &Factor, trial: &Factor, answer: &Factor) -> Result<(), Refusal> {
+    let mut known: BTreeMap<(u32, u32), bool> = BTreeMap::new();
+    for ((&person, &number), &said) in participant.codes.iter().zip(&trial.codes).zip(&answer.codes)
+    {
+        if person == Factor::MISSING || number == Factor::MISSING {
+            continue;
+        }
+        let said = said != Factor::MISSING;
+        if *known.entry((person, number)).or_insert(said) != said {
+            let participant = participant.levels[person as usize].clone();
+            let trial = trial.levels[number as usize].clone();
+            return Err(Unfit::TwoAnswersToTrial { participant, trial }.into());
+        }
+    }
+    Ok(())
 }
