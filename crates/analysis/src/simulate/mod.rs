@@ -18,6 +18,7 @@ mod random;
 mod read;
 mod scales;
 mod session;
+mod template;
 mod values;
 
 use mimique_session::wire::{Event, SessionStarted};
@@ -34,6 +35,7 @@ pub(crate) use random::Draws;
 pub use read::ParametersError;
 pub(crate) use scales::{factor_levels, traits};
 pub(crate) use session::eighths;
+pub use template::{Template, TemplatePart, TemplatePeople};
 
 /// A study with simulated participants.
 #[derive(Debug, Clone)]
