@@ -60,21 +60,15 @@ impl Person {
 
     /// Tells z of each cell of a category from its sums; nothing where the person has none.
     #[inline]
-    pub(super) fn each_z(
-        &self,
-        category: usize,
-        images: &Images,
-        sums: &[f64],
-        mut tell: impl FnMut(usize, f64),
-    ) {
+    pub(super) fn each_z(&self, category: usize, sums: &[f64], mut tell: impl FnMut(usize, f64)) {
         if !self.has(category) {
             return;
         }
         let (own, all) = (self.counts[category] as f64, self.labels.len() as f64);
         let scale = (all * (all - 1.0) / (own * (all - own))).sqrt();
-        for cell in 0..images.cells() {
-            let off = sums[cell] - own * self.means[cell];
-            tell(cell, off * scale * self.inverse[cell]);
+        let spread = self.means.iter().zip(&self.inverse);
+        for (cell, (sum, (mean, inverse))) in sums.iter().zip(spread).enumerate() {
+            tell(cell, (sum - own * mean) * scale * inverse);
         }
     }
 }
@@ -137,7 +131,7 @@ impl Images {
         person.sums(&person.labels, self, &mut sums);
         let sums = &sums[category * cells..][..cells];
         let mut z = vec![0.0; cells];
-        person.each_z(category, self, sums, |cell, value| z[cell] = value);
+        person.each_z(category, sums, |cell, value| z[cell] = value);
         let (own, all) = (person.counts[category] as f64, person.labels.len() as f64);
         let difference = |(sum, mean): (&f64, &f64)| (sum - own * mean) * all / (own * (all - own));
         (sums.iter().zip(&person.means).map(difference).collect(), z)

@@ -58,7 +58,7 @@ pub(super) fn draws(images: &Images, options: ReverseCorrelationOptions) -> Draw
                 let own = &sums[category * cells..][..cells];
                 let group = &mut group[category * cells..][..cells];
                 let mut largest = [0.0_f64; 2];
-                person.each_z(category, images, own, |cell, z| {
+                person.each_z(category, own, |cell, z| {
                     group[cell] += z;
                     let kind = usize::from(images.is_presence(cell));
                     largest[kind] = largest[kind].max(z.abs());
