@@ -11,6 +11,7 @@
 //! | [`Psychometric`] | how often an answer is right at a level |
 //! | [`Worths`], [`information`], [`spanning_tree`] | the pairs whose answers are expected to tell most |
 //! | [`PairDesign`], [`sides`] | pairs dealt evenly over people, items evenly left and right |
+//! | [`TrajectoryDesign`], [`Trajectory`] | courses of action units drawn at random, for reverse correlation |
 //!
 //! ```
 //! use mimique_adaptive::{Ends, Grid, QuestPlus, Rule, Shape, Track};
@@ -42,6 +43,8 @@ mod quest_plus;
 mod sides;
 mod staircase;
 mod track;
+mod trajectory;
+mod trajectory_design;
 mod worths;
 
 pub use active_pairs::{PairInformation, all_pairs, information, spanning_tree};
@@ -54,4 +57,6 @@ pub use quest_plus::{
 pub use sides::{Orders, Side, sides};
 pub use staircase::{Reversal, Staircase, StaircaseError, StaircaseRules, StaircaseThreshold};
 pub use track::{Answered, Ends, FEWEST_BEFORE_STOP, NextLevel, Rule, Track};
+pub use trajectory::Trajectory;
+pub use trajectory_design::{TrajectoryDesign, TrajectoryError};
 pub use worths::{Comparison, Worths};

@@ -61,7 +61,8 @@ pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
-    Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Times,
+    Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Template,
+    TemplatePart, TemplatePeople, Times,
 };
 pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

@@ -49,7 +49,7 @@ pub use gaze::{
 pub use head_pose::{HEAD_POSE_DEGREES, HEAD_POSE_SHAPES, HeadAngles};
 pub use image::{Image, MOST_TEXTURE_SIDE};
 pub use shape_names::{
-    ARKIT_SHAPES, BODY_SHAPES, BREATH, ShapeMap, arkit_shapes, blinks, map_shapes, shows_body,
-    turns_eyes,
+    ARKIT_SHAPES, ActionUnit, BODY_SHAPES, BREATH, ShapeMap, arkit_shapes, blinks, map_shapes,
+    shows_body, turns_eyes,
 };
 pub use texture::TextureError;

@@ -34,6 +34,7 @@ mod simulate;
 mod solve;
 mod study_file;
 mod test_command;
+mod trajectories;
 mod verify;
 mod vertices;
 
@@ -82,6 +83,8 @@ enum Command {
     Annotate(annotate::Args),
     /// Turn a body's motion, or what a watch recorded, into weights of a face that shows it
     Exertion(Box<exertion::Args>),
+    /// Draw random courses of action units, for dynamic reverse correlation
+    Trajectories(trajectories::Args),
     /// Recover a researcher's account; list the accounts
     Account(account::Args),
     /// Write the responses of a study to a file
@@ -132,6 +135,7 @@ fn main() -> ExitCode {
         Command::Segment(args) => segment::run(*args, json),
         Command::Annotate(args) => annotate::run(args, json),
         Command::Exertion(args) => exertion::run(*args, json),
+        Command::Trajectories(args) => trajectories::run(args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),

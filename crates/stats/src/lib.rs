@@ -95,6 +95,11 @@ pub use test::psychometric::{
     BootstrapInterval, Lapse, LevelCount, PsychometricFit, PsychometricOptions, ThresholdPlace,
     bootstrap, bootstrap_through, psychometric,
 };
+pub use test::reverse_correlation::{
+    CategoryImages, FEWEST_PERMUTATIONS, GroupImage, PersonImage, ReverseCorrelation,
+    ReverseCorrelationOptions, ReverseTrial, ReverseTrials, UnitCourse, UnitImage, UnitTest,
+    reverse_correlation,
+};
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};
 pub use test::spearman::{Spearman, bonett_wright_interval, spearman};

@@ -19,6 +19,7 @@ mod random;
 mod read;
 mod scales;
 mod session;
+mod template;
 mod values;
 
 use mimique_session::wire::{Event, SessionStarted};
@@ -35,6 +36,7 @@ pub(crate) use random::Draws;
 pub use read::ParametersError;
 pub(crate) use scales::{factor_levels, traits};
 pub(crate) use session::eighths;
+pub use template::{Template, TemplatePart, TemplatePeople};
 
 /// A study with simulated participants.
 #[derive(Debug, Clone)]

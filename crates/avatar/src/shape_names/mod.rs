@@ -8,8 +8,10 @@
 
 use crate::head_pose::HEAD_POSE_SHAPES;
 
+mod units;
 mod vocabularies;
 
+pub use units::ActionUnit;
 use vocabularies::{Meaning, meaning};
 
 /// ARKit's 52 blendshapes.

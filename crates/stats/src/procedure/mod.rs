@@ -16,8 +16,8 @@ use crate::table::Table;
 use crate::test::{
     aligned_rank_transform, bradley_terry, chi_square, consistency, cronbach, detection,
     difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
-    kruskal_wallis, mann_whitney, min_f, mixed_model, panel, psychometric, scheirer_ray_hare, sign,
-    spearman, thurstone, wilcoxon,
+    kruskal_wallis, mann_whitney, min_f, mixed_model, panel, psychometric, reverse_correlation,
+    scheirer_ray_hare, sign, spearman, thurstone, wilcoxon,
 };
 use crate::{adjust, summary};
 use arguments::{Arguments, ProcedureOption};
@@ -83,7 +83,7 @@ pub enum Sample {
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 25] = [
+pub static PROCEDURES: [&Procedure; 26] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -103,6 +103,7 @@ pub static PROCEDURES: [&Procedure; 25] = [
     &psychometric::PROCEDURE,
     &difference_scaling::PROCEDURE,
     &detection::PROCEDURE,
+    &reverse_correlation::PROCEDURE,
     &intraclass_correlation::PROCEDURE,
     &krippendorff::PROCEDURE,
     &cronbach::PROCEDURE,

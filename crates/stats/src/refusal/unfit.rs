@@ -152,6 +152,27 @@ pub enum Unfit {
         /// Share of wrong answers where all is seen.
         lapse: f64,
     },
+    /// A row is no course of an action unit.
+    NoCourse {
+        /// Row below the header, from 1.
+        row: usize,
+    },
+    /// The rows of one trial have different answers, or different intensities.
+    TwoAnswersToTrial {
+        /// The person.
+        participant: String,
+        /// The trial.
+        trial: String,
+    },
+    /// Two rows of one trial are of the same unit.
+    UnitTwice {
+        /// The person.
+        participant: String,
+        /// The trial.
+        trial: String,
+        /// The unit.
+        unit: String,
+    },
 }
 
 impl Unfit {
@@ -219,6 +240,15 @@ impl Unfit {
             Self::GuessAndLapse { guess, lapse } => format!(
                 "guess {guess} and lapse {lapse}: give shares from 0 to 1 that add up to less than 1"
             ),
+            Self::NoCourse { row } => format!(
+                "row {row}: no course of a unit; give an onset from 0, a later peak, a still later offset, an amplitude above 0 to 1, and shares of half the height between 0 and 1"
+            ),
+            Self::TwoAnswersToTrial { participant, trial } => format!(
+                "trial \"{trial}\" of \"{participant}\": its rows differ in answer or intensity; give one row per unit of a trial, each with the trial's answer"
+            ),
+            Self::UnitTwice { participant, trial, unit } => format!(
+                "trial \"{trial}\" of \"{participant}\": \"{unit}\" is in two rows; give one row per unit of a trial"
+            ),
         }
     }
 
@@ -285,6 +315,15 @@ impl Unfit {
             ),
             Self::GuessAndLapse { guess, lapse } => format!(
                 "hasard {guess} et inattention {lapse} : donnez des parts de 0 à 1 dont la somme est inférieure à 1"
+            ),
+            Self::NoCourse { row } => format!(
+                "ligne {row} : ce n’est pas le cours d’une unité ; donnez un début à partir de 0, un sommet plus tard, une fin plus tard encore, une amplitude au-dessus de 0 et jusqu’à 1, et des parts de la demi-hauteur entre 0 et 1"
+            ),
+            Self::TwoAnswersToTrial { participant, trial } => format!(
+                "essai « {trial} » de « {participant} » : ses lignes diffèrent par la réponse ou l’intensité ; donnez une ligne par unité d’un essai, chacune avec la réponse de l’essai"
+            ),
+            Self::UnitTwice { participant, trial, unit } => format!(
+                "essai « {trial} » de « {participant} » : « {unit} » est dans deux lignes ; donnez une ligne par unité d’un essai"
             ),
         }
     }
