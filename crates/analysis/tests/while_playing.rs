@@ -35,8 +35,7 @@ fn followed() -> Study {
 fn results(study: &Study, parameters: &Parameters, people: u64) -> (Value, Vec<String>) {
     let simulation = Simulation::new(study, "hash", parameters, 7).unwrap();
     let csv = simulated_export(&simulation, study, people);
-    let report =
-        analyze(&Table::parse(csv.as_bytes()).unwrap(), study, Language::English).unwrap();
+    let report = analyze(&Table::parse(csv.as_bytes()).unwrap(), study, Language::English).unwrap();
     let text = &report.files.iter().find(|file| file.path == "results.json").unwrap().text;
     let paths = report.files.iter().map(|file| file.path.clone()).collect();
     (serde_json::from_str(text).unwrap(), paths)
@@ -50,7 +49,11 @@ fn planted_times_of_presses_are_found_again() {
     parameters.times.person_sigma = 0.1;
     parameters.times.effects = BTreeMap::from([(
         "method".to_owned(),
-        BTreeMap::from([("box".to_owned(), 0.3), ("lsts".to_owned(), 0.0), ("recorded".to_owned(), 0.0)]),
+        BTreeMap::from([
+            ("box".to_owned(), 0.3),
+            ("lsts".to_owned(), 0.0),
+            ("recorded".to_owned(), 0.0),
+        ]),
     )]);
     parameters.careless.share = 0.0;
     let (results, _) = results(&study, &parameters, 40);
@@ -63,7 +66,9 @@ fn planted_times_of_presses_are_found_again() {
     // 900 ms and exp 0.3 of it; a page takes 60 ms from the press on play to the first frame.
     assert!((median("lsts") - 0.9).abs() < 0.1, "{}", median("lsts"));
     assert!((median("box") / median("lsts") - 1.35).abs() < 0.1, "{}", median("box"));
-    assert!(results["hypotheses"][0]["recommended"]["overall"][0]["p_value"].as_f64().unwrap() < 1e-4);
+    assert!(
+        results["hypotheses"][0]["recommended"]["overall"][0]["p_value"].as_f64().unwrap() < 1e-4
+    );
     assert!(!results["confusion"].as_array().unwrap().is_empty(), "which key is right is known");
 }
 
@@ -72,20 +77,28 @@ fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
     let study = followed();
     let mut parameters = Parameters::for_study(&study);
     let own = parameters.ratings.get_mut("intensity").unwrap();
-    (own.mean, own.noise_sd, own.person_sd, own.clip_sd, own.segment_sd) = (0.0, 5.0, 4.0, 0.0, 0.0);
+    (own.mean, own.noise_sd, own.person_sd, own.clip_sd, own.segment_sd) =
+        (0.0, 5.0, 4.0, 0.0, 0.0);
     own.person_by_sd = BTreeMap::new();
     own.effects = BTreeMap::from([(
         "method".to_owned(),
-        [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)].map(|(level, mean)| (level.to_owned(), mean)).into(),
+        [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)]
+            .map(|(level, mean)| (level.to_owned(), mean))
+            .into(),
     )]);
     parameters.careless.share = 0.0;
     let (results, paths) = results(&study, &parameters, 30);
     let traces = &results["traces"][0];
-    assert_eq!((traces["response"].as_str(), traces["factor"].as_str()), (Some("intensity"), Some("method")));
+    assert_eq!(
+        (traces["response"].as_str(), traces["factor"].as_str()),
+        (Some("intensity"), Some("method"))
+    );
     let seconds = parameters.times.clip_ms / 1000.0;
     for (level, planted) in [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)] {
-        let own = traces["levels"].as_array().unwrap().iter().find(|own| own["level"] == level).unwrap();
-        let mean: Vec<f64> = own["mean"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+        let own =
+            traces["levels"].as_array().unwrap().iter().find(|own| own["level"] == level).unwrap();
+        let mean: Vec<f64> =
+            own["mean"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
         assert_eq!(mean.len(), (seconds * 60.0) as usize + 1);
         assert_eq!(mean[0], 50.0, "the line stands in the middle at first");
         // A second after the first frame it is half-way.

@@ -182,7 +182,10 @@ fn the_course_of_the_first_whole_play_is_the_answer_and_its_mean_is_in_the_expor
     let table = tidy(&study, &BTreeMap::new(), [record]);
     let place = |name: &str| table.columns.iter().position(|column| column.name == name).unwrap();
     let row = table.rows.iter().find(|row| row[place("response_id")] == "intensity").unwrap();
-    assert_eq!((row[place("answer")].as_f64(), &row[place("trace")]), (Some(65.0), &json!("[50,60,70,80]")));
+    assert_eq!(
+        (row[place("answer")].as_f64(), &row[place("trace")]),
+        (Some(65.0), &json!("[50,60,70,80]"))
+    );
     let bodies: Vec<String> = page.stored.iter().map(|event| event.body.to_string()).collect();
     assert!(bodies.iter().all(|body| !body.contains("\"traces\"")), "kept once, as the answer");
 }
