@@ -22,12 +22,12 @@ fn study(change: impl FnOnce(&mut Value)) -> Study {
 fn followed() -> Study {
     study(|file| {
         file["questions"][0] = json!({
-            "id": "intensity", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
+            "id": "strength", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
             "prompt": {"en": "How intense?", "fr": "Quelle intensité ?"},
             "leftLabel": {"en": "not", "fr": "pas"}, "rightLabel": {"en": "very", "fr": "très"},
         });
-        file["components"]["faces"]["questions"] = json!(["intensity"]);
-        file["hypotheses"][0]["response"] = json!("intensity");
+        file["components"]["faces"]["questions"] = json!(["strength"]);
+        file["hypotheses"][0]["response"] = json!("strength");
         file["hypotheses"][0].as_object_mut().unwrap().remove("measure");
     })
 }
@@ -76,7 +76,7 @@ fn planted_times_of_presses_are_found_again() {
 fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
     let study = followed();
     let mut parameters = Parameters::for_study(&study);
-    let own = parameters.ratings.get_mut("intensity").unwrap();
+    let own = parameters.ratings.get_mut("strength").unwrap();
     (own.mean, own.noise_sd, own.person_sd, own.clip_sd, own.segment_sd) =
         (0.0, 5.0, 4.0, 0.0, 0.0);
     own.person_by_sd = BTreeMap::new();
@@ -91,7 +91,7 @@ fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
     let traces = &results["traces"][0];
     assert_eq!(
         (traces["response"].as_str(), traces["factor"].as_str()),
-        (Some("intensity"), Some("method"))
+        (Some("strength"), Some("method"))
     );
     let seconds = parameters.times.clip_ms / 1000.0;
     for (level, planted) in [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)] {
@@ -109,6 +109,6 @@ fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
         let last = 50.0 + (planted - 50.0) * (1.0 - (-seconds).exp2());
         assert!(low - 1.0 < last && last < high + 1.0 && high - low < 6.0, "{level}: {low} {high}");
     }
-    assert!(paths.iter().any(|path| path == "figures/intensity-while-playing.svg"), "{paths:?}");
-    assert!(paths.iter().any(|path| path == "tables/intensity-while-playing.csv"), "{paths:?}");
+    assert!(paths.iter().any(|path| path == "figures/strength-while-playing.svg"), "{paths:?}");
+    assert!(paths.iter().any(|path| path == "tables/strength-while-playing.csv"), "{paths:?}");
 }

@@ -145,13 +145,13 @@ fn an_option_without_a_key_stands_for_no_press() {
 fn followed() -> String {
     text(|question| {
         *question = json!({
-            "id": "intensity", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
+            "id": "strength", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
             "prompt": {"en": "How intense?", "fr": "Quelle intensité ?"},
             "leftLabel": {"en": "not", "fr": "pas"}, "rightLabel": {"en": "very", "fr": "très"},
         });
     })
-    .replace("[\"felt\"]", "[\"intensity\"]")
-    .replace("\"response\":\"felt\",\"measure\":\"rt\"", "\"response\":\"intensity\"")
+    .replace("[\"felt\"]", "[\"strength\"]")
+    .replace("\"response\":\"felt\",\"measure\":\"rt\"", "\"response\":\"strength\"")
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn the_course_of_the_first_whole_play_is_the_answer_and_its_mean_is_in_the_expor
     let mut page = at_first_trial(&followed());
     assert_eq!((trial(&page).keys.len(), trial(&page).questions.len()), (1, 0));
     let played = |page: &Page, course: Value, aborted: Option<&str>| {
-        let traces = json!({"intensity": course, "other": [1]});
+        let traces = json!({"strength": course, "other": [1]});
         let aborted = aborted.map(str::to_owned);
         Input::Played(PlayLog { traces, aborted, ..whole_play(page.now_ms) })
     };
@@ -181,7 +181,7 @@ fn the_course_of_the_first_whole_play_is_the_answer_and_its_mean_is_in_the_expor
     let record = SessionRecord { started: &page.plan.started, events: &page.stored };
     let table = tidy(&study, &BTreeMap::new(), [record]);
     let place = |name: &str| table.columns.iter().position(|column| column.name == name).unwrap();
-    let row = table.rows.iter().find(|row| row[place("response_id")] == "intensity").unwrap();
+    let row = table.rows.iter().find(|row| row[place("response_id")] == "strength").unwrap();
     assert_eq!(
         (row[place("answer")].as_f64(), &row[place("trace")]),
         (Some(65.0), &json!("[50,60,70,80]"))
