@@ -1,4 +1,4 @@
-// Keys while the clip plays: the first press is the answer, its time that of the press on the frames' clock; a finger
+// Keys while the clip plays: the first press is the answer, its time that of the press on the frames' clock; a mouse
 // presses the buttons; what comes after the clip's end counts too.
 
 import assert from "node:assert/strict";
@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, leave, phase, place, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -30,11 +30,11 @@ const study = small("speeded", {
   ),
 });
 
-test("keys: pressed while the clip plays, by key and by finger, and after it", { skip: unable, timeout: 300_000 }, async () => {
+test("keys: pressed while the clip plays, by key and by mouse, and after it", { skip: unable, timeout: 300_000 }, async () => {
   const folder = mkdtempSync(join(tmpdir(), "mimique-keys-"));
   writeFileSync(join(folder, "speeded.json"), JSON.stringify(study));
   const server = await serve([join(folder, "speeded.json")]);
-  const browser = await open("webgl2", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  const browser = await open("webgl2", { viewport: { width: 390, height: 844 } });
   const shots = screenshotFolder("keys");
   const { page } = browser;
   const pressed = (value) => page.locator(`button[data-action=press][value=${value}]`).getAttribute("aria-pressed");
@@ -46,7 +46,7 @@ test("keys: pressed while the clip plays, by key and by finger, and after it", {
       await go(page, "keyboard");
       here = await leave(page, here, 60_000);
     }
-    for (const how of ["key", "finger", "late"]) {
+    for (const how of ["key", "mouse", "late"]) {
       await phase(page, "ready", 120_000);
       await page.keyboard.press("j");
       assert.equal(await pressed("anger"), "false", "nothing before the clip plays");
@@ -54,6 +54,7 @@ test("keys: pressed while the clip plays, by key and by finger, and after it", {
       await phase(page, "playing");
       if (how === "key") {
         await page.evaluate(() => {
+          addEventListener("keydown", (event) => (window.pressedAt ??= performance.timeOrigin + event.timeStamp), { capture: true });
           // Which buttons are pressed, at every change.
           window.states = [];
           const buttons = [...document.querySelectorAll("button[data-action=press]")];
@@ -66,15 +67,22 @@ test("keys: pressed while the clip plays, by key and by finger, and after it", {
         await page.screenshot({ path: join(shots, "pressed.png") });
         assert.equal(await page.evaluate(() => window.states[0]), "joy", "the first one");
         assert.ok(!(await page.evaluate(() => window.states)).includes("anger"), "the second one is none");
-      } else if (how === "finger") {
+      } else if (how === "mouse") {
         await page.waitForTimeout(500);
-        await page.locator("button[value=anger]").tap();
+        await page.locator("button[value=anger]").click();
       } else {
         await phase(page, "answering", 60_000);
         assert.deepEqual(await violations(page), [], "axe");
         await page.keyboard.press("F");
       }
       here = await leave(page, here, 60_000);
+      if (how === "key") {
+        const session = await page.evaluate(() => JSON.parse(localStorage.getItem("mimique/speeded")).started.session);
+        const answered = async () => (await (await fetch(`${server.url}/api/sessions/${session}`)).json()).events.find(({ body }) => body.type === "answered");
+        await until("the answer is stored", async () => (await answered()) !== undefined);
+        const late = (await answered()).at_ms - (await page.evaluate(() => window.pressedAt));
+        assert.ok(Math.abs(late) < 1, `the time of the press itself, not ${late} ms later`);
+      }
     }
     while (here.view !== "end") {
       if (here.view !== "receipt") await go(page, "keyboard");
@@ -84,9 +92,8 @@ test("keys: pressed while the clip plays, by key and by finger, and after it", {
     const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.response_id === "felt");
     assert.deepEqual(rows.map(({ answer, correct }) => [answer, correct]), [["joy", "true"], ["anger", "false"], ["joy", "true"]]);
     const [first, second, third] = rows.map((row) => Number(row.rt));
-    // 0.7 s after the page said that it plays, which is some frames before or after the first frame.
-    assert.ok(first > 400 && first < 3000, `${first} ms`);
-    assert.ok(second > 200 && second < 2500, `${second} ms`);
+    // A clip lasts 4 s, on a busy machine half a second more.
+    for (const rt of [first, second]) assert.ok(rt > 100 && rt < 4600, `while it played: ${rt} ms`);
     assert.ok(third > 3800, `after a clip of 4 s: ${third} ms`);
     for (const row of rows) assert.equal(row.rt, row.rt_open);
   } finally {
@@ -135,10 +142,9 @@ test("keys: a line moved while the clip plays, 60 values a second", { skip: unab
     const course = JSON.parse(row.trace);
     // A clip of 4 s, the first and the last instant among them; the last frame may be late by half a second.
     assert.ok(course.length >= 240 && course.length <= 272, `${course.length} values`);
-    assert.deepEqual([course[0], course.at(-1)], [50, 70]);
+    // Of twenty presses those count that come before the last frame.
+    assert.ok(course[0] === 50 && course.at(-1) > 50 && course.at(-1) <= 70, `from ${course[0]} to ${course.at(-1)}`);
     assert.ok(course.every((value, k) => k === 0 || value >= course[k - 1]), "it only rises");
-    const turn = course.findIndex((value) => value > 50);
-    assert.ok(turn > 30 && turn < 180, `moved about a second after the onset: ${turn / 60} s`);
     const mean = course.reduce((sum, value) => sum + value, 0) / course.length;
     assert.ok(Math.abs(Number(row.answer) - mean) < 1e-3);
   } finally {

@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// Browser tests that hold a clip's frames or its sound against a clock, and go through the longest studies: nothing
 /// runs beside them.
-const TIMED: [&str; 4] = ["sound", "study", "together", "triggers"];
+const TIMED: [&str; 5] = ["keys", "sound", "study", "together", "triggers"];
 
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {

@@ -66,9 +66,8 @@ mod tests {
     }
 
     fn wave(hz: f64) -> Vec<f64> {
-        let at = |frame: usize| {
-            0.5 + 0.4 * libm::sin(std::f64::consts::TAU * hz * frame as f64 / RATE_HZ)
-        };
+        let at =
+            |frame: usize| 0.5 + 0.4 * (std::f64::consts::TAU * hz * frame as f64 / RATE_HZ).sin();
         (0..240).map(at).collect()
     }
 

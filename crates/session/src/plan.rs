@@ -94,7 +94,7 @@ pub struct TrialStep {
     /// What is played in step beside the clip.
     pub beside: Option<Companion>,
     /// The panel, where several clips are rated on one scale.
-    pub panel: Option<Panel>,
+    pub panel: Option<Box<Panel>>,
     /// Right answers by question, of a practice trial.
     pub right: Answers,
 }
@@ -318,7 +318,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                 let pages = block.panel.as_deref();
                 let (panel, questions) =
                     match pages.and_then(|pages| Panel::of(pages, panel, asked.clone())) {
-                        Some((panel, questions)) => (Some(panel), questions),
+                        Some((panel, questions)) => (Some(Box::new(panel)), questions),
                         None => (None, asked),
                     };
                 let step = TrialStep {

@@ -54,7 +54,8 @@ fn the_first_press_of_a_play_is_the_answer_and_its_time_is_that_of_the_press() {
     let mut page = at_first_trial(&text(|_| ()));
     assert_eq!(trial(&page).keys.len(), 1);
     assert!(trial(&page).questions.is_empty() && !trial(&page).can_press);
-    step(&mut page, press("joy", page.now_ms));
+    let input = press("joy", page.now_ms);
+    step(&mut page, input);
     assert_eq!(trial(&page).keys[0].value, None, "nothing plays yet");
     let onset_ms = page.now_ms;
     step(&mut page, Input::Play);
@@ -96,8 +97,10 @@ fn a_press_in_a_play_that_does_not_count_is_taken_back() {
     assert_eq!((view.phase, view.keys[0].value.clone()), (Phase::Ready, None));
     step(&mut page, Input::Play);
     page.now_ms += 500.0;
-    step(&mut page, press("anger", page.now_ms - 10.0));
-    step(&mut page, Input::Played(whole_play(page.now_ms - 500.0)));
+    let input = press("anger", page.now_ms - 10.0);
+    step(&mut page, input);
+    let input = Input::Played(whole_play(page.now_ms - 500.0));
+    step(&mut page, input);
     let answers = &page.state.record.finished.last().unwrap().answers;
     assert_eq!(answers["felt"], "anger");
 }
@@ -107,7 +110,8 @@ fn whoever_is_too_slow_answers_after_the_clip() {
     let mut page = at_first_trial(&text(|_| ()));
     step(&mut page, Input::Play);
     page.now_ms += 4000.0;
-    step(&mut page, Input::Played(whole_play(page.now_ms - 4000.0)));
+    let input = Input::Played(whole_play(page.now_ms - 4000.0));
+    step(&mut page, input);
     let view = trial(&page);
     assert_eq!(
         (view.phase, view.can_press, view.button.can_submit),
@@ -115,9 +119,11 @@ fn whoever_is_too_slow_answers_after_the_clip() {
     );
     let before = page.state.record.step;
     page.now_ms += 300.0;
-    step(&mut page, press("nothing", page.now_ms));
+    let input = press("nothing", page.now_ms);
+    step(&mut page, input);
     assert_eq!(page.state.record.step, before, "no such option");
-    step(&mut page, press("joy", page.now_ms));
+    let input = press("joy", page.now_ms);
+    step(&mut page, input);
     assert_eq!(page.state.record.step, before + 1);
 }
 
@@ -132,7 +138,8 @@ fn an_option_without_a_key_stands_for_no_press() {
         if pressed {
             step(&mut page, press("joy", onset_ms + 800.0));
         }
-        step(&mut page, press("anger", page.now_ms));
+        let input = press("anger", page.now_ms);
+        step(&mut page, input);
         page.now_ms = onset_ms + 4000.0;
         step(&mut page, Input::Played(whole_play(onset_ms)));
         let answer = &page.state.record.finished.last().unwrap().answers["felt"];

@@ -432,7 +432,7 @@ impl Walk<'_, '_> {
             return;
         }
         let trial = self.page.plan.steps[here].trial();
-        if let Some(panel) = trial.and_then(|trial| trial.panel.clone()) {
+        if let Some(panel) = trial.and_then(|trial| trial.panel.as_deref().cloned()) {
             self.answer_panel(&panel);
             return;
         }

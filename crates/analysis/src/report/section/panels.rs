@@ -216,7 +216,13 @@ impl Writer<'_> {
     ) -> Option<PageOrder> {
         let data = self.on_one_page(block, measure, levels);
         let [rounds, fit_rounds] = ROUNDS;
-        let options = BradleyTerryOptions { rounds, fit_rounds, ..BradleyTerryOptions::default() };
+        // The first of two is the earlier condition, wherever it stood: there is no side.
+        let options = BradleyTerryOptions {
+            side: Some(false),
+            rounds,
+            fit_rounds,
+            ..BradleyTerryOptions::default()
+        };
         let worths = bradley_terry(&data, &options).ok()?;
         let language = self.language();
         self.blocks.push(Block::Heading(
