@@ -44,9 +44,9 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Browser tests that hold a clip's frames or its sound against a clock, and go through the longest studies: nothing
-/// runs beside them.
-const TIMED: [&str; 5] = ["keys", "sound", "study", "together", "triggers"];
+/// Browser tests that hold the display's frames, a clip's sound or a press against a clock, and those that go through the
+/// longest studies: nothing runs beside them.
+const TIMED: [&str; 6] = ["conduct", "keys", "sound", "study", "together", "triggers"];
 
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {

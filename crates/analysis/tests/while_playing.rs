@@ -110,5 +110,8 @@ fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
         assert!(low - 1.0 < last && last < high + 1.0 && high - low < 6.0, "{level}: {low} {high}");
     }
     assert!(paths.iter().any(|path| path == "figures/strength-while-playing.svg"), "{paths:?}");
-    assert!(paths.iter().any(|path| path == "tables/strength-while-playing.csv"), "{paths:?}");
+    assert!(
+        paths.iter().any(|path| path == "tables/figure-strength-while-playing.csv"),
+        "{paths:?}"
+    );
 }

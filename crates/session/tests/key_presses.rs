@@ -132,6 +132,8 @@ fn an_option_without_a_key_stands_for_no_press() {
     let text = text(|question| question["keys"] = json!({"joy": "Space"}));
     let mut page = at_first_trial(&text);
     for pressed in [true, false] {
+        // Nobody stores here: a trial waits some seconds for the answers before it.
+        page.now_ms += 5_000.0;
         let onset_ms = page.now_ms;
         step(&mut page, Input::Play);
         page.now_ms += 1000.0;
