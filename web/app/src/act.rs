@@ -7,6 +7,7 @@ use serde_json::Value;
 pub type Change = Box<dyn FnOnce(Option<&Value>) -> Value>;
 
 /// What a page asks for.
+#[allow(clippy::large_enum_variant, reason = "one act is held at a time")]
 pub enum Act {
     /// An input of the session.
     Input(Input),

@@ -260,7 +260,7 @@ fn canvas(label: &str, look: &str, name: &str) -> Element {
     el("canvas", "")
         .set("role", "img")
         .maybe("aria-label", (!label.is_empty()).then_some(label))
-        .mounted(move |canvas| host::attach_stage(&name, canvas, &look), || host::detach_stages())
+        .mounted(move |canvas| host::attach_stage(&name, canvas, &look), host::detach_stages)
 }
 
 /// The word by which tests and scripts know a phase.
