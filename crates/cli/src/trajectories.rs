@@ -4,7 +4,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{anyhow, bail};
 use mimique_adaptive::{Trajectory, TrajectoryDesign};
 use mimique_analysis::{Template, TemplatePart, TemplatePeople};
 use mimique_avatar::{ARKIT_SHAPES, ActionUnit};
@@ -80,17 +80,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if people.is_none() {
         files.extend(stimuli(&args, &design, &trials, &units)?);
     }
-    std::fs::create_dir_all(&args.out).with_context(|| {
-        format!("{}: make the folder; check its parent's permissions", args.out.display())
-    })?;
-    let mut out = std::io::stdout().lock();
-    for (name, bytes, what) in &files {
-        let path = args.out.join(name);
-        output::write(&path, bytes)?;
-        if !json {
-            writeln!(out, "{}: {what}", path.display())?;
-        }
-    }
+    output::make_folder(&args.out)?;
+    output::write_all(&args.out, &files, json)?;
     if json {
         let text = serde_json::json!({
             "files": files.iter().map(|(name, ..)| args.out.join(name)).collect::<Vec<_>>(),
@@ -102,7 +93,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "duration_s": args.duration,
             "seed": args.seed,
         });
-        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&text)?)?;
     }
     Ok(())
 }

@@ -317,7 +317,7 @@ impl App {
             shown.phase = None;
         }
         let View::Trial(trial) = view else { return };
-        let placed = trial.placed();
+        let placed = trial.placed().to_vec();
         let word = pages::phase_word(&trial.phase);
         let phase = Some((word, placed.clone()));
         if shown.phase == phase {

@@ -1,8 +1,6 @@
 //! `mimique sample --annotated`: takes of several built-in actors with their known labels, for
 //! `mimique annotate`.
 
-use std::path::Path;
-
 use anyhow::anyhow;
 use mimique_actor::{
     Clip, Emotion, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites, synthetic_take,
@@ -93,9 +91,4 @@ fn at_rate(labels: &[TakeSegment], rate_hz: f64, frames: usize) -> Vec<TakeSegme
 fn rounded(mut table: WeightsTable) -> WeightsTable {
     table.weights.iter_mut().for_each(|w| *w = (*w * 1e4).round() / 1e4);
     table
-}
-
-/// Writes the files into a folder.
-pub fn write(files: &[SampleFile], folder: &Path) -> anyhow::Result<()> {
-    files.iter().try_for_each(|(name, bytes, _)| crate::output::write(&folder.join(name), bytes))
 }

@@ -5,7 +5,7 @@ mod corpus;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow};
+use anyhow::anyhow;
 use mimique_actor::{
     Clip, Emotion, Gait, HeadSpec, NOISE_MM, SyntheticTake, build_head, marker_sites,
     synthetic_take,
@@ -45,7 +45,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let take = performance(args.actor, args.intensity);
     let map = marker_map(&person, &take);
     let head = build_head(&person);
-    make_folder(&args)?;
+    output::make_folder(&args.out)?;
     let mut files = vec![
         ("head.glb".to_owned(), glb(&head)?, "the avatar: the built-in head with its blendshapes"),
         (
@@ -71,14 +71,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     ]) {
         files.push((format!("{}.bvh", gait.name), built_in_bvh(&gait).into_bytes(), what));
     }
-    let mut out = std::io::stdout().lock();
-    for (name, bytes, what) in &files {
-        let path = args.out.join(name);
-        output::write(&path, bytes)?;
-        if !json {
-            writeln!(out, "{}: {what}", path.display())?;
-        }
-    }
+    output::write_all(&args.out, &files, json)?;
     if json {
         let text = serde_json::json!({
             "files": files.iter().map(|(name, ..)| args.out.join(name)).collect::<Vec<_>>(),
@@ -89,31 +82,20 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
                 "name": segment.name, "first_frame": segment.first, "end_frame": segment.end,
             })).collect::<Vec<_>>(),
         });
-        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&text)?)?;
     }
     Ok(())
-}
-
-fn make_folder(args: &Args) -> anyhow::Result<()> {
-    std::fs::create_dir_all(&args.out).with_context(|| {
-        format!("{}: make the folder; check its parent's permissions", args.out.display())
-    })
 }
 
 /// `--annotated`: takes with labels.
 fn annotated(args: &Args, person: &HeadSpec, json: bool) -> anyhow::Result<()> {
     let files = corpus::files(person, args.actor)?;
-    make_folder(args)?;
-    corpus::write(&files, &args.out)?;
-    let mut out = std::io::stdout().lock();
+    output::make_folder(&args.out)?;
+    output::write_all(&args.out, &files, json)?;
     if json {
         let names: Vec<PathBuf> = files.iter().map(|(name, ..)| args.out.join(name)).collect();
         let text = serde_json::json!({ "files": names });
-        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
-        return Ok(());
-    }
-    for (name, _, what) in &files {
-        writeln!(out, "{}: {what}", args.out.join(name).display())?;
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&text)?)?;
     }
     Ok(())
 }

@@ -1,8 +1,8 @@
 //! What the page has to do.
 
-use serde::Serialize;
 use serde_json::Value;
 
+use super::placed::PlacedClip;
 use crate::wire;
 
 /// What the page has to do; each is carried out once, in the order given.
@@ -51,23 +51,4 @@ pub enum Effect {
     Withdraw,
     /// A new page stands there: move the focus to its heading.
     FocusHeading,
-}
-
-/// A clip on its canvas.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct PlacedClip {
-    /// The canvas: [`OWN_CANVAS`], [`BESIDE_CANVAS`], or that of a place of a panel ([`canvas_of_place`]).
-    pub canvas: String,
-    /// Identifier of the clip.
-    pub clip: String,
-}
-
-/// The canvas of a trial's own clip.
-pub const OWN_CANVAS: &str = "clip";
-/// The canvas of the clip beside it.
-pub const BESIDE_CANVAS: &str = "beside";
-
-/// The canvas of a place of a panel, from 1; 0 is the open reference.
-pub fn canvas_of_place(place: u32) -> String {
-    ["panel-", &place.to_string()].concat()
 }

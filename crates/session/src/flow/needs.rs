@@ -14,12 +14,8 @@ impl Step {
     /// The clips of a trial (in an adaptive block those of its level, of a panel all), then the media of the questions (`media:` and the path), each once.
     pub fn needs(&self, language: &str, level: Option<&LevelShown>) -> Vec<String> {
         let mut needs: Vec<String> = Vec::new();
-        let pair = self.trial().map(|trial| trial.pair(level));
-        let clips = pair.into_iter().flat_map(|(clip, beside)| [Some(clip), beside.map(|it| it.0)]);
-        let panel = self.trial().and_then(|trial| trial.panel.as_ref());
-        let places = panel.into_iter().flat_map(|it| it.places().filter_map(|at| it.clip(at)));
-        let clips = clips.flatten().filter(|clip| !clip.is_empty()).chain(places);
-        let clips = clips.map(str::to_owned);
+        let placed = self.trial().map_or_else(Vec::new, |trial| trial.placed(level));
+        let clips = placed.into_iter().map(|placed| placed.clip).filter(|clip| !clip.is_empty());
         let media = self.questions().iter().flat_map(|question| question.media(language));
         for need in clips.chain(media.map(|path| [MEDIA_PREFIX, path].concat())) {
             if !needs.contains(&need) {

@@ -2,9 +2,9 @@
 
 use super::agreement::{self, AgreementView};
 use super::allowed::{break_seconds_left, can_play, can_play_alone, can_submit, is_saving};
-use super::effect::canvas_of_place;
 use super::gate;
 use super::needs::{Needs, needs_of};
+use super::placed::canvas_of_place;
 use super::state::{Play, State};
 use super::view::{
     BesideView, ButtonView, CodeView, EndView, FailedView, PanelFigure, PanelView, Phase,
@@ -212,6 +212,7 @@ impl Screen<'_> {
             _ => words.play_again(),
         };
         TrialView {
+            placed: trial.placed(progress.level.as_deref()),
             step: step.id.clone(),
             clip: clip.to_owned(),
             beside: beside.map(|(clip, left)| {

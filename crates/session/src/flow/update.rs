@@ -4,13 +4,13 @@ use mimique_study::Answers;
 use serde_json::Value;
 
 use super::allowed::{can_play, can_play_alone, can_submit, shown_questions};
-use super::effect::{BESIDE_CANVAS, Effect, OWN_CANVAS, PlacedClip, canvas_of_place};
+use super::effect::Effect;
 use super::gate;
 use super::input::Input;
 use super::needs::needs_ahead;
 use super::state::{Play, State};
 use crate::event::{Client, EventKind, PlayLog, ShownBeside, StageFailure};
-use crate::plan::{Panel, Plan, Step, StepKind, TrialStep};
+use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::wire;
 
 /// Unexpected inputs that are recorded; further ones are only ignored, so that a page gone wrong
@@ -309,23 +309,15 @@ impl<'a> Transition<'a> {
             self.effects.push(Effect::RequestFullscreen);
             return true;
         }
-        let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
-        let (clip, beside) = (clip.to_owned(), beside.map(|(clip, left)| (clip.to_owned(), left)));
         let panel = trial.panel.as_ref();
         if !self.state.record.attempt.is_started() {
-            let (step, clip) = (step.id.clone(), clip.clone());
-            let beside = beside.clone().map(|(clip, left)| ShownBeside { clip, left });
+            let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
+            let (step, clip) = (step.id.clone(), clip.to_owned());
+            let beside = beside.map(|(clip, left)| ShownBeside { clip: clip.to_owned(), left });
             let panel = panel.map_or_else(Vec::new, |panel| panel.clips.clone());
             self.record(EventKind::TrialStarted { step, clip, beside, panel });
         }
-        let placed = |canvas: &str, clip| PlacedClip { canvas: canvas.to_owned(), clip };
-        let clips = match panel {
-            Some(panel) => panel.places().filter_map(|place| placed_of(panel, place)).collect(),
-            None => [placed(OWN_CANVAS, clip)]
-                .into_iter()
-                .chain(beside.map(|(clip, _)| placed(BESIDE_CANVAS, clip)))
-                .collect(),
-        };
+        let clips = trial.placed(self.state.record.attempt.level.as_deref());
         let in_turn = panel.map_or_else(
             || trial.beside.as_ref().is_some_and(|beside| beside.in_turn),
             |panel| panel.in_turn,
@@ -336,7 +328,7 @@ impl<'a> Transition<'a> {
     /// The clip at a place of a panel once more, alone.
     fn play_alone(&mut self, place: u32) -> bool {
         let panel = self.trial().and_then(|(_, trial)| trial.panel.as_ref());
-        let Some(clip) = panel.and_then(|panel| placed_of(panel, place)) else { return false };
+        let Some(clip) = panel.and_then(|panel| panel.placed(place)) else { return false };
         can_play_alone(self.plan, &self.state, place)
             && self.run(Effect::PlayClips { clips: vec![clip], in_turn: false }, Some(place))
     }
@@ -355,8 +347,9 @@ impl<'a> Transition<'a> {
         }
         self.state.live.play = Play::Still;
         let alone = self.state.live.alone.take();
-        let traces = log.traces.clone();
-        let log = self.judged(PlayLog { alone, traces: Value::Null, ..log.clone() });
+        let mut log = PlayLog { alone, ..log.clone() };
+        let traces = std::mem::take(&mut log.traces);
+        let log = self.judged(log);
         let counts = log.is_whole() && alone.is_none();
         self.record(EventKind::TrialPlayed { step: step.id.clone(), log: Box::new(log) });
         if counts {
@@ -409,10 +402,4 @@ impl<'a> Transition<'a> {
         }
         true
     }
-}
-
-/// The clip at a place of a panel, on the canvas of that place.
-fn placed_of(panel: &Panel, place: u32) -> Option<PlacedClip> {
-    let clip = panel.clip(place)?.to_owned();
-    Some(PlacedClip { canvas: canvas_of_place(place), clip })
 }

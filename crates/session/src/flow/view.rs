@@ -1,7 +1,7 @@
 //! The vocabulary of the screen: what the page renders, without deciding anything itself.
 
 use super::agreement::AgreementView;
-use super::effect::{BESIDE_CANVAS, OWN_CANVAS, PlacedClip};
+use super::placed::PlacedClip;
 use super::view_gate::{CalibrationView, DeviceView, FeedbackView, SoundView};
 use super::view_question::QuestionView;
 
@@ -176,6 +176,8 @@ pub struct StageSize {
 /// A trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialView {
+    /// What [`Self::placed`] tells.
+    pub(super) placed: Vec<PlacedClip>,
     /// Identifier of the step.
     pub step: String,
     /// Identifier of the clip.
@@ -220,17 +222,9 @@ pub struct TrialView {
 }
 
 impl TrialView {
-    /// The clips that are played, on their canvases: of a trial of one or two its own first.
-    pub fn placed(&self) -> Vec<PlacedClip> {
-        let placed = |canvas: &str, clip: &str| PlacedClip {
-            canvas: canvas.to_owned(),
-            clip: clip.to_owned(),
-        };
-        if let Some(panel) = &self.panel {
-            return panel.figures.iter().map(|it| placed(&it.canvas, &it.clip)).collect();
-        }
-        let beside = self.beside.iter().map(|it| placed(BESIDE_CANVAS, &it.clip));
-        [placed(OWN_CANVAS, &self.clip)].into_iter().chain(beside).collect()
+    /// The clips that are played, on their canvases ([`super::TrialStep::placed`]).
+    pub fn placed(&self) -> &[PlacedClip] {
+        &self.placed
     }
 }
 

@@ -6,6 +6,7 @@ use mimique_solver::{Kind, PARAMETERS};
 use super::Subject;
 use super::issue::{Issues, below};
 use super::problem::Problem;
+use super::sequence::read_block;
 use crate::closed_loop::{grid, staircase};
 use crate::columns::LEVEL_COLUMNS;
 use crate::question::QuestionKind;
@@ -19,7 +20,7 @@ const MOST_CLIPS: usize = 1000;
 const MOST_TRIALS: f64 = 1000.0;
 const MOST_TRACKS: f64 = 8.0;
 
-/// What PSYCHOPHYSICS names beside the method's own numbers, and no clip of this program has.
+/// Numbers of the methods' table that say when a face moves, not how: levels of them are not solved yet.
 const NOT_VARIED: [&str; 2] = ["delayMs", "lowpassHz"];
 
 pub(super) fn examine(
@@ -28,13 +29,7 @@ pub(super) fn examine(
     pointer: &str,
     issues: &mut Issues,
 ) {
-    let block = match block.read() {
-        Ok(block) => block,
-        Err(error) => {
-            issues.error(pointer, Problem::Shape { what: error.to_string() });
-            return;
-        }
-    };
+    let Some(block) = read_block(block.read(), pointer, issues) else { return };
     let before = issues.count();
     ranges(&block, pointer, issues);
     names(subject, &block, pointer, issues);

@@ -2,7 +2,7 @@
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::sequence::{all_factors, selection};
+use super::sequence::{all_factors, read_block, selection};
 use super::{Subject, compared};
 use crate::columns::PAIR_COLUMNS;
 use crate::question::{KindOfQuestion as _, QuestionKind};
@@ -14,13 +14,7 @@ pub(super) fn examine(
     pointer: &str,
     issues: &mut Issues,
 ) {
-    let block = match block.read() {
-        Ok(block) => block,
-        Err(error) => {
-            issues.error(pointer, Problem::Shape { what: error.to_string() });
-            return;
-        }
-    };
+    let Some(block) = read_block(block.read(), pointer, issues) else { return };
     let before = issues.count();
     let factors = all_factors(subject);
     selection(subject, &block.clips, &factors, pointer, issues);

@@ -68,6 +68,18 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     }
 }
 
+/// A block that the page carries as JSON; what cannot be read is reported.
+pub(super) fn read_block<T>(
+    read: Result<T, serde_json::Error>,
+    pointer: &str,
+    issues: &mut Issues,
+) -> Option<T> {
+    let reported = |error: &serde_json::Error| {
+        issues.error(pointer, Problem::Shape { what: error.to_string() });
+    };
+    read.inspect_err(reported).ok()
+}
+
 fn references(
     given: &[String],
     known: &[&str],

@@ -146,13 +146,6 @@ impl PanelComponent {
     }
 }
 
-impl PanelPages {
-    /// The page of a cell.
-    pub fn page(&self, cell: &str) -> Option<&PanelPage> {
-        self.pages.iter().find(|page| page.cell == cell)
-    }
-}
-
 /// The name under which a page of a panel keeps the answer to a question about one of its clips. Both parts come back
 /// from the page's own list of clips, not from this text.
 pub fn answer_about(question: &str, clip: &str) -> String {
