@@ -105,6 +105,14 @@ async function prepare(clipId, source, onProgress) {
     const nothing = { weights: new Float32Array(0), frames: 0, shapes: 0, rate_hz: 0, weights_hash: "", solve_ms: 0 };
     return { clip: clipId, video, duration_ms, ...nothing, sound: await sound, provenance: source.provenance, report: null, warnings: [] };
   }
+  if (source.units) {
+    const [face, avatar] = await Promise.all([faceOf(source), fetchPack(source.avatar, count)]);
+    loadAhead();
+    const pictures = await picturesOf(avatar);
+    report(1);
+    const { look = "stimulus", avatar: avatarHash, provenance, duration_ms } = source;
+    return { clip: clipId, video: null, look, avatarHash, avatarPack: avatar, pictures, duration_ms, provenance, solve_ms: 0, report: null, warnings: [], ...face };
+  }
   // The solver and the canvas come beside the packs.
   worker ??= startWorker();
   loadAhead();
@@ -138,6 +146,19 @@ async function prepare(clipId, source, onProgress) {
   clip.warnings = warnings(clip, source);
   report(1);
   return clip;
+}
+
+// The weights of a face that is drawn for one trial; without a trial the avatar rests. Studies without such faces load
+// nothing for them.
+async function faceOf(source) {
+  const { shapes } = source.units;
+  if (!source.face) {
+    return { weights: new Float32Array(2 * shapes), frames: 2, shapes, rate_hz: 1000 / source.duration_ms, weights_hash: "" };
+  }
+  const { drawFace } = await import("../adaptive/faces.js").catch((error) => {
+    throw failureOf(error, "module");
+  });
+  return { shapes, ...(await drawFace({ ...source.face, units: source.units })) };
 }
 
 // Studies without sound load nothing for it.

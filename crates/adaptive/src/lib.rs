@@ -58,5 +58,5 @@ pub use sides::{Orders, Side, sides};
 pub use staircase::{Reversal, Staircase, StaircaseError, StaircaseRules, StaircaseThreshold};
 pub use track::{Answered, Ends, FEWEST_BEFORE_STOP, NextLevel, Rule, Track};
 pub use trajectory::Trajectory;
-pub use trajectory_design::{TrajectoryDesign, TrajectoryError};
+pub use trajectory_design::{TrajectoryDesign, TrajectoryError, weights_of_units};
 pub use worths::{Comparison, Worths};

@@ -164,6 +164,30 @@ impl TrajectoryDesign {
     }
 }
 
+/// Weights of an avatar's shapes, frames x shapes, from activations, frames x units, 0 to 1. `units` has, of each unit,
+/// the places of the shapes that it moves, each with the weight of a whole activation. Where units share a shape it takes
+/// their sum, at most 1.
+///
+/// # Panics
+/// Where a unit is of another avatar, with more shapes.
+pub fn weights_of_units<U: AsRef<[(usize, f64)]>>(
+    units: &[U],
+    activations: &[f64],
+    shapes: usize,
+) -> Vec<f64> {
+    let mut weights = Vec::new();
+    for row in activations.chunks_exact(units.len().max(1)) {
+        let mut frame = vec![0.0_f64; shapes];
+        for (unit, activation) in units.iter().zip(row) {
+            for &(shape, share) in unit.as_ref() {
+                frame[shape] = (frame[shape] + share * activation).min(1.0);
+            }
+        }
+        weights.extend(frame);
+    }
+    weights
+}
+
 fn range(
     what: &'static str,
     [low, high]: [f64; 2],
@@ -242,6 +266,15 @@ mod tests {
         // By symmetry peaks lie around the middle of the clip.
         let all: usize = units.iter().sum();
         assert!((peaks / all as f64 - 0.625).abs() < 0.005);
+    }
+
+    #[test]
+    fn weights_are_the_activations_by_shares_and_stay_within_one() {
+        // A smile of both sides, one of the left, an open jaw, half of a brow.
+        let units = [vec![(0, 1.0), (1, 1.0)], vec![(0, 1.0)], vec![(2, 1.0)], vec![(3, 0.5)]];
+        let activations = [0.5, 0.25, 0.0, 1.0, 0.75, 0.75, 0.3, 0.0];
+        let weights = weights_of_units(&units, &activations, 4);
+        assert_eq!(weights, [0.75, 0.5, 0.0, 0.5, 1.0, 0.75, 0.3, 0.0]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::{anyhow, bail};
-use mimique_adaptive::{Trajectory, TrajectoryDesign};
+use mimique_adaptive::{Trajectory, TrajectoryDesign, weights_of_units};
 use mimique_analysis::{Template, TemplatePart, TemplatePeople};
 use mimique_avatar::{ARKIT_SHAPES, ActionUnit};
 use mimique_mocap::WeightsTable;
@@ -217,7 +217,7 @@ fn stimuli(
         let mut weights = Vec::new();
         for (trial, courses) in shown.iter().enumerate() {
             let activations = design.activations(courses, args.rate);
-            weights.extend(ActionUnit::weights(units, &activations, ARKIT_SHAPES.len()));
+            weights.extend(weights_of_units(units, &activations, ARKIT_SHAPES.len()));
             segments.push(serde_json::json!({
                 "id": format!("{name}t{:04}", trial + 1),
                 "capture": name,

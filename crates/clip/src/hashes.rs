@@ -1,4 +1,4 @@
-//! Hashes of weights and of bytes, and the version of the arithmetic that they stand for.
+//! Hashes of bytes, and the version of the arithmetic that weights come from.
 
 use sha2::{Digest, Sha256};
 
@@ -11,13 +11,6 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
     hex::encode(Sha256::digest(bytes))
 }
 
-/// SHA-256 of the numbers as little-endian f64, lower-case hexadecimal.
-pub fn weights_hash(weights: &[f64]) -> String {
-    let mut hash = Sha256::new();
-    weights.iter().for_each(|w| hash.update(w.to_le_bytes()));
-    hex::encode(hash.finalize())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -27,6 +20,5 @@ mod tests {
         // printf abc | sha256sum
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(sha256_hex(b"abc"), abc);
-        assert_eq!(weights_hash(&[1.0]), sha256_hex(&1f64.to_le_bytes()));
     }
 }

@@ -69,7 +69,8 @@ mod weight_timing;
 
 pub use frame_statistics::FrameStatistics;
 pub use gaze::with_gaze_at_rest;
-pub use hashes::{SOLVER_VERSION, sha256_hex, weights_hash};
+pub use hashes::{SOLVER_VERSION, sha256_hex};
+pub use mimique_solver::weights_hash;
 pub use packs::{
     SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators,
     decode_take, encode_operators, encode_take, encode_take_in_steps, stored_step,

@@ -6,7 +6,7 @@ use mimique_avatar::pack::PackError;
 use mimique_solver::{FitError, FrontEndError, MethodSpec, Operators};
 
 use crate::frame_statistics::FrameStatistics;
-use crate::hashes::weights_hash;
+use mimique_solver::weights_hash;
 use crate::packs::{
     SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
 };

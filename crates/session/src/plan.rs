@@ -6,12 +6,13 @@ use crate::event::LevelShown;
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
-    AdaptiveBlock, Answers, Beside, BreakComponent, Calibration, Clip, Component, DealtPairs, Draw,
+    Answers, Beside, BreakComponent, Calibration, Clip, Component, DealtPairs, Draw,
     KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
     PanelPages, Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training,
     answer_about, option_order, order, right_answers,
 };
 use serde::Deserialize as _;
+use serde_json::Value;
 
 /// What one participant goes through.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +96,9 @@ pub struct TrialStep {
     pub beside: Option<Companion>,
     /// The panel, where several clips are rated on one scale.
     pub panel: Option<Box<Panel>>,
+    /// What the stage calls its face, where that is drawn for this trial alone ([`Plan::face`]): the step. Empty before
+    /// the session, when nobody's draw is known.
+    pub face: Option<String>,
     /// Right answers by question, of a practice trial.
     pub right: Answers,
 }
@@ -306,9 +310,22 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     Some(Component::Trials(block)) => block,
                     Some(Component::Adaptive(block)) => {
                         trials += 1;
-                        let step = adaptive_trial(study, block, trials, condition);
+                        let asked = [block.question().to_owned()];
+                        let step = json_trial(study, &block.0, &asked, trials, condition);
                         let kind = StepKind::Trial(step);
                         steps.push(Step { id: trial.clone(), kind, time_limit: None });
+                        continue;
+                    }
+                    Some(Component::ReverseCorrelation(block)) => {
+                        trials += 1;
+                        let asked = block.questions();
+                        let mut step = json_trial(study, &block.0, &asked, trials, condition);
+                        step.clip.clone_from(clip);
+                        let is_drawn = !draw.config_hash.is_empty();
+                        step.face = Some(if is_drawn { trial.clone() } else { String::new() });
+                        let time_limit = TimeLimit::deserialize(&block.0["timeLimit"]).ok();
+                        let kind = StepKind::Trial(step);
+                        steps.push(Step { id: trial.clone(), kind, time_limit });
                         continue;
                     }
                     _ => continue,
@@ -336,6 +353,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                             companion(beside, clip, &study.clips, sides.is_left(component, beside))
                         }),
                     },
+                    face: None,
                     right: Answers::new(),
                 };
                 let time_limit = block.time_limit.clone();
@@ -355,23 +373,25 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     steps
 }
 
-/// A trial whose clips follow from answers.
-fn adaptive_trial(
+/// A trial of a block that is carried as JSON, without its clip.
+fn json_trial(
     study: &StudyProjection,
-    block: &AdaptiveBlock,
+    block: &Value,
+    asked: &[String],
     number: usize,
     condition: &str,
 ) -> TrialStep {
     TrialStep {
         clip: String::new(),
-        questions: questions(study, &[block.question().to_owned()]),
-        instruction: LocalText::deserialize(&block.0["instruction"]).ok(),
-        maximum_replays: block.0["maximumReplays"].as_u64().map(|most| most as u32),
+        questions: questions(study, asked),
+        instruction: LocalText::deserialize(&block["instruction"]).ok(),
+        maximum_replays: block["maximumReplays"].as_u64().map(|most| most as u32),
         training: false,
         number,
         condition: condition.to_owned(),
         beside: None,
         panel: None,
+        face: None,
         right: Answers::new(),
     }
 }
@@ -391,7 +411,8 @@ fn component_step(id: String, component: &Component) -> Option<Step> {
         Component::Trials(_)
         | Component::Pairs(_)
         | Component::Panel(_)
-        | Component::Adaptive(_) => return None,
+        | Component::Adaptive(_)
+        | Component::ReverseCorrelation(_) => return None,
     };
     Some(Step { id, kind, time_limit })
 }
@@ -455,6 +476,7 @@ fn practice(study: &StudyProjection, training: &Training, steps: &mut Vec<Step>)
                 condition: "training".to_owned(),
                 beside: None,
                 panel: None,
+                face: None,
                 right,
             };
             let id = format!("training/{}/{clip}{again}", index + 1);

@@ -31,6 +31,7 @@ fn sources(study: &Study) -> BTreeMap<String, ClipSource> {
             look: "stimulus".into(),
             video: None,
             sound: None,
+            units: None,
         };
         (clip.id, source)
     };

@@ -76,6 +76,7 @@ mod newton;
 mod parameters;
 mod quadratic;
 mod surface;
+mod weights_hash;
 
 pub use energy::operators::{OperatorError, OperatorOptions, OperatorParts, Operators};
 pub use energy::sensitivity::{
@@ -140,3 +141,4 @@ pub use parameters::value::ByName;
 pub use surface::frame::METRES_PER_WEIGHT;
 #[cfg(feature = "surface")]
 pub use surface::response::{SurfaceError, SurfaceResponse, surface_shape_names};
+pub use weights_hash::weights_hash;

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::drawn_face::UnitShapes;
 use crate::study_file::Caption;
 
 /// Where a clip's parts are, and how it is solved.
@@ -38,6 +39,10 @@ pub struct ClipSource {
     /// What is heard with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound: Option<ClipSound>,
+    /// Of an avatar at rest, which trials of reverse correlation move: how it shows their units. It has neither
+    /// operators nor take, and no weights of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<UnitShapes>,
 }
 
 /// What is heard with a clip.

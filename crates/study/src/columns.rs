@@ -85,7 +85,7 @@ pub const TRIGGER_COLUMN: (&str, ColumnKind, &str, &str) = (
 
 /// Of trials of adaptive blocks, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
 /// it means.
-pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
+pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 6] = {
     use ColumnKind::{Boolean, Integer, Number};
     [
         ("track", Integer, "", "Of a trial of an adaptive block: its track, from 1"),
@@ -109,14 +109,26 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 7] = {
             "",
             "Whether seed and answers give this level again; false is an error of the session",
         ),
-        (
-            "weights_expected",
-            Boolean,
-            "",
-            "Whether the weights that the browser solved are those that were solved beforehand",
-        ),
     ]
 };
+
+/// Of trials whose weights are known without the browser, in exports of studies with adaptive blocks or blocks of
+/// reverse correlation, after `chosen`: name, kind, unit, what it means.
+pub const WEIGHTS_EXPECTED_COLUMN: (&str, ColumnKind, &str, &str) = (
+    "weights_expected",
+    ColumnKind::Boolean,
+    "",
+    "Whether the weights that the browser showed are those that were solved beforehand, or that the seed gives again",
+);
+
+/// Of trials of blocks of reverse correlation, in exports of studies that have such a block, after `chosen`: name, kind,
+/// unit, what it means.
+pub const TRAJECTORIES_COLUMN: (&str, ColumnKind, &str, &str) = (
+    "trajectories",
+    ColumnKind::Text,
+    "",
+    "Of a face that was drawn at random: the course of each of its action units, a list in JSON (unit, onset_s, peak_s, offset_s, amplitude, acceleration, deceleration)",
+);
 
 /// Of ratings that follow the clip, in exports of studies that have such a question, after `answer`: name, kind, unit,
 /// what it means.
@@ -174,7 +186,7 @@ pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
 pub const STIMULI_COLUMNS: [&str; 7] =
     ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
-/// Whether a column of exports is called so: nothing of a study may be. [`LEVEL_COLUMNS`] and [`PAIR_COLUMNS`] are only
+/// Whether a column of exports is called so: nothing of a study may be. Columns of blocks ([`LEVEL_COLUMNS`] and the like) are only
 /// taken where there are such blocks.
 pub fn is_reserved_column(name: &str) -> bool {
     name == ASSIGNED_CONDITION

@@ -7,6 +7,7 @@ mod clip_source;
 mod closed_loop;
 pub mod columns;
 mod device;
+mod drawn_face;
 mod instant;
 mod order;
 mod pairs;
@@ -25,6 +26,7 @@ pub use check::{
 pub use clip_source::{ClipSound, ClipSource};
 pub use closed_loop::{ChosenLevel, ClosedLoop, NoLevels, grid, staircase};
 pub use device::{Display, Unmet};
+pub use drawn_face::{DrawnFace, ShownCourse, UnitShapes};
 pub use instant::{instant_ms, iso_time};
 pub use order::{
     Draw, NoOrder, OrderError, OrderedItem, Sides, Stream, drawn_condition, option_order, order,

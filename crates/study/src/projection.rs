@@ -10,7 +10,7 @@ use crate::question::Question;
 use crate::study_file::{
     AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
     DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
-    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
+    ReverseCorrelationBlock,    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
     questions_among,
 };
 
@@ -122,7 +122,7 @@ impl Study {
 }
 
 impl Study {
-    /// The components, adaptive blocks with the clips that they show, blocks of pairs as the trials that they make.
+    /// The components, adaptive blocks with the clips that they show, blocks of reverse correlation with theirs, blocks of pairs as the trials that they make.
     fn projected_components(&self) -> BTreeMap<String, Component> {
         let mut components = self.components.clone();
         for (name, block) in self.trial_blocks() {
@@ -132,11 +132,19 @@ impl Study {
             let block = serde_json::to_value(block).unwrap_or_default();
             components.insert(name.to_owned(), Component::Adaptive(AdaptiveBlock(block)));
         }
+        for (name, block) in self.reverse_correlations() {
+            let block = serde_json::to_value(block).unwrap_or_default();
+            let block = Component::ReverseCorrelation(ReverseCorrelationBlock(block));
+            components.insert(name.to_owned(), block);
+        }
         components
     }
 
     /// Whether a clip is drawn by the browser: not every one is a video.
     fn draws_clips(&self) -> bool {
+        if !self.clips_at_rest().is_empty() {
+            return true;
+        }
         let is_drawn = |avatar: &Avatar| avatar.videos.is_empty();
         let avatars = &self.stimuli.avatars;
         self.clips().iter().any(|clip| avatars.get(&clip.avatar).is_some_and(is_drawn))

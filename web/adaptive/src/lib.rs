@@ -1,5 +1,5 @@
 //! The levels of adaptive blocks in the participant's browser: the answers so far in, the next level out. Studies
-//! with such a block alone load this module.
+//! with such a block, or with one of reverse correlation, alone load this module.
 //!
 //! ```js
 //! const levels = new Levels(JSON.stringify(request)); // what the session's effect ChooseLevel holds
@@ -7,9 +7,18 @@
 //! JSON.parse(levels.next("limit/2"));                 // {event: {type: "level_chosen", ...}, ahead: [clip, ...]}
 //! ```
 //!
+//! And the faces of blocks of reverse correlation:
+//!
+//! ```js
+//! const face = new Face(JSON.stringify({ ...source.face, units: source.units }));
+//! face.weights(); // Float32Array, frames x shapes
+//! ```
+//!
 //! It is the same [`mimique_study::ClosedLoop`] that exports replay, so that the levels have the same bits.
 
-use mimique_study::{AdaptiveComponent, ClosedLoop, Draw};
+use mimique_study::{
+    AdaptiveComponent, ClosedLoop, Draw, DrawnFace, ReverseCorrelationComponent, UnitShapes,
+};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
@@ -83,5 +92,58 @@ impl Levels {
         let after = self.after.get_or_insert_with(|| SIDES.map(|side| closed_loop.after(side)));
         let ahead: Vec<String> = after.iter().flat_map(ClosedLoop::clips).collect();
         json!({ "event": event, "ahead": ahead }).to_string()
+    }
+}
+
+/// A trial of reverse correlation, whose draw it is, and how the avatar shows the units.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct FaceRequest {
+    step: String,
+    block: ReverseCorrelationComponent,
+    seed: u64,
+    config_hash: String,
+    slot: u64,
+    units: UnitShapes,
+}
+
+/// The face of one trial of reverse correlation.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Face(DrawnFace);
+
+#[wasm_bindgen]
+impl Face {
+    /// Draws it; `request`: what the session's `Plan::face` holds, and `units` of the clip at rest, as JSON.
+    ///
+    /// # Errors
+    /// Throws an `Error` whose message says what is wrong with the block; the check of a study refuses it.
+    #[wasm_bindgen(constructor)]
+    pub fn new(request: &str) -> Result<Face, JsError> {
+        let FaceRequest { step, block, seed, config_hash, slot, units } =
+            serde_json::from_str(request)?;
+        let draw = Draw { seed, config_hash: &config_hash, participant: slot, condition: None };
+        let shown = block.trajectories(&step, draw)?;
+        Ok(Self(block.face(&shown, &units)))
+    }
+
+    /// Weights, frames x shapes.
+    pub fn weights(&self) -> Vec<f32> {
+        self.0.weights.iter().map(|&weight| weight as f32).collect()
+    }
+
+    /// Number of frames.
+    pub fn frames(&self) -> usize {
+        self.0.frames
+    }
+
+    /// Frames per second.
+    pub fn rate_hz(&self) -> f64 {
+        self.0.rate_hz
+    }
+
+    /// SHA-256 of the weights before they became 32-bit numbers.
+    pub fn weights_hash(&self) -> String {
+        self.0.weights_hash.clone()
     }
 }

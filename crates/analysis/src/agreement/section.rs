@@ -14,7 +14,7 @@ impl Writer<'_> {
     /// How far people agree about the clips, question by question.
     pub(crate) fn agreement(&mut self, measures: &[(AskedQuestion<'_>, Measure)]) {
         let asked_of_clips = measures.iter().filter(|(asked, _)| {
-            !self.study.is_asked_of_levels(&asked.id)
+            !self.study.is_asked_of_no_clip(&asked.id)
                 && !asked.question.is_some_and(|question| {
                     mimique_study::KindOfQuestion::compares_clips(&question.kind)
                 })

@@ -180,7 +180,7 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
     let asked: Vec<String> = blocks(study).flat_map(|block| block.questions.clone()).collect();
-    let is_asked = |id: &String| asked.contains(id) || study.is_asked_of_levels(id);
+    let is_asked = |id: &String| asked.contains(id) || study.is_asked_of_no_clip(id);
     for question in study.questions.iter().filter(|question| is_asked(&question.id)) {
         measured(text, language, question);
     }

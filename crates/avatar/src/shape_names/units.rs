@@ -52,24 +52,11 @@ impl ActionUnit {
         }
         units
     }
+}
 
-    /// Weights of an avatar's shapes, frames x shapes, from activations, frames x units, 0 to 1. Where units share
-    /// a shape (`AU12`, `AU12_L`) it takes their sum, at most 1.
-    ///
-    /// # Panics
-    /// Where a unit is of another avatar, with more shapes.
-    pub fn weights(units: &[Self], activations: &[f64], shapes: usize) -> Vec<f64> {
-        let mut weights = Vec::new();
-        for row in activations.chunks_exact(units.len().max(1)) {
-            let mut frame = vec![0.0_f64; shapes];
-            for (unit, activation) in units.iter().zip(row) {
-                for &(shape, share) in &unit.shapes {
-                    frame[shape] = (frame[shape] + share * activation).min(1.0);
-                }
-            }
-            weights.extend(frame);
-        }
-        weights
+impl AsRef<[(usize, f64)]> for ActionUnit {
+    fn as_ref(&self) -> &[(usize, f64)] {
+        &self.shapes
     }
 }
 
@@ -105,17 +92,5 @@ mod tests {
         // A funnel of one quarter is no funnel, and there is no jaw.
         assert_eq!(of("AU22"), None);
         assert_eq!((of("AU26"), of("AU25"), of("smirk")), (None, None, None));
-    }
-
-    #[test]
-    fn weights_are_the_activations_by_shares_and_stay_within_one() {
-        let avatar = ["mouthSmileLeft", "mouthSmileRight", "jawOpen", "browInnerUp"];
-        let units: Vec<ActionUnit> = ["AU12", "AU12_L", "AU26", "AU01_R"]
-            .into_iter()
-            .map(|name| ActionUnit::of(name, &avatar).unwrap())
-            .collect();
-        let activations = [0.5, 0.25, 0.0, 1.0, 0.75, 0.75, 0.3, 0.0];
-        let weights = ActionUnit::weights(&units, &activations, avatar.len());
-        assert_eq!(weights, [0.75, 0.5, 0.0, 0.5, 1.0, 0.75, 0.3, 0.0]);
     }
 }

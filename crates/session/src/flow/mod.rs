@@ -18,6 +18,7 @@ mod allowed;
 mod clock;
 mod effect;
 mod ending;
+mod faces;
 mod gate;
 mod input;
 mod levels;

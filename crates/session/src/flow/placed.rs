@@ -10,7 +10,7 @@ use crate::plan::{Panel, TrialStep};
 pub struct PlacedClip {
     /// The canvas: [`OWN_CANVAS`], [`BESIDE_CANVAS`], or that of a place of a panel ([`canvas_of_place`]).
     pub canvas: String,
-    /// Identifier of the clip.
+    /// Identifier of the clip; of a face that is drawn for one trial its step.
     pub clip: String,
 }
 
@@ -36,6 +36,7 @@ impl TrialStep {
             clip: clip.to_owned(),
         };
         let (clip, beside) = self.pair(level);
+        let clip = self.face.as_deref().unwrap_or(clip);
         let beside = beside.map(|(clip, _)| on(BESIDE_CANVAS, clip));
         [on(OWN_CANVAS, clip)].into_iter().chain(beside).collect()
     }

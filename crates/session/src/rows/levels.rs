@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use mimique_study::columns::WEIGHTS_EXPECTED_COLUMN;
 use mimique_study::{AdaptiveComponent, ChosenLevel, ClosedLoop, Draw, component_of};
 use serde_json::Value;
 
@@ -90,6 +91,6 @@ pub(super) fn level_cells(
     let solved = step.attempt.play.as_ref().map(|play| play.weights_hash.as_str());
     let expected = step.clip.as_ref().and_then(|clip| prepared.get(clip));
     if let (Some(solved), Some(expected)) = (solved.filter(|hash| !hash.is_empty()), expected) {
-        cells.put("weights_expected", (solved == expected).into());
+        cells.put(WEIGHTS_EXPECTED_COLUMN.0, (solved == expected).into());
     }
 }

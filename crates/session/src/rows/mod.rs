@@ -12,6 +12,7 @@
 
 mod cells;
 mod column;
+mod faces;
 mod levels;
 mod pairs;
 mod panels;

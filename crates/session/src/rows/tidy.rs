@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::SessionRecord;
 use super::cells::{answer_cells, milliseconds, plain};
 use super::column::{Column, Table};
+use super::faces::{self, face_cells};
 use super::levels::{Blocks, level_cells, replay};
 use super::pairs::{self, chosen_item, pair_cells};
 use super::panels;
@@ -16,7 +17,7 @@ use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
     ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SOUND_COLUMNS,
-    TRACE_COLUMN, TRIGGER_COLUMN,
+    TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN, WEIGHTS_EXPECTED_COLUMN,
 };
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
@@ -47,6 +48,8 @@ pub struct TidyForm {
     pub(super) clips: BTreeMap<String, Clip>,
     /// Adaptive blocks.
     blocks: Blocks,
+    /// The blocks of reverse correlation, by name.
+    faces: faces::Blocks,
     /// The blocks of pairs, by name.
     pairs: pairs::Blocks,
     /// The blocks of panels, by name.
@@ -77,6 +80,7 @@ impl TidyForm {
             study.pair_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
         let panels: panels::Blocks =
             study.panel_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
+        let faces = faces::blocks(study, clips);
         for fixed in FIXED_COLUMNS {
             let name = fixed.0;
             columns.push(column(fixed));
@@ -88,6 +92,12 @@ impl TidyForm {
             }
             if name == "chosen" && !blocks.is_empty() {
                 columns.extend(LEVEL_COLUMNS.map(column));
+            }
+            if name == "chosen" && !faces.is_empty() {
+                columns.push(column(TRAJECTORIES_COLUMN));
+            }
+            if name == "chosen" && !(blocks.is_empty() && faces.is_empty()) {
+                columns.push(column(WEIGHTS_EXPECTED_COLUMN));
             }
             if name == "chosen" && !pairs.is_empty() {
                 columns.extend(PAIR_COLUMNS.map(column));
@@ -123,9 +133,11 @@ impl TidyForm {
                 .clips()
                 .into_iter()
                 .chain(study.level_clips().into_iter().map(|level| level.clip))
+                .chain(study.clips_at_rest().into_iter().map(|(clip, _)| clip))
                 .map(|clip| (clip.id.clone(), clip))
                 .collect(),
             blocks,
+            faces,
             pairs,
             panels,
             weights: weights.collect(),
@@ -164,6 +176,7 @@ impl TidyForm {
             if let Some(replayed) = levels.get(&index) {
                 level_cells(step, replayed, &self.weights, &mut cells);
             }
+            face_cells(step, &self.faces, started, &mut cells);
             pair_cells(step, &self.pairs, &self.clips, &mut cells);
             cells.put("trial_index", index.into());
             cells.put("trial_order", order);

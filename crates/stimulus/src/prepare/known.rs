@@ -57,6 +57,7 @@ pub(super) fn key(study: &Study, places: &Places) -> Option<Provenance> {
             .json("program", program)
             .json("stimuli", serde_json::to_value(&study.stimuli).ok()?)
             .json("levels", level_clips(study))
+            .json("at rest", clips_at_rest(study))
             .json("folder", folder(&places.study).ok()?)
             .json("data", json!(places.data.as_deref().map(folder).transpose().ok()?)),
     )
@@ -66,6 +67,15 @@ pub(super) fn key(study: &Study, places: &Places) -> Option<Provenance> {
 fn level_clips(study: &Study) -> serde_json::Value {
     let clips = study.level_clips();
     json!(clips.iter().map(|level| (&level.clip.id, &level.method.spec)).collect::<Vec<_>>())
+}
+
+/// The clips of blocks of reverse correlation.
+fn clips_at_rest(study: &Study) -> serde_json::Value {
+    let clips = study.clips_at_rest();
+    let of = |(clip, block): &(mimique_study::Clip, mimique_study::ReverseCorrelationComponent)| {
+        json!([clip.id, clip.avatar, block.units, block.duration_seconds])
+    };
+    json!(clips.iter().map(of).collect::<Vec<_>>())
 }
 
 /// What was prepared under this key, if all of its files are what they were and all packs are there.

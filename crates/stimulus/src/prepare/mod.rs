@@ -5,6 +5,7 @@
 //! program: what this very program has prepared of the same stimuli and files is known by hash.
 
 mod advice;
+mod at_rest;
 mod avatar_key;
 mod builtin;
 mod cache;
@@ -127,7 +128,8 @@ pub fn prepare(
     let sources = Sources::new(study, places);
     let clips = study.clips();
     let levels = study.level_clips();
-    let total = clips.len() + levels.len();
+    let at_rest = study.clips_at_rest();
+    let total = clips.len() + levels.len() + at_rest.len();
     let mut ready = BTreeMap::new();
     let mut remarks = Remarks::default();
     for (done, clip) in clips.iter().enumerate() {
@@ -142,6 +144,11 @@ pub fn prepare(
         let spec = Some(&level.method.spec);
         let source = prepare_clip(study, &level.clip, spec, &sources, &cache, &mut remarks)?;
         ready.insert(level.clip.id.clone(), source);
+    }
+    for (done, (clip, block)) in at_rest.iter().enumerate() {
+        progress(Progress { done: clips.len() + levels.len() + done, total, what: &clip.id });
+        let source = at_rest::clip_at_rest(study, clip, block, &sources, &cache)?;
+        ready.insert(clip.id.clone(), source);
     }
     progress(Progress { done: total, total, what: "packs" });
     let mut warnings = remarks.warnings;
@@ -236,6 +243,7 @@ fn prepare_clip(
         look: study.stimuli.avatars[&clip.avatar].look.word().to_owned(),
         video: None,
         sound: None,
+        units: None,
     })
 }
 
@@ -328,6 +336,7 @@ fn prepare_video(
         look: AvatarLook::Stimulus.word().to_owned(),
         video: Some(video.media_type.to_owned()),
         sound: None,
+        units: None,
     })
 }
 

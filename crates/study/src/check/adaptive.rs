@@ -3,12 +3,12 @@
 use mimique_adaptive::{QuestPlus, Staircase};
 use mimique_solver::{Kind, PARAMETERS};
 
-use super::Subject;
+use super::{Subject, compared};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::sequence::read_block;
 use crate::closed_loop::{grid, staircase};
-use crate::columns::LEVEL_COLUMNS;
+use crate::columns::{LEVEL_COLUMNS, WEIGHTS_EXPECTED_COLUMN};
 use crate::question::QuestionKind;
 use crate::study_file::{AdaptiveBlock, AdaptiveComponent, Varied};
 
@@ -98,13 +98,8 @@ fn names(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues
             }
         }
     }
-    let factors = subject.study.factor_names();
-    let about = subject.study.demographics.iter().flat_map(|page| &page.questions);
-    for name in factors.iter().chain(about.map(|question| &question.id)) {
-        if LEVEL_COLUMNS.iter().any(|(column, ..)| column == name) {
-            issues.error(pointer, Problem::LevelColumn { name: name.clone() });
-        }
-    }
+    let columns: Vec<_> = LEVEL_COLUMNS.into_iter().chain([WEIGHTS_EXPECTED_COLUMN]).collect();
+    compared::columns(subject, &columns, pointer, issues);
     if !stimuli.sounds.is_empty() {
         issues.error(pointer, Problem::LevelsWithSound);
     }

@@ -55,11 +55,12 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
 fn asked<'a>(subject: &Subject<'a>, id: &str) -> Vec<Asked<'a>> {
     let names = |ids: &[String]| ids.iter().any(|each| each == id);
     let practice = subject.study.training.iter().filter(|it| names(&it.questions));
-    let blocks = subject.study.trial_blocks();
-    let blocks = blocks.into_iter().filter(|(_, block)| names(&block.questions));
+    let asks = |name: &str| subject.study.questions_of(name).iter().any(|each| each.id == id);
+    let blocks = subject.study.components.iter().filter(|(_, component)| component.is_block());
+    let blocks = blocks.filter(|(name, _)| asks(name));
     practice
         .map(|_| Asked::Practice)
-        .chain(blocks.map(|(name, _)| Asked::Component(name)))
+        .chain(blocks.map(|(name, _)| Asked::Component(name.as_str())))
         .collect()
 }
 
@@ -119,7 +120,7 @@ fn known_before(
         Asked::Practice => study.training.as_ref().map(|it| it.questions.clone()),
         Asked::Component(name) => match study.components.get(name) {
             Some(Component::Questionnaire(it)) => Some(page(&it.questions)),
-            _ => study.trial_block(name).map(|block| block.questions.clone()),
+            _ => Some(study.questions_of(name).iter().map(|each| each.id.clone()).collect()),
         },
     }
     .unwrap_or_default();

@@ -114,6 +114,9 @@ fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
             Component::Trials(block) => block.time_limit.clone(),
             Component::Pairs(block) => block.read().ok().and_then(|block| block.time_limit),
             Component::Panel(block) => block.read().ok().and_then(|block| block.time_limit),
+            Component::ReverseCorrelation(block) => {
+                block.read().ok().and_then(|block| block.time_limit)
+            }
             Component::Questionnaire(page) => page.time_limit.clone(),
             Component::Page(page) => page.time_limit.clone(),
             Component::Adaptive(_) | Component::Break(_) => None,

@@ -26,6 +26,7 @@ mod problem;
 mod questions;
 mod readable;
 mod responses;
+mod reverse_correlation;
 mod scales;
 mod schema;
 mod sequence;

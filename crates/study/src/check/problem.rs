@@ -420,8 +420,6 @@ StopOfStaircase: "adaptive", "a staircase has no posterior whose standard deviat
 StopNotPositive { stop: f64 }: "out-of-range", "a standard deviation of {stop}", "write a number above 0";
 LevelsOfVideos: "adaptive", "the avatar is shown by videos, of which no level can be solved",
     "name an avatar that is drawn";
-LevelColumn { name: String }: "adaptive",
-    "\"{name}\" is the name of a column that exports of adaptive blocks have", "give the factor or the question another name";
 LevelsWithSound: "adaptive", "the study has sounds, with which levels are not combined",
     "remove /stimuli/sounds, or this block";
 NotVaried { parameter: String }: "adaptive", "\"{parameter}\" cannot be varied by answers",
@@ -459,7 +457,7 @@ SeveralWithSound: "several-clips", "clips with sound are shown one a page, or tw
     "show pairs \"inStep\", or remove /stimuli/sounds";
 SeveralWithVideo: "several-clips", "a video has a clock of its own, by which clips in turn and panels cannot go",
     "show pairs \"inStep\", or take \"clips\" that are drawn";
-BlockColumn { name: String }: "several-clips",
+BlockColumn { name: String }: "name-taken",
     "\"{name}\" is the name of a column that exports of such blocks have", "give the factor or the question another name";
 Conditions { conditions: usize, fewest: usize, most: usize }: "panel",
     "a page would show {conditions} conditions, {fewest} to {most} can be", "name the conditions in \"levels\"";
@@ -470,6 +468,19 @@ NoCondition { level: String, conditions: String }: "panel", "\"{level}\" is no c
     "name one of {conditions}";
 ScreensByReference: "panel", "the rule of BS.1534 goes by the hidden reference, and the panel has none",
     "name it: \"reference\"";
+FacesOfVideos: "reverse-correlation", "the avatar is shown by videos, of which no face can be drawn",
+    "name an avatar that is drawn";
+NoActionUnit { unit: String }: "reverse-correlation", "\"{unit}\" is no action unit",
+    "write its number in FACS with two digits: \"AU04\", of one side \"AU04_L\" or \"AU04_R\"";
+NoTrajectories { what: String }: "reverse-correlation", "{what}", "correct what it names";
+NoCategories { question: String }: "reverse-correlation",
+    "\"{question}\" does not say one of several categories in every trial",
+    "name a question of type \"singleChoice\", required, without \"truth\", \"showIf\" and \"attentionCheck\"";
+NoIntensity { question: String }: "reverse-correlation", "\"{question}\" does not say how intense a face is",
+    "name a question of type \"likert\" or \"slider\", answered after the face has moved";
+AskedOfClipsToo { question: String, component: String }: "reverse-correlation",
+    "\"{question}\" is asked in \"{component}\" too: answers about faces that are drawn at random would be mixed with others",
+    "give the block a question of its own";
 SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs itself, evenly",
     "remove \"numSamples\", and write \"schedule\": {{\"rule\": \"incomplete\", \"perParticipant\": …}}";
 NoKey { key: String }: "keys", "\"{key}\" is no key that every keyboard has", "write a letter, a digit, or \"Space\"";
@@ -623,6 +634,9 @@ NoHypotheses: "unknown-reference", "the study has no hypotheses", "state hypothe
 LevelsFollowAnswers { question: String }: "adaptive",
     "\"{question}\" is asked in an adaptive block, whose levels follow its answers: they are of no level alone",
     "leave it out here; the report has the threshold of each person and their mean";
+DrawnAtRandom { question: String }: "reverse-correlation",
+    "\"{question}\" is asked of faces that are drawn at random: its answers are of no clip",
+    "leave it out here; the report has the image of each category";
 NoTruthInTable { response: String }: "no-truth",
     "\"{response}\" has no right answer", "give the question \"truth\"";
 }

@@ -50,7 +50,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
         let blocks = blocks_asking(subject, &question.id);
         let in_training =
             study.training.iter().any(|training| training.questions.contains(&question.id));
-        if blocks.is_empty() && !in_training && !subject.study.is_asked_of_levels(&question.id) {
+        if blocks.is_empty() && !in_training && !subject.study.is_asked_of_no_clip(&question.id) {
             issues.warning(
                 below("/questions", index),
                 Problem::NeverAsked { id: question.id.clone() },

@@ -6,7 +6,7 @@ use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
-use super::{Subject, adaptive, pairs, panel};
+use super::{Subject, adaptive, pairs, panel, reverse_correlation};
 use crate::order::{CYCLES, Draw, Flaw, OrderError, prove};
 use crate::study_file::{
     Beside, Clip, ClipSelection, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
@@ -31,6 +31,9 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             Component::Pairs(block) => pairs::examine(subject, block, &pointer, issues),
             Component::Panel(block) => panel::examine(subject, block, &pointer, issues),
             Component::Adaptive(block) => adaptive::examine(subject, block, &pointer, issues),
+            Component::ReverseCorrelation(block) => {
+                reverse_correlation::examine(subject, block, &pointer, issues);
+            }
             Component::Break(rest) if !(0.0..=3600.0).contains(&rest.minimum_seconds) => {
                 let place = below(&pointer, "minimumSeconds");
                 issues.error(place, Problem::BreakSeconds { seconds: rest.minimum_seconds });
@@ -352,6 +355,7 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
                 let of = subject.study.adaptive().find(|(own, _)| own == name);
                 of.map_or(0, |(_, block)| block.steps)
             }
+            Some(Component::ReverseCorrelation(block)) => block.trials() as usize,
             _ => 0,
         },
     };

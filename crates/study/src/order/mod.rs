@@ -213,17 +213,23 @@ impl<'a> Context<'a> {
             let why = NoOrder::UnknownComponent { name: name.to_owned() };
             return Err(OrderError { pointer: pointer.to_owned(), why });
         };
-        if let Component::Adaptive(block) = component {
-            // Their order is the loop's: they stay together, with room for interruptions between them.
+        // Trials whose clips follow from answers or are drawn: they stay together, with room for interruptions between
+        // them.
+        let numbered = match component {
+            Component::Adaptive(block) => Some((block.steps(), "")),
+            Component::ReverseCorrelation(block) => Some((block.trials(), block.clip())),
+            _ => None,
+        };
+        if let Some((count, clip)) = numbered {
             let trial = |number| OrderedItem::Trial {
                 trial: format!("{name}/{number}"),
                 component: name.to_owned(),
-                clip: String::new(),
+                clip: clip.to_owned(),
                 beside: None,
                 panel: Vec::new(),
                 condition: condition.unwrap_or(name).to_owned(),
             };
-            return Ok(vec![(1..=block.steps()).map(trial).collect()]);
+            return Ok(vec![(1..=count).map(trial).collect()]);
         }
         let Component::Trials(trials) = component else {
             return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);

@@ -215,8 +215,9 @@ impl Study {
 
     /// Every factor that some clip has, in alphabetical order.
     pub fn factor_names(&self) -> Vec<String> {
-        let names: BTreeSet<String> =
-            self.clips().into_iter().flat_map(|clip| clip.factors.into_keys()).collect();
+        let drawn = self.clips_at_rest().into_iter().map(|(clip, _)| clip);
+        let clips = self.clips().into_iter().chain(drawn);
+        let names: BTreeSet<String> = clips.flat_map(|clip| clip.factors.into_keys()).collect();
         names.into_iter().collect()
     }
 }

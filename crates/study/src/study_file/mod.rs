@@ -20,6 +20,7 @@ mod method;
 mod pairs;
 mod panel;
 mod paths;
+mod reverse_correlation;
 mod scales;
 mod sequence;
 mod sound;
@@ -60,6 +61,7 @@ pub use method::{MethodEntry, MethodTraining};
 pub use pairs::{DealtPairs, NoPairs, PairRule, PairSchedule, PairsBlock, PairsComponent};
 pub use panel::{PanelBlock, PanelComponent, PanelExclusion, PanelPage, PanelPages, answer_about};
 pub use paths::{PathError, WrongVariable, resolve_path};
+pub use reverse_correlation::{ReverseCorrelationBlock, ReverseCorrelationComponent};
 pub use scales::CompositeScale;
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, ClipShowing, Component, Constraint, Interruption,
@@ -309,6 +311,7 @@ impl Study {
                     block.read().map_or_else(|_| Vec::new(), |block| shared(&[block.question]))
                 }
                 Some(Component::Adaptive(block)) => shared(&[block.question().to_owned()]),
+                Some(Component::ReverseCorrelation(block)) => shared(&block.questions()),
                 Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
                 _ => Vec::new(),
             },

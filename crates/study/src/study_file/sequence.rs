@@ -19,6 +19,10 @@ pub enum Component {
     Panel(#[schemars(with = "super::PanelComponent")] super::PanelBlock),
     /// A block whose levels follow the answers.
     Adaptive(#[schemars(with = "super::AdaptiveComponent")] super::AdaptiveBlock),
+    /// A block of faces that move at random.
+    ReverseCorrelation(
+        #[schemars(with = "super::ReverseCorrelationComponent")] super::ReverseCorrelationBlock,
+    ),
     /// A page of questions.
     Questionnaire(Questionnaire),
     /// A page to read.
@@ -288,7 +292,7 @@ impl Beside {
 impl Component {
     /// Whether it stands for trials.
     pub fn is_block(&self) -> bool {
-        matches!(self, Self::Trials(_) | Self::Pairs(_) | Self::Panel(_) | Self::Adaptive(_))
+        !matches!(self, Self::Questionnaire(_) | Self::Page(_) | Self::Break(_))
     }
 }
 

@@ -50,7 +50,9 @@ impl Engine {
         if self.prepared.borrow().contains_key(&clip) {
             return self.dispatch(Input::ClipPrepared { clip });
         }
-        let Some(source) = self.clips.get(&clip) else {
+        let face = self.plan.face(&clip);
+        let at_rest = face.as_ref().map_or(&*clip, |(at_rest, _)| *at_rest);
+        let Some(source) = self.clips.get(at_rest) else {
             let message = ["the server has no ", &clip].concat();
             let failure =
                 StageFailure { code: "missing".to_owned(), message, ..Default::default() };
@@ -58,7 +60,13 @@ impl Engine {
         };
         let loaded = match clip.strip_prefix(MEDIA_PREFIX) {
             Some(path) => self.load_media(path, source).await,
-            None => self.load_clip(&clip, source).await,
+            None => {
+                let mut source = source.clone();
+                if let Some((_, drawn_from)) = face {
+                    source["face"] = drawn_from;
+                }
+                self.load_clip(&clip, &source).await
+            }
         };
         match loaded {
             Ok(()) => {

@@ -140,7 +140,7 @@ fn of_measures<'a>(
         .into_iter()
         .filter(|asked| asked.question.is_some_and(|question| question.kind.compares_clips()))
         // What was shown followed the answers: counts of them say nothing of the clips.
-        .filter(|asked| !study.is_asked_of_levels(&asked.id))
+        .filter(|asked| !study.is_asked_of_no_clip(&asked.id))
         .collect();
     let mut parts: Vec<Part<'_, 'a>> = Vec::new();
     for (asked, measure) in recognised {
