@@ -32,6 +32,7 @@
 
 mod agreement;
 mod choices;
+mod faces;
 mod hypothesis;
 mod language;
 mod power;
@@ -60,7 +61,7 @@ pub use power::{
 pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
-    ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
+    ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates, Interaction, NumberAnswer,
     Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Template,
     TemplatePart, TemplatePeople, Times,
 };

@@ -24,6 +24,7 @@ fn templates_of_simulated_people_are_recovered_by_the_analysis() {
         ],
         noise: 0.1,
         criterion: 0.2,
+        otherwise: Some("other".to_owned()),
         seed: 5,
     };
     let categories = ["joy", "surprise", "other"];
@@ -36,7 +37,7 @@ fn templates_of_simulated_people_are_recovered_by_the_analysis() {
             ReverseTrial {
                 person: person as usize,
                 answer: categories.iter().position(|known| *known == category).unwrap(),
-                intensity: Some(f64::from(intensity)),
+                intensity: Some(1.0 + 4.0 * intensity),
                 courses: courses.clone(),
             }
         }));

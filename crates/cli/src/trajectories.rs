@@ -98,6 +98,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// An intensity from 0 to 1 on a scale of 1 to 5.
+fn of_five(intensity: f64) -> u8 {
+    (1.0 + 4.0 * intensity).round() as u8
+}
+
 /// The units that are named, or all.
 fn units(named: &[String]) -> anyhow::Result<Vec<ActionUnit>> {
     if named.is_empty() {
@@ -156,7 +161,8 @@ fn people(args: &Args, units: &[ActionUnit]) -> anyhow::Result<Option<TemplatePe
         }
     }
     let (noise, criterion) = (args.noise, args.criterion);
-    Ok(Some(TemplatePeople { templates, noise, criterion, seed: args.seed }))
+    let otherwise = Some("other".to_owned());
+    Ok(Some(TemplatePeople { templates, noise, criterion, otherwise, seed: args.seed }))
 }
 
 /// `joy=AU06+AU12`, `surprise=AU01@0.35+AU26@0.35`.
@@ -257,7 +263,7 @@ fn courses_csv(
             let answer = answers.as_ref().map(|answers| answers[trial]);
             let answer = answer
                 .into_iter()
-                .flat_map(|(answer, intensity)| [answer.to_owned(), intensity.to_string()]);
+                .flat_map(|(answer, sum)| [answer.to_owned(), of_five(sum).to_string()]);
             let answer: Vec<String> = answer.collect();
             for course in courses {
                 let labels =

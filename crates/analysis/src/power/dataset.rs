@@ -209,6 +209,7 @@ impl<'d> Data<'d> {
             // The order of trials has no part in the study's tests.
             order: None,
             level: None,
+            face: None,
             beside: beside.map(|beside| Beside {
                 clip: self.model.clips[beside.clip].id.as_str().into(),
                 left: beside.left,

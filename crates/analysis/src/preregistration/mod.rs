@@ -6,6 +6,7 @@
 mod analysis;
 mod design;
 mod equivalence;
+mod faces;
 mod levels;
 mod pairs;
 mod panels;

@@ -6,6 +6,7 @@ use mimique_stats::{Confusion, Description, Labelled, Outcome};
 use serde::Serialize;
 
 use crate::agreement::{Agreement, ScaleConsistency};
+use crate::faces::BlockImages;
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::PersonLevel;
@@ -42,6 +43,9 @@ pub(crate) struct Results<'a> {
     /// Of adaptive blocks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub thresholds: Vec<BlockThresholds>,
+    /// Of blocks of reverse correlation.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<BlockImages>,
     /// Of forced choices, category by category.
     pub detection: Vec<QuestionDetection>,
     /// About the clips, question by question.
@@ -74,6 +78,7 @@ impl Results<'_> {
         self.layouts.extend(part.layouts);
         self.late_frames.extend(part.late_frames);
         self.thresholds.extend(part.thresholds);
+        self.faces.extend(part.faces);
         self.detection.extend(part.detection);
         self.agreement.extend(part.agreement);
         self.scales.extend(part.scales);

@@ -160,6 +160,7 @@ impl Parameters {
             comparisons,
             panels: super::panels::defaults(study),
             discrimination: super::levels::defaults(study),
+            templates: super::faces::defaults(study),
             choices,
             numbers,
             times: times(study, &levels),

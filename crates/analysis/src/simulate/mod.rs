@@ -7,6 +7,7 @@
 
 mod defaults;
 mod draws;
+mod faces;
 mod fit;
 mod latent;
 mod levels;
@@ -25,6 +26,7 @@ mod values;
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_study::{OrderError, Study};
 
+pub use faces::{FacePart, FaceTemplates};
 pub(crate) use latent::ClipEffects;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{

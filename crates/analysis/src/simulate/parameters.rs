@@ -7,6 +7,7 @@
 //! | `comparisons` | a question that chooses between two clips each: worths, spreads, side, ties |
 //! | `panels` | a block of panels each: spread of pages, share of people who miss the reference |
 //! | `discrimination` | an adaptive block each: threshold and its spread over people, spread, lapse |
+//! | `templates` | a block of reverse correlation each: the faces that people have in mind, noise, criterion |
 //! | `choices`, `numbers` | how other questions are answered, those about the participant too |
 //! | `times` | log-normal answering times |
 //! | `careless`, `attentionPass`, `dropout` | who does not take part as asked |
@@ -19,6 +20,8 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+use super::faces::FaceTemplates;
 
 /// Level -> number.
 pub type ByLevel = BTreeMap<String, f64>;
@@ -40,6 +43,9 @@ pub struct Parameters {
     /// Adaptive blocks: how people tell levels.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrimination: BTreeMap<String, Discrimination>,
+    /// Blocks of reverse correlation: the faces that people have in mind.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub templates: BTreeMap<String, FaceTemplates>,
     /// Other choices: share of each option.
     pub choices: BTreeMap<String, ByLevel>,
     /// Numbers that are typed.

@@ -27,8 +27,8 @@ pub struct ParametersError {
 pub(super) type Levels = BTreeMap<String, Vec<String>>;
 
 /// Keys whose maps are replaced whole: their own keys are levels, options or places.
-const WHOLE: [&str; 6] =
-    ["effects", "confusion", "personBySd", "thresholds", "interactions", "worth"];
+const WHOLE: [&str; 7] =
+    ["effects", "confusion", "personBySd", "thresholds", "interactions", "worth", "categories"];
 
 impl Parameters {
     /// Reads a parameters file (JSON, comments allowed): what it does not name stays as `base` has it.
@@ -46,6 +46,7 @@ impl Parameters {
             "comparisons",
             "panels",
             "discrimination",
+            "templates",
             "choices",
             "numbers",
         ] {
@@ -100,6 +101,15 @@ impl Parameters {
             if !(0.0..=0.5).contains(&given.lapse) {
                 let problem = format!("{} is no share of lapses", given.lapse);
                 return Err(problem_at(&at("lapse"), problem, "give 0 to 0.5"));
+            }
+        }
+        for (name, block) in study.reverse_correlations() {
+            let asked = study.questions.iter().find(|each| each.id == block.question);
+            let (Some(given), Some(asked)) = (self.templates.get(name), asked) else { continue };
+            let options = asked.kind.options();
+            let options: Vec<&str> = options.iter().map(|option| option.value.as_str()).collect();
+            if let Some((key, problem, remedy)) = given.fault(&block, &options) {
+                return Err(problem_at(&format!("/templates/{name}/{key}"), problem, remedy));
             }
         }
         for (question, shares_given) in &self.choices {

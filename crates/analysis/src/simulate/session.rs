@@ -7,6 +7,7 @@ use mimique_study::{
     Answers, Calibration, Display, KindOfQuestion as _, Multilingual as _, OrderError, TRACE_HZ,
 };
 
+use super::faces::Viewer;
 use super::latent::ClipEffects;
 use super::levels::{Levels, Observer};
 use super::model::Model;
@@ -52,7 +53,8 @@ pub(crate) fn events(
     let levels = Levels::default();
     let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
     let observer = Observer::new(model.parameters, seed, started.participant);
-    let mut walk = Walk { model, seed, person, practice, observer, page, trial: 0 };
+    let viewer = Viewer::new(model.study, model.parameters, seed, started.participant);
+    let mut walk = Walk { model, seed, person, practice, observer, viewer, page, trial: 0 };
     walk.go();
     Ok(walk.page.events)
 }
@@ -109,6 +111,7 @@ struct Walk<'w, 'm> {
     person: Person<'m>,
     practice: Person<'m>,
     observer: Observer,
+    viewer: Viewer,
     page: Page<'w>,
     /// Trials finished.
     trial: usize,
@@ -432,6 +435,10 @@ impl Walk<'_, '_> {
             return;
         }
         let trial = self.page.plan.steps[here].trial();
+        if trial.is_some_and(|trial| trial.face.is_some()) {
+            self.answer_face();
+            return;
+        }
         if let Some(panel) = trial.and_then(|trial| trial.panel.as_deref().cloned()) {
             self.answer_panel(&panel);
             return;
@@ -489,6 +496,36 @@ impl Walk<'_, '_> {
             let value = as_json(&self.model.questions[place], raw);
             self.page.wait(ms);
             self.page.send(Input::Answer { question: question.id.clone(), value });
+        }
+        self.read(500.0);
+    }
+
+    /// What a face is that was drawn for this trial.
+    fn answer_face(&mut self) {
+        let here = self.page.state.record.step;
+        let step = &self.page.plan.steps[here];
+        let careless = self.person.is_careless();
+        let started = &self.page.plan.started;
+        let answers = self.viewer.answers(&step.id, step.questions(), started, careless);
+        for (question, value) in answers.unwrap_or_default() {
+            let Some(asked) = step.questions().iter().find(|each| each.id == question) else {
+                continue;
+            };
+            let record = &self.page.state.record;
+            if !asked.is_shown(&record.drafts, &record.answers) {
+                continue;
+            }
+            let ms = self.person.answering_ms(None);
+            self.page.wait(ms);
+            match (asked.kind.keys(), value.as_str()) {
+                (Some(keys), Some(value)) if keys.contains_key(value) => {
+                    let (value, at_ms) = (value.to_owned(), self.page.now_ms);
+                    self.page.send(Input::Press { question, value, at_ms });
+                }
+                // Not to press is the answer that has no key.
+                (Some(_), _) => {}
+                _ => self.page.send(Input::Answer { question, value }),
+            }
         }
         self.read(500.0);
     }

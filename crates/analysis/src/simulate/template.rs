@@ -1,16 +1,13 @@
 //! A person who has faces in mind: a template for each category, which dynamic reverse correlation must recover.
 //!
 //! What is shown speaks for a category by the mean activation of its template's parts, each a unit at a time (or at
-//! its peak). Normal noise is added to each, the largest sum is answered where it is above the criterion, and "other"
-//! where none is. The intensity, 1 to 5, is in proportion to the largest sum. It is a model of decisions by signal
+//! its peak). Normal noise is added to each, the largest sum is answered where it reaches the criterion, and what stands
+//! for nothing else where none does. The intensity is in proportion to the largest sum. It is a model of decisions by signal
 //! detection, with one normal channel per category.
 
 use mimique_adaptive::Trajectory;
 
 use super::Draws;
-
-/// What is answered where no template is met.
-const OTHER: &str = "other";
 
 /// A part of a template.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +36,8 @@ pub struct TemplatePeople {
     pub noise: f64,
     /// What the largest sum must reach.
     pub criterion: f64,
+    /// What is answered where it does not; the category of the largest sum all the same, if there is nothing else.
+    pub otherwise: Option<String>,
     /// Seed of their noise.
     pub seed: u64,
 }
@@ -55,21 +54,31 @@ impl Template {
 }
 
 impl TemplatePeople {
-    /// What a person (from 1) answers to the trials: category and intensity.
-    pub fn answers<'t>(&'t self, person: u64, trials: &[Vec<Trajectory>]) -> Vec<(&'t str, u8)> {
+    /// What a person (from 1) answers to the trials: category, and intensity from 0 to 1.
+    pub fn answers<'t>(&'t self, person: u64, trials: &[Vec<Trajectory>]) -> Vec<(&'t str, f64)> {
         let mut draws = Draws::new(self.seed, Some(person), "templates");
         let mut one = |shown: &Vec<Trajectory>| {
-            let mut largest = (f64::NEG_INFINITY, OTHER);
-            for template in &self.templates {
-                let sum = template.met(shown) + self.noise * draws.normal();
-                if sum > largest.0 {
-                    largest = (sum, &template.category);
-                }
-            }
-            let (sum, category) = largest;
-            let category = if sum < self.criterion { OTHER } else { category };
-            (category, libm::round(1.0 + 4.0 * sum.clamp(0.0, 1.0)) as u8)
+            let (category, sum) = self.answer(&mut draws, shown);
+            (category.unwrap_or_default(), sum)
         };
         trials.iter().map(&mut one).collect()
+    }
+
+    /// What is answered to one trial: category, and intensity from 0 to 1. No category where nobody has a face in mind.
+    pub(super) fn answer<'t>(
+        &'t self,
+        draws: &mut Draws,
+        shown: &[Trajectory],
+    ) -> (Option<&'t str>, f64) {
+        let mut largest = (f64::NEG_INFINITY, None);
+        for template in &self.templates {
+            let sum = template.met(shown) + self.noise * draws.normal();
+            if sum > largest.0 {
+                largest = (sum, Some(template.category.as_str()));
+            }
+        }
+        let (sum, category) = largest;
+        let otherwise = self.otherwise.as_deref().filter(|_| sum < self.criterion);
+        (otherwise.or(category), sum.clamp(0.0, 1.0))
     }
 }

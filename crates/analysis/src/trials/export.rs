@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use mimique_session::Standing;
 use mimique_stats::Table;
-use mimique_study::{Exclusions, Study};
+use mimique_study::{Exclusions, ShownCourse, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
@@ -70,6 +70,8 @@ pub(crate) struct Trial {
     pub beside: Option<Beside>,
     /// The level, of a trial of an adaptive block.
     pub level: Option<ShownLevel>,
+    /// The face, of a trial of a block of reverse correlation.
+    pub face: Option<ShownFace>,
     /// Place among the person's trials, from 1.
     pub order: Option<usize>,
     /// Value of each of [`Export::factors`].
@@ -91,6 +93,17 @@ pub(crate) struct ShownLevel {
     /// Whether no track counts it.
     pub catch: bool,
     /// Whether seed and answers give the level again.
+    pub replayed: bool,
+}
+
+/// The face of a trial of a block of reverse correlation.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShownFace {
+    /// Name of the component.
+    pub block: Arc<str>,
+    /// The course of each unit that it showed.
+    pub courses: Arc<[ShownCourse]>,
+    /// Whether the weights that were shown are those that the seed gives; true where nothing was drawn.
     pub replayed: bool,
 }
 

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use mimique_stats::Table;
-use mimique_study::{Clip, Exclusions, Study, component_of};
+use mimique_study::{Clip, Exclusions, ShownCourse, Study, component_of};
 
 use crate::trials::column::Column;
 use crate::trials::error::ExportError;
-use crate::trials::export::{Answer, Beside, Export, Person, ShownLevel, Trial, why_left_out};
+use crate::trials::export::{Answer, Beside, Export, Person, ShownFace, ShownLevel, Trial, why_left_out};
 use crate::trials::reason::Reason;
 
 /// Stretches that a file is cut into: more than there are cores, so that none waits long.
@@ -34,6 +34,8 @@ pub(crate) struct TrialReader<'t> {
     level: Column<'t>,
     level_catch: Column<'t>,
     level_replayed: Column<'t>,
+    trajectories: Column<'t>,
+    weights_expected: Column<'t>,
     order: Column<'t>,
     frames: Column<'t>,
     late: Column<'t>,
@@ -118,6 +120,8 @@ impl<'t> TrialReader<'t> {
             level: column("level"),
             level_catch: column("level_catch"),
             level_replayed: column("level_replayed"),
+            trajectories: column("trajectories"),
+            weights_expected: column("weights_expected"),
             order: column("trial_order"),
             frames: column("frames"),
             late: column("frames_late"),
@@ -243,8 +247,20 @@ impl<'t> TrialReader<'t> {
         }))
     }
 
+    /// The face of a trial of a block of reverse correlation; none of others, and of a cell that is no list of courses.
+    fn shown_face(&self, row: usize, texts: &mut Texts<'t>) -> Option<ShownFace> {
+        let courses: Vec<ShownCourse> = serde_json::from_str(self.trajectories.text(row)?).ok()?;
+        let component = self.trial_id.text(row).map_or("", component_of);
+        Some(ShownFace {
+            block: texts.shared(component),
+            courses: courses.into(),
+            replayed: self.weights_expected.text(row) != Some("false"),
+        })
+    }
+
     fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
         let shown = self.shown_level(row, texts)?;
+        let face = self.shown_face(row, texts);
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
         let stimulus = self.stimulus.text(row).unwrap_or_default();
         let left = self.beside_side.text(row) == Some("left");
@@ -258,6 +274,7 @@ impl<'t> TrialReader<'t> {
             stimulus: texts.shared(stimulus),
             segment: self.segments.get(stimulus).cloned(),
             level: shown,
+            face,
             order: self.order.number(row)?.map(|order| order as usize),
             frames: self.frames.number(row)?,
             late: self.late.number(row)?,

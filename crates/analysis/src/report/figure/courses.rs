@@ -5,7 +5,7 @@ use crate::report::figure::svg::{Anchor, Axis, Svg};
 
 /// Colours that the colour-blind tell apart, and that stand on white and on black (Okabe and Ito), each
 /// with its dashes.
-pub(super) const LINES: [(&str, &str); 4] =
+pub(crate) const LINES: [(&str, &str); 4] =
     [("#0072b2", "none"), ("#d55e00", "7 3"), ("#009e73", "2 3"), ("#cc79a7", "8 3 2 3")];
 const PANEL: f64 = 110.0;
 const GAP: f64 = 34.0;

@@ -19,6 +19,7 @@ mod traces;
 pub(crate) use boxes::boxes;
 pub(crate) use confusion::confusion;
 pub use confusion::{ConfusionRow, ConfusionWords, confusion_matrix};
+pub(crate) use courses::LINES;
 pub use courses::{CoursePanel, time_courses};
 pub(crate) use detection::{DetectionPoints, detection_plane};
 pub(crate) use differences::differences;

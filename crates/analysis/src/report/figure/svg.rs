@@ -179,6 +179,7 @@ const STYLE: &str = "\
 .mm-figure .thin{stroke:#0a4f86;stroke-width:1}\
 .mm-figure .box{fill:#cfe1f2;stroke:#0a4f86;stroke-width:1.5}\
 .mm-figure .empty{fill:none;stroke:#c9d0d8;stroke-width:1}\
+.mm-figure .outline{fill:none;stroke:#10151a;stroke-width:1.4}\
 @media screen and (prefers-color-scheme:dark){\
 .mm-figure text{fill:#e8ebee}.mm-figure .soft,.mm-figure .small{fill:#a9b2bc}\
 .mm-figure .on-dark{fill:#fff}.mm-figure .on-light{fill:#10151a}\
@@ -190,6 +191,16 @@ const STYLE: &str = "\
 pub(crate) fn shade(shade: f64) -> String {
     let shade = shade.clamp(0.0, 1.0);
     let channel = |i: usize| (LIGHTEST[i] + (DARKEST[i] - LIGHTEST[i]) * shade).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
+}
+
+/// The colour of a value from -1 (orange) over 0 (nearly white) to 1 (blue): both are told apart by the colour-blind
+/// (Okabe and Ito).
+pub(crate) fn diverging(value: f64) -> String {
+    const MIDDLE: [f64; 3] = [245.0, 245.0, 245.0];
+    let end = if value < 0.0 { [178.0, 72.0, 0.0] } else { [0.0, 88.0, 148.0] };
+    let share = value.abs().clamp(0.0, 1.0);
+    let channel = |i: usize| (MIDDLE[i] + (end[i] - MIDDLE[i]) * share).round() as u8;
     format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
 }
 

@@ -88,9 +88,9 @@ pub(crate) fn write(
         factors: factors_in_use(export, study),
         stimuli,
     };
-    let asked = export.questions(study);
+    let asked = export.questions(study).into_iter();
+    let asked = asked.filter(|asked| !study.is_asked_of_drawn_faces(&asked.id));
     let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
-        .into_iter()
         .filter_map(|asked| {
             let measure = Measure::of_question(export, &asked, language)?;
             Some((asked, measure))
@@ -151,6 +151,7 @@ fn of_measures<'a>(
     }
     parts.push(Box::new(|part| part.panels(measures)));
     parts.push(Box::new(|part| part.thresholds()));
+    parts.push(Box::new(|part| part.faces()));
     for asked in &choices {
         parts.push(Box::new(|part| part.choices(asked)));
     }
