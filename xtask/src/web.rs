@@ -375,8 +375,8 @@ fn minify(esbuild: &Path, files: &mut Vec<(String, Vec<u8>)>) -> Result<()> {
     let mut command = Command::new("node");
     command.arg(esbuild).args(["--bundle", "--format=esm", "--minify", "--charset=utf8"]);
     command.args(["--legal-comments=none", "--log-level=error", "--allow-overwrite"]);
-    // Loaded by studies with sound alone.
-    command.arg("--external:../sound/*");
+    // Loaded by studies with sound, and by those whose faces are drawn, alone.
+    command.args(["--external:../sound/*", "--external:../adaptive/*"]);
     command.arg(format!("--outfile={}", to.join(joined).display())).arg(from.join(joined));
     run_program(&mut command)?;
     files.retain(|(name, _)| !parts.contains(&name.as_str()));

@@ -38,6 +38,7 @@ mod language;
 mod power;
 mod preregistration;
 mod report;
+mod scaling;
 mod simulate;
 mod thresholds;
 mod trials;
@@ -62,7 +63,7 @@ pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates, Interaction, NumberAnswer,
-    Parameters, ParametersError, Rating, Recognition, SimulatedSession, Simulation, Template,
+    Parameters, ParametersError, PerceivedScale, Rating, Recognition, SimulatedSession, Simulation, Template,
     TemplatePart, TemplatePeople, Times,
 };
 pub use trials::error::{ExportError, StimuliError};

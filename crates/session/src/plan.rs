@@ -94,7 +94,7 @@ pub struct TrialStep {
     pub condition: String,
     /// What is played in step beside the clip.
     pub beside: Option<Companion>,
-    /// The panel, where several clips are rated on one scale.
+    /// The panel, where several clips are rated on one scale, or stand beside each other to be told apart.
     pub panel: Option<Box<Panel>>,
     /// What the stage calls its face, where that is drawn for this trial alone ([`Plan::face`]): the step. Empty before
     /// the session, when nobody's draw is known.
@@ -127,7 +127,7 @@ pub struct Panel {
     pub reference: Option<String>,
     /// Whether they are played one after the other.
     pub in_turn: bool,
-    /// Identifier of the question that is asked of each.
+    /// Identifier of the question that is asked of each; empty where none is.
     pub question: String,
     /// What is asked.
     pub prompt: LocalText,
@@ -159,6 +159,22 @@ impl Panel {
             prompt: asked.prompt.clone(),
         };
         Some((panel, questions))
+    }
+
+    /// Clips that stand beside each other and are not rated one by one.
+    fn unrated(clips: &[String]) -> Self {
+        Self {
+            clips: clips.to_vec(),
+            reference: None,
+            in_turn: false,
+            question: String::new(),
+            prompt: LocalText::Plain(String::new()),
+        }
+    }
+
+    /// Whether each of the clips is rated.
+    pub fn is_rated(&self) -> bool {
+        !self.question.is_empty()
     }
 
     /// The clip at a place from 1; 0 is the open reference.
@@ -306,30 +322,22 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     for item in items {
         steps.extend(match item {
             OrderedItem::Trial { trial, component, clip, beside, panel, condition } => {
-                let block = match study.components.get(component) {
-                    Some(Component::Trials(block)) => block,
-                    Some(Component::Adaptive(block)) => {
-                        trials += 1;
-                        let asked = [block.question().to_owned()];
-                        let step = json_trial(study, &block.0, &asked, trials, condition);
-                        let kind = StepKind::Trial(step);
-                        steps.push(Step { id: trial.clone(), kind, time_limit: None });
-                        continue;
-                    }
-                    Some(Component::ReverseCorrelation(block)) => {
-                        trials += 1;
-                        let asked = block.questions();
-                        let mut step = json_trial(study, &block.0, &asked, trials, condition);
-                        step.clip.clone_from(clip);
+                let found = study.components.get(component);
+                if let Some((block, asked)) = found.and_then(as_json) {
+                    trials += 1;
+                    let mut step = json_trial(study, block, &asked, trials, condition);
+                    step.clip.clone_from(clip);
+                    step.panel = (!panel.is_empty()).then(|| Box::new(Panel::unrated(panel)));
+                    if matches!(found, Some(Component::ReverseCorrelation(_))) {
                         let is_drawn = !draw.config_hash.is_empty();
                         step.face = Some(if is_drawn { trial.clone() } else { String::new() });
-                        let time_limit = TimeLimit::deserialize(&block.0["timeLimit"]).ok();
-                        let kind = StepKind::Trial(step);
-                        steps.push(Step { id: trial.clone(), kind, time_limit });
-                        continue;
                     }
-                    _ => continue,
-                };
+                    let time_limit = TimeLimit::deserialize(&block["timeLimit"]).ok();
+                    let kind = StepKind::Trial(step);
+                    steps.push(Step { id: trial.clone(), kind, time_limit });
+                    continue;
+                }
+                let Some(Component::Trials(block)) = found else { continue };
                 trials += 1;
                 let asked = questions(study, &block.questions);
                 let pages = block.panel.as_deref();
@@ -373,6 +381,16 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     steps
 }
 
+/// A block of trials that is carried as JSON, and what it asks.
+fn as_json(component: &Component) -> Option<(&Value, Vec<String>)> {
+    match component {
+        Component::Adaptive(block) => Some((&block.0, vec![block.question().to_owned()])),
+        Component::Scaling(block) => Some((&block.0, vec![block.question().to_owned()])),
+        Component::ReverseCorrelation(block) => Some((&block.0, block.questions())),
+        _ => None,
+    }
+}
+
 /// A trial of a block that is carried as JSON, without its clip.
 fn json_trial(
     study: &StudyProjection,
@@ -412,6 +430,7 @@ fn component_step(id: String, component: &Component) -> Option<Step> {
         | Component::Pairs(_)
         | Component::Panel(_)
         | Component::Adaptive(_)
+        | Component::Scaling(_)
         | Component::ReverseCorrelation(_) => return None,
     };
     Some(Step { id, kind, time_limit })

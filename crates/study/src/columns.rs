@@ -112,14 +112,31 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 6] = {
     ]
 };
 
-/// Of trials whose weights are known without the browser, in exports of studies with adaptive blocks or blocks of
-/// reverse correlation, after `chosen`: name, kind, unit, what it means.
+/// Of trials whose weights are known without the browser, in exports of studies with adaptive blocks, blocks of
+/// difference scaling or reverse correlation, after `chosen`: name, kind, unit, what it means.
 pub const WEIGHTS_EXPECTED_COLUMN: (&str, ColumnKind, &str, &str) = (
     "weights_expected",
     ColumnKind::Boolean,
     "",
     "Whether the weights that the browser showed are those that were solved beforehand, or that the seed gives again",
 );
+
+/// Of trials of blocks of difference scaling, in exports of studies that have such a block, after `chosen`: name, kind,
+/// unit, what it means.
+pub const SCALING_COLUMNS: [(&str, ColumnKind, &str, &str); 2] = [
+    (
+        "scaled_levels",
+        ColumnKind::Text,
+        "",
+        "Of a judgement of differences: the levels of the clips as they stand, a list in JSON",
+    ),
+    (
+        "second_differs_more",
+        ColumnKind::Boolean,
+        "",
+        "Whether the second pair was said to differ more: of three clips the second and the third, of four the last two",
+    ),
+];
 
 /// Of trials of blocks of reverse correlation, in exports of studies that have such a block, after `chosen`: name, kind,
 /// unit, what it means.

@@ -10,7 +10,7 @@ use crate::question::Question;
 use crate::study_file::{
     AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
     DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
-    ReverseCorrelationBlock,    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
+    ReverseCorrelationBlock, ScalingBlock,    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
     questions_among,
 };
 
@@ -131,6 +131,10 @@ impl Study {
         for (name, block) in self.adaptive() {
             let block = serde_json::to_value(block).unwrap_or_default();
             components.insert(name.to_owned(), Component::Adaptive(AdaptiveBlock(block)));
+        }
+        for (name, block) in self.scalings() {
+            let block = serde_json::to_value(block).unwrap_or_default();
+            components.insert(name.to_owned(), Component::Scaling(ScalingBlock(block)));
         }
         for (name, block) in self.reverse_correlations() {
             let block = serde_json::to_value(block).unwrap_or_default();

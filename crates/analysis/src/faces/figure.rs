@@ -85,10 +85,16 @@ fn legend(svg: &mut Svg, words: &ImageWords, most: f64, y: f64) {
 }
 
 /// The mean course of each unit of a face, one line a unit.
-pub(super) fn face(title: &str, courses: &[UnitCourse], lasts_s: f64, seconds: &str) -> String {
+pub(super) fn face(
+    title: &str,
+    courses: &[UnitCourse],
+    lasts_s: f64,
+    [activation, seconds]: [&str; 2],
+) -> String {
     let keys = courses.len().div_ceil(5) as f64;
-    let (top, bottom) = (24.0 + 18.0 * keys, 180.0 + 18.0 * keys);
+    let (top, bottom) = (40.0 + 18.0 * keys, 196.0 + 18.0 * keys);
     let mut svg = Svg::new(title, bottom + 40.0);
+    svg.text(LEFT, top - 12.0, "strong", Anchor::Start, activation);
     let height = Axis::new(0.0, 1.0, bottom, top);
     for value in &height.ticks {
         let y = height.place(*value);

@@ -195,8 +195,8 @@ impl Writer<'_> {
         );
         let bins = found.images.times_s.len();
         let width = found.images.times_s.first().map_or(1.0, |first| 2.0 * first);
-        let seconds = language.pick("seconds", "secondes");
-        let svg = face(&caption, courses, width * bins as f64, seconds);
+        let axes = language.pick(["activation", "seconds"], ["activation", "secondes"]);
+        let svg = face(&caption, courses, width * bins as f64, axes);
         let names = courses.iter().map(|course| course.unit.clone());
         let columns = ["frame".to_owned(), "time".to_owned()].into_iter().chain(names);
         let mut data = DataTable::new(&id, &caption, columns);

@@ -210,6 +210,7 @@ impl<'d> Data<'d> {
             order: None,
             level: None,
             face: None,
+            scaled: None,
             beside: beside.map(|beside| Beside {
                 clip: self.model.clips[beside.clip].id.as_str().into(),
                 left: beside.left,

@@ -8,7 +8,7 @@ use mimique_stats::{
 };
 use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
-use super::{Preregistration, Text, equivalence, faces, levels};
+use super::{Preregistration, Text, equivalence, faces, levels, scaling};
 use crate::hypothesis::is_two_way;
 use crate::language::Language;
 use crate::language::naming::Naming;
@@ -23,6 +23,7 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     }
     text.line("");
     levels::analysis(text, study);
+    scaling::analysis(text, study);
     faces::analysis(text, study);
     text.both(
         "All are computed by `mimique analyze` on the export, with this study file.",

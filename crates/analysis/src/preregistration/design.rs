@@ -8,7 +8,7 @@ use mimique_study::{
     Study,
 };
 
-use super::{Preregistration, Text, faces, levels, pairs, panels};
+use super::{Preregistration, Text, faces, levels, pairs, panels, scaling};
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::simulate::factor_levels;
@@ -177,6 +177,7 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
     pairs::design(text, study, language, naming);
     panels::design(text, study, language, naming);
     levels::design(text, study, language);
+    scaling::design(text, study, language);
     faces::design(text, study, language);
     text.heading(3, "Measured variables", "Variables mesurées");
     text.both("After each clip:", "Après chaque extrait :");
@@ -268,6 +269,9 @@ fn trials_in(study: &Study, sequence: &Sequence, clips: &[Clip], condition: Opti
                 study.adaptive().find(|(own, _)| own == name).map_or(0, |(_, block)| block.steps)
             }
             Some(Component::ReverseCorrelation(block)) => block.trials() as usize,
+            Some(Component::Scaling(block)) => {
+                block.read().map_or(0, |block| block.trials as usize)
+            }
             _ => 0,
         },
     };

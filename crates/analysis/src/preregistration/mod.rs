@@ -10,6 +10,7 @@ mod faces;
 mod levels;
 mod pairs;
 mod panels;
+mod scaling;
 
 use std::fmt::Write;
 

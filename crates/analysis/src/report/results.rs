@@ -19,6 +19,7 @@ use crate::report::section::layouts::LayoutCell;
 use crate::report::section::panels::PanelResult;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::report::section::traces::MeanTraces;
+use crate::scaling::BlockScale;
 use crate::thresholds::BlockThresholds;
 use crate::trials::export::{Flow, Person};
 
@@ -43,6 +44,9 @@ pub(crate) struct Results<'a> {
     /// Of adaptive blocks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub thresholds: Vec<BlockThresholds>,
+    /// Of blocks of difference scaling.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub scalings: Vec<BlockScale>,
     /// Of blocks of reverse correlation.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<BlockImages>,
@@ -78,6 +82,7 @@ impl Results<'_> {
         self.layouts.extend(part.layouts);
         self.late_frames.extend(part.late_frames);
         self.thresholds.extend(part.thresholds);
+        self.scalings.extend(part.scalings);
         self.faces.extend(part.faces);
         self.detection.extend(part.detection);
         self.agreement.extend(part.agreement);

@@ -160,6 +160,7 @@ impl Parameters {
             comparisons,
             panels: super::panels::defaults(study),
             discrimination: super::levels::defaults(study),
+            scaling: super::scaling::defaults(study),
             templates: super::faces::defaults(study),
             choices,
             numbers,

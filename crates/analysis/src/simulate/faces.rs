@@ -44,7 +44,7 @@ pub struct FacePart {
 /// Units of the six emotions (Ekman, Friesen and Hager, *FACS Investigator's Guide*, 2002, table 10-1: prototypes and
 /// their most common variants), by the words that answers are called in studies.
 const PROTOTYPES: [(&[&str], &[&str]); 6] = [
-    (&["anger", "angry"], &["AU04", "AU05", "AU07", "AU23"]),
+    (&["anger", "angry"], &["AU04", "AU05", "AU07", "AU23", "AU24"]),
     (&["disgust", "disgusted"], &["AU09", "AU15", "AU16"]),
     (&["fear", "afraid"], &["AU01", "AU02", "AU04", "AU05", "AU20", "AU26"]),
     (&["joy", "happiness", "happy"], &["AU06", "AU12"]),

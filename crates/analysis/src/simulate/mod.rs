@@ -19,6 +19,7 @@ mod person;
 mod random;
 mod read;
 mod scales;
+mod scaling;
 mod session;
 mod template;
 mod values;
@@ -37,6 +38,7 @@ pub(crate) use person::{BEFORE_REPLAY_MS, Companion, Person, Raw, as_json};
 pub(crate) use random::Draws;
 pub use read::ParametersError;
 pub(crate) use scales::{factor_levels, traits};
+pub use scaling::PerceivedScale;
 pub(crate) use session::eighths;
 pub use template::{Template, TemplatePart, TemplatePeople};
 

@@ -7,6 +7,7 @@
 //! | `comparisons` | a question that chooses between two clips each: worths, spreads, side, ties |
 //! | `panels` | a block of panels each: spread of pages, share of people who miss the reference |
 //! | `discrimination` | an adaptive block each: threshold and its spread over people, spread, lapse |
+//! | `scaling` | a block of difference scaling each: range and exponent of what is perceived, lapse |
 //! | `templates` | a block of reverse correlation each: the faces that people have in mind, noise, criterion |
 //! | `choices`, `numbers` | how other questions are answered, those about the participant too |
 //! | `times` | log-normal answering times |
@@ -22,6 +23,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::faces::FaceTemplates;
+use super::scaling::PerceivedScale;
 
 /// Level -> number.
 pub type ByLevel = BTreeMap<String, f64>;
@@ -43,6 +45,9 @@ pub struct Parameters {
     /// Adaptive blocks: how people tell levels.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrimination: BTreeMap<String, Discrimination>,
+    /// Blocks of difference scaling: what people perceive of the levels.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub scaling: BTreeMap<String, PerceivedScale>,
     /// Blocks of reverse correlation: the faces that people have in mind.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub templates: BTreeMap<String, FaceTemplates>,

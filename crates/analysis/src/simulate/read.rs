@@ -46,6 +46,7 @@ impl Parameters {
             "comparisons",
             "panels",
             "discrimination",
+            "scaling",
             "templates",
             "choices",
             "numbers",
@@ -101,6 +102,11 @@ impl Parameters {
             if !(0.0..=0.5).contains(&given.lapse) {
                 let problem = format!("{} is no share of lapses", given.lapse);
                 return Err(problem_at(&at("lapse"), problem, "give 0 to 0.5"));
+            }
+        }
+        for (name, given) in &self.scaling {
+            if let Some((key, problem, remedy)) = given.fault() {
+                return Err(problem_at(&format!("/scaling/{name}/{key}"), problem, remedy));
             }
         }
         for (name, block) in study.reverse_correlations() {

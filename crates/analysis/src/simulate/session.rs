@@ -12,6 +12,7 @@ use super::latent::ClipEffects;
 use super::levels::{Levels, Observer};
 use super::model::Model;
 use super::panels::RatedPage;
+use super::scaling::Judge;
 use super::person::{BEFORE_REPLAY_MS, Companion, Person, Raw, Showing, as_json};
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
@@ -54,7 +55,9 @@ pub(crate) fn events(
     let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
     let observer = Observer::new(model.parameters, seed, started.participant);
     let viewer = Viewer::new(model.study, model.parameters, seed, started.participant);
-    let mut walk = Walk { model, seed, person, practice, observer, viewer, page, trial: 0 };
+    let judge = Judge::new(model.study, model.parameters, seed, started.participant);
+    let mut walk =
+        Walk { model, seed, person, practice, observer, viewer, judge, page, trial: 0 };
     walk.go();
     Ok(walk.page.events)
 }
@@ -112,6 +115,7 @@ struct Walk<'w, 'm> {
     practice: Person<'m>,
     observer: Observer,
     viewer: Viewer,
+    judge: Judge,
     page: Page<'w>,
     /// Trials finished.
     trial: usize,
@@ -440,7 +444,10 @@ impl Walk<'_, '_> {
             return;
         }
         if let Some(panel) = trial.and_then(|trial| trial.panel.as_deref().cloned()) {
-            self.answer_panel(&panel);
+            match panel.is_rated() {
+                true => self.answer_panel(&panel),
+                false => self.answer_differences(&panel),
+            }
             return;
         }
         let Some(clip) = self.model.clip(clip) else { return };
@@ -526,6 +533,24 @@ impl Walk<'_, '_> {
                 (Some(_), _) => {}
                 _ => self.page.send(Input::Answer { question, value }),
             }
+        }
+        self.read(500.0);
+    }
+
+    /// Which of two pairs of clips differ more.
+    fn answer_differences(&mut self, panel: &Panel) {
+        let here = self.page.state.record.step;
+        let step = &self.page.plan.steps[here];
+        let careless = self.person.is_careless();
+        let second = self.judge.second_differs_more(&step.id, &panel.clips, careless);
+        let asked = step.questions().first();
+        if let (Some(second), Some(asked)) = (second, asked)
+            && let Some(option) = asked.kind.options().get(usize::from(second))
+        {
+            let ms = self.person.answering_ms(None);
+            self.page.wait(ms);
+            let (question, value) = (asked.id.clone(), option.value.as_str().into());
+            self.page.send(Input::Answer { question, value });
         }
         self.read(500.0);
     }

@@ -72,6 +72,8 @@ pub(crate) struct Trial {
     pub level: Option<ShownLevel>,
     /// The face, of a trial of a block of reverse correlation.
     pub face: Option<ShownFace>,
+    /// Of a judgement of differences: name of the block, and the levels as they stood.
+    pub scaled: Option<(Arc<str>, Arc<[f64]>)>,
     /// Place among the person's trials, from 1.
     pub order: Option<usize>,
     /// Value of each of [`Export::factors`].

@@ -36,6 +36,7 @@ pub(crate) struct TrialReader<'t> {
     level_replayed: Column<'t>,
     trajectories: Column<'t>,
     weights_expected: Column<'t>,
+    scaled_levels: Column<'t>,
     order: Column<'t>,
     frames: Column<'t>,
     late: Column<'t>,
@@ -122,6 +123,7 @@ impl<'t> TrialReader<'t> {
             level_replayed: column("level_replayed"),
             trajectories: column("trajectories"),
             weights_expected: column("weights_expected"),
+            scaled_levels: column("scaled_levels"),
             order: column("trial_order"),
             frames: column("frames"),
             late: column("frames_late"),
@@ -258,9 +260,17 @@ impl<'t> TrialReader<'t> {
         })
     }
 
+    /// The levels of a judgement of differences; none of other trials, and of a cell that is no list of numbers.
+    fn scaled(&self, row: usize, texts: &mut Texts<'t>) -> Option<(Arc<str>, Arc<[f64]>)> {
+        let levels: Vec<f64> = serde_json::from_str(self.scaled_levels.text(row)?).ok()?;
+        let component = self.trial_id.text(row).map_or("", component_of);
+        Some((texts.shared(component), levels.into()))
+    }
+
     fn trial(&self, row: usize, texts: &mut Texts<'t>) -> Result<Trial, ExportError> {
         let shown = self.shown_level(row, texts)?;
         let face = self.shown_face(row, texts);
+        let scaled = self.scaled(row, texts);
         let mut level = |own: &Column<'t>| own.text(row).map(|level| texts.shared(level));
         let stimulus = self.stimulus.text(row).unwrap_or_default();
         let left = self.beside_side.text(row) == Some("left");
@@ -275,6 +285,7 @@ impl<'t> TrialReader<'t> {
             segment: self.segments.get(stimulus).cloned(),
             level: shown,
             face,
+            scaled,
             order: self.order.number(row)?.map(|order| order as usize),
             frames: self.frames.number(row)?,
             late: self.late.number(row)?,

@@ -264,7 +264,7 @@ impl Screen<'_> {
             })
         };
         let figures = panel.places().filter_map(figure).collect();
-        PanelView { prompt: self.text(&panel.prompt), figures }
+        PanelView { is_rated: panel.is_rated(), prompt: self.text(&panel.prompt), figures }
     }
 
     fn end(&self) -> View {

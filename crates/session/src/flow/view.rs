@@ -244,6 +244,8 @@ pub struct BesideView {
 /// Several clips that are rated on one scale.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PanelView {
+    /// Whether each clip is rated.
+    pub is_rated: bool,
     /// What is asked of each; the questions of the trial have the clips' letters as prompts.
     pub prompt: String,
     /// The clips as they stand: the open reference, where there is one, then A, B, C.

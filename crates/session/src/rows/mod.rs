@@ -17,6 +17,7 @@ mod levels;
 mod pairs;
 mod panels;
 mod psych_ds;
+mod scaling;
 mod step_cells;
 mod study_columns;
 mod tidy;

@@ -11,12 +11,13 @@ use super::faces::{self, face_cells};
 use super::levels::{Blocks, level_cells, replay};
 use super::pairs::{self, chosen_item, pair_cells};
 use super::panels;
+use super::scaling::Scalings;
 use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
-    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SOUND_COLUMNS,
+    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SCALING_COLUMNS, SOUND_COLUMNS,
     TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN, WEIGHTS_EXPECTED_COLUMN,
 };
 use mimique_study::{
@@ -50,6 +51,8 @@ pub struct TidyForm {
     blocks: Blocks,
     /// The blocks of reverse correlation, by name.
     faces: faces::Blocks,
+    /// The blocks of difference scaling.
+    scalings: Scalings,
     /// The blocks of pairs, by name.
     pairs: pairs::Blocks,
     /// The blocks of panels, by name.
@@ -81,6 +84,7 @@ impl TidyForm {
         let panels: panels::Blocks =
             study.panel_blocks().map(|(name, block)| (name.to_owned(), block)).collect();
         let faces = faces::blocks(study, clips);
+        let scalings = Scalings::of(study);
         for fixed in FIXED_COLUMNS {
             let name = fixed.0;
             columns.push(column(fixed));
@@ -96,7 +100,11 @@ impl TidyForm {
             if name == "chosen" && !faces.is_empty() {
                 columns.push(column(TRAJECTORIES_COLUMN));
             }
-            if name == "chosen" && !(blocks.is_empty() && faces.is_empty()) {
+            if name == "chosen" && !scalings.is_empty() {
+                columns.extend(SCALING_COLUMNS.map(column));
+            }
+            let is_known = !(blocks.is_empty() && faces.is_empty() && scalings.is_empty());
+            if name == "chosen" && is_known {
                 columns.push(column(WEIGHTS_EXPECTED_COLUMN));
             }
             if name == "chosen" && !pairs.is_empty() {
@@ -138,6 +146,7 @@ impl TidyForm {
                 .collect(),
             blocks,
             faces,
+            scalings,
             pairs,
             panels,
             weights: weights.collect(),
@@ -177,6 +186,7 @@ impl TidyForm {
                 level_cells(step, replayed, &self.weights, &mut cells);
             }
             face_cells(step, &self.faces, started, &mut cells);
+            self.scalings.cells(step, &self.weights, &mut cells);
             pair_cells(step, &self.pairs, &self.clips, &mut cells);
             cells.put("trial_index", index.into());
             cells.put("trial_order", order);

@@ -1,9 +1,8 @@
 //! Adaptive blocks: what is varied, between which levels, by which rule, and which question tells right from wrong.
 
 use mimique_adaptive::{QuestPlus, Staircase};
-use mimique_solver::{Kind, PARAMETERS};
 
-use super::{Subject, compared};
+use super::{Subject, compared, levels};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::sequence::read_block;
@@ -20,8 +19,8 @@ const MOST_CLIPS: usize = 1000;
 const MOST_TRIALS: f64 = 1000.0;
 const MOST_TRACKS: f64 = 8.0;
 
-/// Numbers of the methods' table that say when a face moves, not how: levels of them are not solved yet.
-const NOT_VARIED: [&str; 2] = ["delayMs", "lowpassHz"];
+/// The higher a low-pass, the less it can be seen: no rule goes that way yet.
+const FALLS: &str = "lowpassHz";
 
 pub(super) fn examine(
     subject: &Subject<'_>,
@@ -32,7 +31,16 @@ pub(super) fn examine(
     let Some(block) = read_block(block.read(), pointer, issues) else { return };
     let before = issues.count();
     ranges(&block, pointer, issues);
-    names(subject, &block, pointer, issues);
+    let named = [("method", &block.method), ("against", &block.against)];
+    let parameter = (block.vary.parameter.as_str(), "vary/parameter");
+    levels::names(subject, &named, (&block.avatar, &block.segments), parameter, pointer, issues);
+    if block.vary.parameter == FALLS {
+        let parameter = block.vary.parameter.clone();
+        let place = below(&below(pointer, "vary"), "parameter");
+        issues.error(place, Problem::NotVaried { parameter });
+    }
+    let columns: Vec<_> = LEVEL_COLUMNS.into_iter().chain([WEIGHTS_EXPECTED_COLUMN]).collect();
+    compared::columns(subject, &columns, pointer, issues);
     question(subject, &block, pointer, issues);
     if issues.count() > before {
         return;
@@ -62,55 +70,6 @@ fn ranges(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
         } else if stop <= 0.0 || !stop.is_finite() {
             issues.error(below(pointer, "stopSd"), Problem::StopNotPositive { stop });
         }
-    }
-}
-
-fn names(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
-    let stimuli = &subject.study.stimuli;
-    for (key, name) in [("method", &block.method), ("against", &block.against)] {
-        if !stimuli.methods.contains_key(name) {
-            let problem = Problem::unknown("method", name, stimuli.methods.keys());
-            issues.error(below(pointer, key), problem);
-        }
-    }
-    for (index, segment) in block.segments.iter().enumerate() {
-        let place = below(&below(pointer, "segments"), index);
-        if !stimuli.segments.iter().any(|each| each.id == *segment) {
-            let known = stimuli.segments.iter().map(|each| &each.id);
-            issues.error(place, Problem::unknown("segment", segment, known));
-        } else if block.segments[..index].contains(segment) {
-            issues.error(place, Problem::NamedTwice { name: segment.clone() });
-        }
-    }
-    match &block.avatar {
-        Some(avatar) if !stimuli.avatars.contains_key(avatar) => {
-            let problem = Problem::unknown("avatar", avatar, stimuli.avatars.keys());
-            issues.error(below(pointer, "avatar"), problem);
-        }
-        None if stimuli.avatars.len() > 1 => {
-            issues.error(pointer, Problem::MissingKey { key: "avatar".to_owned() });
-        }
-        given => {
-            let avatar = given.as_ref().or_else(|| stimuli.avatars.keys().next());
-            let videos = avatar.and_then(|avatar| stimuli.avatars.get(avatar));
-            if videos.is_some_and(|avatar| !avatar.videos.is_empty()) {
-                issues.error(pointer, Problem::LevelsOfVideos);
-            }
-        }
-    }
-    let columns: Vec<_> = LEVEL_COLUMNS.into_iter().chain([WEIGHTS_EXPECTED_COLUMN]).collect();
-    compared::columns(subject, &columns, pointer, issues);
-    if !stimuli.sounds.is_empty() {
-        issues.error(pointer, Problem::LevelsWithSound);
-    }
-    let parameter = block.vary.parameter.as_str();
-    let place = below(&below(pointer, "vary"), "parameter");
-    let numbers = || PARAMETERS.iter().filter(|each| each.kind == Kind::Number);
-    if NOT_VARIED.contains(&parameter) {
-        issues.error(place, Problem::NotVaried { parameter: parameter.to_owned() });
-    } else if !numbers().any(|each| each.key == parameter) {
-        let known = numbers().map(|each| each.key);
-        issues.error(place, Problem::unknown("parameter", parameter, known));
     }
 }
 
@@ -168,18 +127,10 @@ fn rule(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
 
 fn clips(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
     let study = subject.study;
-    for level in [block.vary.from, block.vary.to] {
-        let Some(entry) = study.stimuli.methods.get(&block.method) else { return };
-        let mut spec = serde_json::to_value(&entry.spec).unwrap_or_default();
-        spec[&block.vary.parameter] = level.into();
-        if let Err(faults) = mimique_solver::MethodSpec::checked(&spec) {
-            let what = faults.first().map_or_else(String::new, |fault| {
-                format!("\"{}\" {}", fault.field, fault.message())
-            });
-            let remedy = faults.first().map_or_else(String::new, |fault| fault.remedy());
-            issues.error(below(pointer, "vary"), Problem::LevelNotSolved { what, remedy });
-            return;
-        }
+    let (parameter, levels) = (&block.vary.parameter, [block.vary.from, block.vary.to]);
+    let place = below(pointer, "vary");
+    if !levels::are_solved(subject, (&block.method, parameter), &levels, &place, issues) {
+        return;
     }
     let segments = match block.segments.len() {
         0 => study.stimuli.segments.len(),

@@ -117,6 +117,7 @@ fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
             Component::ReverseCorrelation(block) => {
                 block.read().ok().and_then(|block| block.time_limit)
             }
+            Component::Scaling(block) => block.read().ok().and_then(|block| block.time_limit),
             Component::Questionnaire(page) => page.time_limit.clone(),
             Component::Page(page) => page.time_limit.clone(),
             Component::Adaptive(_) | Component::Break(_) => None,

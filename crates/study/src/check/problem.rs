@@ -468,6 +468,12 @@ NoCondition { level: String, conditions: String }: "panel", "\"{level}\" is no c
     "name one of {conditions}";
 ScreensByReference: "panel", "the rule of BS.1534 goes by the hidden reference, and the panel has none",
     "name it: \"reference\"";
+LevelsNotAscending: "scaling", "the levels do not ascend", "write each once, from the lowest to the highest";
+LevelCount { levels: usize, fewest: usize, most: usize }: "scaling",
+    "{levels} levels", "take {fewest} to {most}";
+NoJudgement { question: String }: "scaling",
+    "\"{question}\" does not say which of two pairs differ more",
+    "name a question of type \"singleChoice\" with two options in the order of the file, required, without \"truth\", \"showIf\", \"keys\" and \"attentionCheck\"";
 FacesOfVideos: "reverse-correlation", "the avatar is shown by videos, of which no face can be drawn",
     "name an avatar that is drawn";
 NoActionUnit { unit: String }: "reverse-correlation", "\"{unit}\" is no action unit",
@@ -478,8 +484,8 @@ NoCategories { question: String }: "reverse-correlation",
     "name a question of type \"singleChoice\", required, without \"truth\", \"showIf\" and \"attentionCheck\"";
 NoIntensity { question: String }: "reverse-correlation", "\"{question}\" does not say how intense a face is",
     "name a question of type \"likert\" or \"slider\", answered after the face has moved";
-AskedOfClipsToo { question: String, component: String }: "reverse-correlation",
-    "\"{question}\" is asked in \"{component}\" too: answers about faces that are drawn at random would be mixed with others",
+AskedOfClipsToo { question: String, component: String }: "several-blocks",
+    "\"{question}\" is asked in \"{component}\" too: answers of blocks of different types would be mixed",
     "give the block a question of its own";
 SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs itself, evenly",
     "remove \"numSamples\", and write \"schedule\": {{\"rule\": \"incomplete\", \"perParticipant\": …}}";
@@ -634,6 +640,9 @@ NoHypotheses: "unknown-reference", "the study has no hypotheses", "state hypothe
 LevelsFollowAnswers { question: String }: "adaptive",
     "\"{question}\" is asked in an adaptive block, whose levels follow its answers: they are of no level alone",
     "leave it out here; the report has the threshold of each person and their mean";
+JudgesDifferences { question: String }: "scaling",
+    "\"{question}\" says which of two differences is larger: its answers are of no clip",
+    "leave it out here; the report has the scale of the levels";
 DrawnAtRandom { question: String }: "reverse-correlation",
     "\"{question}\" is asked of faces that are drawn at random: its answers are of no clip",
     "leave it out here; the report has the image of each category";

@@ -28,6 +28,10 @@ pub(super) fn tested<'s>(
         issues.error(place, Problem::LevelsFollowAnswers { question: question.id.clone() });
         return None;
     }
+    if study.is_asked_of_scales(&question.id) {
+        issues.error(place, Problem::JudgesDifferences { question: question.id.clone() });
+        return None;
+    }
     if study.is_asked_of_drawn_faces(&question.id) {
         issues.error(place, Problem::DrawnAtRandom { question: question.id.clone() });
         return None;

@@ -21,6 +21,7 @@ pub(super) fn examine(
     issues: &mut Issues,
 ) {
     let Some(block) = read_block(block.read(), pointer, issues) else { return };
+    let before = issues.count();
     let mut range = |key: &str, value: f64, unit, least: f64, most: f64| {
         if !(least..=most).contains(&value) {
             let problem = Problem::OutOfRange { value, unit, least, most };
@@ -29,8 +30,13 @@ pub(super) fn examine(
     };
     range("trials", f64::from(block.trials), "trials", 1.0, MOST_TRIALS);
     range("durationSeconds", block.duration_seconds, "s", 0.2, LONGEST_S);
-    avatar(subject, &block, pointer, issues);
     units(&block, pointer, issues);
+    if issues.count() == before
+        && let Err(error) = block.design().check()
+    {
+        issues.error(pointer, Problem::NoTrajectories { what: error.to_string() });
+    }
+    avatar(subject, &block, pointer, issues);
     questions(subject, &block, pointer, issues);
     let columns = [TRAJECTORIES_COLUMN, WEIGHTS_EXPECTED_COLUMN];
     compared::columns(subject, &columns, pointer, issues);
@@ -58,7 +64,7 @@ fn avatar(
     }
 }
 
-/// Every unit has a name of FACS, and trajectories can be drawn.
+/// Every unit has a name of FACS.
 fn units(block: &ReverseCorrelationComponent, pointer: &str, issues: &mut Issues) {
     let list = below(pointer, "units");
     for (index, unit) in block.units.iter().enumerate() {
@@ -67,9 +73,6 @@ fn units(block: &ReverseCorrelationComponent, pointer: &str, issues: &mut Issues
         } else if block.units[..index].contains(unit) {
             issues.error(below(&list, index), Problem::NamedTwice { name: unit.clone() });
         }
-    }
-    if let Err(error) = block.design().check() {
-        issues.error(pointer, Problem::NoTrajectories { what: error.to_string() });
     }
 }
 
@@ -87,6 +90,7 @@ fn questions(
     pointer: &str,
     issues: &mut Issues,
 ) {
+    let is_own = |component: &Component| matches!(component, Component::ReverseCorrelation(_));
     let place = below(pointer, "question");
     if let Some(question) = shared(subject, &block.question, &place, issues) {
         let is_choice = matches!(question.kind, QuestionKind::SingleChoice(_));
@@ -95,7 +99,7 @@ fn questions(
         if !(is_choice && is_whole && is_plain) {
             issues.error(&place, Problem::NoCategories { question: question.id.clone() });
         }
-        asked_elsewhere(subject, question, &place, issues);
+        asked_elsewhere(subject, question, is_own, &place, issues);
     }
     let Some(intensity) = &block.intensity else { return };
     let place = below(pointer, "intensity");
@@ -108,12 +112,12 @@ fn questions(
         if !is_scale || question.attention_check.is_some() {
             issues.error(&place, Problem::NoIntensity { question: question.id.clone() });
         }
-        asked_elsewhere(subject, question, &place, issues);
+        asked_elsewhere(subject, question, is_own, &place, issues);
     }
 }
 
 /// One of the study's questions.
-fn shared<'s>(
+pub(super) fn shared<'s>(
     subject: &Subject<'s>,
     id: &str,
     place: &str,
@@ -128,10 +132,16 @@ fn shared<'s>(
     found
 }
 
-/// Answers about faces that are drawn at random are not mixed with answers about clips.
-fn asked_elsewhere(subject: &Subject<'_>, question: &Question, place: &str, issues: &mut Issues) {
+/// Answers of blocks of one type are not mixed with those of others.
+pub(super) fn asked_elsewhere(
+    subject: &Subject<'_>,
+    question: &Question,
+    is_own: impl Fn(&Component) -> bool,
+    place: &str,
+    issues: &mut Issues,
+) {
     let is_asked = |(name, component): (&String, &Component)| {
-        !matches!(component, Component::ReverseCorrelation(_))
+        !is_own(component)
             && subject.study.questions_of(name).iter().any(|asked| asked.id == question.id)
     };
     if let Some((name, _)) = subject.study.components.iter().find(|each| is_asked(*each)) {

@@ -6,7 +6,7 @@ use super::between::{self, Named, shown_before};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
-use super::{Subject, adaptive, pairs, panel, reverse_correlation};
+use super::{Subject, adaptive, pairs, panel, reverse_correlation, scaling};
 use crate::order::{CYCLES, Draw, Flaw, OrderError, prove};
 use crate::study_file::{
     Beside, Clip, ClipSelection, Component, OrderRule, Sequence, SequenceItem, TrialsComponent,
@@ -31,6 +31,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             Component::Pairs(block) => pairs::examine(subject, block, &pointer, issues),
             Component::Panel(block) => panel::examine(subject, block, &pointer, issues),
             Component::Adaptive(block) => adaptive::examine(subject, block, &pointer, issues),
+            Component::Scaling(block) => scaling::examine(subject, block, &pointer, issues),
             Component::ReverseCorrelation(block) => {
                 reverse_correlation::examine(subject, block, &pointer, issues);
             }
@@ -356,6 +357,9 @@ fn trial_count(subject: &Subject<'_>, sequence: &Sequence, condition: Option<&st
                 of.map_or(0, |(_, block)| block.steps)
             }
             Some(Component::ReverseCorrelation(block)) => block.trials() as usize,
+            Some(Component::Scaling(block)) => {
+                block.read().map_or(0, |block| block.trials as usize)
+            }
             _ => 0,
         },
     };

@@ -26,6 +26,7 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         avatars::examine(avatar, &pointer, lookup, issues);
     }
     avatars::videos(subject, issues);
+    needed(subject, issues);
     let only_played = only_played(subject);
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
@@ -52,6 +53,26 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     factors(subject, issues);
     look(subject, issues);
     unused(subject, issues);
+}
+
+/// What every study has whose clips are of captures: all but those whose faces move at random alone.
+fn needed(subject: &Subject<'_>, issues: &mut Issues) {
+    let study = subject.study;
+    let is_drawn = |block: &Component| matches!(block, Component::ReverseCorrelation(_));
+    let mut blocks = study.components.values().filter(|component| component.is_block());
+    let stimuli = &study.stimuli;
+    if study.training.is_none() && !blocks.clone().any(|block| !is_drawn(block)) && blocks.any(is_drawn) {
+        return;
+    }
+    for (key, is_missing) in [
+        ("captures", stimuli.captures.is_empty()),
+        ("segments", stimuli.segments.is_empty()),
+        ("methods", stimuli.methods.is_empty()),
+    ] {
+        if is_missing {
+            issues.error("/stimuli", Problem::MissingKey { key: key.to_owned() });
+        }
+    }
 }
 
 pub(super) fn identifier(name: &str, pointer: &str, issues: &mut Issues) {
@@ -432,11 +453,15 @@ fn unused(subject: &Subject<'_>, issues: &mut Issues) {
         }
     };
     for name in stimuli.avatars.keys() {
-        let used = subject.clips.iter().any(|clip| clip.avatar == *name);
+        let at_rest = || subject.study.clips_at_rest().iter().any(|(clip, _)| clip.avatar == *name);
+        let used = subject.clips.iter().any(|clip| clip.avatar == *name) || at_rest();
         complain(name, "avatar", used, below("/stimuli/avatars", name));
     }
     for name in stimuli.methods.keys() {
-        let varied = || subject.study.adaptive().any(|(_, block)| block.method == *name);
+        let varied = || {
+            subject.study.adaptive().any(|(_, block)| block.method == *name)
+                || subject.study.scalings().any(|(_, block)| block.method == *name)
+        };
         let used = subject.clips.iter().any(|clip| clip.method == *name) || varied();
         complain(name, "method", used, below("/stimuli/methods", name));
     }

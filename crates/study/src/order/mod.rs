@@ -18,6 +18,7 @@ mod latin_square;
 mod proof;
 mod rotation;
 mod samples;
+mod scaling_sets;
 mod sides;
 mod stream;
 mod subset;
@@ -230,6 +231,18 @@ impl<'a> Context<'a> {
                 condition: condition.unwrap_or(name).to_owned(),
             };
             return Ok(vec![(1..=count).map(trial).collect()]);
+        }
+        if let Component::Scaling(block) = component {
+            let trial = |(place, clips): (usize, Vec<String>)| OrderedItem::Trial {
+                trial: format!("{name}/{}", place + 1),
+                component: name.to_owned(),
+                clip: clips.first().cloned().unwrap_or_default(),
+                beside: None,
+                panel: clips,
+                condition: condition.unwrap_or(name).to_owned(),
+            };
+            let shown = scaling_sets::scaling_sets(&block.0, name, self.draw);
+            return Ok(vec![shown.into_iter().enumerate().map(trial).collect()]);
         }
         let Component::Trials(trials) = component else {
             return Ok(vec![vec![OrderedItem::Component { component: name.to_owned() }]]);

@@ -58,7 +58,7 @@ pub struct AdaptiveComponent {
     pub steps: usize,
 }
 
-fn is_none_at_all(count: &usize) -> bool {
+pub(super) fn is_none_at_all(count: &usize) -> bool {
     *count == 0
 }
 
@@ -203,6 +203,8 @@ pub struct LevelClip {
     pub clip: Clip,
     /// Its method, the parameter at its level.
     pub method: MethodEntry,
+    /// The level.
+    pub level: f64,
     /// Component that shows it.
     pub component: String,
 }
@@ -230,61 +232,88 @@ impl Study {
             .any(|each| matches!(each, Component::Adaptive(block) if block.question() == question))
     }
 
-    /// Of each segment of a block: the clip of its method without a level, and what is shown.
-    fn shown(&self, block: &AdaptiveComponent) -> Vec<(Clip, ShownSegment)> {
-        let clips = self.clips();
+    /// The clip of each of the segments (all of them if none is named) by a method, of an avatar (the only one if none
+    /// is named): what levels are varied of.
+    pub(super) fn varied(
+        &self,
+        avatar: Option<&String>,
+        segments: &[String],
+        method: &str,
+    ) -> Vec<Clip> {
         let avatars = &self.stimuli.avatars;
         let only = || avatars.keys().next().filter(|_| avatars.len() == 1);
-        let Some(avatar) = block.avatar.as_ref().or_else(only) else { return Vec::new() };
+        let Some(avatar) = avatar.or_else(only) else { return Vec::new() };
+        let clips = self.clips();
         let several = clips.iter().any(|clip| clip.avatar != clips[0].avatar);
         let taken = self.stimuli.segments.iter();
-        let taken =
-            taken.filter(|each| block.segments.is_empty() || block.segments.contains(&each.id));
+        let taken = taken.filter(|each| segments.is_empty() || segments.contains(&each.id));
         let of = |segment: &super::Segment| {
             let entry = ClipEntry {
                 avatar: avatar.clone(),
                 segment: segment.id.clone(),
-                method: block.method.clone(),
+                method: method.to_owned(),
                 sound: None,
             };
-            let varied = self.clip(&entry, several)?;
+            self.clip(&entry, several)
+        };
+        taken.filter_map(of).collect()
+    }
+
+    /// Of each segment of a block: the clip of its method without a level, and what is shown.
+    fn shown(&self, block: &AdaptiveComponent) -> Vec<(Clip, ShownSegment)> {
+        let clips = self.clips();
+        let of = |varied: Clip| {
             let is_other = |clip: &&Clip| {
-                clip.segment == segment.id && clip.method == block.against && clip.avatar == *avatar
+                clip.segment == varied.segment
+                    && clip.method == block.against
+                    && clip.avatar == varied.avatar
             };
             let against = clips.iter().find(is_other)?.id.clone();
             let levels = format!("{}@{}=", varied.id, block.vary.parameter);
             Some((varied, ShownSegment { levels, against }))
         };
-        taken.filter_map(of).collect()
+        let varied = self.varied(block.avatar.as_ref(), &block.segments, &block.method);
+        varied.into_iter().filter_map(of).collect()
     }
 
-    /// The clips of every level of every adaptive block, in the order of components, segments and levels.
+    /// The clips of every level of every adaptive block and every block of difference scaling, in the order of
+    /// components, segments and levels.
     pub fn level_clips(&self) -> Vec<LevelClip> {
         let mut all: Vec<LevelClip> = Vec::new();
-        for (component, block) in self.adaptive() {
-            for (varied, shown) in self.shown(&block) {
-                for level in block.vary.all() {
-                    let id = format!("{}{level}", shown.levels);
-                    let Some(method) = self.method_at(&block, level) else { continue };
-                    if all.iter().any(|known| known.clip.id == id) {
-                        continue;
-                    }
-                    let mut clip = Clip { id, ..varied.clone() };
-                    if block.vary.parameter == "alpha" {
-                        clip.factors.insert("alpha".to_owned(), FactorValue::Number(level));
-                    }
-                    all.push(LevelClip { clip, method, component: component.to_owned() });
+        let mut add = |component: &str, varied: &Clip, parameter: &str, levels: &[f64]| {
+            for &level in levels {
+                let id = format!("{}@{parameter}={level}", varied.id);
+                let Some(method) = self.method_at(&varied.method, parameter, level) else {
+                    continue;
+                };
+                if all.iter().any(|known| known.clip.id == id) {
+                    continue;
                 }
+                let mut clip = Clip { id, ..varied.clone() };
+                if parameter == "alpha" {
+                    clip.factors.insert("alpha".to_owned(), FactorValue::Number(level));
+                }
+                all.push(LevelClip { clip, method, level, component: component.to_owned() });
+            }
+        };
+        for (component, block) in self.adaptive() {
+            for (varied, _) in self.shown(&block) {
+                add(component, &varied, &block.vary.parameter, &block.vary.all());
+            }
+        }
+        for (component, block) in self.scalings() {
+            for varied in self.varied(block.avatar.as_ref(), &block.segments, &block.method) {
+                add(component, &varied, &block.parameter, &block.levels);
             }
         }
         all
     }
 
-    /// The method of a block with its parameter at a level; none where there is no such method or parameter.
-    pub fn method_at(&self, block: &AdaptiveComponent, level: f64) -> Option<MethodEntry> {
-        let entry = self.stimuli.methods.get(&block.method)?;
+    /// A method with a parameter at a level; none where there is no such method or parameter.
+    fn method_at(&self, method: &str, parameter: &str, level: f64) -> Option<MethodEntry> {
+        let entry = self.stimuli.methods.get(method)?;
         let mut spec = serde_json::to_value(&entry.spec).ok()?;
-        spec[&block.vary.parameter] = level.into();
+        spec[parameter] = level.into();
         let spec = mimique_solver::MethodSpec::checked(&spec).ok()?;
         Some(MethodEntry { spec, ..entry.clone() })
     }

@@ -22,6 +22,7 @@ mod panel;
 mod paths;
 mod reverse_correlation;
 mod scales;
+mod scaling;
 mod sequence;
 mod sound;
 mod stimuli;
@@ -62,6 +63,7 @@ pub use pairs::{DealtPairs, NoPairs, PairRule, PairSchedule, PairsBlock, PairsCo
 pub use panel::{PanelBlock, PanelComponent, PanelExclusion, PanelPage, PanelPages, answer_about};
 pub use paths::{PathError, WrongVariable, resolve_path};
 pub use reverse_correlation::{ReverseCorrelationBlock, ReverseCorrelationComponent};
+pub use scaling::{ScalingBlock, ScalingComponent, ScalingRule};
 pub use scales::CompositeScale;
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, ClipShowing, Component, Constraint, Interruption,
@@ -312,6 +314,7 @@ impl Study {
                 }
                 Some(Component::Adaptive(block)) => shared(&[block.question().to_owned()]),
                 Some(Component::ReverseCorrelation(block)) => shared(&block.questions()),
+                Some(Component::Scaling(block)) => shared(&[block.question().to_owned()]),
                 Some(Component::Questionnaire(page)) => page.questions.iter().collect(),
                 _ => Vec::new(),
             },

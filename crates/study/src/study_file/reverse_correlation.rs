@@ -137,7 +137,9 @@ impl Study {
 
     /// Whether a question's answers are about no clip of the list: levels follow answers, or faces are drawn at random.
     pub fn is_asked_of_no_clip(&self, question: &str) -> bool {
-        self.is_asked_of_levels(question) || self.is_asked_of_drawn_faces(question)
+        self.is_asked_of_levels(question)
+            || self.is_asked_of_scales(question)
+            || self.is_asked_of_drawn_faces(question)
     }
 
     /// The avatar of a block of reverse correlation, by its key.

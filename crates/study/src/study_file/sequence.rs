@@ -19,6 +19,8 @@ pub enum Component {
     Panel(#[schemars(with = "super::PanelComponent")] super::PanelBlock),
     /// A block whose levels follow the answers.
     Adaptive(#[schemars(with = "super::AdaptiveComponent")] super::AdaptiveBlock),
+    /// A block of which differences between levels are larger.
+    Scaling(#[schemars(with = "super::ScalingComponent")] super::ScalingBlock),
     /// A block of faces that move at random.
     ReverseCorrelation(
         #[schemars(with = "super::ReverseCorrelationComponent")] super::ReverseCorrelationBlock,

@@ -52,8 +52,8 @@ pub fn trial(engine: &Engine, trial: &TrialView, watched: &WatchedClip) -> Eleme
         let fields = el("fieldset", "bare")
             .flag("disabled", !trial.can_answer)
             .all(match &trial.panel {
-                Some(panel) => panel_questions(engine, panel, &trial.questions),
-                None => question_list(engine, &trial.questions),
+                Some(panel) if panel.is_rated => panel_questions(engine, panel, &trial.questions),
+                _ => question_list(engine, &trial.questions),
             })
             .with(submit(&trial.button.label));
         form().with(fields)

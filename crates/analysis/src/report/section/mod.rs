@@ -89,7 +89,9 @@ pub(crate) fn write(
         stimuli,
     };
     let asked = export.questions(study).into_iter();
-    let asked = asked.filter(|asked| !study.is_asked_of_drawn_faces(&asked.id));
+    let is_apart =
+        |id: &str| study.is_asked_of_drawn_faces(id) || study.is_asked_of_scales(id);
+    let asked = asked.filter(|asked| !is_apart(&asked.id));
     let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
         .filter_map(|asked| {
             let measure = Measure::of_question(export, &asked, language)?;
@@ -151,6 +153,7 @@ fn of_measures<'a>(
     }
     parts.push(Box::new(|part| part.panels(measures)));
     parts.push(Box::new(|part| part.thresholds()));
+    parts.push(Box::new(|part| part.scalings()));
     parts.push(Box::new(|part| part.faces()));
     for asked in &choices {
         parts.push(Box::new(|part| part.choices(asked)));

@@ -1,0 +1,62 @@
+//! Blocks of difference scaling in the report: how a perceived difference grows with the parameter.
+
+mod figure;
+mod section;
+
+use std::collections::HashMap;
+
+use mimique_stats::{DifferenceJudgement, DifferenceScale, Outcome, difference_scaling};
+use mimique_study::{KindOfQuestion as _, ScalingComponent, ScalingRule, Study};
+use serde::Serialize;
+
+use crate::trials::export::{Answer, Export};
+
+/// Draws of people for the intervals.
+pub(crate) const ROUNDS: usize = 2000;
+
+/// The scale of a block.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct BlockScale {
+    /// Name of the component.
+    pub block: String,
+    /// The parameter.
+    pub parameter: String,
+    /// Of all people together.
+    pub scale: Outcome<DifferenceScale>,
+}
+
+/// The scale of every block of difference scaling whose question was answered about three levels or more.
+pub(crate) fn scales(export: &Export, study: &Study) -> Vec<BlockScale> {
+    let of = |(name, block): (&str, ScalingComponent)| {
+        let judgements = judgements(export, study, name, &block);
+        let scale = difference_scaling(&judgements, ROUNDS, study.seed).ok()?;
+        Some(BlockScale { block: name.to_owned(), parameter: block.parameter, scale })
+    };
+    study.scalings().filter_map(of).collect()
+}
+
+fn judgements(
+    export: &Export,
+    study: &Study,
+    name: &str,
+    block: &ScalingComponent,
+) -> Vec<DifferenceJudgement> {
+    let question = study.questions.iter().find(|question| question.id == block.question);
+    let Some([first, second]) = question.map(|question| question.kind.options()) else {
+        return Vec::new();
+    };
+    let mut places: HashMap<usize, usize> = HashMap::new();
+    let mut judged = |answer: &Answer| {
+        let (own, levels) = export.trials[answer.trial].scaled.as_ref()?;
+        let levels = ScalingRule::pairs(levels).filter(|_| &**own == name)?;
+        let second_differs_more = match &*answer.text {
+            text if *text == *second.value => true,
+            text if *text == *first.value => false,
+            _ => return None,
+        };
+        let next = places.len();
+        let participant = *places.entry(answer.person).or_insert(next);
+        Some(DifferenceJudgement { participant, levels, second_differs_more })
+    };
+    export.answers_to(&block.question).iter().filter_map(&mut judged).collect()
+}
