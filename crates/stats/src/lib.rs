@@ -88,7 +88,7 @@ pub use test::mann_whitney::{MannWhitney, mann_whitney};
 pub use test::min_f::{MinFPrime, RepeatedMeasuresF, min_f_prime};
 pub use test::mixed_model::{
     MIXED_MODEL_CATEGORIES, MIXED_MODEL_LEVELS, MixedCoefficient, MixedEffectRatio,
-    MixedGroupingRatio, MixedModel, MixedModelOptions, MixedPair, mixed_model,
+    MixedGroupingRatio, MixedModel, MixedModelOptions, MixedPair, MixedShares, mixed_model,
 };
 pub use test::panel::{Panel, PanelOptions, PanelRatings, ScreenedPerson, panel};
 pub use test::psychometric::{
