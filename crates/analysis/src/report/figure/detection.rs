@@ -15,6 +15,10 @@ const GAP: f64 = 30.0;
 /// Below a panel: its ticks, and the title of the next.
 const BELOW: f64 = 52.0;
 
+/// Width of a letter and height of a line of names, about.
+const NAME_LETTER: f64 = 6.0;
+const NAME_LINE: f64 = 12.0;
+
 /// A category: its mean, or that of all answers together, and its people; each a criterion and a d'.
 pub(crate) struct DetectionPoints {
     pub name: String,
@@ -109,6 +113,7 @@ fn draw(
     for [c, d] in panel.categories.iter().flat_map(|own| &own.people) {
         svg.circle(across.place(*c), up.place(*d), 2.5, "dot");
     }
+    let mut taken: Vec<[f64; 4]> = Vec::new();
     for own in &panel.categories {
         let [c, d] = own.mean;
         let (x, y) = (across.place(c), up.place(d));
@@ -116,6 +121,23 @@ fn draw(
         // Names stay inside of the drawing.
         let (anchor, beside) =
             if x > (left + right) / 2.0 { (Anchor::End, -9.0) } else { (Anchor::Start, 9.0) };
+        let width = NAME_LETTER * own.name.chars().count() as f64;
+        let edge = if beside < 0.0 { x + beside - width } else { x + beside };
+        let y = free_line(&mut taken, [edge, edge + width], y);
         svg.text(x + beside, y + 4.0, "small", anchor, &own.name);
     }
+}
+
+/// The height nearest to `y` at which a name covers no other one; it is taken from then on.
+fn free_line(taken: &mut Vec<[f64; 4]>, [from, to]: [f64; 2], y: f64) -> f64 {
+    let is_free = |y: f64| {
+        taken.iter().all(|[left, right, low, high]| {
+            to < *left || *right < from || y + NAME_LINE <= *low + 1e-9 || *high <= y + 1e-9
+        })
+    };
+    let steps = (0..20).flat_map(|step| [f64::from(step), -f64::from(step)]);
+    let mut lines = steps.map(|step| y + step * NAME_LINE / 2.0);
+    let free = lines.find(|line| is_free(*line)).unwrap_or(y);
+    taken.push([from, to, free, free + NAME_LINE]);
+    free
 }

@@ -9,6 +9,9 @@ use crate::report::figure::stacked::{answer_key, stacked_bar};
 use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
 use crate::report::figure::{LEFT, RIGHT};
 
+/// Left edge beside the names of random terms, which are long.
+const NAMES: f64 = 146.0;
+
 /// Two stacked bars for each level: of the model, and of the answers.
 pub(crate) fn model_shares(
     language: Language,
@@ -73,7 +76,7 @@ pub(crate) fn deviations(
     let bottom = top + (height + gap) * terms.len() as f64;
     // Where all are 0 there is still an axis.
     let most = terms.iter().map(|(_, sd)| *sd).fold(0.1, f64::max);
-    let axis = Axis::new(0.0, most, LEFT, RIGHT - 40.0);
+    let axis = Axis::new(0.0, most, NAMES, RIGHT - 40.0);
     let mut svg = Svg::new(caption, bottom + 42.0);
     for &tick in &axis.ticks {
         let x = axis.place(tick);
@@ -81,14 +84,14 @@ pub(crate) fn deviations(
         let text = language.fixed(tick, axis.decimals);
         svg.text(x, bottom + 16.0, "small", Anchor::Middle, &text);
     }
-    svg.text((LEFT + RIGHT) / 2.0, bottom + 34.0, "small", Anchor::Middle, headings[1]);
+    svg.text((NAMES + RIGHT) / 2.0, bottom + 34.0, "small", Anchor::Middle, headings[1]);
     let mut data = DataTable::new(id, caption, headings);
     let mut spoken = Vec::new();
     for (place, (name, sd)) in terms.iter().enumerate() {
         let y = top + (height + gap) * place as f64;
         let text = language.fixed(*sd, 2);
-        svg.text(LEFT - 10.0, y + height / 2.0 + 4.5, "small", Anchor::End, &clipped(name, 20));
-        svg.class_rect([LEFT, y, axis.place(*sd) - LEFT, height], "box");
+        svg.text(NAMES - 10.0, y + height / 2.0 + 4.5, "small", Anchor::End, &clipped(name, 22));
+        svg.class_rect([NAMES, y, axis.place(*sd) - NAMES, height], "box");
         let beside = axis.place(*sd) + 6.0;
         svg.text(beside, y + height / 2.0 + 4.5, "strong", Anchor::Start, &text);
         spoken.push(format!("{name} {text}"));

@@ -19,6 +19,7 @@ pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod stimulus_measures;
 pub(crate) mod timing;
+pub(crate) mod trace_tests;
 pub(crate) mod traces;
 
 use std::collections::{BTreeMap, BTreeSet};
