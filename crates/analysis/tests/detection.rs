@@ -104,7 +104,7 @@ fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
             let people = &own["at"][method]["of_people"];
             let mean = people["d_prime_mean"].as_f64().unwrap();
             assert!((mean - planted).abs() < 0.3, "{method}: {mean}, planted {planted}");
-            assert_eq!(own["at"][method]["each"].as_array().unwrap().len(), 14);
+            assert_eq!(own["at"][method]["each"].as_object().unwrap().len(), 14);
             mean
         });
         let pair = &own["compared"]["d_prime"]["pairs"][0];

@@ -123,8 +123,12 @@ fn draw(
             if x > (left + right) / 2.0 { (Anchor::End, -9.0) } else { (Anchor::Start, 9.0) };
         let width = NAME_LETTER * own.name.chars().count() as f64;
         let edge = if beside < 0.0 { x + beside - width } else { x + beside };
-        let y = free_line(&mut taken, [edge, edge + width], y);
-        svg.text(x + beside, y + 4.0, "small", anchor, &own.name);
+        let line = free_line(&mut taken, [edge, edge + width], y);
+        if (line - y).abs() > NAME_LINE / 2.0 {
+            // A name that stands elsewhere is joined to its diamond.
+            svg.line([x, y], [x + beside, line], "thin");
+        }
+        svg.text(x + beside, line + 4.0, "small", anchor, &own.name);
     }
 }
 

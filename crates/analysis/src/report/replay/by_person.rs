@@ -25,7 +25,7 @@ impl Collector {
                     let key = format!("{key}:{}:{}", by.factor, category.category);
                     for (level, at) in category.at.iter() {
                         let levels = [level.to_owned()];
-                        let people = at.each.len();
+                        let people = at.each.0.len();
                         let of = (by.factor.as_str(), levels.as_slice());
                         let key = format!("{key}:{level}");
                         self.category(key, &own.response, of, people, &at.detection);

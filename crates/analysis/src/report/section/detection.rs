@@ -73,14 +73,15 @@ impl Writer<'_> {
         self.results.detection.push(result);
     }
 
-    /// Detection among some of the answers.
+    /// Detection among some of the answers, told by their places.
     pub(crate) fn detected(
         &self,
         asked: &AskedQuestion<'_>,
-        is_counted: impl Fn(&Answer) -> bool,
+        is_counted: impl Fn(usize) -> bool,
     ) -> Option<Detection> {
-        let answers = self.export.answers_to(&asked.id).iter();
-        let answers: Vec<&Answer> = answers.filter(|answer| is_counted(answer)).collect();
+        let answers = self.export.answers_to(&asked.id).iter().enumerate();
+        let counted = answers.filter(|(place, _)| is_counted(*place));
+        let answers: Vec<&Answer> = counted.map(|(_, answer)| answer).collect();
         let people = answers.iter().map(|own| Some(self.export.people[own.person].id.as_str()));
         let people = Factor::from_cells("participant", people, |_| None);
         let shown = answers.iter().map(|own| own.truth.as_deref());

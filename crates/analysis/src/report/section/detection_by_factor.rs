@@ -39,7 +39,8 @@ pub(crate) struct CategoryByFactor {
 pub(crate) struct DetectionAtLevel {
     #[serde(flatten)]
     pub detection: CategoryDetection,
-    pub each: Vec<PersonSensitivity>,
+    /// d' and criterion of each person with answers at this level; none where no signal or no noise was shown.
+    pub each: Labelled<Option<[f64; 2]>>,
 }
 
 /// The levels compared within people.
@@ -98,14 +99,13 @@ impl Writer<'_> {
         asked: &AskedQuestion<'_>,
         factor: &str,
     ) -> Option<Vec<(String, Detection)>> {
-        let levels = self.factor_of_answers(asked, factor).levels;
-        let detected = |level: String| {
-            let found = self.detected(asked, |answer| {
-                self.export.level(answer, factor) == Some(level.as_str())
-            })?;
-            Some((level, found))
+        let factor = self.factor_of_answers(asked, factor);
+        let detected = |(code, level): (usize, &String)| {
+            let found = self.detected(asked, |place| factor.codes[place] as usize == code)?;
+            Some((level.clone(), found))
         };
-        (levels.len() > 1).then(|| levels.into_iter().map(detected).collect()).flatten()
+        let levels = &factor.levels;
+        (levels.len() > 1).then(|| levels.iter().enumerate().map(detected).collect()).flatten()
     }
 
     fn levels_table(
@@ -218,7 +218,7 @@ fn of_factor(response: &str, factor: &str, found: &[(String, Detection)]) -> Det
         });
         let at = at.into_iter().map(|own| DetectionAtLevel {
             detection: CategoryDetection::of(own),
-            each: own.people.clone(),
+            each: Labelled(own.people.iter().map(of_person).collect()),
         });
         let at = Labelled::zip(&levels, at);
         Some(CategoryByFactor { category: category.to_owned(), at, compared })
@@ -229,6 +229,11 @@ fn of_factor(response: &str, factor: &str, found: &[(String, Detection)]) -> Det
         categories: categories.filter_map(|own| of_category(&own.category)).collect(),
         levels,
     }
+}
+
+fn of_person(person: &PersonSensitivity) -> (String, Option<[f64; 2]>) {
+    let found = person.sensitivity.map(|own| [own.d_prime, own.criterion]);
+    (person.participant.clone(), found)
 }
 
 /// A number of each person at each level, of the people who have all of them.

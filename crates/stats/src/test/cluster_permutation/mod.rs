@@ -26,8 +26,10 @@ use crate::refusal::Refusal;
 use crate::undefined::NoEstimate;
 pub(crate) use procedure::PROCEDURE;
 
-/// Share of the sum of squares below which a spread is rounding; t is then that of this spread, and not infinite.
-const NO_SPREAD: f64 = 1e-12;
+/// Least sum of squares about the mean, of the largest sum of squares of any instant: a spread below a thousandth of
+/// the largest difference counts as that thousandth. Else t is infinite where everybody differs by the same, as happens
+/// when a slider has moved by one step, and that one instant outweighs all others.
+const LEAST_SPREAD: f64 = 1e-6;
 
 /// How the draws are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,10 +105,11 @@ pub fn cluster_permutation(
     let threshold = t_quantile_upper(0.025, participants as f64 - 1.0);
     let squares: Vec<f64> =
         (0..instants).map(|t| differences.iter().map(|own| own[t] * own[t]).sum()).collect();
+    let least = LEAST_SPREAD * squares.iter().fold(0.0, |most: f64, own| most.max(*own));
     let t_of = |sums: &[f64]| -> Vec<f64> {
         sums.iter()
             .zip(&squares)
-            .map(|(sum, squares)| paired_t(*sum, *squares, participants))
+            .map(|(sum, squares)| paired_t(*sum, *squares, least, participants))
             .collect()
     };
     let summed = |sums: &mut [f64], sign: &mut dyn FnMut() -> f64| {
@@ -150,13 +153,14 @@ pub fn cluster_permutation(
     }))
 }
 
-/// t of differences from their sum and the sum of their squares, which no change of signs changes.
-fn paired_t(sum: f64, squares: f64, people: usize) -> f64 {
+/// t of differences from their sum and the sum of their squares, which no change of signs changes; the squares about
+/// the mean are taken to be `least` at least.
+fn paired_t(sum: f64, squares: f64, least: f64, people: usize) -> f64 {
     if squares == 0.0 {
         return 0.0;
     }
     let n = people as f64;
-    let about = (squares - sum * sum / n).max(NO_SPREAD * squares);
+    let about = (squares - sum * sum / n).max(least);
     sum / (about / (n - 1.0) * n).sqrt()
 }
 

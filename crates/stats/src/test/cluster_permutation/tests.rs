@@ -72,7 +72,7 @@ fn where_nothing_differs_one_in_twenty_is_positive() {
 
 #[test]
 fn draws_come_near_all_changes_of_sign() {
-    let data = courses(7, 30, 0.8, [5, 20], &mut Random::new(2));
+    let data = courses(7, 30, 2.0, [5, 20], &mut Random::new(2));
     let options = ClusterPermutationOptions { permutations: 20_000, seed: 5 };
     let found = tested(&data, options);
     let threshold = found.threshold_t;
@@ -113,6 +113,18 @@ fn what_cannot_be_told_is_undefined_or_refused() {
     assert_eq!((found.clusters.len(), found.clusters[0].first), (1, 2));
     // Two of 256 changes of sign.
     assert!(found.clusters[0].p < 0.025, "{:?}", found.clusters);
+}
+
+#[test]
+fn an_instant_at_which_all_differ_by_one_small_step_does_not_outweigh_the_others() {
+    let mut data = courses(12, 60, 1.2, [20, 40], &mut Random::new(3));
+    let before = tested(&data, OPTIONS);
+    let largest = |found: &ClusterPermutation| {
+        found.clusters.iter().fold(0.0, |m: f64, c| m.max(c.mass.abs()))
+    };
+    data.iter_mut().for_each(|own| own[0] = 0.01);
+    let after = tested(&data, OPTIONS);
+    assert!(largest(&after) < 1.1 * largest(&before), "{:?}", after.clusters);
 }
 
 #[test]
