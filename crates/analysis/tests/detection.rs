@@ -1,31 +1,23 @@
 //! d' and criterion of a forced choice in the report: means over people where everybody saw enough, else of all answers
 //! together.
 
+#[path = "support/planted.rs"]
+mod planted;
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
 use mimique_analysis::{Language, Report, analyze};
 use mimique_stats::Table;
+use mimique_test_support::Random;
+use planted::{answered, export_of_passes};
 use serde_json::Value;
-use support::{Raters, demo_study, export};
+use support::demo_study;
 
-/// The report of people each of whom met every clip `times` times.
+/// The report of eleven people each of whom met every clip `times` times.
 fn report(times: usize, language: Language) -> Report {
     let mut study = demo_study();
     study.exclusions = None;
-    let once = export(&study, &Raters { people: 12, effect: 0.0, seed: 9 });
-    let mut text = once.lines().next().unwrap().to_owned() + "\n";
-    for person in 1..12 {
-        for time in 0..times {
-            // Of another seed each time: who answers twice does not answer alike.
-            let csv = export(&study, &Raters { people: 12, effect: 0.0, seed: 9 + time as u64 });
-            let id = format!("p{person:04},");
-            for line in csv.lines().filter(|line| line.starts_with(&id)) {
-                text += &line.replace(",faces/", &format!(",faces/{time}-"));
-                text.push('\n');
-            }
-        }
-    }
+    let text = export_of_passes(&study, 11, times);
     analyze(&Table::parse(text.as_bytes()).unwrap(), &study, language).unwrap()
 }
 
@@ -79,4 +71,62 @@ fn few_signals_are_told_of_all_people_together_alone() {
     assert!(table.contains("fausses alarmes"), "{table}");
     let plane = file(&report, "figures/emotion-d-prime.svg");
     assert_eq!(plane.matches("class=\"dot\"").count(), 0);
+}
+
+#[test]
+fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
+    let mut study = demo_study();
+    study.exclusions = None;
+    let emotions = ["anger", "disgust", "fear", "joy", "sadness", "surprise"];
+    let mut random = Random::new(5);
+    // Half and four fifths right; what is wrong is any other emotion.
+    let right = |method: &str| if method == "lsts" { 0.8 } else { 0.5 };
+    let text = export_of_passes(&study, 14, 40);
+    let text = answered(&text, "emotion", |cell| {
+        let truth = cell("truth");
+        if random.uniform() < right(&cell("method")) {
+            return truth;
+        }
+        let others: Vec<&str> = emotions.into_iter().filter(|own| *own != truth).collect();
+        others[(random.uniform() * 5.0) as usize].to_owned()
+    });
+    let table = Table::parse(text.as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::English).unwrap();
+    let results: Value = serde_json::from_str(file(&report, "results.json")).unwrap();
+    let by = &results["detection"][0]["by"];
+    assert_eq!(by.as_array().unwrap().len(), 1, "the emotion itself is no factor of its detection");
+    assert_eq!(by[0]["factor"], "method");
+    let z = |rate: f64| -mimique_stats::normal_quantile_upper(rate);
+    for own in by[0]["categories"].as_array().unwrap() {
+        let means = ["box", "lsts"].map(|method| {
+            let right = right(method);
+            let planted = z(right) - z((1.0 - right) / 5.0);
+            let people = &own["at"][method]["of_people"];
+            let mean = people["d_prime_mean"].as_f64().unwrap();
+            assert!((mean - planted).abs() < 0.3, "{method}: {mean}, planted {planted}");
+            assert_eq!(own["at"][method]["each"].as_object().unwrap().len(), 14);
+            mean
+        });
+        let pair = &own["compared"]["d_prime"]["pairs"][0];
+        assert_eq!((pair["a"].as_str(), pair["b"].as_str()), (Some("box"), Some("lsts")));
+        let difference = pair["difference"]["estimate"].as_f64().unwrap();
+        assert!((difference - (means[0] - means[1])).abs() < 0.2, "{difference}, {means:?}");
+        assert!(pair["wilcoxon"]["p_value"].as_f64().unwrap() < 0.01, "{pair}");
+    }
+    let planes = file(&report, "figures/emotion-d-prime-by-method.svg");
+    assert_eq!(planes.matches("class=\"dot\"").count(), 2 * 6 * 14);
+    assert_eq!(planes.matches(">d′</text>").count(), 2);
+    let tests = file(&report, "tables/emotion-detection-by-method-tests.csv");
+    assert_eq!(tests.lines().count(), 1 + 6 * 2, "{tests}");
+}
+
+#[test]
+fn levels_with_few_signals_are_not_compared_and_that_is_said() {
+    let report = report(1, Language::French);
+    let results: Value = serde_json::from_str(file(&report, "results.json")).unwrap();
+    for own in results["detection"][0]["by"][0]["categories"].as_array().unwrap() {
+        assert!(own["compared"].is_null(), "{own}");
+        assert_eq!(own["at"]["box"]["pooled"]["status"], "ok");
+    }
+    assert!(file(&report, "report.md").contains("les niveaux ne sont pas comparés"));
 }

@@ -1,6 +1,8 @@
 //! Whether what is found holds for other people and other clips: min F' and the mixed model beside each hypothesis that
 //! compares ratings within people, and the mixed model as what decides.
 
+#[path = "support/planted.rs"]
+mod planted;
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
@@ -9,6 +11,8 @@ use mimique_analysis::{
 };
 use mimique_stats::Table;
 use mimique_study::{Generalise, Severity, Study};
+use mimique_test_support::Random;
+use planted::{answered, export_of_passes};
 use serde_json::{Value, json};
 use support::{Raters, demo_study, export};
 
@@ -127,4 +131,111 @@ fn other_clips_are_asked_about_ratings_of_several_segments_alone() {
     assert_eq!(wrong[0].1, "not-a-number");
     let wrong = problems(|file, at| file["hypotheses"][at]["generalise"] = "faces".into());
     assert_eq!(wrong.len(), 1, "{wrong:?}");
+}
+
+/// Effects of so many people or clips, of mean 0 and exactly this standard deviation.
+fn effects_of(count: usize, sd: f64, random: &mut Random) -> Vec<f64> {
+    let drawn: Vec<f64> = (0..count).map(|_| random.normal()).collect();
+    let (mean, variance) = mimique_stats::moments(&drawn);
+    drawn.iter().map(|own| (own - mean) / variance.unwrap().sqrt() * sd).collect()
+}
+
+#[test]
+fn planted_thresholds_and_deviations_are_in_the_figures() {
+    let mut study = demo_study();
+    study.exclusions = None;
+    let (thresholds, effect) = ([-3.0, -1.5, -0.5, 0.5, 1.5, 3.0], 1.0);
+    let terms = [
+        ("people", 60, 1.2),
+        ("people × method", 120, 0.6),
+        ("segments", 6, 0.8),
+        ("clips", 12, 0.5),
+    ];
+    let mut random = Random::new(3);
+    let effects = terms.map(|(_, count, sd)| effects_of(count, sd, &mut random));
+    let mut met = [(); 4].map(|()| Vec::<String>::new());
+    let passes = export_of_passes(&study, 60, 3);
+    let text = answered(&passes, "believability", |cell| {
+        let (person, method, clip) = (cell("participant_id"), cell("method"), cell("stimulus"));
+        let segment = study.clips().iter().find(|own| own.id == clip).unwrap().segment.clone();
+        let groups = [person.clone(), format!("{person}:{method}"), segment, clip];
+        let mut latent = if method == "lsts" { effect } else { 0.0 };
+        for ((group, met), effects) in groups.into_iter().zip(&mut met).zip(&effects) {
+            let place = met.iter().position(|own| *own == group).unwrap_or_else(|| {
+                met.push(group);
+                met.len() - 1
+            });
+            latent += effects[place];
+        }
+        let u = random.uniform();
+        latent += (u / (1.0 - u)).ln();
+        (1 + thresholds.iter().filter(|threshold| latent > **threshold).count()).to_string()
+    });
+    let at = study.hypotheses.iter().position(|own| own.response == "believability").unwrap();
+    let id = study.hypotheses[at].id.to_lowercase();
+    let report =
+        analyze(&Table::parse(text.as_bytes()).unwrap(), &study, Language::English).unwrap();
+    let file = |path: &str| {
+        let path = path.replace("ID", &id);
+        let found = report.files.iter().find(|file| file.path == path);
+        found.unwrap_or_else(|| panic!("no {path}")).text.clone()
+    };
+    let drawn = Table::parse(file("tables/figure-hypothesis-ID-other-clips-sd.csv").into_bytes());
+    let drawn = drawn.unwrap();
+    assert_eq!(drawn.rows(), 4);
+    for (row, (name, _, planted)) in terms.into_iter().enumerate() {
+        assert_eq!(drawn.cell(row, 0), Some(name));
+        let sd: f64 = drawn.cell(row, 1).unwrap().parse().unwrap();
+        assert!((sd - planted).abs() < 0.2, "{name}: {sd}, planted {planted}");
+    }
+    let shares = file("tables/figure-hypothesis-ID-other-clips-shares.csv");
+    let shares = Table::parse(shares.into_bytes()).unwrap();
+    assert_eq!(shares.rows(), 4, "two levels, model and observed");
+    let number =
+        |row: usize, column: usize| -> f64 { shares.cell(row, column).unwrap().parse().unwrap() };
+    let results: Value = serde_json::from_str(&file("results.json")).unwrap();
+    let model = &results["hypotheses"][at]["other_clips"]["mixed_model"];
+    for row in [0, 2] {
+        assert_eq!(shares.cell(row, 1), Some("model"));
+        assert_eq!(shares.cell(row + 1, 1), Some("observed"));
+        let level = shares.cell(row, 0).unwrap();
+        let shift = if level.contains("LSTS") || level == "lsts" { effect } else { 0.0 };
+        let below = |place: usize| match thresholds.get(place) {
+            Some(threshold) => 1.0 / (1.0 + (shift - threshold).exp()),
+            None => 1.0,
+        };
+        let mut before = 0.0;
+        for place in 0..7 {
+            let planted = below(place) - before;
+            before = below(place);
+            let own = number(row, 2 + place);
+            assert!(
+                (own - planted).abs() < 0.06,
+                "{level} {}: {own}, planted {planted}",
+                place + 1
+            );
+        }
+    }
+    assert_eq!(model["ratings"].as_array().unwrap().len(), 7);
+    for name in ["shares", "sd"] {
+        let svg = file(&format!("figures/hypothesis-ID-other-clips-{name}.svg"));
+        assert!(svg.contains("aria-label=") && !svg.contains("NaN"), "{svg}");
+    }
+    assert!(
+        file("figures/hypothesis-ID-other-clips-sd.svg").contains("standard deviation (log odds)")
+    );
+}
+
+#[test]
+fn without_a_model_there_is_no_figure_and_that_is_said() {
+    let study = demo_study();
+    for (language, words) in
+        [(Language::English, "are not drawn"), (Language::French, "ne sont pas dessinés")]
+    {
+        let csv = export(&study, &Raters { people: 4, effect: 1.0, seed: 9 });
+        let report = analyze(&Table::parse(csv.as_bytes()).unwrap(), &study, language).unwrap();
+        assert!(!report.files.iter().any(|file| file.path.contains("other-clips-sd")));
+        let text = report.files.iter().find(|file| file.path == "report.md").unwrap();
+        assert!(text.text.contains(words), "{}", text.text);
+    }
 }

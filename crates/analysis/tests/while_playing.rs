@@ -1,49 +1,35 @@
 //! Answers while the clip plays, from simulated people to the report: presses with their times, lines with their courses.
 
+#[path = "support/followed.rs"]
+mod followed;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
+use followed::{followed, followers, speeded};
 use mimique_analysis::{Language, Parameters, Simulation, analyze};
 use mimique_stats::Table;
 use mimique_study::Study;
-use serde_json::{Value, json};
+use serde_json::Value;
 use simulated::simulated_export;
 
-fn study(change: impl FnOnce(&mut Value)) -> Study {
-    let text = include_str!("../../../study-config/speeded.json");
-    let mut file = mimique_study::parse(text).unwrap();
-    change(&mut file);
-    Study::from_value(&file).unwrap()
-}
-
-/// A line that follows the clip, in the place of the keys.
-fn followed() -> Study {
-    study(|file| {
-        file["questions"][0] = json!({
-            "id": "strength", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
-            "prompt": {"en": "How intense?", "fr": "Quelle intensité ?"},
-            "leftLabel": {"en": "not", "fr": "pas"}, "rightLabel": {"en": "very", "fr": "très"},
-        });
-        file["components"]["faces"]["questions"] = json!(["strength"]);
-        file["hypotheses"][0]["response"] = json!("strength");
-        file["hypotheses"][0].as_object_mut().unwrap().remove("measure");
-    })
-}
-
-fn results(study: &Study, parameters: &Parameters, people: u64) -> (Value, Vec<String>) {
+fn results(
+    study: &Study,
+    parameters: &Parameters,
+    people: u64,
+) -> (Value, HashMap<String, String>) {
     let simulation = Simulation::new(study, "hash", parameters, 7).unwrap();
     let csv = simulated_export(&simulation, study, people);
     let report = analyze(&Table::parse(csv.as_bytes()).unwrap(), study, Language::English).unwrap();
-    let text = &report.files.iter().find(|file| file.path == "results.json").unwrap().text;
-    let paths = report.files.iter().map(|file| file.path.clone()).collect();
-    (serde_json::from_str(text).unwrap(), paths)
+    let files: HashMap<String, String> =
+        report.files.into_iter().map(|file| (file.path, file.text)).collect();
+    (serde_json::from_str(&files["results.json"]).unwrap(), files)
 }
 
 #[test]
 fn planted_times_of_presses_are_found_again() {
-    let study = study(|_| ());
+    let study = speeded(|_| ());
     let mut parameters = Parameters::for_study(&study);
     (parameters.times.median_ms, parameters.times.sigma) = (900.0, 0.2);
     parameters.times.person_sigma = 0.1;
@@ -75,19 +61,8 @@ fn planted_times_of_presses_are_found_again() {
 #[test]
 fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
     let study = followed();
-    let mut parameters = Parameters::for_study(&study);
-    let own = parameters.ratings.get_mut("strength").unwrap();
-    (own.mean, own.noise_sd, own.person_sd, own.clip_sd, own.segment_sd) =
-        (0.0, 5.0, 4.0, 0.0, 0.0);
-    own.person_by_sd = BTreeMap::new();
-    own.effects = BTreeMap::from([(
-        "method".to_owned(),
-        [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)]
-            .map(|(level, mean)| (level.to_owned(), mean))
-            .into(),
-    )]);
-    parameters.careless.share = 0.0;
-    let (results, paths) = results(&study, &parameters, 30);
+    let parameters = followers(&study, [("box", 60.0), ("lsts", 80.0), ("recorded", 90.0)]);
+    let (results, files) = results(&study, &parameters, 30);
     let traces = &results["traces"][0];
     assert_eq!(
         (traces["response"].as_str(), traces["factor"].as_str()),
@@ -109,9 +84,49 @@ fn the_mean_course_rises_to_the_planted_rating_with_intervals_over_time() {
         let last = 50.0 + (planted - 50.0) * (1.0 - (-seconds).exp2());
         assert!(low - 1.0 < last && last < high + 1.0 && high - low < 6.0, "{level}: {low} {high}");
     }
-    assert!(paths.iter().any(|path| path == "figures/strength-while-playing.svg"), "{paths:?}");
-    assert!(
-        paths.iter().any(|path| path == "tables/figure-strength-while-playing.csv"),
-        "{paths:?}"
-    );
+    assert!(files.contains_key("figures/strength-while-playing.svg"));
+    assert!(files.contains_key("tables/figure-strength-while-playing.csv"));
+}
+
+/// The pairs of levels of the first trace, each with its significant spans.
+fn significant(results: &Value) -> Vec<(String, Vec<[f64; 2]>)> {
+    let pairs = results["traces"][0]["pairs"].as_array().unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let spans = |pair: &Value| {
+        assert_eq!(pair["test"]["status"], "ok", "{pair}");
+        assert_eq!(
+            (&pair["test"]["seed"], &pair["test"]["permutations"]),
+            (&1.into(), &5000.into())
+        );
+        let spans = pair["spans"].as_array().unwrap().iter();
+        let spans = spans.filter(|span| number(&span["p_corrected"]) < 0.05);
+        spans.map(|span| [number(&span["from_s"]), number(&span["to_s"])]).collect()
+    };
+    let name =
+        |pair: &Value| format!("{} {}", pair["a"].as_str().unwrap(), pair["b"].as_str().unwrap());
+    pairs.iter().map(|pair| (name(pair), spans(pair))).collect()
+}
+
+#[test]
+fn courses_that_part_are_found_from_then_on_and_marked() {
+    let study = followed();
+    let parameters = followers(&study, [("box", 60.0), ("lsts", 60.0), ("recorded", 90.0)]);
+    let (results, files) = results(&study, &parameters, 24);
+    let seconds = parameters.times.clip_ms / 1000.0;
+    for (pair, spans) in significant(&results) {
+        if pair == "box lsts" {
+            assert!(spans.is_empty(), "{spans:?}");
+            continue;
+        }
+        let [[from, to]] = spans[..] else { panic!("{pair}: {spans:?}") };
+        // The line stands in the middle at first, and goes to its place from then on.
+        assert!(from > 0.0 && from < 0.5, "{pair}: {from}");
+        assert!((to - seconds).abs() < 0.1, "{pair}: {to}");
+    }
+    let svg = &files["figures/strength-while-playing.svg"];
+    assert_eq!(svg.matches("class=\"mark\"").count(), 2, "{svg}");
+    assert!(svg.contains("Clusters that differ"), "{svg}");
+    assert!(files["report.md"].contains("with seed 1"));
+    let table = &files["tables/strength-while-playing-clusters.csv"];
+    assert_eq!(table.lines().count(), 1 + 3, "{table}");
 }

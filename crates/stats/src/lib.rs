@@ -41,6 +41,7 @@ pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
 pub use estimate::resampled::resampled_interval;
 pub use numerics::dot;
+pub use numerics::largest::FEWEST_PERMUTATIONS;
 pub use numerics::minimise::{Minimum, Stop, minimise};
 pub use numerics::random::Stream;
 pub use outcome::{Labelled, Outcome};
@@ -65,6 +66,9 @@ pub use test::bradley_terry::{
     WorthEstimates, bradley_terry,
 };
 pub use test::chi_square::{ChiSquare, ChiSquareVariant, GTest, chi_square};
+pub use test::cluster_permutation::{
+    ClusterPermutation, ClusterPermutationOptions, TimeCluster, cluster_permutation,
+};
 pub use test::consistency::{Consistency, JudgeConsistency, consistency};
 pub use test::cronbach::{Cronbach, Reversed, cronbach};
 pub use test::detection::{
@@ -88,7 +92,7 @@ pub use test::mann_whitney::{MannWhitney, mann_whitney};
 pub use test::min_f::{MinFPrime, RepeatedMeasuresF, min_f_prime};
 pub use test::mixed_model::{
     MIXED_MODEL_CATEGORIES, MIXED_MODEL_LEVELS, MixedCoefficient, MixedEffectRatio,
-    MixedGroupingRatio, MixedModel, MixedModelOptions, MixedPair, mixed_model,
+    MixedGroupingRatio, MixedModel, MixedModelOptions, MixedPair, MixedShares, mixed_model,
 };
 pub use test::panel::{Panel, PanelOptions, PanelRatings, ScreenedPerson, panel};
 pub use test::psychometric::{
@@ -96,9 +100,8 @@ pub use test::psychometric::{
     bootstrap, bootstrap_through, psychometric,
 };
 pub use test::reverse_correlation::{
-    CategoryImages, FEWEST_PERMUTATIONS, GroupImage, PersonImage, ReverseCorrelation,
-    ReverseCorrelationOptions, ReverseTrial, ReverseTrials, UnitCourse, UnitImage, UnitTest,
-    reverse_correlation,
+    CategoryImages, GroupImage, PersonImage, ReverseCorrelation, ReverseCorrelationOptions,
+    ReverseTrial, ReverseTrials, UnitCourse, UnitImage, UnitTest, reverse_correlation,
 };
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};

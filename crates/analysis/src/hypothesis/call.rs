@@ -55,8 +55,14 @@ pub(crate) enum Design {
     ClipsByPeople,
     /// First answers, a row per clip, a column per person, gaps allowed.
     FirstAnswers,
-    /// What each person was shown and answered, and a category.
+    /// What each person was shown and answered, perhaps at some levels of a factor, and a category.
     Detection,
+    /// A category's d' or criterion of each person and level.
+    DetectionBlocks,
+    /// Differences of these between two levels, one per person.
+    DetectionPeople,
+    /// Where a rating that follows the clip stands at an instant: one mean per person, of a level.
+    Course,
     /// Items of a scale, a row per person.
     Items,
     /// A p that a model gives, which only the script in R fits, and only nearly.
@@ -89,6 +95,9 @@ impl Design {
             Self::ClipsByPeople => "of_clips_by_people",
             Self::FirstAnswers => "of_first_answers",
             Self::Detection => "of_detection",
+            Self::DetectionBlocks => "of_detection_blocks",
+            Self::DetectionPeople => "of_detection_people",
+            Self::Course => "of_course",
             Self::Items => "of_items",
             Self::Given => "given",
         }

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use mimique_stats::{
-    Factor, Labelled, MinFPrime, MixedModel, MixedModelOptions, Outcome, TestResult, min_f_prime,
-    mixed_model,
+    Factor, Labelled, MinFPrime, MixedModel, MixedModelOptions, MixedShares, Outcome, TestResult,
+    min_f_prime, mixed_model,
 };
 use mimique_study::Hypothesis;
 use serde::Serialize;
@@ -51,6 +51,10 @@ pub(crate) struct ClipModel {
     pub ln_p: f64,
     /// Every two levels.
     pub pairs: Vec<ClipPair>,
+    /// The different ratings, ascending.
+    pub ratings: Vec<f64>,
+    /// Shares of these at each level.
+    pub shares: Labelled<MixedShares>,
     /// Standard deviation of each term, log odds.
     pub sd: Labelled<f64>,
     /// Terms whose standard deviation is 0.
@@ -148,6 +152,8 @@ fn told(found: MixedModel) -> ClipModel {
         p: ratio.p,
         ln_p: ratio.ln_p,
         pairs: found.pairs.into_iter().map(pair).collect(),
+        ratings: found.ratings,
+        shares: found.shares,
         sd: found.sd,
         at_zero: found.at_zero,
         left_out: found.left_out,

@@ -49,16 +49,41 @@ pub(crate) struct PersonLevel {
     pub pairs: Vec<Pair>,
 }
 
-/// Friedman with Iman and Davenport's F, then exact paired tests with Holm's correction.
+/// How the scripts take what is compared within people from the trials.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WithinDesigns {
+    /// A number of each person at each level.
+    blocks: Design,
+    /// Each person's difference between two levels.
+    pair: Design,
+}
+
+impl WithinDesigns {
+    /// Of a measure, whose means are compared.
+    const MEASURE: Self = Self { blocks: Design::Blocks, pair: Design::People };
+    /// Of a category's detection.
+    pub(crate) const DETECTION: Self =
+        Self { blocks: Design::DetectionBlocks, pair: Design::DetectionPeople };
+}
+
+/// Friedman with Iman and Davenport's F, then exact paired tests with Holm's correction, of person means.
 pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> PersonLevel {
     let blocks = &measure.person_means(export, factor);
-    let call = |design, test| {
+    of_blocks(blocks, WithinDesigns::MEASURE, |design, test| {
         Call::new(design, test).text(&measure.id).text(&factor.name).list(&factor.levels)
-    };
+    })
+}
+
+/// The same of any one number of each person at each level; a call says what is taken from the trials.
+pub(crate) fn of_blocks(
+    blocks: &Blocks,
+    designs: WithinDesigns,
+    call: impl Fn(Design, &'static str) -> Call,
+) -> PersonLevel {
     let n = blocks.responses.len();
     let mut overall = Vec::new();
     if blocks.groups.len() > 2 {
-        overall.push(TestLine::friedman(blocks, call(Design::Blocks, Friedman::NAMES.function)));
+        overall.push(TestLine::friedman(blocks, call(designs.blocks, Friedman::NAMES.function)));
     }
     let mut pairs: Vec<Pair> = blocks
         .pairs()
@@ -68,7 +93,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Per
                 blocks,
                 a,
                 b,
-                call(Design::People, Wilcoxon::NAMES.function).number(a + 1).number(b + 1),
+                call(designs.pair, Wilcoxon::NAMES.function).number(a + 1).number(b + 1),
             )
         })
         .collect();

@@ -103,7 +103,7 @@ pub(crate) fn two_columns(
         (thesis_heading(language).to_owned(), 3),
         (recommended_heading(language).to_owned(), 4),
     ];
-    let recommended = recommended_lines(naming, factor, kind, people);
+    let recommended = recommended_lines(naming, factor, kind, people, PAIRS_BESIDE);
     // With two levels the paired test of trials stands beside the pair.
     let mut of_trials: Vec<&TestOutcome> = trials.tests.iter().collect();
     if people.overall.is_empty() {
@@ -148,18 +148,19 @@ pub(crate) fn headings_of_choices(language: Language, table: &mut DataTable) {
 }
 
 /// Label, test and difference of each recommended test, as those of trials stand: overall first, then
-/// pairs.
-fn recommended_lines<'p>(
+/// pairs, unless there are more than so many.
+pub(crate) fn recommended_lines<'p>(
     naming: &Naming<'_>,
     factor: &str,
     kind: MeasureKind,
     people: &'p PersonLevel,
+    most_pairs: usize,
 ) -> Vec<(String, &'p TestOutcome, String)> {
     let overall = people
         .overall
         .iter()
         .map(|outcome| (term_of(naming, factor, outcome), outcome, String::new()));
-    let beside = if people.pairs.len() > PAIRS_BESIDE { &[] } else { people.pairs.as_slice() };
+    let beside = if people.pairs.len() > most_pairs { &[] } else { people.pairs.as_slice() };
     let pairs = beside.iter().map(|pair| {
         (
             naming.pair(factor, &pair.a, &pair.b),
@@ -230,25 +231,6 @@ pub(crate) fn other_clips(
     let [test, p, effect] = cells(language, &found.min_f, false);
     table.row([whole, test, p, effect, String::new()]);
     table
-}
-
-/// Standard deviations of the random effects of the mixed model.
-pub(crate) fn deviations(
-    language: Language,
-    id: String,
-    caption: String,
-    found: &OtherClips,
-) -> Option<DataTable> {
-    let Some(Outcome::Ok(model)) = &found.mixed_model else { return None };
-    let heading = language.pick(
-        ["random effects", "standard deviation (log odds)"],
-        ["effets aléatoires", "écart type (log des chances)"],
-    );
-    let mut table = DataTable::new(id, caption, heading);
-    for (name, sd) in model.sd.iter() {
-        table.row([name.to_owned(), language.fixed(*sd, 2)]);
-    }
-    Some(table)
 }
 
 /// More pairs than this stand in a table of their own, below.

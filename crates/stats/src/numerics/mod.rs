@@ -1,6 +1,7 @@
-//! Numerics that several statistics share: sums, minima, random streams, and the cones in which a likelihood
+//! Numerics that several statistics share: sums, minima, random streams, largest statistics of permutations, and the cones in which a likelihood
 //! has no maximum.
 
+pub(crate) mod largest;
 pub(crate) mod minimise;
 pub(crate) mod random;
 pub(crate) mod recession;

@@ -14,8 +14,8 @@ use crate::outcome::Outcome;
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::test::{
-    aligned_rank_transform, bradley_terry, chi_square, consistency, cronbach, detection,
-    difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
+    aligned_rank_transform, bradley_terry, chi_square, cluster_permutation, consistency, cronbach,
+    detection, difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
     kruskal_wallis, mann_whitney, min_f, mixed_model, panel, psychometric, reverse_correlation,
     scheirer_ray_hare, sign, spearman, thurstone, wilcoxon,
 };
@@ -83,7 +83,7 @@ pub enum Sample {
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 26] = [
+pub static PROCEDURES: [&Procedure; 27] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -104,6 +104,7 @@ pub static PROCEDURES: [&Procedure; 26] = [
     &difference_scaling::PROCEDURE,
     &detection::PROCEDURE,
     &reverse_correlation::PROCEDURE,
+    &cluster_permutation::PROCEDURE,
     &intraclass_correlation::PROCEDURE,
     &krippendorff::PROCEDURE,
     &cronbach::PROCEDURE,

@@ -255,27 +255,44 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     run,
     sample: Sample::Answers,
     r: r#"
-# d' of one category against all others, log-linear rates: its mean over people against 0.
-detection <- function(participant, truth, answer, category) {
-  d_prime <- sapply(split(seq_along(truth), participant), function(own) {
+# d' and criterion (rows) of one category against all others by log-linear rates, of each person (columns); NA of who
+# was shown no signal or no noise.
+sensitivity <- function(participant, truth, answer, category) {
+  sapply(split(seq_along(truth), participant), function(own) {
     signal <- truth[own] == category
     yes <- answer[own] == category
-    qnorm((sum(yes & signal) + 0.5) / (sum(signal) + 1)) - qnorm((sum(yes & !signal) + 0.5) / (sum(!signal) + 1))
+    if (all(signal) || !any(signal)) return(c(d_prime = NA, criterion = NA))
+    z <- qnorm(c((sum(yes & signal) + 0.5) / (sum(signal) + 1), (sum(yes & !signal) + 0.5) / (sum(!signal) + 1)))
+    c(d_prime = z[1] - z[2], criterion = -(z[1] + z[2]) / 2)
   })
+}
+# The mean of d' over people against 0.
+detection <- function(participant, truth, answer, category) {
+  d_prime <- sensitivity(participant, truth, answer, category)["d_prime", ]
   test <- t.test(d_prime)
   c(statistic = unname(test$statistic), p = test$p.value, effect = mean(d_prime), n = length(d_prime))
 }
 "#,
     python: r#"
-def detection(participant, truth, answer, category):
-    """d' of one category against all others, log-linear rates: its mean over people against 0."""
-    d_prime = []
+def sensitivity(participant, truth, answer, category):
+    """d' and criterion of one category against all others by log-linear rates, person by person; nan of who was
+    shown no signal or no noise."""
+    found = {}
     for person in np.unique(participant):
         signal = truth[participant == person] == category
         yes = answer[participant == person] == category
-        hit = ((yes & signal).sum() + 0.5) / (signal.sum() + 1)
-        false_alarm = ((yes & ~signal).sum() + 0.5) / ((~signal).sum() + 1)
-        d_prime.append(stats.norm.ppf(hit) - stats.norm.ppf(false_alarm))
+        hit = stats.norm.ppf(((yes & signal).sum() + 0.5) / (signal.sum() + 1))
+        false_alarm = stats.norm.ppf(((yes & ~signal).sum() + 0.5) / ((~signal).sum() + 1))
+        one_kind = signal.all() or not signal.any()
+        both = dict(d_prime=hit - false_alarm, criterion=-(hit + false_alarm) / 2)
+        found[person] = {name: math.nan if one_kind else value for name, value in both.items()}
+    return found
+
+
+def detection(participant, truth, answer, category):
+    """The mean of d' over people against 0."""
+    found = sensitivity(participant, truth, answer, category).values()
+    d_prime = [own["d_prime"] for own in found]
     test = stats.ttest_1samp(d_prime, 0)
     return dict(statistic=test.statistic, p=test.pvalue, effect=np.mean(d_prime), n=len(d_prime))
 "#,

@@ -3,6 +3,7 @@
 pub(crate) mod aligned_rank_transform;
 pub(crate) mod bradley_terry;
 pub(crate) mod chi_square;
+pub(crate) mod cluster_permutation;
 pub(crate) mod consistency;
 pub(crate) mod cronbach;
 pub(crate) mod detection;

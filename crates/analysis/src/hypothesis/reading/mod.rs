@@ -20,7 +20,7 @@ pub(crate) use other_clips::other_clips;
 use pairs::{each_pair, many_pairs};
 
 /// The level of a test.
-const LEVEL: f64 = 0.05;
+pub(crate) const LEVEL: f64 = 0.05;
 
 /// What a comparison within people says.
 pub(crate) fn comparison(naming: &Naming<'_>, result: &Comparison, label: &str) -> String {

@@ -1,4 +1,4 @@
-//! Mean courses over the seconds of a clip, with bands.
+//! Mean courses over the seconds of a clip, with bands; below them where two of them differ.
 
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
@@ -8,13 +8,17 @@ use crate::report::figure::svg::{Anchor, Axis, Svg};
 use crate::report::section::traces::MeanTrace;
 use crate::trials::measure::MeasureKind;
 
-/// A line and its band for each level; the table has ten rows a second.
+/// Height of a pair's line of spans.
+const SPANS: f64 = 20.0;
+
+/// A line and its band for each level; the table has ten rows a second. Spans are seconds in which a named pair differs.
 pub(crate) fn traces(
     language: Language,
     id: &str,
     caption: &str,
     step_seconds: f64,
     levels: &[(String, &MeanTrace)],
+    spans: &[(String, Vec<[f64; 2]>)],
 ) -> Figure {
     let bands = || levels.iter().flat_map(|(_, own)| own.interval_95.iter().flatten().flatten());
     let means = || levels.iter().flat_map(|(_, own)| &own.mean);
@@ -22,7 +26,7 @@ pub(crate) fn traces(
     let (low, high) =
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
     let (top, bottom) = (40.0, 260.0);
-    let mut svg = Svg::new(caption, bottom + 46.0);
+    let mut svg = Svg::new(caption, bottom + 46.0 + SPANS * spans.len() as f64);
     let high = if high > low { high } else { low + 1.0 };
     let y = vertical(&mut svg, language, MeasureKind::Rating, (low, high), (top, bottom));
     let longest = levels.iter().map(|(_, own)| own.mean.len()).max().unwrap_or(1);
@@ -49,6 +53,15 @@ pub(crate) fn traces(
         svg.coloured_path(&[[place, top - 22.0], [place + 18.0, top - 22.0]], line);
         svg.text(place + 24.0, top - 18.0, "small", Anchor::Start, name);
     }
+    for (place, (pair, own)) in spans.iter().enumerate() {
+        let y = bottom + 46.0 + SPANS * place as f64;
+        svg.text(LEFT, y, "small", Anchor::Start, pair);
+        for [from, to] in own {
+            let (from, to) = (time.place(*from), time.place(*to));
+            // A cluster of one instant is seen too.
+            svg.class_rect([from, y + 4.0, (to - from).max(2.0), 5.0], "mark");
+        }
+    }
     let seconds = language.pick("seconds", "secondes").to_owned();
     let columns = levels.iter().flat_map(|(name, _)| {
         let ends = language.pick(["from", "to"], ["de", "à"]);
@@ -69,9 +82,22 @@ pub(crate) fn traces(
         .iter()
         .filter_map(|(name, own)| Some(format!("{name} {}", language.fixed(*own.mean.last()?, 2))))
         .collect();
-    let alt = language.pick(
-        format!("Lines over the seconds of the clip. At the end: {}.", spoken.join(", ")),
-        format!("Courbes au fil des secondes de l’extrait. À la fin : {}.", spoken.join(", ")),
+    let different: Vec<String> = spans
+        .iter()
+        .flat_map(|(pair, own)| own.iter().map(move |ends| (pair, ends)))
+        .map(|(pair, ends)| {
+            let [from, to] = ends.map(|seconds| language.fixed(seconds, 1));
+            format!(" {pair} {from} – {to} s.")
+        })
+        .collect();
+    let (spoken, different) = (spoken.join(", "), different.concat());
+    let mut alt = language.pick(
+        format!("Lines over the seconds of the clip. At the end: {spoken}."),
+        format!("Courbes au fil des secondes de l’extrait. À la fin : {spoken}."),
     );
+    if !different.is_empty() {
+        alt += language.pick(" Clusters that differ:", " Amas qui diffèrent :");
+        alt += &different;
+    }
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }
 }

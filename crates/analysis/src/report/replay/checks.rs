@@ -1,7 +1,7 @@
 //! Every number of the results under a key, with the call that computes it again.
 
 use mimique_stats::{
-    Detection, IntraclassCorrelation, MeasurementLevel, MixedModel, Outcome, TestResult as _,
+    IntraclassCorrelation, MeasurementLevel, MixedModel, Outcome, TestResult as _,
 };
 
 use crate::hypothesis::call::{Call, Design};
@@ -29,7 +29,7 @@ pub(super) struct Family {
 /// Walks the results.
 #[derive(Default)]
 pub(super) struct Collector {
-    checks: Vec<Check>,
+    pub(super) checks: Vec<Check>,
     families: Vec<Family>,
 }
 
@@ -110,36 +110,10 @@ impl Collector {
             all.line(format!("course:{}", course.measure), &course.trend);
         }
         all.detection(results);
+        all.traces(results);
         all.agreement(results);
         all.layouts(results);
         (all.checks, all.families)
-    }
-
-    /// d' of each category.
-    fn detection(&mut self, results: &Results<'_>) {
-        for own in &results.detection {
-            for category in &own.categories {
-                let Some((people, t)) = category.of_people.as_ref().and_then(|p| Some((p, p.t?)))
-                else {
-                    continue;
-                };
-                // The scripts have a d' of everybody.
-                if people.people < own.people {
-                    continue;
-                }
-                let call = Call::new(Design::Detection, Detection::NAMES.function);
-                self.checks.push(Check {
-                    key: format!("detection:{}:{}", own.response, category.category),
-                    call: call.text(&own.response).text(&category.category),
-                    values: vec![
-                        ("statistic", t.statistic),
-                        ("p", t.p),
-                        ("effect", people.d_prime_mean),
-                        ("n", people.people as f64),
-                    ],
-                });
-            }
-        }
     }
 
     /// Agreement about the clips, and scales.
@@ -255,7 +229,7 @@ impl Collector {
         }
     }
 
-    fn person_level(&mut self, key: &str, people: &PersonLevel) {
+    pub(super) fn person_level(&mut self, key: &str, people: &PersonLevel) {
         for (place, outcome) in people.overall.iter().enumerate() {
             self.line(overall_key(key, place), outcome);
         }

@@ -1,6 +1,7 @@
 //! The report's numbers for other programs: the trials as a table, every number under a key, and
 //! scripts in R and Python that compute them again and compare.
 
+mod by_person;
 mod checks;
 mod models;
 mod trials;

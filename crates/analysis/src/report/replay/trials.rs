@@ -1,6 +1,7 @@
 //! The trials of the analysis as a table that other programs read.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use mimique_study::KindOfQuestion as _;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -15,6 +16,8 @@ use crate::trials::measure::{Measure, MeasureKind};
 enum Cells<'e> {
     Texts(Vec<&'e str>),
     Numbers(Vec<Option<f64>>),
+    /// Numbers with blanks between them.
+    Courses(Vec<Option<Arc<[f32]>>>),
 }
 
 impl Cells<'_> {
@@ -26,6 +29,13 @@ impl Cells<'_> {
                 Some(number) => Cow::Owned(number.to_string().into_bytes()),
                 None => Cow::Borrowed(&[]),
             },
+            Self::Courses(cells) => {
+                // Every number as the report has computed with it.
+                let numbers = cells[row].iter().flat_map(|course| course.iter());
+                let numbers: Vec<String> =
+                    numbers.map(|number| f64::from(*number).to_string()).collect();
+                Cow::Owned(numbers.join(" ").into_bytes())
+            }
         }
     }
 }
@@ -89,6 +99,7 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
             columns.push((format!("{}.answer", asked.id), Cells::Texts(given)));
             columns.push((format!("{}.chosen", asked.id), Cells::Texts(chosen)));
         }
+        columns.extend(course_of(export, &asked.id));
         measures.extend(measure);
         measures.extend(Measure::response_time(export, &asked, Language::English));
     }
@@ -100,6 +111,18 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         columns.push((measure.id, Cells::Numbers(cells)));
     }
     in_lines(&columns, rows)
+}
+
+/// Where the answers to a question that followed the clip stood; nothing of other questions.
+fn course_of<'e>(export: &'e Export, question: &str) -> Option<(String, Cells<'e>)> {
+    let answers = export.answers_to(question);
+    answers.iter().any(|answer| answer.trace.is_some()).then(|| {
+        let mut courses = vec![None; export.trials.len()];
+        for answer in answers {
+            courses[answer.trial].clone_from(&answer.trace);
+        }
+        (format!("{question}.trace"), Cells::Courses(courses))
+    })
 }
 
 /// What is played beside each clip: its identifier, its side, its factors. Nothing where no clip has a companion.

@@ -143,12 +143,46 @@ of_answers <- function(test, question, g, levels) {
   test(truth[keep], answer[keep])
 }
 
-# How well a category is told from all others, person by person.
-of_detection <- function(test, question, category) {
+# How well a category is told from all others, person by person; at some levels of a factor, or without one in all
+# trials.
+of_detection <- function(test, question, category, g, levels) {
   truth <- trials[[paste0(question, ".truth")]]
   answer <- trials[[paste0(question, ".answer")]]
   keep <- !is.na(truth) & !is.na(answer)
+  if (g != "") keep <- keep & trials[[g]] %in% levels
   test(person[keep], truth[keep], answer[keep], category)
+}
+# d' or criterion of each person (rows) at each level (columns); only people who have all of them.
+detection_by <- function(what, question, category, g, levels) {
+  people <- sort(unique(person))
+  m <- sapply(levels, function(level) of_detection(sensitivity, question, category, g, level)[what, ][people])
+  m[complete.cases(m), , drop = FALSE]
+}
+of_detection_blocks <- function(test, what, question, category, g, levels) {
+  test(detection_by(what, question, category, g, levels))
+}
+of_detection_people <- function(test, what, question, category, g, levels, a, b) {
+  m <- detection_by(what, question, category, g, levels)
+  test(m[, a] - m[, b])
+}
+
+# Where a rating that follows the clip stands at an instant (from 1): the mean over people with its t interval.
+courses <- list()
+course <- function(y) {
+  if (is.null(courses[[y]])) {
+    courses[[y]] <<- lapply(strsplit(trials[[paste0(y, ".trace")]], " ", fixed = TRUE), as.numeric)
+  }
+  courses[[y]]
+}
+of_course <- function(test, y, g, level, instant) {
+  v <- vapply(course(y), `[`, 0, instant)
+  keep <- !is.na(v) & trials[[g]] %in% level
+  test(as.vector(tapply(v[keep], person[keep], mean)))
+}
+mean_and_interval <- function(values) {
+  n <- length(values)
+  reach <- if (n > 1) qt(0.975, n - 1) * sd(values) / sqrt(n) else NA
+  c(mean = mean(values), low = mean(values) - reach, high = mean(values) + reach, n = n)
 }
 
 # Mean ratings of the clips that everybody rated, and first answers with gaps: a row per clip, a column per person.

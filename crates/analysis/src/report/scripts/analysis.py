@@ -220,11 +220,52 @@ def of_answers(test, question, g, levels):
     return test(truth[keep], answer[keep])
 
 
-def of_detection(test, question, category):
-    """How well a category is told from all others, person by person."""
+def of_detection(test, question, category, g, levels):
+    """How well a category is told from all others, person by person; at some levels of a factor, or without one in
+    all trials."""
     truth, answer = columns[question + ".truth"], columns[question + ".answer"]
     keep = (truth != "") & (answer != "")
+    if g:
+        keep &= is_in(g, levels)
     return test(person[keep].astype(str), truth[keep].astype(str), answer[keep].astype(str), category)
+
+
+def detection_by(what, question, category, g, levels):
+    """d' or criterion of each person (rows) at each level (columns); only people who have all of them."""
+    at = [of_detection(sensitivity, question, category, g, [level]) for level in levels]
+    people = sorted(set.intersection(*(set(own) for own in at)))
+    m = np.array([[own[who][what] for own in at] for who in people])
+    return m[~np.isnan(m).any(axis=1)]
+
+
+def of_detection_blocks(test, what, question, category, g, levels):
+    return test(detection_by(what, question, category, g, levels))
+
+
+def of_detection_people(test, what, question, category, g, levels, a, b):
+    m = detection_by(what, question, category, g, levels)
+    return test(m[:, a - 1] - m[:, b - 1])
+
+
+courses = {}
+
+
+def of_course(test, y, g, level, instant):
+    """Where a rating that follows the clip stands at an instant (from 1), one mean per person."""
+    if y not in courses:
+        courses[y] = [[float(value) for value in cell.split()] for cell in columns[y + ".trace"]]
+    there = [(who, own[instant - 1]) for who, own, is_level in zip(person, courses[y], is_in(g, [level]))
+             if is_level and len(own) >= instant]
+    who, values = zip(*there)
+    _, means = means_by(who, ["all"] * len(who), values, ["all"])
+    return test(means[:, 0])
+
+
+def mean_and_interval(values):
+    """The mean over people with its t interval."""
+    n, mean = len(values), np.mean(values)
+    reach = stats.t.ppf(0.975, n - 1) * np.std(values, ddof=1) / math.sqrt(n) if n > 1 else math.nan
+    return dict(mean=mean, low=mean - reach, high=mean + reach, n=n)
 
 
 def clips_by_people(y, combine):

@@ -6,9 +6,11 @@ use mimique_stats::{
 use serde::Serialize;
 
 use crate::report::document::{Block, DataTable, slug};
-use crate::report::figure::{DetectionPoints, detection_plane};
+use crate::report::figure::{DetectionPanel, DetectionPoints, detection_planes};
 use crate::report::section::Writer;
+use crate::report::section::detection_by_factor::DetectionByFactor;
 use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Answer;
 
 /// Detection of the categories of a forced choice.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,6 +19,9 @@ pub(crate) struct QuestionDetection {
     pub people: usize,
     pub answers: usize,
     pub categories: Vec<CategoryDetection>,
+    /// At each level of the factors of the clips.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by: Vec<DetectionByFactor>,
 }
 
 /// A category against all others.
@@ -46,20 +51,15 @@ pub(crate) struct PeopleDetection {
 }
 
 impl Writer<'_> {
-    /// d' and criterion of each category; nothing where fewer than two were shown.
-    pub(crate) fn detection(&mut self, asked: &AskedQuestion<'_>, truth: &str) {
-        let Some(found) = self.detected(asked) else { return };
-        let of = |found: &DetectedCategory| CategoryDetection {
-            category: found.category.clone(),
-            counts: found.counts,
-            pooled: found.pooled_loglinear.clone(),
-            of_people: of_people(found),
-        };
-        let result = QuestionDetection {
+    /// d' and criterion of each category, of all answers and by factors; nothing where fewer than two were shown.
+    pub(crate) fn detection(&mut self, asked: &AskedQuestion<'_>, truth: &str, factors: &[String]) {
+        let Some(found) = self.detected(asked, |_| true) else { return };
+        let mut result = QuestionDetection {
             response: asked.id.clone(),
             people: found.participants,
             answers: found.n,
-            categories: found.categories.iter().map(of).collect(),
+            categories: found.categories.iter().map(CategoryDetection::of).collect(),
+            by: Vec::new(),
         };
         self.heading(3, "Detection: d′ and criterion", "Détection : d′ et critère");
         self.paragraph(
@@ -69,11 +69,19 @@ impl Writer<'_> {
         let table = self.detection_table(&result, truth);
         self.blocks.push(Block::Table(table));
         self.detection_figure(asked, truth, &found);
+        result.by = self.detection_by_factors(asked, truth, factors);
         self.results.detection.push(result);
     }
 
-    fn detected(&self, asked: &AskedQuestion<'_>) -> Option<Detection> {
-        let answers = self.export.answers_to(&asked.id);
+    /// Detection among some of the answers, told by their places.
+    pub(crate) fn detected(
+        &self,
+        asked: &AskedQuestion<'_>,
+        is_counted: impl Fn(usize) -> bool,
+    ) -> Option<Detection> {
+        let answers = self.export.answers_to(&asked.id).iter().enumerate();
+        let counted = answers.filter(|(place, _)| is_counted(*place));
+        let answers: Vec<&Answer> = counted.map(|(_, answer)| answer).collect();
         let people = answers.iter().map(|own| Some(self.export.people[own.person].id.as_str()));
         let people = Factor::from_cells("participant", people, |_| None);
         let shown = answers.iter().map(|own| own.truth.as_deref());
@@ -84,6 +92,23 @@ impl Writer<'_> {
     }
 
     fn detection_table(&self, result: &QuestionDetection, truth: &str) -> DataTable {
+        let caption = self.language().pick(
+            format!("Detection of each category among all others ({} people)", result.people),
+            format!("Détection de chaque catégorie parmi les autres ({} personnes)", result.people),
+        );
+        let id = format!("{}-detection", slug(&result.response));
+        let rows = result.categories.iter();
+        let rows = rows.map(|own| (self.naming.level(truth, &own.category), own));
+        self.detection_rows(id, caption, rows)
+    }
+
+    /// A row for each category, or category and level.
+    pub(crate) fn detection_rows<'d>(
+        &self,
+        id: String,
+        caption: String,
+        rows: impl Iterator<Item = (String, &'d CategoryDetection)>,
+    ) -> DataTable {
         let language = self.language();
         let heading = language.pick(
             [
@@ -107,15 +132,10 @@ impl Writer<'_> {
                 "c, ensemble",
             ],
         );
-        let caption = language.pick(
-            format!("Detection of each category among all others ({} people)", result.people),
-            format!("Détection de chaque catégorie parmi les autres ({} personnes)", result.people),
-        );
-        let id = format!("{}-detection", slug(&result.response));
         let mut table = DataTable::new(id, caption, heading);
         let number = |value: f64| language.fixed(value, 2);
         let none = || "–".to_owned();
-        for own in &result.categories {
+        for (label, own) in rows {
             let SignalCounts { hits, signals, false_alarms, noise } = own.counts;
             let people = own.of_people.as_ref();
             let mean = people.map(|found| {
@@ -128,7 +148,7 @@ impl Writer<'_> {
             let p = people.and_then(|found| found.t).map(|t| language.p_cell(t.p, t.ln_p));
             let pooled = own.pooled.clone().ok();
             table.row([
-                self.naming.level(truth, &own.category),
+                label,
                 format!("{hits}/{signals}"),
                 format!("{false_alarms}/{noise}"),
                 mean.unwrap_or_else(none),
@@ -143,33 +163,42 @@ impl Writer<'_> {
 
     fn detection_figure(&mut self, asked: &AskedQuestion<'_>, truth: &str, found: &Detection) {
         let language = self.language();
-        let points: Vec<DetectionPoints> = found
-            .categories
-            .iter()
-            .filter_map(|own| {
-                let name = self.naming.level(truth, &own.category);
-                let mean = match of_people(own) {
-                    Some(people) => [people.criterion_mean, people.d_prime_mean],
-                    None => {
-                        let pooled = own.pooled_loglinear.clone().ok()?;
-                        return Some(DetectionPoints {
-                            name,
-                            mean: [pooled.criterion, pooled.d_prime],
-                            people: Vec::new(),
-                        });
-                    }
-                };
-                let people = own.people.iter().filter_map(|person| person.sensitivity);
-                let people = people.map(|own| [own.criterion, own.d_prime]).collect();
-                Some(DetectionPoints { name, mean, people })
-            })
-            .collect();
-        if points.is_empty() {
+        let categories = self.detection_points(truth, found);
+        if categories.is_empty() {
             return;
         }
         let caption = language.pick("d′ against the criterion c", "d′ selon le critère c");
         let id = format!("{}-d-prime", slug(&asked.id));
-        self.figure(detection_plane(language, &id, caption, &points));
+        let panels = [DetectionPanel { title: String::new(), categories }];
+        self.figure(detection_planes(language, &id, caption, &panels));
+    }
+
+    /// Categories as they are drawn: people where each of them was shown enough, else all answers together.
+    pub(crate) fn detection_points(&self, truth: &str, found: &Detection) -> Vec<DetectionPoints> {
+        let point = |own: &DetectedCategory| {
+            let name = self.naming.level(truth, &own.category);
+            let Some(people) = of_people(own) else {
+                let pooled = own.pooled_loglinear.clone().ok()?;
+                let mean = [pooled.criterion, pooled.d_prime];
+                return Some(DetectionPoints { name, mean, people: Vec::new() });
+            };
+            let mean = [people.criterion_mean, people.d_prime_mean];
+            let people = own.people.iter().filter_map(|person| person.sensitivity);
+            let people = people.map(|own| [own.criterion, own.d_prime]).collect();
+            Some(DetectionPoints { name, mean, people })
+        };
+        found.categories.iter().filter_map(point).collect()
+    }
+}
+
+impl CategoryDetection {
+    pub(crate) fn of(found: &DetectedCategory) -> Self {
+        Self {
+            category: found.category.clone(),
+            counts: found.counts,
+            pooled: found.pooled_loglinear.clone(),
+            of_people: of_people(found),
+        }
     }
 }
 

@@ -87,29 +87,6 @@ impl Writer<'_> {
         self.figure(figure);
     }
 
-    /// Whether what was found holds for other clips too.
-    fn other_clips(&mut self, result: &HypothesisResult) {
-        let Some(found) = &result.other_clips else { return };
-        let language = self.language();
-        let id = format!("hypothesis-{}-other-clips", slug(&result.id));
-        let factor = result.factors.first().map_or("", String::as_str);
-        let caption = language.pick(
-            format!("{}: of other people and other clips", result.id),
-            format!("{} : pour d’autres personnes et d’autres extraits", result.id),
-        );
-        let table = tables::other_clips(&self.naming, id.clone(), caption, factor, found);
-        self.blocks.push(Block::Table(table));
-        let caption = language.pick(
-            format!("{}: how far people, segments and clips differ in the mixed model", result.id),
-            format!(
-                "{} : de combien personnes, segments et extraits diffèrent dans le modèle mixte",
-                result.id
-            ),
-        );
-        let deviations = tables::deviations(language, format!("{id}-sd"), caption, found);
-        self.blocks.extend(deviations.map(Block::Table));
-    }
-
     pub(crate) fn hypotheses(&mut self, hypotheses: &[HypothesisResult]) {
         if hypotheses.is_empty() {
             return;

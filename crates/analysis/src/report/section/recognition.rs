@@ -22,7 +22,7 @@ impl Writer<'_> {
         let truth = asked.truth();
         let names = self.factors_told(asked);
         self.confusion_matrices(asked, &truth, &names);
-        self.detection(asked, &truth);
+        self.detection(asked, &truth, &names);
 
         let chance = match asked.question.map(|question| question.kind.options().len()) {
             Some(options) if options > 1 => Some(1.0 / options as f64),
@@ -70,6 +70,13 @@ impl Writer<'_> {
         self.comparisons(measure, &names);
     }
 
+    /// A factor of the clips, a code for each answer to a question.
+    pub(crate) fn factor_of_answers(&self, asked: &AskedQuestion<'_>, name: &str) -> Factor {
+        let answers = self.export.answers_to(&asked.id).iter();
+        let cells = answers.map(|answer| self.export.level(answer, name));
+        Factor::from_cells(name, cells, |level| level.parse().ok())
+    }
+
     fn confusion_matrices(&mut self, asked: &AskedQuestion<'_>, truth: &str, names: &[String]) {
         let language = self.language();
         let answers = self.export.answers_to(&asked.id);
@@ -77,11 +84,7 @@ impl Writer<'_> {
         let levels: Vec<Option<String>> = match &group {
             None => vec![None],
             Some(name) => {
-                let all = Factor::from_cells(
-                    name,
-                    answers.iter().map(|answer| self.export.level(answer, name)),
-                    |level| level.parse().ok(),
-                );
+                let all = self.factor_of_answers(asked, name);
                 all.levels.into_iter().map(Some).chain([None]).collect()
             }
         };

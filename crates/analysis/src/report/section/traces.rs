@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::report::document::slug;
 use crate::report::figure;
 use crate::report::section::Writer;
+use crate::report::section::trace_tests::{PersonCourses, TracePair, compared};
 use crate::trials::measure::Measure;
 
 /// The mean course of a rating at each level of a factor.
@@ -19,6 +20,8 @@ pub(crate) struct MeanTraces {
     /// From one value of a course to the next, seconds.
     pub step_seconds: f64,
     pub levels: Vec<MeanTrace>,
+    /// Every two levels.
+    pub pairs: Vec<TracePair>,
 }
 
 /// The mean course at one level.
@@ -40,14 +43,17 @@ impl Writer<'_> {
             self.export.answers_to(&measure.id).iter().any(|answer| answer.trace.is_some());
         let Some(name) = factors.first().filter(|_| has_course) else { return };
         let factor = measure.factor(self.export, name, &[]);
-        let levels: Vec<MeanTrace> = (0..factor.levels.len())
-            .filter_map(|level| self.mean_trace(measure, &factor, level))
-            .collect();
+        let courses: Vec<PersonCourses> =
+            (0..factor.levels.len()).map(|level| self.courses(measure, &factor, level)).collect();
+        let of_levels = || factor.levels.iter().zip(&courses);
+        let levels: Vec<MeanTrace> =
+            of_levels().filter_map(|(level, own)| mean_trace(level, own)).collect();
+        let pairs = compared(&factor.levels, &courses);
         let language = self.language();
         self.heading(3, "While the clip plays", "Pendant l’extrait");
         self.paragraph(
-            "Means over people of each one’s mean course, with 95 % intervals by t at each instant by itself: they are not corrected for the number of instants.",
-            "Moyennes, sur les personnes, du cours moyen de chacune, avec des intervalles t à 95 % à chaque instant pris à part : ils ne sont pas corrigés du nombre d’instants.",
+            "Means over people of each one’s mean course, with 95 % intervals by t at each instant by itself: they are not corrected for the number of instants. The test below is.",
+            "Moyennes, sur les personnes, du cours moyen de chacune, avec des intervalles t à 95 % à chaque instant pris à part : ils ne sont pas corrigés du nombre d’instants. Le test ci-dessous l’est.",
         );
         let lines: Vec<(String, &MeanTrace)> =
             levels.iter().map(|own| (self.naming.level(name, &own.level), own)).collect();
@@ -57,15 +63,17 @@ impl Writer<'_> {
             format!("{} while the clip plays, by {shown}", measure.label),
             format!("{} pendant l’extrait, par {shown}", measure.label),
         );
-        let drawing = figure::traces(language, &id, &caption, 1.0 / TRACE_HZ, &lines);
+        let spans = self.significant_spans(name, &pairs);
+        let drawing = figure::traces(language, &id, &caption, 1.0 / TRACE_HZ, &lines, &spans);
         self.figure(drawing);
+        self.trace_tests(measure, name, &pairs);
         let (response, factor) = (measure.id.clone(), name.clone());
         let step_seconds = 1.0 / TRACE_HZ;
-        self.results.traces.push(MeanTraces { response, factor, step_seconds, levels });
+        self.results.traces.push(MeanTraces { response, factor, step_seconds, levels, pairs });
     }
 
-    /// The mean course at a level: as long as the shortest.
-    fn mean_trace(&self, measure: &Measure, factor: &Factor, level: usize) -> Option<MeanTrace> {
+    /// The mean course of each person at a level: as long as the person's shortest.
+    fn courses(&self, measure: &Measure, factor: &Factor, level: usize) -> PersonCourses {
         let answers = self.export.answers_to(&measure.id);
         let mut people: BTreeMap<usize, (Vec<f64>, f64)> = BTreeMap::new();
         for (answer, &code) in answers.iter().zip(&factor.codes) {
@@ -78,24 +86,30 @@ impl Writer<'_> {
             sums.iter_mut().zip(course.iter()).for_each(|(sum, value)| *sum += f64::from(*value));
             *count += 1.0;
         }
-        let length = people.values().map(|(sums, _)| sums.len()).min()?;
-        let n = people.len();
-        let at = |instant: usize| -> [f64; 2] {
-            let values = || people.values().map(|(sums, count)| sums[instant] / count);
-            let mean = values().sum::<f64>() / n as f64;
-            let squares: f64 = values().map(|value| (value - mean).powi(2)).sum();
-            [mean, (squares / (n as f64 - 1.0) / n as f64).sqrt()]
-        };
-        let found: Vec<[f64; 2]> = (0..length).map(at).collect();
-        let interval_95 = (n > 1).then(|| {
-            let t = t_quantile_upper(0.025, n as f64 - 1.0);
-            found.iter().map(|[mean, se]| [mean - t * se, mean + t * se]).collect()
-        });
-        Some(MeanTrace {
-            level: factor.levels[level].clone(),
-            people: n,
-            mean: found.iter().map(|[mean, _]| *mean).collect(),
-            interval_95,
-        })
+        let mean = |(sums, count): (Vec<f64>, f64)| sums.iter().map(|sum| sum / count).collect();
+        people.into_iter().map(|(person, own)| (person, mean(own))).collect()
     }
+}
+
+/// The mean course at a level: as long as the shortest.
+fn mean_trace(level: &str, people: &PersonCourses) -> Option<MeanTrace> {
+    let length = people.values().map(Vec::len).min()?;
+    let n = people.len();
+    let at = |instant: usize| -> [f64; 2] {
+        let values = || people.values().map(|course| course[instant]);
+        let mean = values().sum::<f64>() / n as f64;
+        let squares: f64 = values().map(|value| (value - mean).powi(2)).sum();
+        [mean, (squares / (n as f64 - 1.0) / n as f64).sqrt()]
+    };
+    let found: Vec<[f64; 2]> = (0..length).map(at).collect();
+    let interval_95 = (n > 1).then(|| {
+        let t = t_quantile_upper(0.025, n as f64 - 1.0);
+        found.iter().map(|[mean, se]| [mean - t * se, mean + t * se]).collect()
+    });
+    Some(MeanTrace {
+        level: level.to_owned(),
+        people: n,
+        mean: found.iter().map(|[mean, _]| *mean).collect(),
+        interval_95,
+    })
 }

@@ -12,6 +12,7 @@ mod laplace;
 mod procedure;
 mod result;
 mod search;
+mod shares;
 #[cfg(test)]
 mod tests;
 
@@ -31,7 +32,9 @@ use crate::undefined::{NoEstimate, Undefined};
 use design::{Fixed, FixedTerm, Layout, is_part};
 use laplace::Data;
 pub(crate) use procedure::PROCEDURE;
-pub use result::{MixedCoefficient, MixedEffectRatio, MixedGroupingRatio, MixedModel, MixedPair};
+pub use result::{
+    MixedCoefficient, MixedEffectRatio, MixedGroupingRatio, MixedModel, MixedPair, MixedShares,
+};
 use search::{Fit, covariance, fit};
 
 /// Levels that a grouping needs: of fewer the spread is not estimated.
@@ -143,6 +146,10 @@ pub fn mixed_model(
         [factor] => pairs(factor, &found.coefficients, &covariance),
         _ => Vec::new(),
     };
+    let shares = match columns.factors.as_slice() {
+        [factor] => shares::of_levels(factor, &columns.rating, &steps, &found),
+        _ => Labelled(Vec::new()),
+    };
     let sds = kept.iter().zip(&found.sds);
     let at_zero = sds.filter(|(_, sd)| **sd == 0.0).map(|(of, _)| of.name.clone()).collect();
     let kept_names: Vec<String> = kept.iter().map(|grouping| grouping.name.clone()).collect();
@@ -155,6 +162,7 @@ pub fn mixed_model(
         observations: rows.len(),
         dropped: complete.dropped(),
         thresholds: Labelled::zip(&thresholds, found.thresholds.iter().copied()),
+        shares,
         coefficients: Labelled::zip(
             &names,
             found.coefficients.iter().enumerate().map(|(place, estimate)| {
@@ -169,6 +177,7 @@ pub fn mixed_model(
         levels: Labelled::zip(&kept_names, kept.iter().map(|grouping| grouping.levels.len())),
         at_zero,
         left_out,
+        ratings: steps,
         loglik: found.log_likelihood,
         gradient: found.gradient,
         lr_effect: MixedEffectRatio {

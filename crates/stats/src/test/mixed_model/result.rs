@@ -70,6 +70,15 @@ pub struct MixedGroupingRatio {
     pub p_half_chi_square: f64,
 }
 
+/// Shares of each rating at a level of the factor, lowest rating first; they add up to 1.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MixedShares {
+    /// Of the model, where every random effect is 0: of the average person and clip on the scale of the log odds.
+    pub model: Vec<f64>,
+    /// Of the answers, of all people and clips together.
+    pub observed: Vec<f64>,
+}
+
 /// Result of [`mixed_model`](crate::mixed_model).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MixedModel {
@@ -85,6 +94,10 @@ pub struct MixedModel {
     pub dropped: usize,
     /// Between every two ratings, `1|2`, on the logit scale.
     pub thresholds: Labelled<f64>,
+    /// The different ratings, ascending.
+    pub ratings: Vec<f64>,
+    /// Shares of these at each level of the one factor; none of several factors.
+    pub shares: Labelled<MixedShares>,
     /// Fixed effects.
     pub coefficients: Labelled<MixedCoefficient>,
     /// Every two levels of the one factor; none of several factors.

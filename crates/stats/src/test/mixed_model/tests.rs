@@ -70,6 +70,19 @@ fn what_was_planted_is_found() {
     assert_eq!(found.pairs.len(), 3);
     let pair = &found.pairs[0];
     assert!((pair.odds_ratio.ln() - one.estimate).abs() < 1e-12);
+    assert_eq!(found.ratings, [1.0, 2.0, 3.0, 4.0, 5.0]);
+    for ((level, shares), log_odds) in found.shares.iter().zip([0.0, 0.8, -0.4]) {
+        let below = |t: f64| 1.0 / (1.0 + (log_odds - t).exp());
+        let [a, b, c, d] = [-2.0, -0.5, 1.0, 2.5].map(below);
+        for (own, planted) in shares.model.iter().zip([a, b - a, c - b, d - c, 1.0 - d]) {
+            assert!((own - planted).abs() < 0.06, "{level}: {own}, planted {planted}");
+        }
+        for all in [&shares.model, &shares.observed] {
+            assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+        let (extreme, observed) = (shares.model[2], shares.observed[2]);
+        assert!(extreme > observed, "who differ give fewer answers in the middle: {level}");
+    }
 }
 
 #[test]

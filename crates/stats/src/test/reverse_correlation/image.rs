@@ -1,8 +1,9 @@
 //! Activations of people's trials as they are summed, and the images that the sums make.
 
-use super::permutation::{Draws, Largest};
+use super::permutation::Draws;
 use super::trials::ReverseTrials;
 use super::{GroupImage, PersonImage, ReverseCorrelationOptions, UnitCourse, UnitImage, UnitTest};
+use crate::numerics::largest::Largest;
 use crate::summary::describe::moments;
 
 /// Share of a sum of squares below which a spread is rounding.

@@ -32,16 +32,12 @@ mod trials;
 
 use serde::Serialize;
 
+use crate::numerics::largest::require_permutations;
 use crate::outcome::Outcome;
 use crate::refusal::Refusal;
 use crate::undefined::NoEstimate;
 pub(crate) use procedure::PROCEDURE;
 pub use trials::{ReverseTrial, ReverseTrials};
-
-/// Fewest draws that can give p <= 0.05.
-pub const FEWEST_PERMUTATIONS: usize = 19;
-/// What is called significant.
-const LEVEL: f64 = 0.05;
 
 /// How images are made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,14 +181,7 @@ pub fn reverse_correlation(
     options: ReverseCorrelationOptions,
 ) -> Result<ReverseCorrelation, Refusal> {
     trials.require_two_categories()?;
-    if options.permutations < FEWEST_PERMUTATIONS {
-        return Err(Refusal::OptionNotWithin {
-            option: "permutations",
-            word: options.permutations.to_string(),
-            least: FEWEST_PERMUTATIONS as f64,
-            most: f64::INFINITY,
-        });
-    }
+    require_permutations(options.permutations)?;
     let images = image::Images::of(trials, options);
     let draws = permutation::draws(&images, options);
     let intensities = image::Intensities::of(trials);

@@ -2,35 +2,10 @@
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+use super::ReverseCorrelationOptions;
 use super::image::{Images, Intensities};
-use super::{LEVEL, ReverseCorrelationOptions};
+use crate::numerics::largest::Largest;
 use crate::numerics::random::Stream;
-
-/// Rounding that may part two sums of the same numbers in another order.
-const ROUNDING: f64 = 1e-9;
-
-/// The largest |z| of every draw, ascending.
-pub(super) struct Largest(Vec<f64>);
-
-impl Largest {
-    fn of(mut values: Vec<f64>) -> Self {
-        values.sort_unstable_by(f64::total_cmp);
-        Self(values)
-    }
-
-    /// (1 + draws that reach |z|) / (1 + draws).
-    pub(super) fn p(&self, z: f64) -> f64 {
-        let below = self.0.partition_point(|largest| *largest < z.abs() - ROUNDING);
-        (1 + self.0.len() - below) as f64 / (1 + self.0.len()) as f64
-    }
-
-    /// The value above which p is at most 0.05.
-    pub(super) fn critical(&self) -> f64 {
-        // The floor is of a whole number that rounding may have put just below itself.
-        let reached = (LEVEL * (self.0.len() + 1) as f64 + ROUNDING).floor() as usize;
-        self.0[self.0.len() - reached.clamp(1, self.0.len())] + ROUNDING
-    }
-}
 
 /// What the draws found, of units by times and of presence.
 pub(super) struct Draws {

@@ -1,9 +1,10 @@
 //! `mimique test reverse-correlation`.
 
 use super::{
-    CategoryImages, FEWEST_PERMUTATIONS, GroupImage, LEVEL, ReverseCorrelation,
-    ReverseCorrelationOptions, ReverseTrials, UnitImage, reverse_correlation,
+    CategoryImages, GroupImage, ReverseCorrelation, ReverseCorrelationOptions, ReverseTrials,
+    UnitImage, reverse_correlation,
 };
+use crate::numerics::largest::{FEWEST_PERMUTATIONS, LEVEL};
 use crate::outcome::Outcome;
 use crate::procedure::arguments::{Arguments, ProcedureOption, SEED};
 use crate::procedure::lines::{self, Lines};

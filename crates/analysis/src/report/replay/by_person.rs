@@ -1,0 +1,101 @@
+//! Checks of what is first computed person by person: detection, and ratings that follow the clip.
+
+use mimique_stats::{Detection, TestResult as _};
+use mimique_study::TRACE_HZ;
+
+use super::checks::{Check, Collector};
+use crate::hypothesis::call::{Call, Design};
+use crate::report::results::Results;
+use crate::report::section::detection::CategoryDetection;
+
+/// Instants of a course from one check to the next: half a second.
+const INSTANTS: usize = (TRACE_HZ / 2.0) as usize;
+
+impl Collector {
+    /// d' of each category, of all answers and by factors.
+    pub(super) fn detection(&mut self, results: &Results<'_>) {
+        for own in &results.detection {
+            let key = format!("detection:{}", own.response);
+            for category in &own.categories {
+                let key = format!("{key}:{}", category.category);
+                self.category(key, &own.response, ("", &[]), own.people, category);
+            }
+            for by in &own.by {
+                for category in &by.categories {
+                    let key = format!("{key}:{}:{}", by.factor, category.category);
+                    for (level, at) in category.at.iter() {
+                        let levels = [level.to_owned()];
+                        let people = at.each.0.len();
+                        let of = (by.factor.as_str(), levels.as_slice());
+                        let key = format!("{key}:{level}");
+                        self.category(key, &own.response, of, people, &at.detection);
+                    }
+                    if let Some(compared) = &category.compared {
+                        self.person_level(&format!("{key}:d'"), &compared.d_prime);
+                        self.person_level(&format!("{key}:c"), &compared.criterion);
+                    }
+                }
+            }
+        }
+    }
+
+    /// d' of one category among the answers at some levels of a factor; of all where the factor has no name.
+    fn category(
+        &mut self,
+        key: String,
+        response: &str,
+        (factor, levels): (&str, &[String]),
+        all: usize,
+        found: &CategoryDetection,
+    ) {
+        let Some((people, t)) = found.of_people.as_ref().and_then(|p| Some((p, p.t?))) else {
+            return;
+        };
+        // The scripts have a d' of everybody.
+        if people.people < all {
+            return;
+        }
+        let call = Call::new(Design::Detection, Detection::NAMES.function);
+        let call = call.text(response).text(&found.category).text(factor).list(levels);
+        self.checks.push(Check {
+            key,
+            call,
+            values: vec![
+                ("statistic", t.statistic),
+                ("p", t.p),
+                ("effect", people.d_prime_mean),
+                ("n", people.people as f64),
+            ],
+        });
+    }
+
+    /// Means of ratings that follow the clip, every half a second and at the end.
+    pub(super) fn traces(&mut self, results: &Results<'_>) {
+        for own in &results.traces {
+            for level in &own.levels {
+                let last = level.mean.len().saturating_sub(1);
+                let instants = (0..last).step_by(INSTANTS).chain([last]);
+                for instant in instants.filter(|instant| *instant < level.mean.len()) {
+                    let mut values =
+                        vec![("mean", level.mean[instant]), ("n", level.people as f64)];
+                    if let Some([low, high]) = level.interval_95.as_ref().map(|all| all[instant]) {
+                        values.extend([("low", low), ("high", high)]);
+                    }
+                    let call = Call::new(Design::Course, "mean_and_interval");
+                    let call = call.text(&own.response).text(&own.factor).text(&level.level);
+                    self.checks.push(Check {
+                        key: format!(
+                            "trace:{}:{}:{}:{}",
+                            own.response,
+                            own.factor,
+                            level.level,
+                            instant + 1
+                        ),
+                        call: call.number(instant + 1),
+                        values,
+                    });
+                }
+            }
+        }
+    }
+}
