@@ -292,6 +292,15 @@ export function nextLevel(request) {
   );
 }
 
+/** The next batch of pairs of an active schedule: scripts of studies with such a schedule alone. What did not arrive is
+    asked for again. */
+export function drawPairs(request) {
+  return import("../adaptive/pairs.js").then(
+    ({ nextPairs }) => nextPairs(request),
+    () => new Promise((again) => setTimeout(() => again(drawPairs(request)), 2000)),
+  );
+}
+
 /** Aborts the play in progress. */
 export function stopClip() {
   playing?.stop();

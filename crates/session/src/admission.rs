@@ -160,7 +160,9 @@ impl Admission {
 
     fn admits(&self, event: &EventKind) -> Result<(), Misfit> {
         match event {
-            EventKind::PageShown { step } => self.step(step).map(|_| ()),
+            EventKind::PageShown { step } | EventKind::PairsDrawn { step, .. } => {
+                self.step(step).map(|_| ())
+            }
             EventKind::TimeExtended { step } => match self.step(step)?.is_timed {
                 true => Ok(()),
                 false => Err(Misfit::NoTimeLimit),

@@ -100,6 +100,22 @@ pub enum EventKind {
         /// Of a panel: its clips from the first place to the last.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         panel: Vec<String>,
+        /// Of a pair that follows from answers: its batch, from 1.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        batch: Option<u32>,
+    },
+    /// The next pairs of an active schedule, by all answers before them.
+    PairsDrawn {
+        /// Identifier of the step that waited for them.
+        step: String,
+        /// Number of the batch, from 1.
+        batch: u32,
+        /// The pairs: the left clip, the right clip.
+        pairs: Vec<[String; 2]>,
+        /// Answers that they were drawn under, of all people.
+        answers: u64,
+        /// SHA-256 of these answers.
+        hash: String,
     },
     /// A trial of an adaptive block has its level, by the answers before it.
     LevelChosen {
@@ -206,6 +222,7 @@ impl EventKind {
             | Self::TimeExtended { step }
             | Self::PageFinished { step, .. }
             | Self::TrialStarted { step, .. }
+            | Self::PairsDrawn { step, .. }
             | Self::LevelChosen { step, .. }
             | Self::LevelsOver { step }
             | Self::TrialPlayed { step, .. }
@@ -258,6 +275,17 @@ pub struct StageFailure {
     pub values: BTreeMap<String, String>,
     /// What the stage says, in English, for those who look for the cause.
     pub message: String,
+}
+
+/// The clips of a trial that follow from answers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChosenClips {
+    /// The trial's own clip.
+    pub clip: String,
+    /// What is shown beside it.
+    pub against: String,
+    /// Whether that one stands left.
+    pub left: bool,
 }
 
 /// What is played in step beside a clip.

@@ -14,7 +14,7 @@ pub mod wire;
 
 pub use admission::{Admission, Misfit, SessionLimits};
 pub use event::{
-    Calibrated, Client, EventKind, LevelShown, PlayLog, ShownBeside, ShownInPanel, SoundLog,
+    Calibrated, ChosenClips, Client, EventKind, LevelShown, PlayLog, ShownBeside, ShownInPanel, SoundLog,
     StageFailure,
 };
 pub use flow::SOUND_HEARD;

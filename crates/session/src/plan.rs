@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::event::LevelShown;
+use crate::event::ChosenClips;
 use crate::wire::SessionStarted;
 use mimique_study::text::{Words, words};
 use mimique_study::{
@@ -99,6 +99,8 @@ pub struct TrialStep {
     /// What the stage calls its face, where that is drawn for this trial alone ([`Plan::face`]): the step. Empty before
     /// the session, when nobody's draw is known.
     pub face: Option<String>,
+    /// Place among those pairs of its block that follow from answers, from 0; none of other trials.
+    pub active: Option<usize>,
     /// Right answers by question, of a practice trial.
     pub right: Answers,
 }
@@ -276,11 +278,14 @@ impl TrialStep {
         self.clip.is_empty()
     }
 
-    /// Its clip; the one beside it, and whether that one stands left. `level` is what was chosen for the trial, of an
-    /// adaptive block: empty names before.
-    pub fn pair<'a>(&'a self, level: Option<&'a LevelShown>) -> (&'a str, Option<(&'a str, bool)>) {
+    /// Its clip; the one beside it, and whether that one stands left. `chosen` is what follows from answers: empty
+    /// names before.
+    pub fn pair<'a>(
+        &'a self,
+        chosen: Option<&'a ChosenClips>,
+    ) -> (&'a str, Option<(&'a str, bool)>) {
         if self.is_adaptive() {
-            return level
+            return chosen
                 .map_or(("", Some(("", false))), |it| (&it.clip, Some((&it.against, it.left))));
         }
         let beside = self.beside.as_ref();
@@ -318,6 +323,8 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     let mut sides = Sides::new(study, draw, items);
     let mut trials = 0;
     let mut shown: Vec<&str> = Vec::new();
+    // Trials of each block that follow from answers.
+    let mut active: BTreeMap<&str, usize> = BTreeMap::new();
     let mut steps = Vec::new();
     for item in items {
         steps.extend(match item {
@@ -346,7 +353,11 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                         Some((panel, questions)) => (Some(Box::new(panel)), questions),
                         None => (None, asked),
                     };
+                // Of a pair that follows from answers no clip is known.
+                let is_active = block.pairs.is_some() && clip.is_empty();
+                let place = active.entry(component.as_str()).or_insert(0_usize);
                 let step = TrialStep {
+                    active: is_active.then_some(*place),
                     clip: clip.clone(),
                     questions,
                     panel,
@@ -357,6 +368,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     condition: condition.clone(),
                     beside: match beside {
                         Some(right) => Some(Companion::of_pair(right, block.pairs.as_deref())),
+                        None if is_active => Some(Companion::of_pair("", block.pairs.as_deref())),
                         None => block.beside.as_ref().and_then(|beside| {
                             companion(beside, clip, &study.clips, sides.is_left(component, beside))
                         }),
@@ -364,6 +376,7 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
                     face: None,
                     right: Answers::new(),
                 };
+                *place += usize::from(is_active);
                 let time_limit = block.time_limit.clone();
                 Some(Step { id: trial.clone(), kind: StepKind::Trial(step), time_limit })
             }
@@ -410,6 +423,7 @@ fn json_trial(
         beside: None,
         panel: None,
         face: None,
+        active: None,
         right: Answers::new(),
     }
 }
@@ -496,6 +510,7 @@ fn practice(study: &StudyProjection, training: &Training, steps: &mut Vec<Step>)
                 beside: None,
                 panel: None,
                 face: None,
+                active: None,
                 right,
             };
             let id = format!("training/{}/{clip}{again}", index + 1);

@@ -179,8 +179,8 @@ pub const PANEL_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
 
 /// Of trials of blocks of pairs, in exports of studies that have such a block, after `chosen`: name, kind, unit, what
 /// it means.
-pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
-    use ColumnKind::Text;
+pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 5] = {
+    use ColumnKind::{Integer, Text};
     [
         (
             "item_left",
@@ -196,6 +196,12 @@ pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 4] = {
         ),
         ("item_chosen", Text, "", "The level that was chosen; empty for no difference"),
         ("cell", Text, "", "What the two clips are alike in: the levels of `within`, joined by |"),
+        (
+            "batch",
+            Integer,
+            "",
+            "Of a pair that was chosen by the answers so far: its batch, from 1; empty of pairs that were dealt",
+        ),
     ]
 };
 

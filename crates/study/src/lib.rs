@@ -10,6 +10,7 @@ mod device;
 mod drawn_face;
 mod instant;
 mod order;
+mod pair_drawing;
 mod pairs;
 mod practice;
 mod projection;
@@ -31,6 +32,7 @@ pub use instant::{instant_ms, iso_time};
 pub use order::{
     Draw, NoOrder, OrderError, OrderedItem, Sides, Stream, drawn_condition, option_order, order,
 };
+pub use pair_drawing::{DrawnPairs, OwnChoice, PairCount, PairRequest};
 pub use pairs::AnswerOfPair;
 pub use practice::right_answers;
 pub use projection::StudyProjection;

@@ -14,10 +14,16 @@
 //! face.weights(); // Float32Array, frames x shapes
 //! ```
 //!
+//! And the pairs of active schedules:
+//!
+//! ```js
+//! JSON.parse(nextPairs(JSON.stringify(request))); // {type: "pairs_drawn", ...}
+//! ```
+//!
 //! It is the same [`mimique_study::ClosedLoop`] that exports replay, so that the levels have the same bits.
 
 use mimique_study::{
-    AdaptiveComponent, ClosedLoop, Draw, DrawnFace, ReverseCorrelationComponent, UnitShapes,
+    AdaptiveComponent, ClosedLoop, Draw, DrawnFace, PairRequest, ReverseCorrelationComponent, UnitShapes,
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -146,4 +152,18 @@ impl Face {
     pub fn weights_hash(&self) -> String {
         self.0.weights_hash.clone()
     }
+}
+
+/// The event with the next batch of pairs of an active schedule, as JSON; `request`: [`PairRequest`] as JSON.
+///
+/// # Errors
+/// Throws an `Error` whose message says what is wrong with the request.
+#[wasm_bindgen(js_name = nextPairs)]
+pub fn next_pairs(request: &str) -> Result<String, JsError> {
+    let request: PairRequest = serde_json::from_str(request)?;
+    let mut event = serde_json::to_value(request.draw()).unwrap_or_default();
+    event["type"] = Value::from("pairs_drawn");
+    event["step"] = Value::from(request.step.as_str());
+    event["batch"] = Value::from(request.batch);
+    Ok(event.to_string())
 }

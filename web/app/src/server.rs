@@ -46,6 +46,11 @@ impl Server {
         self.requests.post(&format!("/api/sessions/{session}/events"), &body).await
     }
 
+    /// `GET /api/sessions/{session}/pairs/{component}`
+    pub async fn pair_counts(&self, session: &str, component: &str) -> Result<Value, Failure> {
+        self.requests.get(&format!("/api/sessions/{session}/pairs/{component}")).await
+    }
+
     /// `POST /api/sessions/{session}/complete`
     pub async fn complete(&self, session: &str, events: u64) -> Result<Receipt, Failure> {
         let body = Complete { events };

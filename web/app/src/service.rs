@@ -4,6 +4,7 @@ use mimique_session::wire::{
     Acknowledged, Event, Receipt, Resume, SessionStarted, StartSession, Withdrawn,
 };
 use mimique_study::StudyProjection;
+use serde_json::Value;
 
 use crate::answer::Failure;
 use crate::browser::document;
@@ -76,6 +77,14 @@ impl Service {
         match self {
             Self::Server(server) => server.append(session, events).await,
             Self::Site(site) => site.append(events).await,
+        }
+    }
+
+    /// What all others answered to the pairs of a block; a static host knows nobody else.
+    pub async fn pair_counts(&self, session: &str, component: &str) -> Result<Value, Failure> {
+        match self {
+            Self::Server(server) => server.pair_counts(session, component).await,
+            Self::Site(_) => Ok(Value::Array(Vec::new())),
         }
     }
 

@@ -35,6 +35,14 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming:
                 format!("Chaque participant en voit {each} : sur l’ensemble des participants chaque paire aussi souvent, et pour chaque participant chaque niveau aussi souvent, à un près."),
             ),
         };
+        let active = block.schedule.active();
+        let dealt = match active {
+            0 => dealt,
+            _ => language.pick(
+                format!("Each participant is shown {each} pairs. The first {} are dealt so that over participants every pair comes equally often, and to each participant every level, both to within one. The other {active} follow from answers: batches of the spanning tree of greatest expected information about the worths (Bradley and Terry’s model with normal worths of standard deviation 1), under all answers that the server has when a batch is drawn; the event `pairs_drawn` keeps their number and hash.", each - active),
+                format!("Chaque participant voit {each} paires. Les {} premières sont distribuées de sorte que sur l’ensemble des participants chaque paire vienne aussi souvent, et pour chaque participant chaque niveau, à un près. Les {active} autres suivent des réponses : des lots formés par l’arbre couvrant de plus grande information attendue sur les valeurs (modèle de Bradley et Terry, valeurs normales d’écart-type 1), sous toutes les réponses que le serveur a reçues quand le lot est tiré ; l’événement `pairs_drawn` en garde le nombre et l’empreinte.", each - active),
+            ),
+        };
         text.line(&language.pick(
             format!("Paired comparisons `{name}`: each two levels of {compared} ({levels}) that are alike in {within} are shown {how}, {all} pairs in all. {dealt} Each level stands left in half of a participant’s trials, and each pair is shown in both orders equally often over participants."),
             format!("Comparaisons par paires `{name}` : les niveaux de {compared} ({levels}) sont montrés deux à deux pour les mêmes valeurs de {within}, {how}, {all} paires en tout. {dealt} Chaque niveau est à gauche dans la moitié des essais d’un participant, et chaque paire est montrée aussi souvent dans les deux ordres sur l’ensemble des participants."),

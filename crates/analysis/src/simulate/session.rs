@@ -2,10 +2,12 @@
 
 use mimique_session::flow::{Effect, Input, Panel, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_session::{Client, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
+use mimique_session::{Client, EventKind, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{
-    Answers, Calibration, Display, KindOfQuestion as _, Multilingual as _, OrderError, TRACE_HZ,
+    Answers, Calibration, Display, DrawnPairs, KindOfQuestion as _, Multilingual as _, OrderError,
+    PairRequest, TRACE_HZ,
 };
+use serde::Deserialize as _;
 
 use super::faces::Viewer;
 use super::latent::ClipEffects;
@@ -93,6 +95,8 @@ impl Page<'_> {
                         inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
                     }
                     Effect::ChooseLevel(request) => inputs.extend(self.levels.choose(&request)),
+                    // People are simulated beside each other: each one's pairs follow from own answers.
+                    Effect::DrawPairs(request) => inputs.extend(pairs_drawn(&request)),
                     Effect::Flush => {
                         inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
                     }
@@ -101,6 +105,15 @@ impl Page<'_> {
             }
         }
     }
+}
+
+/// Answers the effect `DrawPairs` as the page's module does.
+fn pairs_drawn(request: &serde_json::Value) -> Option<Input> {
+    let request = PairRequest::deserialize(request).ok()?;
+    let DrawnPairs { pairs, answers, hash } = request.draw();
+    let (step, batch) = (request.step, request.batch);
+    let event = EventKind::PairsDrawn { step, batch, pairs, answers, hash };
+    Some(Input::PairsDrawn(event.to_body()))
 }
 
 /// A time in eighths of a millisecond, one at least.
@@ -147,9 +160,12 @@ impl Walk<'_, '_> {
                     }
                     self.shown(&step.id);
                     self.read(800.0);
-                    self.watch(&client, &trial.clip, trial.maximum_replays, trial.training);
+                    // Of a pair that follows from answers, what they chose.
+                    let chosen = self.page.state.record.chosen(step);
+                    let clip = trial.pair(chosen.as_ref()).0.to_owned();
+                    self.watch(&client, &clip, trial.maximum_replays, trial.training);
                     if self.page.state.record.step == here {
-                        self.answer_trial(&trial.clip, trial.training);
+                        self.answer_trial(&clip, trial.training);
                     }
                     self.trial += usize::from(!trial.training);
                     if self.page.state.record.step != here {
@@ -451,8 +467,10 @@ impl Walk<'_, '_> {
             return;
         }
         let Some(clip) = self.model.clip(clip) else { return };
-        let beside = trial.and_then(|trial| trial.beside.as_ref()).and_then(|beside| {
-            Some(Companion { clip: self.model.clip(&beside.clip)?, left: beside.left })
+        let chosen = self.page.state.record.chosen(&self.page.plan.steps[here]);
+        let beside = trial.and_then(|trial| trial.pair(chosen.as_ref()).1);
+        let beside = beside.and_then(|(clip, left)| {
+            Some(Companion { clip: self.model.clip(clip)?, left })
         });
         for question in self.page.plan.steps[here].questions() {
             let record = &self.page.state.record;

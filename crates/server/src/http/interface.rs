@@ -7,13 +7,14 @@ use mimique_session::wire::{
     Acknowledged, AppendEvents, Bundle, Complete, PanicReport, Receipt, Refusal, Resume,
     SessionStarted, StartSession, StudySummary, Withdraw, Withdrawn,
 };
+use mimique_study::PairCount;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use super::statics;
 use crate::export::format::Format;
-use crate::participant::{panics, sessions, studies};
+use crate::participant::{pairs, panics, sessions, studies};
 use crate::researcher::handlers::studies as researcher;
 use crate::state::App;
 
@@ -93,6 +94,12 @@ fn interface() -> Interface {
             "/api/sessions/{session}/events",
             "Append events; answered after they are on disk",
             post(sessions::append),
+        )
+        .read::<Vec<PairCount>>(
+            "/api/sessions/{session}/pairs/{component}",
+            &[],
+            "What all others answered to the pairs of a block, under which the next pairs are drawn",
+            get(pairs::counts),
         )
         .send::<Complete, Receipt>(
             "/api/sessions/{session}/complete",

@@ -3,6 +3,7 @@
 pub(crate) mod first_page;
 mod marks;
 pub(crate) mod pages;
+pub(crate) mod pairs;
 pub(crate) mod panics;
 pub(crate) mod previews;
 mod resumed;

@@ -334,7 +334,7 @@ fn token(app: &App, study: &str, nonce: &str) -> String {
 }
 
 /// Text that is not a token belongs to no session.
-fn token_hash(token: &str) -> Result<String, Error> {
+pub(super) fn token_hash(token: &str) -> Result<String, Error> {
     if secret::is_hex(token, TOKEN_DIGITS) {
         Ok(secret::hash(token))
     } else {

@@ -20,6 +20,9 @@ pub enum Effect {
     /// `step`, `component`, `block`, whose draw it is (`seed`, `configHash`, `slot`), and `answers` so far: the side or
     /// null.
     ChooseLevel(Value),
+    /// Draw the next batch of pairs of an active schedule, by `mimique_study::PairRequest`; report by `PairsDrawn`. Holds
+    /// the request but for the answers of all others.
+    DrawPairs(Value),
     /// Play these clips once from their start, in step or in turn; report by `Played`.
     PlayClips {
         /// The clips: of a trial of one or two its own first.

@@ -114,6 +114,8 @@ pub enum Input {
         /// Clips that may come after either answer.
         ahead: Vec<String>,
     },
+    /// The next batch of pairs: body of [`crate::EventKind::PairsDrawn`].
+    PairsDrawn(Value),
     /// The button that gives more time.
     ExtendTime,
     /// Time has passed (a break and a time limit wait for it). About once a second is enough.
@@ -169,6 +171,7 @@ impl Input {
             Self::Distance(_) => "distance",
             Self::SoundChecked(_) => "sound_checked",
             Self::LevelChosen { .. } => "level_chosen",
+            Self::PairsDrawn(_) => "pairs_drawn",
             Self::ExtendTime => "extend_time",
             Self::Tick => "tick",
             Self::Withdraw => "withdraw",

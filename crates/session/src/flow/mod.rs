@@ -18,6 +18,7 @@ mod allowed;
 mod clock;
 mod effect;
 mod ending;
+mod drawn_pairs;
 mod faces;
 mod gate;
 mod input;

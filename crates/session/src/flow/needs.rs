@@ -2,7 +2,7 @@
 //! questions. All of them are prepared before it, and none of them is missing when a trial starts.
 
 use super::state::{Live, State};
-use crate::event::{LevelShown, StageFailure};
+use crate::event::{ChosenClips, StageFailure};
 use crate::plan::{Plan, Step, TrialStep};
 use mimique_study::MEDIA_PREFIX;
 
@@ -11,10 +11,10 @@ use mimique_study::MEDIA_PREFIX;
 const STEPS_AHEAD: usize = 3;
 
 impl Step {
-    /// The clips of a trial (in an adaptive block those of its level, of a panel all), then the media of the questions (`media:` and the path), each once.
-    pub fn needs(&self, language: &str, level: Option<&LevelShown>) -> Vec<String> {
+    /// The clips of a trial (those that follow from answers once they are `chosen`, of a panel all), then the media of the questions (`media:` and the path), each once.
+    pub fn needs(&self, language: &str, chosen: Option<&ChosenClips>) -> Vec<String> {
         let mut needs: Vec<String> = Vec::new();
-        let placed = self.trial().map_or_else(Vec::new, |trial| trial.placed(level));
+        let placed = self.trial().map_or_else(Vec::new, |trial| trial.placed(chosen));
         let clips = placed.into_iter().map(|placed| placed.clip).filter(|clip| !clip.is_empty());
         let media = self.questions().iter().flat_map(|question| question.media(language));
         for need in clips.chain(media.map(|path| [MEDIA_PREFIX, path].concat())) {
@@ -28,9 +28,8 @@ impl Step {
 
 /// What the step on the screen and the next ones need, the most urgent first, each once.
 pub(super) fn needs_ahead(plan: &Plan, state: &State) -> Vec<String> {
-    let steps = plan.steps.iter().enumerate().skip(state.record.step);
-    let level = |at| state.record.attempt.level.as_deref().filter(|_| at == state.record.step);
-    let needs = steps.map(|(at, step)| step.needs(&state.record.language, level(at)));
+    let steps = plan.steps.iter().skip(state.record.step);
+    let needs = steps.map(|step| needs_now(step, state));
     let mut all: Vec<String> = Vec::new();
     for need in needs.filter(|needs| !needs.is_empty()).take(STEPS_AHEAD).flatten() {
         if !all.contains(&need) {
@@ -38,6 +37,11 @@ pub(super) fn needs_ahead(plan: &Plan, state: &State) -> Vec<String> {
         }
     }
     all
+}
+
+/// What a step needs as far as it is known.
+pub(super) fn needs_now(step: &Step, state: &State) -> Vec<String> {
+    step.needs(&state.record.language, state.record.chosen(step).as_ref())
 }
 
 /// How far a step's needs are.
@@ -52,11 +56,11 @@ pub(super) enum Needs {
 
 /// How far the needs of a step are.
 pub(super) fn needs_of(step: &Step, state: &State) -> Needs {
-    let level = state.record.attempt.level.as_deref();
-    if level.is_none() && step.trial().is_some_and(TrialStep::is_adaptive) {
+    let is_open = state.record.chosen(step).is_none();
+    if is_open && step.trial().is_some_and(TrialStep::is_adaptive) {
         return Needs::Loading(0.0);
     }
-    let needs = step.needs(&state.record.language, level);
+    let needs = needs_now(step, state);
     let Live { prepared, progress, failed, .. } = &state.live;
     if let Some(need) = needs.iter().find(|need| failed.contains_key(*need)) {
         return Needs::Failed(need.clone(), failed.get(need).cloned().unwrap_or_default());

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::event::LevelShown;
+use crate::event::ChosenClips;
 use crate::plan::{Panel, TrialStep};
 
 /// A clip on its canvas.
@@ -26,8 +26,9 @@ pub fn canvas_of_place(place: u32) -> String {
 
 impl TrialStep {
     /// The clips that are played, on their canvases: of a trial of one or two its own first, of a panel the open
-    /// reference and then A, B, C. Clips of an adaptive block without its `level` have no name.
-    pub fn placed(&self, level: Option<&LevelShown>) -> Vec<PlacedClip> {
+    /// reference and then A, B, C. Clips that follow from answers have no name before they are
+    /// `chosen`.
+    pub fn placed(&self, chosen: Option<&ChosenClips>) -> Vec<PlacedClip> {
         if let Some(panel) = &self.panel {
             return panel.places().filter_map(|place| panel.placed(place)).collect();
         }
@@ -35,7 +36,7 @@ impl TrialStep {
             canvas: canvas.to_owned(),
             clip: clip.to_owned(),
         };
-        let (clip, beside) = self.pair(level);
+        let (clip, beside) = self.pair(chosen);
         let clip = self.face.as_deref().unwrap_or(clip);
         let beside = beside.map(|(clip, _)| on(BESIDE_CANVAS, clip));
         [on(OWN_CANVAS, clip)].into_iter().chain(beside).collect()

@@ -198,7 +198,8 @@ impl Screen<'_> {
             words.trial_of(trial.number, of)
         };
         let can_play = can_play(self.plan, state);
-        let (clip, beside) = trial.pair(progress.level.as_deref());
+        let chosen = state.record.chosen(step);
+        let (clip, beside) = trial.pair(chosen.as_ref());
         let (keys, questions) = self
             .questions(step)
             .into_iter()
@@ -212,7 +213,7 @@ impl Screen<'_> {
             _ => words.play_again(),
         };
         TrialView {
-            placed: trial.placed(progress.level.as_deref()),
+            placed: trial.placed(chosen.as_ref()),
             step: step.id.clone(),
             clip: clip.to_owned(),
             beside: beside.map(|(clip, left)| {

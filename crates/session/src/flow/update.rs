@@ -7,7 +7,7 @@ use super::allowed::{can_play, can_play_alone, can_submit, shown_questions};
 use super::effect::Effect;
 use super::gate;
 use super::input::Input;
-use super::needs::needs_ahead;
+use super::needs::{needs_ahead, needs_now};
 use super::state::{Play, State};
 use crate::event::{Client, EventKind, PlayLog, ShownBeside, StageFailure};
 use crate::plan::{Plan, Step, StepKind, TrialStep};
@@ -108,6 +108,7 @@ impl<'a> Transition<'a> {
             Input::Distance(centimetres) => self.distance(*centimetres),
             Input::SoundChecked(answers) => self.sound_checked(answers),
             Input::LevelChosen { event, ahead } => self.level_chosen(event, ahead),
+            Input::PairsDrawn(event) => self.pairs_drawn(event),
             Input::ExtendTime => self.extend_time(),
         }
     }
@@ -180,8 +181,9 @@ impl<'a> Transition<'a> {
 
     /// Asks for what this step and the next ones need. What could not be had before is on its way again,
     /// and shown so: until it fails anew, nobody has to press anything.
-    fn prepare(&mut self) {
+    pub(super) fn prepare(&mut self) {
         self.choose_level();
+        self.draw_pairs();
         let needs = needs_ahead(self.plan, &self.state);
         needs.iter().for_each(|need| drop(self.state.live.failed.remove(need)));
         if !needs.is_empty() {
@@ -290,7 +292,7 @@ impl<'a> Transition<'a> {
         let replays = progress.plays.saturating_sub(1);
         self.record(EventKind::TrialFinished {
             step: step.id.clone(),
-            clip: trial.pair(progress.level.as_deref()).0.to_owned(),
+            clip: trial.pair(self.state.record.chosen(step).as_ref()).0.to_owned(),
             answers,
             rt_ms: self.now_ms - onset_ms,
             replays,
@@ -310,14 +312,17 @@ impl<'a> Transition<'a> {
             return true;
         }
         let panel = trial.panel.as_ref();
+        let chosen = self.state.record.chosen(step);
         if !self.state.record.attempt.is_started() {
-            let (clip, beside) = trial.pair(self.state.record.attempt.level.as_deref());
+            let (clip, beside) = trial.pair(chosen.as_ref());
             let (step, clip) = (step.id.clone(), clip.to_owned());
             let beside = beside.map(|(clip, left)| ShownBeside { clip: clip.to_owned(), left });
             let panel = panel.map_or_else(Vec::new, |panel| panel.clips.clone());
-            self.record(EventKind::TrialStarted { step, clip, beside, panel });
+            let of_batch = |place| self.state.record.batch_and_pair(&step, place);
+            let batch = trial.active.and_then(of_batch).map(|(batch, _)| batch);
+            self.record(EventKind::TrialStarted { step, clip, beside, panel, batch });
         }
-        let clips = trial.placed(self.state.record.attempt.level.as_deref());
+        let clips = trial.placed(chosen.as_ref());
         let in_turn = panel.map_or_else(
             || trial.beside.as_ref().is_some_and(|beside| beside.in_turn),
             |panel| panel.in_turn,
@@ -366,8 +371,7 @@ impl<'a> Transition<'a> {
         self.state.live.prepared.remove(clip);
         self.state.live.progress.remove(clip);
         self.state.live.failed.insert(clip.to_owned(), failure.clone());
-        let level = self.state.record.attempt.level.as_deref();
-        let needs = self.step().map(|step| step.needs(&self.state.record.language, level));
+        let needs = self.step().map(|step| needs_now(step, &self.state));
         let is_shown = needs.is_some_and(|needs| needs.iter().any(|need| need == clip));
         if is_shown {
             self.state.live.play = Play::Still;
@@ -387,8 +391,7 @@ impl<'a> Transition<'a> {
 
     fn retry(&mut self) -> bool {
         let Some(step) = self.step() else { return false };
-        let level = self.state.record.attempt.level.as_deref();
-        let needs = step.needs(&self.state.record.language, level);
+        let needs = needs_now(step, &self.state);
         if !needs.iter().any(|need| self.state.live.failed.contains_key(need)) {
             return false;
         }

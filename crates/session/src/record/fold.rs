@@ -53,12 +53,20 @@ impl Record {
             EventKind::Answered { step, question, value } => {
                 self.answered(plan, &step, question, value, at_ms)
             }
-            EventKind::TrialStarted { step, beside, panel, .. } => {
+            EventKind::TrialStarted { step, beside, panel, batch, .. } => {
                 let fits = self.is_at(plan, &step);
                 if fits {
                     self.attempt.started_ms = Some(at_ms);
                     self.attempt.beside = beside;
                     self.attempt.panel = panel;
+                    self.attempt.batch = batch;
+                }
+                fits
+            }
+            EventKind::PairsDrawn { step, pairs, .. } => {
+                let fits = self.is_at(plan, &step);
+                if fits {
+                    self.drawn.entry(component_of(&step).to_owned()).or_default().push(pairs);
                 }
                 fits
             }

@@ -8,11 +8,13 @@
 mod fold;
 mod step;
 
-use mimique_study::{Answers, Display, Question, alike};
+use std::collections::BTreeMap;
+
+use mimique_study::{Answers, Display, Question, alike, component_of};
 use serde_json::Value;
 
-use crate::event::{Calibrated, Client, EventKind};
-use crate::plan::Plan;
+use crate::event::{Calibrated, ChosenClips, Client, EventKind};
+use crate::plan::{Plan, Step};
 use crate::standing::Standing;
 use crate::wire::Event;
 pub use step::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep};
@@ -69,6 +71,8 @@ pub struct Record {
     pub right: u32,
     /// Whether the last round of practice ended without success.
     pub practice_failed: bool,
+    /// Batches of pairs that followed from answers, by block: the left clip and the right clip of each.
+    pub drawn: BTreeMap<String, Vec<Vec<[String; 2]>>>,
     /// Pages and trials that were finished, in the order of their events, each once.
     pub finished: Vec<FinishedStep>,
 }
@@ -100,12 +104,31 @@ impl Default for Record {
             practised: Answers::new(),
             right: 0,
             practice_failed: false,
+            drawn: BTreeMap::new(),
             finished: Vec::new(),
         }
     }
 }
 
 impl Record {
+    /// The clips of a trial that follow from answers, once they are known.
+    pub fn chosen(&self, step: &Step) -> Option<ChosenClips> {
+        if let Some(place) = step.trial()?.active {
+            let [left, right] = self.batch_and_pair(&step.id, place)?.1;
+            let (clip, against) = (left.clone(), right.clone());
+            return Some(ChosenClips { clip, against, left: false });
+        }
+        let shown = self.attempt.level.as_deref().filter(|shown| shown.step == step.id)?;
+        let (clip, against) = (shown.clip.clone(), shown.against.clone());
+        Some(ChosenClips { clip, against, left: shown.left })
+    }
+
+    /// Batch (from 1) and pair of the trial at a place among those of its block that follow from answers.
+    pub(crate) fn batch_and_pair(&self, step: &str, place: usize) -> Option<(u32, &[String; 2])> {
+        let batches = self.drawn.get(component_of(step))?.iter().zip(1_u32..);
+        batches.flat_map(|(pairs, batch)| pairs.iter().map(move |pair| (batch, pair))).nth(place)
+    }
+
     /// The record of stored events, in ascending order of sequence. Events that this version cannot
     /// read, or that do not fit, change nothing but the counts.
     pub fn of(plan: Option<&Plan>, events: &[Event]) -> Self {

@@ -19,6 +19,8 @@ pub struct Attempt {
     pub panel: Vec<String>,
     /// Whole plays of one clip of a panel alone, by its place from 1; 0 is the open reference.
     pub alone: BTreeMap<u32, u32>,
+    /// Of a pair that follows from answers: its batch, from 1.
+    pub batch: Option<u32>,
     /// The level of a trial of an adaptive block.
     pub level: Option<Box<LevelShown>>,
     /// Whole plays.

@@ -25,6 +25,7 @@ pub(super) fn pair_cells(
     let alike = |name: &String| clips.get(left)?.factor_text(name);
     let alike: Vec<String> = block.within.iter().filter_map(alike).collect();
     cells.put("cell", alike.join("|").into());
+    cells.put("batch", step.attempt.batch.into());
 }
 
 /// Writes which level was chosen, where the answer is the block's choice.

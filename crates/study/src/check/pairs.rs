@@ -51,7 +51,7 @@ fn questions(subject: &Subject<'_>, block: &PairsComponent, pointer: &str, issue
 fn dealt(subject: &Subject<'_>, block: &PairsComponent, pointer: &str, issues: &mut Issues) {
     let place = below(pointer, "schedule");
     match (block.schedule.rule, block.schedule.per_participant) {
-        (PairRule::Incomplete, None) => {
+        (PairRule::Incomplete | PairRule::Active, None) => {
             issues.error(&place, Problem::MissingKey { key: "perParticipant".to_owned() });
             return;
         }

@@ -260,7 +260,22 @@ impl<'a> Context<'a> {
                     condition: condition.unwrap_or(name).to_owned(),
                 }]
             };
-            return Ok(pairs.of_slot(self.draw.participant).map(trial).collect());
+            let mut dealt: Vec<_> = pairs.of_slot(self.draw.participant).map(trial).collect();
+            if pairs.active == 0 {
+                return Ok(dealt);
+            }
+            // What follows from answers comes after them: the block stays together.
+            self.draw.stream(&["pairs/", name].concat()).shuffle(&mut dealt);
+            let active = |number| OrderedItem::Trial {
+                trial: format!("{name}/active-{number}"),
+                component: name.to_owned(),
+                clip: String::new(),
+                beside: None,
+                panel: Vec::new(),
+                condition: condition.unwrap_or(name).to_owned(),
+            };
+            let dealt = dealt.into_iter().flatten();
+            return Ok(vec![dealt.chain((1..=pairs.active).map(active)).collect()]);
         }
         if let Some(panel) = &trials.panel {
             let trial = |page: &PanelPage| {

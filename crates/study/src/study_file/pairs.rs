@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::adaptive::is_none_at_all;
 use super::compared::{Compared, NoCells, method, segment_and_avatar};
 use super::{
     Clip, ClipSelection, ClipShowing, Component, LocalText, Study, TimeLimit, TrialsComponent,
@@ -55,7 +56,7 @@ pub struct PairsComponent {
 pub struct PairSchedule {
     /// All, or a share.
     pub rule: PairRule,
-    /// Of a share: how many pairs each participant is shown.
+    /// Of a share, and of an active schedule: how many pairs each participant is shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub per_participant: Option<usize>,
 }
@@ -70,6 +71,9 @@ pub enum PairRule {
     /// A share of them: over participants every pair is shown in every cell equally often, and each
     /// participant is shown every level equally often, both to within one.
     Incomplete,
+    /// The first half as `incomplete`, then batches of pairs whose answers are expected to tell most, under all
+    /// answers so far.
+    Active,
 }
 
 /// The pairs that a block's trials show, derived from [`PairsComponent`].
@@ -83,6 +87,12 @@ pub struct DealtPairs {
     pub slots: Vec<Vec<[usize; 2]>>,
     /// Whether the two clips are shown one after the other.
     pub in_turn: bool,
+    /// Of an active schedule: the pairs that follow from answers, after those of the slot.
+    #[serde(skip_serializing_if = "is_none_at_all")]
+    pub active: usize,
+    /// Of an active schedule: the levels; `clips` has those of each cell in this order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<String>,
 }
 
 /// Why a block has no pairs.
@@ -151,7 +161,13 @@ impl PairsComponent {
             repetitions: 1,
             beside: None,
             time_limit: self.time_limit.clone(),
-            pairs: Some(Box::new(DealtPairs { clips: ids(), slots: slots.collect(), in_turn })),
+            pairs: Some(Box::new(DealtPairs {
+                clips: ids(),
+                slots: slots.collect(),
+                in_turn,
+                active: self.schedule.active(),
+                levels: if self.schedule.active() > 0 { levels } else { Vec::new() },
+            })),
             panel: None,
         })
     }
@@ -169,7 +185,17 @@ impl PairsComponent {
     fn design(&self, items: usize, cells: usize) -> Result<PairDesign, DesignError> {
         match self.schedule.per_participant {
             None => PairDesign::all(items, cells),
-            Some(pairs) => PairDesign::incomplete(items, cells, pairs),
+            Some(pairs) => PairDesign::incomplete(items, cells, pairs - self.schedule.active()),
+        }
+    }
+}
+
+impl PairSchedule {
+    /// Pairs that follow from answers: the second half of an active schedule.
+    pub fn active(self) -> usize {
+        match (self.rule, self.per_participant) {
+            (PairRule::Active, Some(pairs)) => pairs / 2,
+            _ => 0,
         }
     }
 }
@@ -189,7 +215,7 @@ impl DealtPairs {
 
     /// Pairs that each participant is shown.
     pub fn each(&self) -> usize {
-        self.slots.first().map_or(0, Vec::len)
+        self.slots.first().map_or(0, Vec::len) + self.active
     }
 }
 

@@ -90,6 +90,10 @@ extern "C" {
     #[wasm_bindgen(js_name = nextLevel, catch)]
     pub async fn next_level(request: &str) -> Result<JsValue, JsValue>;
 
+    /// The next batch of pairs: `mimique_study::PairRequest` as JSON in, the event as JSON out.
+    #[wasm_bindgen(js_name = drawPairs, catch)]
+    pub async fn draw_pairs(request: &str) -> Result<JsValue, JsValue>;
+
     /// Aborts the play in progress.
     #[wasm_bindgen(js_name = stopClip)]
     pub fn stop_clip();

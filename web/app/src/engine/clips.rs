@@ -114,6 +114,21 @@ impl Engine {
         });
     }
 
+    /// Draws the next batch of pairs, under the answers of all others as far as they are told.
+    pub(super) fn draw_pairs(self: &Rc<Self>, mut request: Value) {
+        let engine = Rc::clone(self);
+        spawn_local(async move {
+            let component = request["component"].as_str().unwrap_or_default();
+            let session = &engine.plan.started.session;
+            let others = engine.service.pair_counts(session, component).await;
+            request["others"] = others.unwrap_or_else(|_| Value::Array(Vec::new()));
+            let drawn = host::draw_pairs(&request.to_string()).await;
+            let drawn = drawn.ok().and_then(|text| text.as_string());
+            let event = drawn.and_then(|text| serde_json::from_str(&text).ok());
+            engine.dispatch(Input::PairsDrawn(event.unwrap_or_default()));
+        });
+    }
+
     /// Shows the first frame of clips that are prepared, each on its canvas.
     pub fn show(self: &Rc<Self>, clips: &[PlacedClip]) {
         let (engine, clip, clips) = (Rc::clone(self), first(clips), as_json(clips));

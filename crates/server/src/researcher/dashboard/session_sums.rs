@@ -6,7 +6,7 @@ use mimique_session::Record;
 use mimique_session::flow::{Plan, StepKind};
 use mimique_session::rows::TidyForm;
 use mimique_storage::{CountedEvent, SessionRecord, Storage, StorageError};
-use mimique_study::{Study, StudyProjection};
+use mimique_study::{PairCount, PairsComponent, Study, StudyProjection, component_of};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio_stream::StreamExt as _;
@@ -16,7 +16,7 @@ use crate::export::sources::{Version, as_started};
 
 /// The form of [`SessionSums`] and of what they are made by. Whoever changes either counts it up: what was
 /// kept in another form is made anew.
-pub(crate) const FORM: i64 = 1;
+pub(crate) const FORM: i64 = 2;
 
 /// What is counted of one session. No text that was written is in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -37,8 +37,38 @@ pub(crate) struct SessionSums {
     pub late: u64,
     /// How often each attention check was passed and failed.
     pub checks: BTreeMap<String, [u64; 2]>,
+    /// Choices between two levels, by block of pairs.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub pairs: BTreeMap<String, PairSums>,
     /// Class of the device: the platform as the page names it.
     pub device: String,
+}
+
+/// Choices between two levels each.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PairSums(pub Vec<PairCount>);
+
+impl PairSums {
+    /// Adds choices between the levels of a pair.
+    pub fn add(&mut self, PairCount { items, answers }: &PairCount) {
+        let place = self.0.binary_search_by(|own| own.items.cmp(items));
+        match place {
+            Ok(at) => self.0[at].answers.iter_mut().zip(answers).for_each(|(own, new)| *own += new),
+            Err(at) => self.0.insert(at, PairCount { items: items.clone(), answers: *answers }),
+        }
+    }
+
+    /// Adds a choice: which of left and right was chosen, or neither.
+    fn chosen(&mut self, [left, right]: [&str; 2], chosen: Option<&str>) {
+        let mut items = [left, right].map(str::to_owned);
+        items.sort();
+        let answers = match chosen {
+            None => [0, 1, 0],
+            Some(chosen) if *chosen == items[0] => [1, 0, 0],
+            Some(_) => [0, 0, 1],
+        };
+        self.add(&PairCount { items, answers });
+    }
 }
 
 /// Counts the sessions of one version of a study.
@@ -47,6 +77,8 @@ pub(crate) struct Counter {
     form: TidyForm,
     /// How answers to each response are counted.
     counting: BTreeMap<String, Counting>,
+    /// The question that chooses, by block of pairs.
+    choices: BTreeMap<String, String>,
     places: Places,
 }
 
@@ -57,8 +89,8 @@ struct Places {
     trial_order: usize,
     response_id: usize,
     answer: usize,
-    /// Where the study has blocks of pairs.
-    item_chosen: Option<usize>,
+    /// Where the study has blocks of pairs: the levels left and right, and the chosen one.
+    items: Option<[usize; 3]>,
     attention_passed: usize,
     duration: usize,
     frames: usize,
@@ -77,7 +109,10 @@ impl Places {
             trial_order: place("trial_order")?,
             response_id: place("response_id")?,
             answer: place("answer")?,
-            item_chosen: place("item_chosen"),
+            items: place("item_left")
+                .zip(place("item_right"))
+                .zip(place("item_chosen"))
+                .map(|((left, right), chosen)| [left, right, chosen]),
             attention_passed: place("attention_passed")?,
             duration: place("duration")?,
             frames: place("frames")?,
@@ -93,7 +128,9 @@ impl Counter {
         let form = TidyForm::new(&version.study, &version.clips);
         let places = Places::of(&form, &version.study)?;
         let counting = Counting::of(&version.study);
-        Some(Self { projection: version.study.projection(), form, counting, places })
+        let of = |(name, block): (&str, PairsComponent)| (name.to_owned(), block.question);
+        let choices = version.study.pair_blocks().map(of).collect();
+        Some(Self { projection: version.study.projection(), form, counting, choices, places })
     }
 
     /// The sums of a session, whose events are read one by one.
@@ -147,10 +184,17 @@ impl Counter {
                 let by = self.counting.get(response).copied().unwrap_or(Counting::Texts);
                 let tally = sums.answers.entry(response.to_owned()).or_default();
                 tally.count(&row[places.answer], by);
-                let chosen = places.item_chosen.map(|place| &row[place]);
-                if let Some(level) = chosen.filter(|level| !level.is_null()) {
-                    let tally = sums.answers.entry(chosen_of(response)).or_default();
-                    tally.count(level, Counting::Values);
+                if let Some([left, right, chosen]) = places.items {
+                    let level = &row[chosen];
+                    if !level.is_null() {
+                        let tally = sums.answers.entry(chosen_of(response)).or_default();
+                        tally.count(level, Counting::Values);
+                    }
+                    let block = component_of(text(places.trial_id));
+                    if self.choices.get(block).is_some_and(|question| question == response) {
+                        let own = sums.pairs.entry(block.to_owned()).or_default();
+                        own.chosen([left, right].map(text), level.as_str());
+                    }
                 }
             }
             // A trial has a row for each answer; it is one trial all the same.

@@ -1,0 +1,33 @@
+//! What all others answered to the pairs of an active schedule: a page draws its next pairs under it.
+
+use axum::Json;
+use axum::extract::{Path, State};
+use mimique_storage::StorageError;
+use mimique_study::PairCount;
+
+use super::sessions::token_hash;
+use crate::error::Error;
+use crate::researcher::dashboard::session_sums::PairSums;
+use crate::state::App;
+
+/// Choices of everybody else, in the same version of the study, between the levels of a block of pairs. Whoever is
+/// deleted is not among them. They are as new as the sums of the dashboard.
+pub(crate) async fn counts(
+    State(app): State<App>,
+    Path((token, component)): Path<(String, String)>,
+) -> Result<Json<Vec<PairCount>>, Error> {
+    let own = app.storage.session(&token_hash(&token)?).await?;
+    if own.is_deleted() {
+        return Err(StorageError::Withdrawn.into());
+    }
+    let all = app.sums.of_study(&app.storage, &own.study_id).await?;
+    let mut counts = PairSums::default();
+    for (session, sums) in &all.sessions {
+        if session.key == own.key || session.config_hash != own.config_hash {
+            continue;
+        }
+        let pairs = sums.as_ref().and_then(|sums| sums.pairs.get(&component));
+        pairs.into_iter().flat_map(|pairs| &pairs.0).for_each(|count| counts.add(count));
+    }
+    Ok(Json(counts.0))
+}
